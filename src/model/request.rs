@@ -1,0 +1,241 @@
+//! The types of a job request, as `POST /v1/jobs` and `arcslip solve` take them.
+//!
+//! Quantities are in any consistent set of units; the solver makes them dimensionless. Names are the user's, order is
+//! kept as written: it fixes the numbering of unknowns and with it every bit of the result.
+
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+
+/// A model and how to trace it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct JobRequest {
+    pub model: Model,
+    #[serde(default)]
+    pub analysis: Analysis,
+}
+
+/// A structure, its obstacles and its load history.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Model {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// 2 or 3.
+    #[cfg_attr(feature = "server", schema(minimum = 2, maximum = 3))]
+    pub dimension: usize,
+    /// Node name to coordinates (length, `dimension` of them).
+    pub nodes: IndexMap<String, Vec<f64>>,
+    /// Node name to the components held.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub supports: IndexMap<String, Vec<Component>>,
+    pub elements: Vec<Element>,
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub obstacles: IndexMap<String, Obstacle>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub contacts: Vec<Contact>,
+    /// Run in order; each starts at load factor 0 and holds what earlier ones reached.
+    pub stages: Vec<Stage>,
+}
+
+/// A coordinate direction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Component {
+    X,
+    Y,
+    Z,
+}
+
+impl Component {
+    pub fn index(self) -> usize {
+        match self {
+            Self::X => 0,
+            Self::Y => 1,
+            Self::Z => 2,
+        }
+    }
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Element {
+    /// A pin-jointed bar, geometrically exact.
+    Bar {
+        /// Two different node names.
+        nodes: Vec<String>,
+        /// EA (force), positive.
+        axial_stiffness: f64,
+        /// Unstressed length; the distance of the nodes when absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        rest_length: Option<f64>,
+        /// Axial force (tension positive) added to the elastic one.
+        #[serde(default)]
+        prestress: f64,
+        #[serde(default)]
+        strain: Strain,
+    },
+    /// A constant stiffness between one node and the ground, or between two nodes; it does not follow rotation.
+    Spring {
+        /// One or two node names.
+        nodes: Vec<String>,
+        /// Symmetric, `dimension` rows of `dimension` numbers (force per length).
+        stiffness: Vec<Vec<f64>>,
+    },
+}
+
+/// How a bar's strain is measured; `λ = L/L0`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Strain {
+    /// `λ - 1`
+    #[default]
+    Engineering,
+    /// `(λ² - 1)/2`
+    Green,
+    /// `ln λ`
+    Log,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Obstacle {
+    /// A half-space; `normal` points into the free side and need not have unit length.
+    Plane { point: Vec<f64>, normal: Vec<f64> },
+}
+
+/// One node against one obstacle.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Contact {
+    pub node: String,
+    pub obstacle: String,
+    /// Coulomb's coefficient, 0 or more; 0 is frictionless.
+    #[serde(default)]
+    pub friction: f64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Stage {
+    pub name: String,
+    /// Node name to force; multiplied by the load factor.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub forces: IndexMap<String, Vec<f64>>,
+    /// Where the stage ends; absent: it goes on to `max_increments`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub until: Option<Until>,
+}
+
+/// Ends of a stage; the first that is met ends it, and it ends exactly there.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Until {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub load_above: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub load_below: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub displacement: Option<DisplacementBound>,
+    /// This many limit points of the stage, smooth and nonsmooth.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limit_points: Option<u64>,
+    /// This many contact changes of the stage.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact_change: Option<u64>,
+    /// This many increments of the stage.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub increments: Option<u64>,
+}
+
+/// A displacement reaches a value from below (`above`) or from above (`below`); exactly one of the two is given.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct DisplacementBound {
+    pub node: String,
+    pub component: Component,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub above: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub below: Option<f64>,
+}
+
+/// How the path is traced.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct Analysis {
+    pub method: Method,
+    pub selection: Selection,
+    pub arc_length: ArcLength,
+    /// Counted over the whole job; 1 or more.
+    pub max_increments: u64,
+    /// Contact modes that may be tried at one point when its directions are listed; what lies past it is reported.
+    pub max_modes: u64,
+}
+
+impl Default for Analysis {
+    fn default() -> Self {
+        Self {
+            method: Method::default(),
+            selection: Selection::default(),
+            arc_length: ArcLength::default(),
+            max_increments: 1000,
+            max_modes: 65_536,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// Arc-length steps in the current contact mode; the mode is decided where it can change.
+    #[default]
+    Auto,
+    /// Every increment by the MPEC of Kanno and Martins.
+    Mpec,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Selection {
+    /// The direction of largest dissipation per arc length; ties go to the straightest.
+    #[default]
+    MaxDissipation,
+    /// The direction whose displacement rate makes the smallest angle with the incoming one.
+    Straightest,
+}
+
+/// Arc lengths are dimensionless: `‖(Δu/displacement_scale, Δs/load_scale)‖`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct ArcLength {
+    pub initial: f64,
+    pub min: f64,
+    pub max: f64,
+    /// Length; computed from the scene when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub displacement_scale: Option<f64>,
+    /// Load factor (dimensionless, or as the pattern has it); computed from the scene when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load_scale: Option<f64>,
+}
+
+impl Default for ArcLength {
+    fn default() -> Self {
+        Self { initial: 0.02, min: 1e-9, max: 0.1, displacement_scale: None, load_scale: None }
+    }
+}

@@ -1,0 +1,134 @@
+//! One accepted point of the path, as it is streamed and stored: in the user's units, under the user's names.
+
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// An increment: what `arcslip solve` prints as a line, a stream sends as an event and the store keeps as a row.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Increment {
+    /// 0 for the start of the path.
+    pub index: u64,
+    pub stage: Arc<str>,
+    /// Multiplier of the running stage's pattern.
+    pub load_factor: f64,
+    /// Dimensionless, from the start of the path.
+    pub arc_length: f64,
+    /// Dimensionless arc length of this increment.
+    pub step: f64,
+    /// Node name to displacement (length).
+    pub displacements: IndexMap<Arc<str>, Vec<f64>>,
+    pub contacts: Vec<ContactState>,
+    pub point: Point,
+    /// Feasible one-sided directions, the one taken among them; present where there is a choice.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub directions: Option<Vec<Direction>>,
+    pub energy: Energy,
+    pub diagnostics: Diagnostics,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct ContactState {
+    pub node: Arc<str>,
+    pub obstacle: Arc<str>,
+    pub status: Status,
+    /// Distance to the obstacle (length).
+    pub gap: f64,
+    /// Force, 0 or more.
+    pub normal_reaction: f64,
+    /// Force on the node along the obstacle's tangents (`dimension - 1` of them).
+    pub tangential_reaction: Vec<f64>,
+    /// Tangential motion against the obstacle in this increment (length).
+    pub slip: Vec<f64>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    Free,
+    Stick,
+    Slip,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Point {
+    pub kind: PointKind,
+    /// Two or more feasible directions share the sign of the load rate.
+    pub bifurcation: bool,
+    /// What happens here, in words; null at regular points.
+    pub event: Option<String>,
+    /// A listed direction dissipates more than the one the path keeps.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub better_direction: bool,
+    /// Contact modes that were not examined because `max_modes` was reached.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub unexplored_modes: u64,
+    /// The number of directions found is odd, or their set has more than one dimension: the list may be incomplete.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub degenerate: bool,
+}
+
+fn is_zero(count: &u64) -> bool {
+    *count == 0
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum PointKind {
+    Start,
+    Regular,
+    SmoothLimit,
+    NonsmoothLimit,
+    SmoothBifurcation,
+    ContactChange,
+    End,
+}
+
+/// A feasible one-sided direction of the path.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Direction {
+    /// Status along the direction, one a contact.
+    pub contacts: Vec<Status>,
+    /// Load factor per arc length.
+    pub load_rate: f64,
+    /// Energy per arc length.
+    pub dissipation_rate: f64,
+    pub taken: bool,
+    /// The way the path came from; never taken.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub retrace: bool,
+}
+
+/// Totals from the start of the path.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Energy {
+    pub external_work: f64,
+    pub strain: f64,
+    pub dissipated: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Diagnostics {
+    /// Solver time since the job began; the only figure here that differs from run to run.
+    pub elapsed_s: f64,
+    /// Largest equilibrium residual over the force scale.
+    pub residual: f64,
+    /// Largest violation of contact and friction, dimensionless.
+    pub complementarity: f64,
+    /// `|external work - strain - dissipated|` over the largest energy so far.
+    pub energy_error: f64,
+    /// Estimated error of this point (dimensionless displacement).
+    pub error_estimate: f64,
+    pub factorisations: u64,
+    pub newton_iterations: u64,
+    pub qp_solves: u64,
+    pub mpec_solves: u64,
+}

@@ -1,0 +1,67 @@
+//! Why a path ended. Stopping is a result, not an error.
+
+use serde::{Deserialize, Serialize};
+
+/// How a path ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum StopReason {
+    /// Every stage reached its end.
+    StagesCompleted,
+    /// `max_increments` was reached.
+    MaxIncrements,
+    /// The way on is a motion that no element resists.
+    Mechanism,
+    /// No quasi-static continuation exists.
+    NoDirection,
+    /// The path is back at a state it has been in.
+    Cycle,
+    /// No step of at least `arc_length.min` converges.
+    StepUnderflow,
+    /// The directions form a set of more than one dimension, so that none can be named.
+    Degenerate,
+    /// More contact modes than `max_modes` would have to be examined to go on.
+    ModeLimit,
+    /// The caller asked for it.
+    Cancelled,
+}
+
+/// The three ways in which a path may end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    Completed,
+    Stopped,
+    Cancelled,
+}
+
+impl StopReason {
+    pub fn outcome(self) -> Outcome {
+        match self {
+            Self::StagesCompleted | Self::MaxIncrements => Outcome::Completed,
+            Self::Cancelled => Outcome::Cancelled,
+            Self::Mechanism
+            | Self::NoDirection
+            | Self::Cycle
+            | Self::StepUnderflow
+            | Self::Degenerate
+            | Self::ModeLimit => Outcome::Stopped,
+        }
+    }
+
+    /// A sentence for a person.
+    pub fn sentence(self) -> &'static str {
+        match self {
+            Self::StagesCompleted => "every stage reached its end",
+            Self::MaxIncrements => "the number of increments asked for was reached",
+            Self::Mechanism => "what follows is a mechanism: a motion that no element resists",
+            Self::NoDirection => "no quasi-static continuation exists: from here the structure can only move dynamically",
+            Self::Cycle => "the path is back at a state it has been in",
+            Self::StepUnderflow => "no step of at least arc_length.min converges",
+            Self::Degenerate => "the possible directions form a set of more than one dimension: none can be named",
+            Self::ModeLimit => "more contact modes than max_modes would have to be examined to go on",
+            Self::Cancelled => "cancelled",
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! The built-in scenes: models as JSON, ready to post.
+//!
+//! They are served, demonstrated, tested and verified from here.
+
+/// A model ready to post.
+#[derive(Debug, Clone, Copy)]
+pub struct BuiltIn {
+    /// Short name, as in `/v1/scenes/{name}`.
+    pub name: &'static str,
+    /// What it shows, in a line.
+    pub shows: &'static str,
+    /// The job request as JSON text.
+    pub request: &'static str,
+}
+
+macro_rules! scene {
+    ($name:literal, $shows:literal) => {
+        BuiltIn { name: $name, shows: $shows, request: include_str!(concat!($name, ".json")) }
+    };
+}
+
+/// Every built-in scene.
+pub const ALL: &[BuiltIn] = &[
+    scene!("one-bar-truss", "smooth limit points, a falling stretch of bifurcation points, a mechanism (friction 0.3)"),
+    scene!("one-bar-truss-rough", "the same with friction 1.0"),
+    scene!("klarbring", "two nonsmooth limit points between straight branches"),
+    scene!("arch-type-truss", "smooth limit point, bifurcation points, and a crown that lands on the floor"),
+    scene!("two-snapping-bars", "bars that snap one after another (row of two)"),
+    scene!("three-snapping-bars", "bars that snap one after another (row of three)"),
+    scene!("von-mises-truss", "snap-through without contact"),
+];
+
+/// The scene of that name.
+pub fn find(name: &str) -> Option<&'static BuiltIn> {
+    ALL.iter().find(|scene| scene.name == name)
+}
