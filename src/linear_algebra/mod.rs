@@ -1,1 +1,142 @@
-//! linear_algebra
+//! Dense factorisations that say when they cannot be trusted. May be called by everything above; calls nothing.
+
+use nalgebra::{DMatrix, DVector, Dyn, LU};
+
+/// An LU factorisation with partial pivoting of a square matrix whose rows were brought to unit size first.
+pub struct Factorisation {
+    row_scales: DVector<f64>,
+    lu: LU<f64, Dyn, Dyn>,
+}
+
+/// Pivots below this fraction of the largest one count as zero (rows have unit size).
+const SMALLEST_PIVOT: f64 = 1e-14;
+
+impl Factorisation {
+    /// Factorises; `None` when the matrix is singular to working precision or holds a number that is not finite.
+    pub fn new(mut matrix: DMatrix<f64>) -> Option<Self> {
+        let size = matrix.nrows();
+        let mut row_scales = DVector::zeros(size);
+        for column in matrix.column_iter() {
+            for (scale, value) in row_scales.iter_mut().zip(column.iter()) {
+                *scale = f64::max(*scale, value.abs());
+            }
+        }
+        if !row_scales.iter().all(|scale| scale.is_finite() && *scale > 0.0) {
+            return None;
+        }
+        for mut column in matrix.column_iter_mut() {
+            for (value, scale) in column.iter_mut().zip(row_scales.iter()) {
+                if !value.is_finite() {
+                    return None;
+                }
+                *value /= scale;
+            }
+        }
+        let lu = matrix.lu();
+        let factors = lu.lu_internal();
+        let (mut smallest, mut largest) = (f64::INFINITY, 0.0_f64);
+        for index in 0..size {
+            let pivot = factors[(index, index)].abs();
+            smallest = smallest.min(pivot);
+            largest = largest.max(pivot);
+        }
+        let regular = size == 0 || (smallest.is_finite() && smallest > SMALLEST_PIVOT * largest);
+        regular.then_some(Self { row_scales, lu })
+    }
+
+    /// Solves for one right-hand side, overwritten by the solution; `false` when the result is not finite.
+    pub fn solve(&self, right_hand_side: &mut DVector<f64>) -> bool {
+        right_hand_side.component_div_assign(&self.row_scales);
+        self.lu.solve_mut(right_hand_side) && right_hand_side.iter().all(|value| value.is_finite())
+    }
+}
+
+/// A basis of the null space, one vector a column, by elimination with complete pivoting.
+///
+/// Rows are brought to unit size first; a pivot below `tolerance` of the first one ends the elimination, so that the
+/// rank is decided once for the whole matrix. `None` when a number is not finite.
+pub fn null_space(matrix: &DMatrix<f64>, tolerance: f64) -> Option<DMatrix<f64>> {
+    let mut work = matrix.clone();
+    let (rows, columns) = work.shape();
+    for mut row in work.row_iter_mut() {
+        let size = row.amax();
+        if !size.is_finite() {
+            return None;
+        }
+        if size > 0.0 {
+            row /= size;
+        }
+    }
+    let mut order: Vec<usize> = (0..columns).collect();
+    let mut rank = 0;
+    let mut first_pivot = 0.0_f64;
+    while rank < rows.min(columns) {
+        let (mut best, mut place) = (0.0_f64, (rank, rank));
+        for column in rank..columns {
+            for row in rank..rows {
+                if work[(row, column)].abs() > best {
+                    best = work[(row, column)].abs();
+                    place = (row, column);
+                }
+            }
+        }
+        if rank == 0 {
+            first_pivot = best;
+        }
+        if best <= tolerance * first_pivot {
+            break;
+        }
+        work.swap_rows(rank, place.0);
+        work.swap_columns(rank, place.1);
+        order.swap(rank, place.1);
+        for row in rank + 1..rows {
+            let factor = work[(row, rank)] / work[(rank, rank)];
+            if factor != 0.0 {
+                for column in rank..columns {
+                    work[(row, column)] -= factor * work[(rank, column)];
+                }
+            }
+        }
+        rank += 1;
+    }
+    let mut basis = DMatrix::zeros(columns, columns - rank);
+    for (vector, free) in (rank..columns).enumerate() {
+        basis[(order[free], vector)] = 1.0;
+        for row in (0..rank).rev() {
+            let mut value = work[(row, free)];
+            for column in row + 1..rank {
+                value += work[(row, column)] * basis[(order[column], vector)];
+            }
+            basis[(order[row], vector)] = -value / work[(row, row)];
+        }
+        let size = basis.column(vector).norm();
+        basis.column_mut(vector).unscale_mut(size);
+    }
+    Some(basis)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_singular_matrix_is_refused() {
+        assert!(Factorisation::new(DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 4.0])).is_none());
+        assert!(Factorisation::new(DMatrix::from_row_slice(2, 2, &[1.0, f64::NAN, 2.0, 4.0])).is_none());
+    }
+
+    #[test]
+    fn rows_of_very_different_size_are_solved() {
+        let factorisation = Factorisation::new(DMatrix::from_row_slice(2, 2, &[1e-18, 2e-18, 3e18, 4e18])).unwrap();
+        let mut solution = DVector::from_vec(vec![5e-18, 11e18]);
+        assert!(factorisation.solve(&mut solution));
+        assert!((solution[0] - 1.0).abs() < 1e-12 && (solution[1] - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_null_space_has_the_right_dimension() {
+        let basis = null_space(&DMatrix::from_row_slice(1, 3, &[1.0, 1.0, 0.0]), 1e-12).unwrap();
+        assert_eq!(basis.ncols(), 2);
+        assert!(basis.column_iter().all(|column| (column[0] + column[1]).abs() < 1e-14));
+    }
+}

@@ -1,13 +1,33 @@
 //! Tracing the path: from a checked scene to a sequence of increments.
 //!
 //! [`Path`] is an iterator; whoever drives it (command line, worker, test) decides what to do with each increment.
+//!
+//! | file | what it does |
+//! |---|---|
+//! | `scene`, `plan` | a request made dimensionless; what it needs and what is left out |
+//! | `state`, `mode_system` | a point; the equations of one contact mode and Newton's method on them |
+//! | `watch`, `root`, `advance` | what ends a mode; one step, ended exactly at the first event |
+//! | `standing`, `directions`, `decide` | which contacts can change; every direction; which one is taken |
+//! | `energy`, `record`, `increment`, `report`, `stop` | balances, rows, totals, reasons |
+//! | `tracer` | the iterator that ties them together |
 
+mod advance;
+mod decide;
+mod directions;
+mod energy;
 pub mod increment;
+mod mode_system;
+mod name_event;
 pub mod plan;
+mod record;
 pub mod report;
+mod root;
 pub mod scene;
+mod standing;
+mod state;
 pub mod stop;
 pub mod tracer;
+mod watch;
 
 pub use increment::Increment;
 pub use plan::Plan;

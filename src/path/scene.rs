@@ -1,22 +1,319 @@
-//! A request made ready for tracing.
-use super::plan::Plan;
-use crate::model::{InputErrors, JobRequest};
+//! A request made ready for tracing: checked, numbered and dimensionless.
+//!
+//! Lengths are divided by `displacement_scale` `ℓ`, forces by `force_scale` `φ`, each stage's load factor by its
+//! `load_scale` `σ`; a pattern `f` becomes `f σ/φ`. By default `ℓ` is the longest bar and `φ` the smallest axial
+//! stiffness; without bars, `φ` is the largest force of any stage and `ℓ` that force over the largest spring stiffness.
+//! `σ = φ / max |f|`. All follow the units of the input, so that a change of units changes nothing but round-off.
 
+use super::plan::{LeftOut, Plan};
+use crate::contact::obstacle::Obstacle;
+use crate::contact::Contact;
+use crate::linear_algebra::{Factorisation, null_space};
+use crate::model::request::{self, Analysis, JobRequest, Model};
+use crate::model::{InputError, InputErrors};
+use crate::structure::bar::Bar;
+use crate::structure::element::Element;
+use crate::structure::spring::Spring;
+use crate::structure::Structure;
+use nalgebra::DMatrix;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Everything a path needs to know; shared by all who trace it.
 #[derive(Debug, Clone)]
 pub struct Scene {
+    pub(super) structure: Structure,
+    pub(super) contacts: Vec<Contact>,
+    pub(super) contact_names: Vec<(Arc<str>, Arc<str>)>,
+    pub(super) node_names: Vec<Arc<str>>,
+    pub(super) stages: Vec<StageLoad>,
+    pub(super) analysis: Analysis,
     plan: Plan,
 }
+
+/// A stage's load pattern over all degrees of freedom and its ends, dimensionless.
+#[derive(Debug, Clone)]
+pub(super) struct StageLoad {
+    pub name: Arc<str>,
+    pub pattern: Vec<f64>,
+    pub load_scale: f64,
+    pub ends: Vec<End>,
+}
+
+/// One way in which a stage ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum End {
+    /// `sign (s - bound) >= 0`
+    Load { bound: f64, sign: f64 },
+    /// `sign (u - bound) >= 0`
+    Displacement { freedom: usize, bound: f64, sign: f64 },
+    LimitPoints(u64),
+    ContactChanges(u64),
+    Increments(u64),
+}
+
+/// Contacts closer than this (dimensionless) count as closed when the supports are judged.
+const CLOSED: f64 = 1e-10;
 
 impl Scene {
     /// Checks the request as a whole and makes it dimensionless.
     pub fn new(request: &JobRequest) -> Result<Self, InputErrors> {
         crate::model::check::check(request)?;
-        Ok(Self {
-            plan: Plan { unknowns: 0, contacts: 0, stages: request.model.stages.len() as u64, displacement_scale: 1.0, force_scale: 1.0, load_scales: vec![], left_out: vec![] },
-        })
+        let model = &request.model;
+        let (length, force) = scales(model, &request.analysis);
+        let numbers: HashMap<&str, usize> =
+            model.nodes.keys().enumerate().map(|(number, name)| (name.as_str(), number)).collect();
+        let structure = build_structure(model, &numbers, length, force);
+        let mut left_out = Vec::new();
+        let mut contacts = Vec::new();
+        let mut contact_names = Vec::new();
+        for contact in &model.contacts {
+            let node = numbers[contact.node.as_str()];
+            let built = build_contact(model, contact, node, length, &structure);
+            if built.friction == 0.0 && contact.friction > 0.0 {
+                left_out.push(LeftOut {
+                    what: format!("friction of {} on {}", contact.node, contact.obstacle),
+                    why: "the node's supports leave it no motion along the obstacle".to_owned(),
+                });
+            }
+            contacts.push(built);
+            contact_names.push((Arc::from(contact.node.as_str()), Arc::from(contact.obstacle.as_str())));
+        }
+        left_out.extend(plan_what_is_left_out(model, &contacts, &structure));
+        let stages: Vec<StageLoad> = model
+            .stages
+            .iter()
+            .map(|stage| build_stage(stage, &numbers, &structure, length, force, &request.analysis))
+            .collect();
+        let plan = Plan {
+            unknowns: structure.unknowns() as u64,
+            contacts: contacts.len() as u64,
+            stages: stages.len() as u64,
+            displacement_scale: length,
+            force_scale: force,
+            load_scales: stages.iter().map(|stage| stage.load_scale).collect(),
+            left_out,
+        };
+        let node_names = model.nodes.keys().map(|name| Arc::from(name.as_str())).collect();
+        let analysis = request.analysis.clone();
+        let scene = Self { structure, contacts, contact_names, node_names, stages, analysis, plan };
+        scene.refuse_mechanism()?;
+        Ok(scene)
     }
 
+    /// What the scene needs and what is left out.
     pub fn plan(&self) -> &Plan {
         &self.plan
     }
+
+    /// Refuses a structure that can move with no element resisting although every closed contact holds.
+    fn refuse_mechanism(&self) -> Result<(), InputErrors> {
+        let structure = &self.structure;
+        let (dimension, unknowns) = (structure.dimension, structure.unknowns());
+        let still = vec![0.0; structure.freedoms()];
+        let mut matrix = DMatrix::zeros(unknowns, unknowns);
+        structure.add_tangent(&still, &mut matrix);
+        let stiffness = matrix.amax();
+        for contact in &self.contacts {
+            let position = contact.position(dimension, &structure.reference, &still);
+            if contact.obstacle.gap(&position) > CLOSED {
+                continue;
+            }
+            let tangents = contact.obstacle.tangents(dimension);
+            let held = 1 + if contact.friction > 0.0 { dimension - 1 } else { 0 };
+            for vector in [contact.obstacle.normal(), tangents[0], tangents[1]].iter().take(held) {
+                for row in 0..dimension {
+                    for column in 0..dimension {
+                        let place = |component| structure.unknown_of[contact.node * dimension + component];
+                        if let (Some(row_unknown), Some(column_unknown)) = (place(row), place(column)) {
+                            matrix[(row_unknown, column_unknown)] += stiffness * vector[row] * vector[column];
+                        }
+                    }
+                }
+            }
+        }
+        if unknowns == 0 || Factorisation::new(matrix.clone()).is_some() {
+            return Ok(());
+        }
+        let Some(motions) = null_space(&matrix, 1e-12) else { return Ok(()) };
+        for motion in motions.column_iter() {
+            let mut rate = still.clone();
+            for (unknown, value) in motion.iter().enumerate() {
+                rate[structure.freedom_of[unknown]] = *value;
+            }
+            if structure.resistance(&still, &rate) < 1e-10 {
+                let unknown = motion.iamax();
+                let freedom = structure.freedom_of[unknown];
+                let name = &self.node_names[freedom / dimension];
+                let component = ["x", "y", "z"][freedom % dimension];
+                let pointer = format!("/model/nodes/{}", name.replace('~', "~0").replace('/', "~1"));
+                return Err(InputErrors(vec![InputError::new(
+                    pointer,
+                    format!(
+                        "the structure is a mechanism: \"{name}\" can move along {component} with no element, support or \
+                         closed contact resisting; support it, or connect it by bars or springs that resist the motion"
+                    ),
+                )]));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// `ℓ` and `φ`.
+fn scales(model: &Model, analysis: &Analysis) -> (f64, f64) {
+    let (mut longest, mut softest, mut spring) = (0.0_f64, f64::INFINITY, 0.0_f64);
+    for element in &model.elements {
+        match element {
+            request::Element::Bar { nodes, axial_stiffness, .. } => {
+                let ends = (&model.nodes[&nodes[0]], &model.nodes[&nodes[1]]);
+                let squared: f64 = ends.0.iter().zip(ends.1).map(|(a, b)| (a - b) * (a - b)).sum();
+                longest = longest.max(squared.sqrt());
+                softest = softest.min(*axial_stiffness);
+            }
+            request::Element::Spring { stiffness, .. } => {
+                spring = stiffness.iter().flatten().fold(spring, |largest, value| largest.max(value.abs()));
+            }
+        }
+    }
+    let loads = model.stages.iter().flat_map(|stage| stage.forces.values().flatten());
+    let largest_load = loads.fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let (mut length, mut force) = if longest > 0.0 {
+        (longest, softest)
+    } else if spring > 0.0 && largest_load > 0.0 {
+        (largest_load / spring, largest_load)
+    } else {
+        (1.0, 1.0)
+    };
+    if let Some(given) = analysis.arc_length.displacement_scale {
+        if longest == 0.0 && spring > 0.0 {
+            force = spring * given;
+        }
+        length = given;
+    }
+    (length, force)
+}
+
+fn build_structure(model: &Model, numbers: &HashMap<&str, usize>, length: f64, force: f64) -> Structure {
+    let dimension = model.dimension;
+    let reference: Vec<f64> = model.nodes.values().flatten().map(|value| value / length).collect();
+    let mut supported = vec![false; reference.len()];
+    for (name, components) in &model.supports {
+        for component in components {
+            supported[numbers[name.as_str()] * dimension + component.index()] = true;
+        }
+    }
+    let elements = model
+        .elements
+        .iter()
+        .map(|element| match element {
+            request::Element::Bar { nodes, axial_stiffness, rest_length, prestress, strain } => {
+                let nodes = [numbers[nodes[0].as_str()], numbers[nodes[1].as_str()]];
+                let squared: f64 = (0..dimension)
+                    .map(|k| reference[nodes[1] * dimension + k] - reference[nodes[0] * dimension + k])
+                    .map(|value| value * value)
+                    .sum();
+                let rest = rest_length.map_or(squared.sqrt(), |rest| rest / length);
+                Element::Bar(Bar {
+                    nodes,
+                    axial_stiffness: axial_stiffness / force,
+                    rest_length: rest,
+                    initial_elongation: squared.sqrt() - rest,
+                    prestress: prestress / force,
+                    strain: *strain,
+                })
+            }
+            request::Element::Spring { nodes, stiffness } => {
+                let mut matrix = [[0.0; 3]; 3];
+                for (row, values) in stiffness.iter().enumerate() {
+                    for (column, value) in values.iter().enumerate() {
+                        matrix[row][column] = value / force * length;
+                    }
+                }
+                Element::Spring(Spring {
+                    node: numbers[nodes[0].as_str()],
+                    other: nodes.get(1).map(|name| numbers[name.as_str()]),
+                    stiffness: matrix,
+                })
+            }
+        })
+        .collect();
+    Structure::new(dimension, reference, &supported, elements)
+}
+
+fn build_contact(
+    model: &Model,
+    contact: &request::Contact,
+    node: usize,
+    length: f64,
+    structure: &Structure,
+) -> Contact {
+    let dimension = model.dimension;
+    let obstacle = match &model.obstacles[&contact.obstacle] {
+        request::Obstacle::Plane { point, normal } => {
+            let largest = normal.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+            let size = normal.iter().map(|value| (value / largest) * (value / largest)).sum::<f64>().sqrt() * largest;
+            let padded = |values: &[f64], scale: f64| {
+                let mut padded = [0.0; 3];
+                values.iter().enumerate().for_each(|(k, value)| padded[k] = value / scale);
+                padded
+            };
+            Obstacle::Plane { point: padded(point, length), normal: padded(normal, size) }
+        }
+    };
+    let free = (0..dimension).filter(|k| structure.unknown_of[node * dimension + k].is_some()).count();
+    Contact { node, obstacle, friction: if free < dimension { 0.0 } else { contact.friction } }
+}
+
+fn build_stage(
+    stage: &request::Stage,
+    numbers: &HashMap<&str, usize>,
+    structure: &Structure,
+    length: f64,
+    force: f64,
+    analysis: &Analysis,
+) -> StageLoad {
+    let dimension = structure.dimension;
+    let largest = stage.forces.values().flatten().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let natural = if largest > 0.0 { force / largest } else { 1.0 };
+    let load_scale = analysis.arc_length.load_scale.unwrap_or(natural);
+    let mut pattern = vec![0.0; structure.freedoms()];
+    for (name, values) in &stage.forces {
+        for (component, value) in values.iter().enumerate() {
+            pattern[numbers[name.as_str()] * dimension + component] = value * load_scale / force;
+        }
+    }
+    let mut ends = Vec::new();
+    if let Some(until) = &stage.until {
+        let load = |bound: f64, sign: f64| End::Load { bound: bound / load_scale, sign };
+        ends.extend(until.load_above.map(|bound| load(bound, 1.0)));
+        ends.extend(until.load_below.map(|bound| load(bound, -1.0)));
+        if let Some(given) = &until.displacement {
+            let freedom = numbers[given.node.as_str()] * dimension + given.component.index();
+            let end = |bound: f64, sign: f64| End::Displacement { freedom, bound: bound / length, sign };
+            ends.extend(given.above.map(|bound| end(bound, 1.0)));
+            ends.extend(given.below.map(|bound| end(bound, -1.0)));
+        }
+        ends.extend(until.limit_points.map(End::LimitPoints));
+        ends.extend(until.contact_change.map(End::ContactChanges));
+        ends.extend(until.increments.map(End::Increments));
+    }
+    StageLoad { name: Arc::from(stage.name.as_str()), pattern, load_scale, ends }
+}
+
+fn plan_what_is_left_out(model: &Model, contacts: &[Contact], structure: &Structure) -> Vec<LeftOut> {
+    let mut left_out = Vec::new();
+    let mut leave = |what: &str, why: &str| left_out.push(LeftOut { what: what.to_owned(), why: why.to_owned() });
+    if contacts.is_empty() {
+        leave("contact unknowns, directions and complementarity programs", "the scene has no contacts");
+    } else if contacts.iter().all(|contact| contact.friction == 0.0) {
+        leave("tangential reactions and slip", "no contact has friction");
+    }
+    if model.dimension == 2 && !contacts.is_empty() {
+        leave("second-order cones", "in two dimensions the friction cone is polyhedral");
+    }
+    if structure.elements.iter().all(Element::is_linear) {
+        leave("nonlinear iterations", "every element is linear: one correction is exact");
+    }
+    left_out
 }

@@ -1,1 +1,104 @@
-//! structure
+//! The structure: positions, unknowns and elements; internal forces, tangent and strain energy.
+//!
+//! ```text
+//! f_int(u) = Σ_e ∂W_e/∂u,   K(u) = Σ_e ∂²W_e/∂u²
+//! ```
+//!
+//! Dimensionless throughout (`scene` divides by the scales). Knows nothing of contacts, loads or paths. Each kind of
+//! element is a file of its own behind [`element::Element`].
+
+pub mod bar;
+pub mod element;
+pub mod spring;
+
+use element::Element;
+use nalgebra::DMatrix;
+
+/// A checked structure. Degrees of freedom are numbered node by node: `node * dimension + component`.
+#[derive(Debug, Clone)]
+pub struct Structure {
+    pub dimension: usize,
+    /// Undeformed coordinates, one a degree of freedom.
+    pub reference: Vec<f64>,
+    /// The unknown of each degree of freedom; `None` where it is supported.
+    pub unknown_of: Vec<Option<usize>>,
+    /// The degree of freedom of each unknown.
+    pub freedom_of: Vec<usize>,
+    pub elements: Vec<Element>,
+}
+
+impl Structure {
+    pub fn new(dimension: usize, reference: Vec<f64>, supported: &[bool], elements: Vec<Element>) -> Self {
+        let mut unknown_of = vec![None; reference.len()];
+        let mut freedom_of = Vec::new();
+        for (freedom, held) in supported.iter().enumerate() {
+            if !held {
+                unknown_of[freedom] = Some(freedom_of.len());
+                freedom_of.push(freedom);
+            }
+        }
+        Self { dimension, reference, unknown_of, freedom_of, elements }
+    }
+
+    /// Number of unknown displacements.
+    pub fn unknowns(&self) -> usize {
+        self.freedom_of.len()
+    }
+
+    /// Number of degrees of freedom, supported ones included.
+    pub fn freedoms(&self) -> usize {
+        self.reference.len()
+    }
+
+    /// Writes `f_int(u)` over all degrees of freedom and returns the largest force any element carries.
+    pub fn internal_force(&self, displacement: &[f64], force: &mut [f64]) -> f64 {
+        force.fill(0.0);
+        let mut largest = 0.0_f64;
+        for element in &self.elements {
+            largest = largest.max(element.add_force(self, displacement, force));
+        }
+        largest
+    }
+
+    /// Adds `K(u)` into the leading `unknowns x unknowns` block.
+    pub fn add_tangent(&self, displacement: &[f64], matrix: &mut DMatrix<f64>) {
+        for element in &self.elements {
+            element.add_stiffness(self, displacement, &mut |row, column, value| {
+                if let (Some(row), Some(column)) = (self.unknown_of[row], self.unknown_of[column]) {
+                    matrix[(row, column)] += value;
+                }
+            });
+        }
+    }
+
+    /// `W(u)`.
+    pub fn strain_energy(&self, displacement: &[f64]) -> f64 {
+        self.elements.iter().map(|element| element.energy(self, displacement)).sum()
+    }
+
+    /// The largest change of any element's nodal forces under a displacement rate, over its stiffness times the rate's
+    /// size: zero for a motion that no element resists.
+    pub fn resistance(&self, displacement: &[f64], rate: &[f64]) -> f64 {
+        let size = rate.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
+        if size == 0.0 {
+            return 0.0;
+        }
+        let mut largest = 0.0_f64;
+        for element in &self.elements {
+            let mut change = vec![(0usize, 0.0_f64); 0];
+            let mut stiffness = 0.0_f64;
+            element.add_stiffness(self, displacement, &mut |row, column, value| {
+                stiffness = stiffness.max(value.abs());
+                match change.iter_mut().find(|(freedom, _)| *freedom == row) {
+                    Some((_, sum)) => *sum += value * rate[column],
+                    None => change.push((row, value * rate[column])),
+                }
+            });
+            let force = change.iter().fold(0.0_f64, |force, (_, value)| force.max(value.abs()));
+            if stiffness > 0.0 {
+                largest = largest.max(force / (stiffness * size));
+            }
+        }
+        largest
+    }
+}

@@ -1,0 +1,221 @@
+//! One step along the current mode, ended early by the first event.
+
+use super::mode_system::{Corrected, Failure, Loading, ModeSystem, Place};
+use super::root::find_root;
+use super::scene::End;
+use super::state::{Rate, State};
+use super::watch::{self, Watch};
+use crate::contact::Mode;
+
+/// Where a step starts.
+#[derive(Clone, Copy)]
+pub struct Start<'a> {
+    pub loading: Loading<'a>,
+    pub state: &'a State,
+    /// The direction in `modes`.
+    pub rate: &'a Rate,
+    pub modes: &'a [Mode],
+    pub force_scale: f64,
+}
+
+/// A point reached.
+#[derive(Debug, Clone)]
+pub struct Reached {
+    pub corrected: Corrected,
+    /// The path's direction there, in the mode that led to it.
+    pub rate: Rate,
+    pub step: f64,
+    /// What ended the step early.
+    pub event: Option<Watch>,
+}
+
+/// Work done, whether it led to a point or not.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Work {
+    pub factorisations: u64,
+    pub newton_iterations: u64,
+    pub qp_solves: u64,
+    pub mpec_solves: u64,
+}
+
+/// Why a step has to be shorter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Refused {
+    Newton(Failure),
+    /// The direction turned by this angle (radians).
+    Turned(f64),
+    /// An event lies at the start itself.
+    AtStart(Watch),
+}
+
+/// The direction may turn by this much in a step.
+const MOST_TURN: f64 = 0.6;
+/// How far a watched quantity may be negative before it counts as passed.
+const PASSED: f64 = 1e-13;
+/// Two quantities that are zero within this are zero together.
+const COINCIDING: f64 = 1e-10;
+
+impl Start<'_> {
+    /// The point at an arc length, with its direction.
+    pub fn reach(&self, step: f64, work: &mut Work) -> Result<Reached, Refused> {
+        let system = ModeSystem::new(self.loading, self.modes, self.state);
+        let guess = self.state.advanced(self.rate, step);
+        self.settle(&system, guess, Place::ArcLength { from: self.state, step }, work)
+    }
+
+    fn settle(
+        &self,
+        system: &ModeSystem<'_>,
+        guess: State,
+        place: Place<'_>,
+        work: &mut Work,
+    ) -> Result<Reached, Refused> {
+        let corrected = system.correct(guess, place, self.force_scale).map_err(Refused::Newton)?;
+        work.newton_iterations += corrected.iterations;
+        work.factorisations += corrected.iterations + 1;
+        let rate = system.tangent(&corrected.state, self.rate).ok_or(Refused::Newton(Failure::Singular))?;
+        let step = corrected.state.distance(self.state);
+        Ok(Reached { corrected, rate, step, event: None })
+    }
+
+    /// A step of an arc length, or to the first event before.
+    ///
+    /// `ends` are those of the stage; `load_sign` is the sign of the load rate along the path just now.
+    pub fn advance(&self, step: f64, ends: &[End], load_sign: f64, work: &mut Work) -> Result<Reached, Refused> {
+        let mut reached = self.reach(step, work)?;
+        let turn = self.rate.product(&reached.rate).clamp(-1.0, 1.0).acos();
+        if turn > MOST_TURN {
+            return Err(Refused::Turned(turn));
+        }
+        let mut watches = watch::of_mode(self.loading, self.modes);
+        if load_sign != 0.0 {
+            watches.push(Watch::LoadRate { sign: load_sign });
+        }
+        watches.extend(ends.iter().map(|end| Watch::End(*end)));
+        let mut passed = self.passed(&watches, &reached);
+        if passed.is_empty() {
+            passed = self.dips(&watches, &mut reached, step, work)?;
+        }
+        // Each round finds the first zero of one quantity; whatever else is negative there came before it.
+        let mut event = None;
+        while let Some(&watch) = self.earliest(&passed, &reached) {
+            reached = self.locate(watch, &reached, work)?;
+            event = Some(watch);
+            passed = self.passed(&watches, &reached);
+            passed.retain(|other| *other != watch);
+        }
+        if let Some(Watch::LoadRate { .. }) = event {
+            // Where a contact reaches the end of its mode at the limit point itself, the change is what matters.
+            event = self.coinciding(&watches, &reached).or(event);
+        }
+        if let Some(Watch::End(end)) = event {
+            reached = self.hold_exactly(end, reached, work)?;
+        }
+        reached.event = event;
+        Ok(reached)
+    }
+
+    fn value(&self, watch: Watch, state: &State, rate: &Rate) -> f64 {
+        watch.value(self.loading, self.modes, state, rate)
+    }
+
+    fn zero(&self, watch: Watch, reached: &Reached) -> f64 {
+        PASSED * watch.scale(self.force_scale.max(reached.corrected.force_scale))
+    }
+
+    fn passed(&self, watches: &[Watch], reached: &Reached) -> Vec<Watch> {
+        let negative =
+            |watch: &Watch| self.value(*watch, &reached.corrected.state, &reached.rate) < -self.zero(*watch, reached);
+        watches.iter().copied().filter(negative).collect()
+    }
+
+    /// A contact quantity that has fallen to zero at the point reached.
+    fn coinciding(&self, watches: &[Watch], reached: &Reached) -> Option<Watch> {
+        watches.iter().copied().find(|watch| {
+            let scale = COINCIDING * watch.scale(self.force_scale.max(reached.corrected.force_scale));
+            let last = self.value(*watch, &reached.corrected.state, &reached.rate);
+            watch.is_of_contact()
+                && last <= scale
+                && self.value(*watch, self.state, self.rate) > scale
+        })
+    }
+
+    /// Looks where a quantity may have dipped inside the step; shortens the step to that place if it did.
+    fn dips(
+        &self,
+        watches: &[Watch],
+        reached: &mut Reached,
+        step: f64,
+        work: &mut Work,
+    ) -> Result<Vec<Watch>, Refused> {
+        for watch in watches {
+            let end = (&reached.corrected.state, &reached.rate);
+            let Some(place) = watch.dip(self.loading, self.modes, (self.state, self.rate), end, step) else { continue };
+            let inside = self.reach(place, work)?;
+            let passed = self.passed(watches, &inside);
+            if !passed.is_empty() {
+                *reached = inside;
+                return Ok(passed);
+            }
+        }
+        Ok(Vec::new())
+    }
+
+    /// The quantity whose straight line falls to zero first.
+    fn earliest<'w>(&self, passed: &'w [Watch], reached: &Reached) -> Option<&'w Watch> {
+        let estimate = |watch: &Watch| {
+            let first = self.value(*watch, self.state, self.rate).max(0.0);
+            let last = self.value(*watch, &reached.corrected.state, &reached.rate);
+            first / (first - last)
+        };
+        passed.iter().min_by(|a, b| estimate(a).total_cmp(&estimate(b)))
+    }
+
+    /// The point between the start and a point where a quantity has become negative at which it is zero.
+    fn locate(&self, watch: Watch, beyond: &Reached, work: &mut Work) -> Result<Reached, Refused> {
+        let zero = self.zero(watch, beyond);
+        let last = (beyond.step, self.value(watch, &beyond.corrected.state, &beyond.rate));
+        let mut first = (0.0, self.value(watch, self.state, self.rate));
+        // A contact that has just changed starts at zero: begin a little further on.
+        let mut fraction = 1e-3;
+        while first.1 <= zero {
+            if fraction < 1e-9 {
+                return Err(Refused::AtStart(watch));
+            }
+            let place = fraction * beyond.step;
+            let near = self.reach(place, work)?;
+            first = (place, self.value(watch, &near.corrected.state, &near.rate));
+            fraction *= 1e-3;
+        }
+        let mut failure = None;
+        let evaluate = |place: f64| match self.reach(place, work) {
+            Ok(near) => Some(self.value(watch, &near.corrected.state, &near.rate)),
+            Err(refused) => {
+                failure = Some(refused);
+                None
+            }
+        };
+        let place = find_root(evaluate, first, last, 1e-3 * zero);
+        match place {
+            Some(place) => self.reach(place, work),
+            None => Err(failure.unwrap_or(Refused::Newton(Failure::NotConverged))),
+        }
+    }
+
+    /// Solves once more with the end of the stage as an equation, so that a load of 1 is exactly 1.
+    fn hold_exactly(&self, end: End, reached: Reached, work: &mut Work) -> Result<Reached, Refused> {
+        let place = match end {
+            End::Load { bound, .. } => Place::Load(bound),
+            End::Displacement { freedom, bound, .. } => Place::Displacement { freedom, value: bound },
+            End::LimitPoints(_) | End::ContactChanges(_) | End::Increments(_) => return Ok(reached),
+        };
+        let system = ModeSystem::new(self.loading, self.modes, self.state);
+        let mut exact = self.settle(&system, reached.corrected.state, place, work)?;
+        match end {
+            End::Load { bound, .. } => exact.corrected.state.load = bound,
+            End::Displacement { freedom, bound, .. } => exact.corrected.state.displacement[freedom] = bound,
+            End::LimitPoints(_) | End::ContactChanges(_) | End::Increments(_) => {}
+        }
+        Ok(exact)
+    }
+}

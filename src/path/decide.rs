@@ -1,0 +1,216 @@
+//! Which direction the path takes.
+//!
+//! Directions that hold only at first order are tried with a small step; the way the path came is never a candidate.
+//! Then the rule: the largest dissipation per arc length (Kanno and Martins), or the straightest. Ties go to the
+//! straightest in displacement, `u̇·u̇_prev` alone: a rule in which the load enters would depend on its units.
+
+use super::directions::{Candidate, Found, directions, is_mechanism};
+use super::mode_system::{Loading, ModeSystem, Place};
+use super::standing::Standing;
+use super::state::{Rate, State, dot};
+use super::stop::StopReason;
+use super::watch;
+use crate::contact::Mode;
+use crate::model::request::Selection;
+
+/// The directions at a point and the one that is taken.
+#[derive(Debug, Clone)]
+pub struct Decision {
+    pub options: Vec<Choice>,
+    /// Which of `options` is taken; `None` where the path ends.
+    pub taken: Option<usize>,
+    /// Why the path ends here, if it does.
+    pub stop: Option<StopReason>,
+    pub unexplored: u64,
+    pub degenerate: bool,
+}
+
+/// A direction that exists.
+#[derive(Debug, Clone)]
+pub struct Choice {
+    pub rate: Rate,
+    pub modes: Vec<Mode>,
+    pub dissipation: f64,
+    /// Sign of the load rate; where that is zero at first order, of the load rate that follows, if it was looked for.
+    pub load_sign: f64,
+    pub retrace: bool,
+    pub mechanism: bool,
+}
+
+/// What the path was doing before.
+#[derive(Debug, Clone, Copy)]
+pub enum Before<'a> {
+    /// It arrived along this direction.
+    Incoming(&'a Rate),
+    /// A stage begins: the load is to rise; ties go to the motion that the pattern pushes.
+    StageStart,
+}
+
+/// Load rates (of unit arc length) below this have no sign.
+pub const STATIONARY: f64 = 1e-9;
+/// Dissipations closer than this, relative to the largest force, tie.
+const TIE: f64 = 1e-8;
+/// Arc length of the step by which a direction of first order is tried.
+const TRIAL_STEP: f64 = 1e-3;
+/// How far a watched quantity may be negative after a trial step (second order in the step where it is real).
+const TRIAL_TOLERANCE: f64 = 1e-11;
+
+/// Settings and scales of a decision.
+#[derive(Debug, Clone, Copy)]
+pub struct Rules {
+    pub selection: Selection,
+    pub most_modes: u64,
+    pub force_scale: f64,
+}
+
+/// Lists the directions at a point.
+pub fn list(
+    loading: Loading<'_>,
+    state: &State,
+    standings: &[Standing],
+    before: Before<'_>,
+    rules: Rules,
+) -> (Vec<Choice>, Found) {
+    let incoming = match before {
+        Before::Incoming(rate) => Some(rate),
+        Before::StageStart => None,
+    };
+    let mut found = directions(loading, state, standings, incoming, rules.most_modes);
+    let candidates = std::mem::take(&mut found.candidates);
+    let mut options = Vec::with_capacity(candidates.len());
+    for candidate in candidates {
+        let mechanism = is_mechanism(loading, state, &candidate.rate);
+        let confirmed = if candidate.weak && !mechanism {
+            confirm(loading, state, &candidate, rules.force_scale)
+        } else {
+            candidate.labels.first().map(|modes| (modes.clone(), 0.0))
+        };
+        let Some((modes, later_load)) = confirmed else { continue };
+        let load_sign = sign_of(if sign_of(candidate.rate.load) == 0.0 { later_load } else { candidate.rate.load });
+        let retrace = incoming.is_some_and(|incoming| is_reverse(&candidate.rate, incoming));
+        options.push(Choice { rate: candidate.rate, modes, dissipation: candidate.dissipation, load_sign, retrace, mechanism });
+    }
+    (options, found)
+}
+
+/// The sign of a load rate; 0 where it is stationary.
+pub fn sign_of(load: f64) -> f64 {
+    if load.abs() <= STATIONARY { 0.0 } else { load.signum() }
+}
+
+/// The label under which a small step along the direction is feasible, and the load rate after that step.
+fn confirm(loading: Loading<'_>, state: &State, candidate: &Candidate, force_scale: f64) -> Option<(Vec<Mode>, f64)> {
+    let later_load = |modes: &Vec<Mode>| {
+        let system = ModeSystem::new(loading, modes, state);
+        let guess = state.advanced(&candidate.rate, TRIAL_STEP);
+        let place = Place::ArcLength { from: state, step: TRIAL_STEP };
+        let corrected = system.correct(guess, place, force_scale).ok()?;
+        let rate = system.tangent(&corrected.state, &candidate.rate)?;
+        let feasible = watch::of_mode(loading, modes).iter().all(|watch| {
+            let value = watch.value(loading, modes, &corrected.state, &rate);
+            value >= -TRIAL_TOLERANCE * watch.scale(force_scale.max(corrected.force_scale))
+        });
+        feasible.then_some(rate.load)
+    };
+    candidate.labels.iter().find_map(|modes| later_load(modes).map(|load| (modes.clone(), load)))
+}
+
+/// Whether a direction is the incoming one reversed, reactions included.
+fn is_reverse(rate: &Rate, incoming: &Rate) -> bool {
+    let size = rate.largest_reaction().max(incoming.largest_reaction()).max(f64::MIN_POSITIVE);
+    rate.product(incoming) < -1.0 + 1e-9
+        && rate.reactions.iter().zip(&incoming.reactions).all(|(a, b)| {
+            (a.normal + b.normal).abs() <= 1e-4 * size
+                && (a.tangential[0] + b.tangential[0]).abs() <= 1e-4 * size
+                && (a.tangential[1] + b.tangential[1]).abs() <= 1e-4 * size
+        })
+}
+
+/// Lists the directions and takes one.
+pub fn decide(
+    loading: Loading<'_>,
+    state: &State,
+    standings: &[Standing],
+    before: Before<'_>,
+    rules: Rules,
+) -> Decision {
+    let (options, found) = list(loading, state, standings, before, rules);
+    let odd = options.len() % 2 == 1;
+    let mut open: Vec<usize> = (0..options.len()).filter(|&index| !options[index].retrace).collect();
+    let pushed = Rate { displacement: loading.pattern.to_vec(), load: 0.0, reactions: Vec::new() };
+    let previous = match before {
+        Before::Incoming(rate) => rate,
+        Before::StageStart => {
+            if open.iter().any(|&index| options[index].load_sign > 0.0) {
+                open.retain(|&index| options[index].load_sign > 0.0);
+            }
+            &pushed
+        }
+    };
+    let taken = open.into_iter().reduce(|best, other| {
+        if is_preferred(&options[other], &options[best], previous, rules) { other } else { best }
+    });
+    let stop = match taken {
+        Some(index) if options[index].mechanism => Some(StopReason::Mechanism),
+        Some(_) => None,
+        None if found.mechanism => Some(StopReason::Mechanism),
+        None if found.unexplored > 0 => Some(StopReason::ModeLimit),
+        None if found.degenerate => Some(StopReason::Degenerate),
+        None => Some(StopReason::NoDirection),
+    };
+    Decision {
+        taken: taken.filter(|_| stop.is_none()),
+        options,
+        stop,
+        unexplored: found.unexplored,
+        degenerate: found.degenerate || odd,
+    }
+}
+
+/// Whether the first of two directions goes before the second.
+fn is_preferred(first: &Choice, second: &Choice, previous: &Rate, rules: Rules) -> bool {
+    let cosine = |choice: &Choice| {
+        let size = dot(&choice.rate.displacement, &choice.rate.displacement).sqrt();
+        let along = dot(&choice.rate.displacement, &previous.displacement);
+        if size > 0.0 { along / size } else { 0.0 }
+    };
+    match rules.selection {
+        Selection::Straightest => cosine(first) > cosine(second),
+        Selection::MaxDissipation => {
+            let difference = first.dissipation - second.dissipation;
+            if difference.abs() > TIE * rules.force_scale {
+                difference > 0.0
+            } else {
+                dot(&first.rate.displacement, &previous.displacement)
+                    > dot(&second.rate.displacement, &previous.displacement)
+            }
+        }
+    }
+}
+
+/// Whether two or more directions share the sign of the load rate. `taken_sign` replaces the sign of the direction
+/// taken where its load rate is just zero (a smooth limit point: the sign that follows).
+pub fn is_bifurcation(options: &[Choice], taken: Option<usize>, taken_sign: Option<f64>) -> bool {
+    let (mut rising, mut falling) = (0, 0);
+    for (index, option) in options.iter().enumerate() {
+        let sign = match taken_sign {
+            Some(sign) if Some(index) == taken => sign,
+            _ => option.load_sign,
+        };
+        if sign > 0.0 {
+            rising += 1;
+        } else if sign < 0.0 {
+            falling += 1;
+        }
+    }
+    rising >= 2 || falling >= 2
+}
+
+/// Whether the list says more than "on, or back".
+pub fn is_worth_listing(options: &[Choice]) -> bool {
+    match options {
+        [] | [_] => false,
+        [first, second] => first.rate.product(&second.rate) > -1.0 + 1e-9 || first.modes != second.modes,
+        _ => true,
+    }
+}

@@ -1,0 +1,44 @@
+//! Events in words.
+
+use super::record::status;
+use super::scene::Scene;
+use super::standing::Standing;
+use crate::contact::Mode;
+use crate::path::increment::Status;
+
+/// The start of the path.
+pub(super) fn describe_start(scene: &Scene) -> String {
+    format!("stage \"{}\" begins", scene.stages[0].name)
+}
+
+/// Which contacts change, from what to what; where the path ends, which contacts stand at the limit of their mode.
+pub(super) fn describe_change(
+    scene: &Scene,
+    old: &[Mode],
+    new: Option<&[Mode]>,
+    standings: &[Standing],
+) -> String {
+    let mut parts = Vec::new();
+    for (index, before) in old.iter().enumerate() {
+        let (node, obstacle) = &scene.contact_names[index];
+        let after = new.map(|new| new[index]);
+        let word = |mode: Mode| match status(mode) {
+            Status::Free => "free",
+            Status::Stick => "stick",
+            Status::Slip => "slip",
+        };
+        match after {
+            Some(after) if after == *before => {}
+            Some(after) if word(after) == word(*before) => {
+                parts.push(format!("{node} on {obstacle}: slip turns round"));
+            }
+            Some(after) => parts.push(format!("{node} on {obstacle}: {} to {}", word(*before), word(after))),
+            None => match standings[index] {
+                Standing::Settled(_) => {}
+                Standing::OnCone { .. } => parts.push(format!("{node} on {obstacle}: on the friction cone")),
+                Standing::Touching => parts.push(format!("{node} on {obstacle}: reaction zero")),
+            },
+        }
+    }
+    if parts.is_empty() { "contact touches the limit of its mode and keeps it".to_owned() } else { parts.join("; ") }
+}

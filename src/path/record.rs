@@ -1,0 +1,130 @@
+//! From a dimensionless point to the row that a user sees: the user's units and names.
+
+use super::advance::Work;
+use super::decide::Choice;
+use super::increment::{ContactState, Diagnostics, Direction, Energy, Increment, Point, Status};
+use super::scene::Scene;
+use super::state::State;
+use crate::contact::Mode;
+use std::sync::Arc;
+
+/// What a row is made from.
+pub(super) struct Row<'a> {
+    pub index: u64,
+    pub stage: usize,
+    pub state: &'a State,
+    /// The point before; the state itself at the start.
+    pub before: &'a State,
+    /// Modes that held during the increment.
+    pub modes: &'a [Mode],
+    pub arc_length: f64,
+    pub step: f64,
+    pub point: Point,
+    pub options: &'a [Choice],
+    pub taken: Option<usize>,
+    pub list_directions: bool,
+    /// Dimensionless energies.
+    pub energy: Energy,
+    pub residual: f64,
+    pub error_estimate: f64,
+    pub energy_error: f64,
+    pub force_scale: f64,
+    pub elapsed_s: f64,
+    pub work: Work,
+}
+
+/// Status of a contact in a mode.
+pub(super) fn status(mode: Mode) -> Status {
+    match mode {
+        Mode::Free => Status::Free,
+        Mode::Stick => Status::Stick,
+        Mode::Slip { .. } => Status::Slip,
+    }
+}
+
+pub(super) fn increment(scene: &Scene, row: &Row<'_>) -> Increment {
+    let plan = scene.plan();
+    let (length, force) = (plan.displacement_scale, plan.force_scale);
+    let energy_unit = length * force;
+    let stage = &scene.stages[row.stage];
+    let dimension = scene.structure.dimension;
+    let displacements = scene
+        .node_names
+        .iter()
+        .zip(row.state.displacement.chunks_exact(dimension))
+        .map(|(name, values)| (Arc::clone(name), values.iter().map(|value| value * length).collect()))
+        .collect();
+    let (contacts, complementarity) = contact_rows(scene, row);
+    let directions = row.list_directions.then(|| {
+        let direction = |(index, option): (usize, &Choice)| Direction {
+            contacts: option.modes.iter().map(|mode| status(*mode)).collect(),
+            load_rate: option.rate.load * stage.load_scale,
+            dissipation_rate: option.dissipation * energy_unit,
+            taken: row.taken == Some(index),
+            retrace: option.retrace,
+        };
+        row.options.iter().enumerate().map(direction).collect()
+    });
+    Increment {
+        index: row.index,
+        stage: Arc::clone(&stage.name),
+        load_factor: row.state.load * stage.load_scale,
+        arc_length: row.arc_length,
+        step: row.step,
+        displacements,
+        contacts,
+        point: row.point.clone(),
+        directions,
+        energy: Energy {
+            external_work: row.energy.external_work * energy_unit,
+            strain: row.energy.strain * energy_unit,
+            dissipated: row.energy.dissipated * energy_unit,
+        },
+        diagnostics: Diagnostics {
+            elapsed_s: row.elapsed_s,
+            residual: row.residual,
+            complementarity,
+            energy_error: row.energy_error,
+            error_estimate: row.error_estimate,
+            factorisations: row.work.factorisations,
+            newton_iterations: row.work.newton_iterations,
+            qp_solves: row.work.qp_solves,
+            mpec_solves: row.work.mpec_solves,
+        },
+    }
+}
+
+/// Contact rows in the user's units, and the largest violation of contact and friction (dimensionless).
+fn contact_rows(scene: &Scene, row: &Row<'_>) -> (Vec<ContactState>, f64) {
+    let plan = scene.plan();
+    let (length, force) = (plan.displacement_scale, plan.force_scale);
+    let structure = &scene.structure;
+    let dimension = structure.dimension;
+    let mut violation = 0.0_f64;
+    let mut rows = Vec::with_capacity(scene.contacts.len());
+    for (index, contact) in scene.contacts.iter().enumerate() {
+        let position = contact.position(dimension, &structure.reference, &row.state.displacement);
+        let before = contact.position(dimension, &structure.reference, &row.before.displacement);
+        let gap = contact.obstacle.gap(&position);
+        let reaction = row.state.reactions[index];
+        let tangents = contact.obstacle.tangents(dimension);
+        let motion =
+            |k: usize| -> f64 { (0..dimension).map(|c| (position[c] - before[c]) * tangents[k][c]).sum() };
+        let scaled = 1.0 / row.force_scale.max(f64::MIN_POSITIVE);
+        let normal = reaction.normal * scaled;
+        violation = violation.max(-gap).max(-normal).max(gap.min(normal).abs());
+        violation = violation.max(reaction.tangential_size() * scaled - contact.friction * normal);
+        let (node, obstacle) = &scene.contact_names[index];
+        let pairs = 0..dimension - 1;
+        rows.push(ContactState {
+            node: Arc::clone(node),
+            obstacle: Arc::clone(obstacle),
+            status: status(row.modes[index]),
+            gap: gap * length,
+            normal_reaction: reaction.normal * force,
+            tangential_reaction: pairs.clone().map(|k| reaction.tangential[k] * force).collect(),
+            slip: pairs.map(|k| if row.modes[index] == Mode::Free { 0.0 } else { motion(k) * length }).collect(),
+        });
+    }
+    (rows, violation)
+}

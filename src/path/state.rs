@@ -1,0 +1,88 @@
+//! A point of the path and the path's direction there, dimensionless.
+
+use crate::contact::Reaction;
+use crate::structure::Structure;
+
+/// Displacements over all degrees of freedom, load factor, reactions (one a contact).
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    pub displacement: Vec<f64>,
+    pub load: f64,
+    pub reactions: Vec<Reaction>,
+}
+
+/// Derivatives of a [`State`] by arc length; `‖(u̇, ṡ)‖ = 1`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rate {
+    pub displacement: Vec<f64>,
+    pub load: f64,
+    pub reactions: Vec<Reaction>,
+}
+
+impl State {
+    pub fn at_rest(structure: &Structure, contacts: usize) -> Self {
+        Self {
+            displacement: vec![0.0; structure.freedoms()],
+            load: 0.0,
+            reactions: vec![Reaction::default(); contacts],
+        }
+    }
+
+    /// The state after a straight step along a rate.
+    pub fn advanced(&self, rate: &Rate, step: f64) -> Self {
+        let mut state = self.clone();
+        for (value, rate) in state.displacement.iter_mut().zip(&rate.displacement) {
+            *value += step * rate;
+        }
+        state.load += step * rate.load;
+        for (reaction, rate) in state.reactions.iter_mut().zip(&rate.reactions) {
+            reaction.normal += step * rate.normal;
+            reaction.tangential[0] += step * rate.tangential[0];
+            reaction.tangential[1] += step * rate.tangential[1];
+        }
+        state
+    }
+
+    /// `‖(Δu, Δs)‖` to another state.
+    pub fn distance(&self, other: &Self) -> f64 {
+        let squared: f64 = self.displacement.iter().zip(&other.displacement).map(|(a, b)| (a - b) * (a - b)).sum();
+        (squared + (self.load - other.load).powi(2)).sqrt()
+    }
+}
+
+impl Rate {
+    /// `‖(u̇, ṡ)‖`
+    pub fn size(&self) -> f64 {
+        (dot(&self.displacement, &self.displacement) + self.load * self.load).sqrt()
+    }
+
+    /// `(u̇, ṡ)₁·(u̇, ṡ)₂`
+    pub fn product(&self, other: &Self) -> f64 {
+        dot(&self.displacement, &other.displacement) + self.load * other.load
+    }
+
+    pub fn scale(&mut self, factor: f64) {
+        self.displacement.iter_mut().for_each(|value| *value *= factor);
+        self.load *= factor;
+        for reaction in &mut self.reactions {
+            reaction.normal *= factor;
+            reaction.tangential[0] *= factor;
+            reaction.tangential[1] *= factor;
+        }
+    }
+
+    /// Largest rate of any reaction.
+    pub fn largest_reaction(&self) -> f64 {
+        self.reactions.iter().fold(0.0, |largest, reaction| largest.max(reaction.size()))
+    }
+}
+
+/// `a·b`
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// `a·b` of the first `dimension` components of a node's vector and a direction.
+pub fn along(node_values: &[f64], direction: &[f64; 3]) -> f64 {
+    node_values.iter().zip(direction).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,114 @@
+//! A pin-jointed bar with exact rotation.
+//!
+//! With `λ = L/L0` the strain energy is `W = ½ EA L0 ε(λ)² + N0 (L - L0)` for
+//!
+//! ```text
+//! engineering  ε = λ - 1         N = EA ε + N0            N' = EA/L0
+//! Green        ε = (λ² - 1)/2    N = EA ε λ + N0          N' = EA (3λ² - 1)/(2 L0)
+//! logarithmic  ε = ln λ          N = EA ε/λ + N0          N' = EA (1 - ε)/(λ² L0)
+//! ```
+//!
+//! `N = ∂W/∂L` is the axial force in the deformed direction `d`; the tangent is `N' d dᵀ + (N/L)(I - d dᵀ)`.
+//! (Crisfield, *Non-linear Finite Element Analysis of Solids and Structures* 1, Wiley 1991, chapter 3.)
+
+use super::Structure;
+use crate::model::request::Strain;
+
+#[derive(Debug, Clone)]
+pub struct Bar {
+    pub nodes: [usize; 2],
+    pub axial_stiffness: f64,
+    pub rest_length: f64,
+    /// Undeformed distance of the nodes minus the rest length; kept apart so that small strains lose no digits.
+    pub initial_elongation: f64,
+    pub prestress: f64,
+    pub strain: Strain,
+}
+
+struct Deformed {
+    direction: [f64; 3],
+    length: f64,
+    elongation: f64,
+}
+
+impl Bar {
+    /// Deformed direction, length and elongation. The elongation comes from `L² - X² = 2 X·Δu + Δu·Δu`, which keeps
+    /// its digits where `L - L0` would cancel.
+    fn deformed(&self, structure: &Structure, displacement: &[f64]) -> Deformed {
+        let dimension = structure.dimension;
+        let (first, second) = (self.nodes[0] * dimension, self.nodes[1] * dimension);
+        let mut direction = [0.0; 3];
+        let (mut squared, mut reference_squared, mut change) = (0.0, 0.0, 0.0);
+        for component in 0..dimension {
+            let reference = structure.reference[second + component] - structure.reference[first + component];
+            let relative = displacement[second + component] - displacement[first + component];
+            direction[component] = reference + relative;
+            squared += direction[component] * direction[component];
+            reference_squared += reference * reference;
+            change += (2.0 * reference + relative) * relative;
+        }
+        let length = squared.sqrt();
+        if length > 0.0 {
+            direction.iter_mut().for_each(|value| *value /= length);
+        }
+        let elongation = change / (length + reference_squared.sqrt()) + self.initial_elongation;
+        Deformed { direction, length, elongation }
+    }
+
+    /// `ε`, `N` and `N'`.
+    fn response(&self, elongation: f64) -> (f64, f64, f64) {
+        let (stiffness, rest) = (self.axial_stiffness, self.rest_length);
+        let engineering = elongation / rest;
+        let stretch = 1.0 + engineering;
+        match self.strain {
+            Strain::Engineering => (engineering, stiffness * engineering + self.prestress, stiffness / rest),
+            Strain::Green => {
+                let strain = engineering * (1.0 + 0.5 * engineering);
+                let slope = stiffness * (3.0 * stretch * stretch - 1.0) / (2.0 * rest);
+                (strain, stiffness * strain * stretch + self.prestress, slope)
+            }
+            Strain::Log => {
+                let strain = engineering.ln_1p();
+                let slope = stiffness * (1.0 - strain) / (stretch * stretch * rest);
+                (strain, stiffness * strain / stretch + self.prestress, slope)
+            }
+        }
+    }
+
+    pub fn add_force(&self, structure: &Structure, displacement: &[f64], force: &mut [f64]) -> f64 {
+        let deformed = self.deformed(structure, displacement);
+        let (_, axial, _) = self.response(deformed.elongation);
+        let dimension = structure.dimension;
+        for component in 0..dimension {
+            let value = axial * deformed.direction[component];
+            force[self.nodes[0] * dimension + component] -= value;
+            force[self.nodes[1] * dimension + component] += value;
+        }
+        axial.abs()
+    }
+
+    pub fn add_stiffness(&self, structure: &Structure, displacement: &[f64], add: &mut dyn FnMut(usize, usize, f64)) {
+        let deformed = self.deformed(structure, displacement);
+        let (_, axial, slope) = self.response(deformed.elongation);
+        let geometric = axial / deformed.length;
+        let dimension = structure.dimension;
+        let (first, second) = (self.nodes[0] * dimension, self.nodes[1] * dimension);
+        for row in 0..dimension {
+            for column in 0..dimension {
+                let along = deformed.direction[row] * deformed.direction[column];
+                let across = if row == column { 1.0 - along } else { -along };
+                let value = slope * along + geometric * across;
+                add(first + row, first + column, value);
+                add(second + row, second + column, value);
+                add(first + row, second + column, -value);
+                add(second + row, first + column, -value);
+            }
+        }
+    }
+
+    pub fn energy(&self, structure: &Structure, displacement: &[f64]) -> f64 {
+        let elongation = self.deformed(structure, displacement).elongation;
+        let (strain, _, _) = self.response(elongation);
+        0.5 * self.axial_stiffness * self.rest_length * strain * strain + self.prestress * elongation
+    }
+}

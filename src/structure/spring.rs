@@ -1,0 +1,74 @@
+//! A constant symmetric stiffness matrix between a node and the ground, or between two nodes: `f = K Δu`,
+//! `W = ½ Δuᵀ K Δu`. It does not follow rotation.
+
+use super::Structure;
+
+#[derive(Debug, Clone)]
+pub struct Spring {
+    pub node: usize,
+    /// The other end; the ground when absent.
+    pub other: Option<usize>,
+    /// The leading `dimension x dimension` block is used.
+    pub stiffness: [[f64; 3]; 3],
+}
+
+impl Spring {
+    fn relative(&self, structure: &Structure, displacement: &[f64]) -> [f64; 3] {
+        let dimension = structure.dimension;
+        let mut relative = [0.0; 3];
+        for (component, value) in relative.iter_mut().enumerate().take(dimension) {
+            *value = displacement[self.node * dimension + component];
+            if let Some(other) = self.other {
+                *value -= displacement[other * dimension + component];
+            }
+        }
+        relative
+    }
+
+    fn forces(&self, dimension: usize, relative: &[f64; 3]) -> [f64; 3] {
+        let mut forces = [0.0; 3];
+        for row in 0..dimension {
+            for column in 0..dimension {
+                forces[row] += self.stiffness[row][column] * relative[column];
+            }
+        }
+        forces
+    }
+
+    pub fn add_force(&self, structure: &Structure, displacement: &[f64], force: &mut [f64]) -> f64 {
+        let dimension = structure.dimension;
+        let forces = self.forces(dimension, &self.relative(structure, displacement));
+        let mut largest = 0.0_f64;
+        for (component, value) in forces.iter().enumerate().take(dimension) {
+            force[self.node * dimension + component] += value;
+            if let Some(other) = self.other {
+                force[other * dimension + component] -= value;
+            }
+            largest = largest.max(value.abs());
+        }
+        largest
+    }
+
+    pub fn add_stiffness(&self, structure: &Structure, add: &mut dyn FnMut(usize, usize, f64)) {
+        let dimension = structure.dimension;
+        let node = self.node * dimension;
+        for row in 0..dimension {
+            for column in 0..dimension {
+                let value = self.stiffness[row][column];
+                add(node + row, node + column, value);
+                if let Some(other) = self.other {
+                    let other = other * dimension;
+                    add(other + row, other + column, value);
+                    add(node + row, other + column, -value);
+                    add(other + row, node + column, -value);
+                }
+            }
+        }
+    }
+
+    pub fn energy(&self, structure: &Structure, displacement: &[f64]) -> f64 {
+        let relative = self.relative(structure, displacement);
+        let forces = self.forces(structure.dimension, &relative);
+        0.5 * relative.iter().zip(&forces).map(|(motion, force)| motion * force).sum::<f64>()
+    }
+}
