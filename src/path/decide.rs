@@ -147,9 +147,7 @@ pub fn decide(
             &pushed
         }
     };
-    let taken = open.into_iter().reduce(|best, other| {
-        if is_preferred(&options[other], &options[best], previous, rules) { other } else { best }
-    });
+    let taken = preferred(&options, previous, rules, |index| open.contains(&index));
     let stop = match taken {
         Some(index) if options[index].mechanism => Some(StopReason::Mechanism),
         Some(_) => None,
@@ -165,6 +163,18 @@ pub fn decide(
         unexplored: found.unexplored,
         degenerate: found.degenerate || odd,
     }
+}
+
+/// The direction that the rule puts first, among those that are eligible.
+pub fn preferred(
+    options: &[Choice],
+    previous: &Rate,
+    rules: Rules,
+    eligible: impl Fn(usize) -> bool,
+) -> Option<usize> {
+    (0..options.len()).filter(|&index| eligible(index)).reduce(|best, other| {
+        if is_preferred(&options[other], &options[best], previous, rules) { other } else { best }
+    })
 }
 
 /// Whether the first of two directions goes before the second.

@@ -8,23 +8,28 @@
 //! | `state`, `mode_system` | a point; the equations of one contact mode and Newton's method on them |
 //! | `watch`, `root`, `advance` | what ends a mode; one step, ended exactly at the first event |
 //! | `standing`, `directions`, `decide` | which contacts can change; every direction; which one is taken |
+//! | `program`, `naming` | the MPEC of an increment; where it names the mode |
 //! | `energy`, `record`, `increment`, `report`, `stop` | balances, rows, totals, reasons |
-//! | `tracer` | the iterator that ties them together |
+//! | `tracer`, `stepping`, `arrival` | the iterator; how far a step goes; what a point turned out to be |
 
 mod advance;
+mod arrival;
 mod decide;
 mod directions;
 mod energy;
 pub mod increment;
 mod mode_system;
 mod name_event;
+mod naming;
 pub mod plan;
+mod program;
 mod record;
 pub mod report;
 mod root;
 pub mod scene;
 mod standing;
 mod state;
+mod stepping;
 pub mod stop;
 pub mod tracer;
 mod watch;

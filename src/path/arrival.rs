@@ -1,0 +1,143 @@
+//! What a point turned out to be, and how the path goes on from it.
+
+use super::decide::{self, Before, Choice};
+use super::increment::{Point, PointKind};
+use super::name_event::describe_change;
+use super::standing::Standing;
+use super::state::Rate;
+use super::stop::StopReason;
+use super::tracer::{Path, Visited};
+use super::watch::Watch;
+use crate::model::request::Method;
+
+/// States closer than this are one.
+const SAME_STATE: f64 = 1e-9;
+
+/// What a point turned out to be.
+pub(super) struct Arrival {
+    pub point: Point,
+    pub options: Vec<Choice>,
+    pub taken: Option<usize>,
+    pub stop: Option<StopReason>,
+    pub stage_ends: bool,
+}
+
+impl Path<'_> {
+    /// What kind of point this is, and how the path goes on.
+    pub(super) fn classify(&mut self, event: Option<Watch>, incoming: &Rate) -> Arrival {
+        match event {
+            None | Some(Watch::End(_)) => {
+                self.here.rate = Some(incoming.clone());
+                let stage_ends = event.is_some();
+                self.look_around(incoming, PointKind::Regular, None, None, stage_ends)
+            }
+            Some(Watch::LoadRate { sign }) => {
+                self.here.rate = Some(incoming.clone());
+                self.here.load_sign = -sign;
+                self.counts.limit_points += 1;
+                let what = if sign > 0.0 { "load maximum" } else { "load minimum" };
+                self.look_around(incoming, PointKind::SmoothLimit, Some(what.to_owned()), Some(-sign), false)
+            }
+            Some(Watch::Gap(_) | Watch::Normal(_) | Watch::Cone { .. } | Watch::Sliding(_)) => {
+                self.contact_change(incoming)
+            }
+        }
+    }
+
+    /// Directions at a point where the mode goes on.
+    fn look_around(
+        &self,
+        incoming: &Rate,
+        kind: PointKind,
+        event: Option<String>,
+        sign: Option<f64>,
+        stage_ends: bool,
+    ) -> Arrival {
+        let standings = self.standings(&self.here.state);
+        let mut point = Point {
+            kind,
+            bifurcation: false,
+            event,
+            better_direction: false,
+            unexplored_modes: 0,
+            degenerate: false,
+        };
+        let settled = standings.iter().all(|standing| matches!(standing, Standing::Settled(_)));
+        if settled {
+            return Arrival { point, options: Vec::new(), taken: None, stop: None, stage_ends };
+        }
+        let rules = self.rules();
+        let before = Before::Incoming(incoming);
+        let (options, found) = decide::list(self.loading(), &self.here.state, &standings, before, rules);
+        let taken = options.iter().position(|option| option.rate.product(incoming) > 1.0 - 1e-9);
+        point.bifurcation = decide::is_bifurcation(&options, taken, sign);
+        point.unexplored_modes = found.unexplored;
+        point.degenerate = found.degenerate || options.len() % 2 == 1 || taken.is_none();
+        if let Some(taken) = taken {
+            let kept = options[taken].dissipation;
+            let tolerance = 1e-8 * rules.force_scale;
+            point.better_direction =
+                options.iter().any(|option| !option.retrace && option.dissipation > kept + tolerance);
+        }
+        Arrival { point, options, taken, stop: None, stage_ends }
+    }
+
+    /// A contact has reached the end of its mode: list the directions and take one.
+    fn contact_change(&mut self, incoming: &Rate) -> Arrival {
+        self.counts.contact_changes += 1;
+        let standings = self.standings(&self.here.state);
+        let before = Before::Incoming(incoming);
+        let rules = self.rules();
+        let mut decision = decide::decide(self.loading(), &self.here.state, &standings, before, rules);
+        if self.scene.analysis.method == Method::Mpec && decision.taken.is_some() {
+            let confirmed = self.confirmed_by_program(&decision.options);
+            if std::env::var("DBG").is_ok() { eprintln!("CHANGE {} {:?} {:?}", self.index, confirmed, decision.taken); }
+            let best = decide::preferred(&decision.options, incoming, rules, |index| confirmed[index]);
+            decision.taken = best.or(decision.taken);
+        }
+        let old_modes = self.here.modes.clone();
+        let old_sign = self.here.load_sign;
+        let mut stop = decision.stop;
+        self.take(&decision);
+        let outgoing = decision.taken.map(|index| &decision.options[index]);
+        let mut kind = PointKind::ContactChange;
+        if let Some(choice) = outgoing
+            && choice.load_sign * old_sign < 0.0
+        {
+            kind = PointKind::NonsmoothLimit;
+            self.counts.limit_points += 1;
+        }
+        if stop.is_none() && self.is_cycle() {
+            stop = Some(StopReason::Cycle);
+        }
+        let point = Point {
+            kind,
+            bifurcation: decide::is_bifurcation(&decision.options, decision.taken, None),
+            event: Some(describe_change(self.scene, &old_modes, outgoing.map(|choice| &choice.modes[..]), &standings)),
+            better_direction: false,
+            unexplored_modes: decision.unexplored,
+            degenerate: decision.degenerate,
+        };
+        Arrival { point, options: decision.options, taken: decision.taken, stop, stage_ends: false }
+    }
+
+    /// Whether the path has left this very state in these modes before; remembers it if not.
+    fn is_cycle(&mut self) -> bool {
+        let here = &self.here;
+        let known = self.visited.iter().any(|visited| {
+            visited.stage == self.stage
+                && visited.modes == here.modes
+                && visited.state.distance(&here.state) < SAME_STATE
+                && visited.state.reactions.iter().zip(&here.state.reactions).all(|(a, b)| {
+                    let tolerance = SAME_STATE * self.force_scale;
+                    (a.normal - b.normal).abs() < tolerance
+                        && (a.tangential[0] - b.tangential[0]).abs() < tolerance
+                        && (a.tangential[1] - b.tangential[1]).abs() < tolerance
+                })
+        });
+        let (state, modes) = (here.state.clone(), here.modes.clone());
+        self.visited.push(Visited { stage: self.stage, state, modes });
+        known
+    }
+
+}

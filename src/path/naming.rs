@@ -1,0 +1,60 @@
+//! Where the MPEC names the mode: every increment of `method: "mpec"`, and its directions where a mode ends.
+
+use super::decide::Choice;
+use super::program::{IncrementProgram, Named, Thoroughness};
+use super::state::{Rate, State};
+use super::tracer::Path;
+use crate::contact::Mode;
+
+/// Arc length at which a direction is first put to the program, as a fraction of the path's next step.
+const FIRST_TRIAL: f64 = 0.25;
+/// How often that arc length is shortened until the program names the direction's own mode.
+const TRIALS: usize = 5;
+
+impl Path<'_> {
+    /// The contact modes that the program names for an increment of this arc length along the present direction.
+    pub(super) fn name_increment(&mut self, rate: &Rate, step: f64) -> Option<Named> {
+        let modes = self.here.modes.clone();
+        let state = self.here.state.clone();
+        self.name(&state, rate, &modes, step, Thoroughness::Full)
+    }
+
+    fn name(&mut self, base: &State, expected: &Rate, modes: &[Mode], step: f64, how: Thoroughness) -> Option<Named> {
+        let loading = self.loading();
+        let ahead = base.advanced(expected, step);
+        let reactions = ahead.reactions.iter().fold(0.0_f64, |largest, reaction| largest.max(reaction.size()));
+        let force = self.force_scale.max(ahead.load.abs()).max(reactions).max(f64::MIN_POSITIVE);
+        let mut program = IncrementProgram::new(loading, base, expected, step, force);
+        let start = program.variables_at(expected);
+        let (named, counts) = program.name(&start, modes, how, &self.cancel);
+        self.work.qp_solves += counts.qp_solves;
+        self.work.mpec_solves += counts.mpec_solves;
+        named
+    }
+
+    /// Which of the directions at the present point the program confirms: started along the direction, it ends in the
+    /// direction's own mode.
+    ///
+    /// The forward term rewards the direction that is tried, not the one in which the path came: where the path turns
+    /// against its past (a contact closes, the load turns), that term would hold the increment back at zero.
+    pub(super) fn confirmed_by_program(&mut self, options: &[Choice]) -> Vec<bool> {
+        let state = self.here.state.clone();
+        let mut confirmed = Vec::with_capacity(options.len());
+        for option in options {
+            let mut step = FIRST_TRIAL * self.step;
+            let mut agrees = false;
+            if !option.retrace && !option.mechanism {
+                for _ in 0..TRIALS {
+                    let named = self.name(&state, &option.rate, &option.modes, step, Thoroughness::Local);
+                    if named.is_some_and(|named| named.modes == option.modes) {
+                        agrees = true;
+                        break;
+                    }
+                    step *= 0.1;
+                }
+            }
+            confirmed.push(agrees);
+        }
+        confirmed
+    }
+}

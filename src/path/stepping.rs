@@ -1,0 +1,116 @@
+//! Choosing the step: by the path's turn, by Newton's work and by the energy balance of the increment.
+
+use super::advance::{Reached, Refused, Start};
+use super::decide::{self, Before};
+use super::energy;
+use super::state::Rate;
+use super::stop::StopReason;
+use super::tracer::Path;
+use crate::model::request::Method;
+
+/// The turn of the path (radians) that a step aims at.
+const TURN_SOUGHT: f64 = 0.08;
+/// Newton iterations that a step aims at.
+const ITERATIONS_SOUGHT: f64 = 5.0;
+
+/// Energy imbalance of an increment, over the largest energy so far, that a step aims at.
+const IMBALANCE_SOUGHT: f64 = 5e-9;
+/// A step after which the next would have to be shorter than this fraction of it is taken again, shorter.
+const REJECTED: f64 = 0.55;
+
+/// A point reached, with the energies of the way there.
+pub(super) struct Accepted {
+    pub reached: Reached,
+    pub work: f64,
+    pub dissipation: f64,
+    /// Total at the point, from the start of the path.
+    pub strain: f64,
+}
+
+impl Path<'_> {
+    /// Steps until a point is accepted.
+    pub(super) fn step(&mut self) -> Result<Accepted, StopReason> {
+        let (least, most) = (self.scene.analysis.arc_length.min, self.scene.analysis.arc_length.max);
+        let mut step = self.step.min(most);
+        let mut changes_here = 0;
+        loop {
+            if self.cancel.is_cancelled() {
+                return Err(StopReason::Cancelled);
+            }
+            let Some(rate) = self.here.rate.clone() else { return Err(StopReason::NoDirection) };
+            let named = match self.scene.analysis.method {
+                Method::Auto => None,
+                Method::Mpec => self.name_increment(&rate, step),
+            };
+            let start = Start {
+                loading: self.loading(),
+                state: &self.here.state,
+                rate: &rate,
+                modes: &self.here.modes,
+                force_scale: self.force_scale,
+            };
+            let mut work = self.work;
+            let ends = &self.scene.stages[self.stage].ends;
+            let outcome = start.advance(step, ends, self.here.load_sign, &mut work);
+            self.work = work;
+            match outcome {
+                Ok(reached) => {
+                    if let Some(named)=&named && std::env::var("DBG").is_ok() { if named.modes != self.here.modes && reached.event.is_none() { eprintln!("DISAGREE {} {:?} {:?} {}", self.index, named, self.here.modes, step); } } else if std::env::var("DBG").is_ok() { eprintln!("NONE {} {step}", self.index); }
+                    let accepted = self.balance(&rate, reached);
+                    let factor = self.next_step_factor(&rate, &accepted, step);
+                    if factor > REJECTED || step * factor < least {
+                        self.step = (step * factor).clamp(least, most);
+                        return Ok(accepted);
+                    }
+                    step *= factor;
+                }
+                Err(Refused::AtStart(watch)) if watch.is_of_contact() && changes_here <= self.scene.contacts.len() => {
+                    // Two changes at one point, the second too close to be a point of its own.
+                    changes_here += 1;
+                    let standings = self.standings(&self.here.state);
+                    let before = Before::Incoming(&rate);
+                    let rules = self.rules();
+                    let decision = decide::decide(self.loading(), &self.here.state, &standings, before, rules);
+                    if let Some(reason) = decision.stop {
+                        return Err(reason);
+                    }
+                    self.take(&decision);
+                }
+                Err(refused) => {
+                    step *= match refused {
+                        Refused::Turned(angle) => (0.5 * TURN_SOUGHT / angle).clamp(0.1, 0.5),
+                        Refused::Newton(_) => 0.5,
+                        Refused::AtStart(_) => 0.25,
+                    };
+                    if step < least {
+                        return Err(StopReason::StepUnderflow);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Work, dissipation and strain energy of a point reached.
+    fn balance(&self, rate: &Rate, reached: Reached) -> Accepted {
+        let start = (&self.here.state, rate);
+        let end = (&reached.corrected.state, &reached.rate);
+        let (work, dissipation) = energy::work_and_dissipation(self.loading(), &self.here.modes, start, end);
+        let strain = self.scene.structure.strain_energy(&reached.corrected.state.displacement) - self.initial_strain;
+        Accepted { reached, work, dissipation, strain }
+    }
+
+    /// How the next step should compare with this one: by the path's turn, Newton's work and the energy balance.
+    fn next_step_factor(&self, rate: &Rate, accepted: &Accepted, tried: f64) -> f64 {
+        let reached = &accepted.reached;
+        let done = (reached.step / tried).clamp(0.1, 1.0);
+        let turn = rate.product(&reached.rate).clamp(-1.0, 1.0).acos() / done;
+        let by_turn = TURN_SOUGHT / turn.max(1e-3 * TURN_SOUGHT);
+        let by_work = ITERATIONS_SOUGHT / reached.corrected.iterations.max(1) as f64;
+        let imbalance = (accepted.work - accepted.dissipation - (accepted.strain - self.energy.strain)).abs();
+        let size = self.largest_energy.max(accepted.work.abs()).max(accepted.strain.abs()).max(f64::MIN_POSITIVE);
+        // The balance of one increment has an error of fifth order in its arc length.
+        let by_energy = (IMBALANCE_SOUGHT / (imbalance / size).max(1e-3 * IMBALANCE_SOUGHT)).powf(0.2);
+        by_turn.min(by_work).min(by_energy).clamp(0.2, 1.8)
+    }
+
+}
