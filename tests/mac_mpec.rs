@@ -29,7 +29,12 @@ fn none(_: &[f64]) -> Vec<f64> {
 }
 
 impl Listed {
-    fn differences(&self, x: &DVector<f64>, values: &dyn Fn(&[f64]) -> Vec<f64>, mut put: impl FnMut(usize, usize, f64)) {
+    fn differences(
+        &self,
+        x: &DVector<f64>,
+        values: &dyn Fn(&[f64]) -> Vec<f64>,
+        mut put: impl FnMut(usize, usize, f64),
+    ) {
         let mut at = x.as_slice().to_vec();
         for j in 0..at.len() {
             let step = 1e-3 * (1.0 + at[j].abs());
@@ -251,9 +256,7 @@ fn bard1() {
         objective: |v| (v[0] - 5.0).powi(2) + (2.0 * v[1] + 1.0).powi(2),
         lower: vec![0.0, 0.0, -INF, -INF, -INF],
         upper: vec![INF; 5],
-        pairs: |v| {
-            vec![(3.0 * v[0] - v[1] - 3.0, v[2]), (-v[0] + 0.5 * v[1] + 4.0, v[3]), (7.0 - v[0] - v[1], v[4])]
-        },
+        pairs: |v| vec![(3.0 * v[0] - v[1] - 3.0, v[2]), (-v[0] + 0.5 * v[1] + 4.0, v[3]), (7.0 - v[0] - v[1], v[4])],
         equalities: |v| vec![2.0 * (v[1] - 1.0) - 1.5 * v[0] + v[2] - 0.5 * v[3] + v[4]],
         inequalities: none,
     };
@@ -285,9 +288,7 @@ fn nash1_from_all_five_starts() {
         lower: vec![0.0, 0.0, -INF, -INF, 0.0, 0.0],
         upper: vec![10.0, 10.0, INF, INF, INF, INF],
         pairs: |v| vec![(15.0 - v[1] - v[2], v[4]), (15.0 - v[0] - v[3], v[5])],
-        equalities: |v| {
-            vec![-34.0 + 2.0 * v[2] + 8.0 / 3.0 * v[3] + v[4], -24.25 + 1.25 * v[2] + 2.0 * v[3] + v[5]]
-        },
+        equalities: |v| vec![-34.0 + 2.0 * v[2] + 8.0 / 3.0 * v[3] + v[4], -24.25 + 1.25 * v[2] + 2.0 * v[3] + v[5]],
         inequalities: none,
     };
     for (x1, x2) in [(0.0, 0.0), (5.0, 5.0), (10.0, 10.0), (10.0, 0.0), (0.0, 10.0)] {

@@ -79,16 +79,14 @@ pub fn descend<P: Problem + ?Sized>(
     steps: &mut StepSolver,
     cancel: &CancelFlag,
 ) -> Candidate {
+    let mut stop_when_settled = settings.finish == Finish::PatternSettled;
     let mut changes_left = 2 * problem.pairs() + 8;
     let mut start = start.clone();
     let mut best: Option<Candidate> = None;
     loop {
         steps.counts.branches += 1;
-        let sequence = SqpSettings {
-            tolerance: settings.tolerance,
-            iteration_limit: settings.iteration_limit,
-            stop_when_settled: settings.finish == Finish::PatternSettled,
-        };
+        let sequence =
+            SqpSettings { tolerance: settings.tolerance, iteration_limit: settings.iteration_limit, stop_when_settled };
         let rows = Rows::new(problem.equalities(), problem.inequalities(), pattern.clone());
         let outcome = sqp::solve(problem, &rows, bounds, &start, sequence, steps, cancel);
         let mut candidate = Candidate {
@@ -116,7 +114,10 @@ pub fn descend<P: Problem + ?Sized>(
         }
         if candidate.end == SqpEnd::Settled {
             // A biactive pair: the pattern is not certain after all, and a verdict needs a converged point.
-            candidate.end = SqpEnd::Stalled;
+            stop_when_settled = false;
+            changes_left -= 1;
+            start.copy_from(&candidate.x);
+            continue;
         }
         if !candidate.is_feasible(settings.tolerance) {
             return candidate;
@@ -145,15 +146,21 @@ fn judge<P: Problem + ?Sized>(
     steps: &mut StepSolver,
     cancel: &CancelFlag,
 ) -> Result<Option<Vec<PairTreatment>>, SqpEnd> {
-    let verdict =
-        stationarity::classify(problem, &candidate.x, pattern, &candidate.multipliers, settings, steps, cancel)
-            .map_err(|reason| match reason {
-                NoVerdict::Cancelled => SqpEnd::Cancelled,
-                NoVerdict::NotFinite(quantity) => SqpEnd::NotFinite(quantity),
-            })?;
-    if candidate.end == SqpEnd::Converged {
-        candidate.stationarity = verdict.kind;
-    }
+    let converged = candidate.end == SqpEnd::Converged;
+    let verdict = stationarity::classify(
+        problem,
+        &candidate.x,
+        pattern,
+        converged.then_some(&candidate.multipliers),
+        settings,
+        steps,
+        cancel,
+    )
+    .map_err(|reason| match reason {
+        NoVerdict::Cancelled => SqpEnd::Cancelled,
+        NoVerdict::NotFinite(quantity) => SqpEnd::NotFinite(quantity),
+    })?;
+    candidate.stationarity = verdict.kind;
     if let Some(multipliers) = verdict.multipliers {
         candidate.multipliers = multipliers;
     }

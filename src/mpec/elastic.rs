@@ -153,3 +153,46 @@ fn first_variables(solution: QuadraticSolution, n: usize) -> QuadraticSolution {
         ..solution
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::DVector;
+
+    /// `min ½ x²` s.t. `x >= 1` and `x <= -1`: every x in [-1, 1] violates by 2 in sum, and the smallest x wins.
+    #[test]
+    fn contradictory_rows_end_elastic_with_the_least_violation() {
+        let program = QuadraticProgram {
+            hessian: DMatrix::identity(1, 1),
+            gradient: DVector::zeros(1),
+            equality: DMatrix::zeros(0, 1),
+            equality_values: DVector::zeros(0),
+            inequality: DMatrix::from_column_slice(2, 1, &[1.0, -1.0]),
+            inequality_values: DVector::from_column_slice(&[-1.0, -1.0]),
+            lower: DVector::from_element(1, f64::NEG_INFINITY),
+            upper: DVector::from_element(1, f64::INFINITY),
+        };
+        let mut steps = StepSolver::default();
+        let step = steps.solve(&program, &CancelFlag::default()).expect("the elastic program has a solution");
+        assert!((step.remaining_violation - 2.0).abs() < 1e-6, "{}", step.remaining_violation);
+        assert!(step.solution.step[0].abs() < 1e-5, "{}", step.solution.step[0]);
+        assert!(steps.counts.elastic_solves >= 1);
+    }
+
+    #[test]
+    fn data_that_are_not_finite_are_named_before_any_solve() {
+        let program = QuadraticProgram {
+            hessian: DMatrix::identity(1, 1),
+            gradient: DVector::from_element(1, f64::NAN),
+            equality: DMatrix::zeros(0, 1),
+            equality_values: DVector::zeros(0),
+            inequality: DMatrix::zeros(0, 1),
+            inequality_values: DVector::zeros(0),
+            lower: DVector::from_element(1, f64::NEG_INFINITY),
+            upper: DVector::from_element(1, f64::INFINITY),
+        };
+        let cancel = CancelFlag::default();
+        assert_eq!(StepSolver::default().solve(&program, &cancel).err(), Some(QuadraticFailure::NotFinite));
+        assert_eq!(quadratic::solve_interior(&program, &cancel).err(), Some(QuadraticFailure::NotFinite));
+    }
+}

@@ -9,7 +9,7 @@
 use nalgebra::{DMatrix, DVector};
 
 /// Smallest curvature, relative to the identity, that an update may leave.
-const SMALLEST: f64 = 1e-8;
+const SMALLEST: f64 = 1e-10;
 const LARGEST: f64 = 1e12;
 
 #[derive(Debug, Clone)]

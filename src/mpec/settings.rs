@@ -31,7 +31,8 @@ pub struct Settings {
     pub finish: Finish,
     /// Restarts from a larger `ε` before giving up.
     pub restarts: usize,
-    /// Largest number of biactive pairs whose branches (2 to its power) are enumerated.
+    /// Largest number of biactive pairs whose branches (2 to its power) are enumerated to judge a point; also of all
+    /// pairs, before a problem is called infeasible. Capped at 16 and 10.
     pub enumeration_limit: usize,
 }
 

@@ -6,7 +6,8 @@
 //!    ended. As soon as every pair's pattern is clear, or has come back unchanged, `mpec::branch` takes over and
 //!    `mpec::stationarity` has the last word.
 //! 3. Where that gave no feasible stationary point: again from the start with a hundred times larger `ε`, a bounded
-//!    number of times. The best point seen is returned, with a status that says what it is.
+//!    number of times; then, where nothing was feasible, from the branches around the least infeasible point. The best
+//!    point seen is returned, with a status that says what it is.
 //!
 //! What is found is a local solution. Source of the sequence: S. Scholtes, SIAM J. Optim. 11 (2001),
 //! doi:10.1137/S1052623499361233.
@@ -24,6 +25,10 @@ use crate::cancel::CancelFlag;
 
 /// Factor on `ε` from one restart to the next.
 const RESTART_FACTOR: f64 = 100.0;
+/// Most pairs whose branches are all tried before a problem is called infeasible, whatever the settings ask for.
+const ENUMERATION_CEILING: usize = 10;
+/// Past this, `ε` relaxes nothing any more.
+const LARGEST_RELAXATION: f64 = 1e8;
 /// Most values of `ε` in one descent, whatever the settings ask for.
 const LEVEL_LIMIT: usize = 200;
 
@@ -53,6 +58,7 @@ struct Ends {
     infeasible: bool,
     iteration_limit: bool,
     unbounded: bool,
+    not_finite: Option<Quantity>,
 }
 
 /// A solve under way.
@@ -90,7 +96,38 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             if let Some(end) = self.regularise(start, first_relaxation) {
                 return end.reason();
             }
-            first_relaxation *= RESTART_FACTOR;
+            first_relaxation = (first_relaxation * RESTART_FACTOR).min(LARGEST_RELAXATION);
+        }
+        self.try_other_branches()
+    }
+
+    /// The last resort where no feasible point was found: the branches around the least infeasible one, those that
+    /// differ in one pair first; all of them where there are few pairs.
+    fn try_other_branches(&mut self) -> Option<Status> {
+        let best = self.best.as_ref().filter(|best| !best.is_feasible(self.settings.tolerance))?;
+        let (x, nearest) = (best.x.clone(), branch::nearest_pattern(&best.at));
+        let pairs = nearest.len();
+        let flips: Vec<Vec<usize>> = if pairs <= self.settings.enumeration_limit.min(ENUMERATION_CEILING) {
+            let mut subsets: Vec<usize> = (1..1_usize << pairs).collect();
+            subsets.sort_by_key(|subset| subset.count_ones());
+            subsets.into_iter().map(|subset| (0..pairs).filter(|pair| subset >> pair & 1 == 1).collect()).collect()
+        } else {
+            (0..pairs.min(1 << ENUMERATION_CEILING)).map(|pair| vec![pair]).collect()
+        };
+        for flipped in flips {
+            let mut pattern = nearest.clone();
+            for pair in flipped {
+                pattern[pair] = match pattern[pair] {
+                    PairTreatment::FirstZero => PairTreatment::SecondZero,
+                    PairTreatment::SecondZero
+                    | PairTreatment::Product(_)
+                    | PairTreatment::BothFree
+                    | PairTreatment::BothZero => PairTreatment::FirstZero,
+                };
+            }
+            if let Some(over) = self.search_from(&x, pattern) {
+                return over.reason();
+            }
         }
         None
     }
@@ -113,7 +150,11 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             let outcome = sqp::solve(self.problem, &rows, &self.bounds, &x, sequence, &mut self.steps, self.cancel);
             match outcome.end {
                 SqpEnd::Cancelled => return Some(Over::Stopped(Status::Cancelled)),
-                SqpEnd::NotFinite(_) | SqpEnd::Unbounded => return None,
+                SqpEnd::NotFinite(quantity) => {
+                    self.seen.not_finite = Some(quantity);
+                    return None;
+                }
+                SqpEnd::Unbounded => self.seen.unbounded = true,
                 SqpEnd::Infeasible => self.seen.infeasible = true,
                 SqpEnd::IterationLimit => self.seen.iteration_limit = true,
                 SqpEnd::Converged | SqpEnd::Settled | SqpEnd::Stalled => {}
@@ -122,7 +163,8 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             let is_last = relaxation <= self.settings.last_relaxation;
             let pattern = branch::nearest_pattern(&outcome.at);
             let same = last_pattern.as_ref() == Some(&pattern);
-            let worth_a_search = branch::is_clear(&outcome.at) || same || is_last;
+            let hopeless = outcome.end == SqpEnd::Infeasible;
+            let worth_a_search = branch::is_clear(&outcome.at) || same || is_last || hopeless;
             if worth_a_search && last_searched.as_ref() != Some(&pattern) {
                 if let Some(over) = self.search(&x, &outcome.at) {
                     return Some(over);
@@ -130,7 +172,8 @@ impl<P: Problem + ?Sized> Run<'_, P> {
                 last_searched = Some(pattern.clone());
             }
             last_pattern = Some(pattern);
-            if is_last {
+            // Where even this much relaxation left the rows contradictory, less of it can't help.
+            if is_last || hopeless {
                 return None;
             }
             relaxation = (relaxation * self.settings.relaxation_factor).max(self.settings.last_relaxation);
@@ -140,7 +183,11 @@ impl<P: Problem + ?Sized> Run<'_, P> {
 
     /// Descends from the branch nearest to `x`; an end where the point is final or the solve has to stop.
     fn search(&mut self, x: &DVector<f64>, at: &Evaluation) -> Option<Over> {
-        let pattern = branch::nearest_pattern(at);
+        self.search_from(x, branch::nearest_pattern(at))
+    }
+
+    /// Descends from the branch `pattern`.
+    fn search_from(&mut self, x: &DVector<f64>, pattern: Vec<PairTreatment>) -> Option<Over> {
         let candidate =
             branch::descend(self.problem, &self.bounds, x, pattern, self.settings, &mut self.steps, self.cancel);
         let over = match candidate.end {
@@ -157,7 +204,10 @@ impl<P: Problem + ?Sized> Run<'_, P> {
                 self.seen.unbounded = true;
                 None
             }
-            SqpEnd::NotFinite(_) => None,
+            SqpEnd::NotFinite(quantity) => {
+                self.seen.not_finite = Some(quantity);
+                None
+            }
             SqpEnd::Converged | SqpEnd::Settled | SqpEnd::Stalled => {
                 (candidate.end == SqpEnd::Settled || candidate.is_final(self.settings.tolerance)).then_some(Over::Found)
             }
@@ -182,9 +232,6 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             (None, SqpEnd::Settled) => Status::PatternSettled,
             (None, SqpEnd::NotFinite(quantity)) => Status::NotFinite(quantity),
             (None, SqpEnd::Unbounded) if is_feasible => Status::Unbounded,
-            (None, SqpEnd::Converged) if is_feasible && candidate.stationarity != StationarityKind::Unknown => {
-                Status::Solved
-            }
             (
                 None,
                 SqpEnd::Converged
@@ -193,13 +240,11 @@ impl<P: Problem + ?Sized> Run<'_, P> {
                 | SqpEnd::IterationLimit
                 | SqpEnd::Unbounded
                 | SqpEnd::Cancelled,
-            ) => {
-                if is_feasible {
-                    Status::Feasible
-                } else {
-                    self.seen.status()
-                }
-            }
+            ) => match (is_feasible, candidate.stationarity) {
+                (false, _) => self.seen.status(),
+                (true, StationarityKind::Unknown) => Status::Feasible,
+                (true, _) => Status::Solved,
+            },
         };
         let both_zero = self.settings.biactive_tolerance;
         let activity = candidate.at.first.iter().zip(candidate.at.second.iter());
@@ -234,7 +279,9 @@ impl Over {
 
 impl Ends {
     fn status(self) -> Status {
-        if self.infeasible {
+        if let Some(quantity) = self.not_finite {
+            Status::NotFinite(quantity)
+        } else if self.infeasible {
             Status::Infeasible
         } else if self.iteration_limit {
             Status::IterationLimit

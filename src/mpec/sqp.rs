@@ -30,7 +30,7 @@ const SUFFICIENT_DECREASE: f64 = 1e-4;
 const HALVINGS: usize = 30;
 /// Objective and variables past which a sequence counts as unbounded.
 const UNBOUNDED_OBJECTIVE: f64 = -1e20;
-const UNBOUNDED_VARIABLE: f64 = 1e12;
+const UNBOUNDED_VARIABLE: f64 = 1e11;
 /// Ridge on a problem's own (semidefinite) model, relative to its largest entry: keeps steps in flat directions bounded.
 const RIDGE: f64 = 1e-8;
 /// Share of the violation that a step must promise to remove for the point not to be locally infeasible.
@@ -286,14 +286,18 @@ impl<P: Problem + ?Sized> Sequence<'_, P> {
 /// With the program's multipliers the Lagrangian's gradient at `x` is `-H d` and the rows' slacks are `-C d`.
 fn is_stationary(program: &QuadraticProgram, step: &Step, tolerance: f64, x: &DVector<f64>) -> bool {
     let direction = &step.solution.step;
-    if x.is_empty() || direction.amax() <= 1e-2 * tolerance * (1.0 + x.amax()) {
+    if x.is_empty() {
         return true;
     }
-    let force = (&program.hessian * direction).amax();
+    let force = (&program.hessian * direction).amax() / (1.0 + program.gradient.amax());
+    // A short step alone proves nothing far from the origin: there every step is relatively short.
+    if direction.amax() <= 1e-2 * tolerance * (1.0 + x.amax()) && force <= tolerance.sqrt() {
+        return true;
+    }
     let work = (&program.inequality * direction).dot(&step.solution.inequality_multipliers).abs()
         + direction.dot(&step.solution.lower_multipliers).abs()
         + direction.dot(&step.solution.upper_multipliers).abs();
-    force <= tolerance * (1.0 + program.gradient.amax()) && work <= tolerance
+    force <= tolerance && work <= tolerance
 }
 
 fn clamped(x: &DVector<f64>, bounds: &(DVector<f64>, DVector<f64>)) -> DVector<f64> {

@@ -29,6 +29,9 @@ use crate::cancel::CancelFlag;
 /// Length of a projected gradient that counts as zero, relative to `1 + ‖∇f‖∞`.
 const STATIONARY_LENGTH: f64 = 1e-6;
 
+/// Most biactive pairs whose branches are enumerated, whatever the settings ask for.
+const ENUMERATION_CEILING: usize = 16;
+
 /// What is known of a point.
 #[derive(Debug, Clone)]
 pub struct Verdict {
@@ -92,7 +95,8 @@ struct Projection {
     multipliers: Multipliers,
 }
 
-/// Classifies the feasible point `x`, a stationary point of the branch `pattern` with the given multipliers.
+/// Classifies the feasible point `x` of the branch `pattern`. The branch program's multipliers,
+/// where it converged, may settle the matter without a further program.
 ///
 /// # Errors
 /// [`NoVerdict`] where a derivative is not finite or the flag is raised.
@@ -100,7 +104,7 @@ pub fn classify<P: Problem + ?Sized>(
     problem: &P,
     x: &DVector<f64>,
     pattern: &[PairTreatment],
-    multipliers: &Multipliers,
+    multipliers: Option<&Multipliers>,
     settings: &Settings,
     steps: &mut StepSolver,
     cancel: &CancelFlag,
@@ -108,8 +112,12 @@ pub fn classify<P: Problem + ?Sized>(
     let mut at = Evaluation::new(problem);
     at.update_values(problem, x).map_err(NoVerdict::NotFinite)?;
     let both = biactive(&at, settings.biactive_tolerance);
-    let sign_tolerance = settings.tolerance * (1.0 + multipliers.first.iter().fold(0.0_f64, |w, v| w.max(v.abs())));
-    if both.iter().all(|&i| multipliers.first[i] >= -sign_tolerance && multipliers.second[i] >= -sign_tolerance) {
+    let signs_hold = |multipliers: &Multipliers| {
+        let largest = multipliers.first.iter().chain(multipliers.second.iter()).fold(0.0_f64, |w, v| w.max(v.abs()));
+        let zero = -settings.tolerance * (1.0 + largest);
+        both.iter().all(|&i| multipliers.first[i] >= zero && multipliers.second[i] >= zero)
+    };
+    if multipliers.is_some_and(signs_hold) {
         return Ok(Verdict { kind: StationarityKind::Strong, multipliers: None, descent: None });
     }
     at.update_derivatives(problem, x).map_err(NoVerdict::NotFinite)?;
@@ -131,7 +139,7 @@ pub fn classify<P: Problem + ?Sized>(
     }
 
     let mut best: Option<(f64, Vec<PairTreatment>)> = None;
-    let mut all_judged = both.len() <= settings.enumeration_limit;
+    let mut all_judged = both.len() <= settings.enumeration_limit.min(ENUMERATION_CEILING);
     if all_judged {
         for branch in 0..(1_usize << both.len()) {
             let zero_member = |place: usize| {
