@@ -5,8 +5,34 @@
 //! ```
 //!
 //! solved through a sequence of regularised problems (`a_i b_i <= ε`, ε falling to 0) by sequential quadratic
-//! programming. Nothing here knows of structures or contacts; [`problem::Problem`] is all that is asked.
+//! programming. Nothing here knows of structures or contacts; [`Problem`] is all that is asked, [`solve`] all that is
+//! called.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`problem`] | what a problem has to tell |
+//! | [`settings`], [`result`] | what the caller chooses and gets |
+//! | `solver` | the sequence of regularised problems, restarts |
+//! | `branch` | one pattern of zero members after another |
+//! | `stationarity` | how stationary a point is |
+//! | `sqp`, `secant` | one smooth program |
+//! | `relaxed` | the smooth program's rows and their linearisation |
+//! | `elastic`, `active_set`, [`quadratic`] | one quadratic program |
 
+mod active_set;
+mod branch;
+mod elastic;
 pub mod problem;
+pub mod quadratic;
+mod relaxed;
+pub mod result;
+mod secant;
+pub mod settings;
+mod solver;
+mod sqp;
+mod stationarity;
 
 pub use problem::Problem;
+pub use result::{Counts, InputError, Multipliers, PairActivity, Quantity, Solution, StationarityKind, Status};
+pub use settings::{Finish, Settings};
+pub use solver::solve;

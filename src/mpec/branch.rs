@@ -1,0 +1,168 @@
+//! Descent over branches: a pattern of zero members is solved as a smooth program, the result is judged, and where a
+//! neighbouring branch leads further down, that one is solved next.
+//!
+//! A branch program has no products, so it meets the usual constraint qualifications where the regularised one with a
+//! small `ε` does not, and its solution is complementary exactly. The objective falls from branch to branch, hence no
+//! branch comes twice; the number of changes is bounded all the same.
+//!
+//! Source: the active-set view of Z.-Q. Luo, J.-S. Pang and D. Ralph, *Mathematical Programs with Equilibrium
+//! Constraints* (Cambridge University Press, 1996), doi:10.1017/CBO9780511983658, chapter 6 (piecewise programming).
+
+use nalgebra::DVector;
+
+use super::elastic::StepSolver;
+use super::problem::Problem;
+use super::relaxed::{Evaluation, Multipliers, PairTreatment, Rows};
+use super::result::StationarityKind;
+use super::settings::{Finish, Settings};
+use super::sqp::{self, SqpEnd, SqpSettings};
+use super::stationarity::{self, NoVerdict};
+use crate::cancel::CancelFlag;
+
+/// A pair whose smaller member is less than this part of the larger has a clear pattern.
+const CLEAR_RATIO: f64 = 0.05;
+/// Decrease of the objective that justifies another branch, relative to `1 + |f|`.
+const WORTHWHILE: f64 = 1e-10;
+
+/// A point that a search over branches or a regularised program ended at.
+#[derive(Debug, Clone)]
+pub struct Candidate {
+    pub end: SqpEnd,
+    pub x: DVector<f64>,
+    pub at: Evaluation,
+    pub multipliers: Multipliers,
+    pub stationarity: StationarityKind,
+}
+
+impl Candidate {
+    /// Largest violation, complementarity included.
+    pub fn infeasibility(&self) -> f64 {
+        self.at.largest_violation().max(self.at.largest_product())
+    }
+
+    pub fn is_feasible(&self, tolerance: f64) -> bool {
+        self.infeasibility() <= tolerance
+    }
+
+    /// Nothing better can be hoped for locally.
+    pub fn is_final(&self, tolerance: f64) -> bool {
+        self.is_feasible(tolerance)
+            && match self.stationarity {
+                StationarityKind::Strong | StationarityKind::Branch => true,
+                StationarityKind::Mordukhovich
+                | StationarityKind::Clarke
+                | StationarityKind::Weak
+                | StationarityKind::Unknown => self.end == SqpEnd::Settled,
+            }
+    }
+}
+
+/// The branch whose zero members are the smaller ones.
+pub fn nearest_pattern(at: &Evaluation) -> Vec<PairTreatment> {
+    let pairs = at.first.iter().zip(at.second.iter());
+    pairs.map(|(a, b)| if a <= b { PairTreatment::FirstZero } else { PairTreatment::SecondZero }).collect()
+}
+
+/// True where every pair's smaller member is small beside the larger.
+pub fn is_clear(at: &Evaluation) -> bool {
+    at.first.iter().zip(at.second.iter()).all(|(a, b)| a.min(*b) <= CLEAR_RATIO * a.max(*b))
+}
+
+/// Solves the branch `pattern` from `start` and follows descent into its neighbours. The end
+/// of the candidate says where the whole solve has to stop: cancelled, or a function that is not finite.
+pub fn descend<P: Problem + ?Sized>(
+    problem: &P,
+    bounds: &(DVector<f64>, DVector<f64>),
+    start: &DVector<f64>,
+    mut pattern: Vec<PairTreatment>,
+    settings: &Settings,
+    steps: &mut StepSolver,
+    cancel: &CancelFlag,
+) -> Candidate {
+    let mut stop_when_settled = settings.finish == Finish::PatternSettled;
+    let mut changes_left = 2 * problem.pairs() + 8;
+    let mut start = start.clone();
+    let mut best: Option<Candidate> = None;
+    loop {
+        steps.counts.branches += 1;
+        let sequence =
+            SqpSettings { tolerance: settings.tolerance, iteration_limit: settings.iteration_limit, stop_when_settled };
+        let rows = Rows::new(problem.equalities(), problem.inequalities(), pattern.clone());
+        let outcome = sqp::solve(problem, &rows, bounds, &start, sequence, steps, cancel);
+        let mut candidate = Candidate {
+            end: outcome.end,
+            x: outcome.x,
+            at: outcome.at,
+            multipliers: outcome.multipliers,
+            stationarity: StationarityKind::Unknown,
+        };
+        let improves = best.as_ref().is_none_or(|best| {
+            candidate.is_feasible(settings.tolerance)
+                && candidate.at.objective < best.at.objective - WORTHWHILE * (1.0 + best.at.objective.abs())
+        });
+        let stopped = matches!(candidate.end, SqpEnd::Cancelled | SqpEnd::NotFinite(_));
+        if !improves {
+            return match best {
+                Some(best) if !stopped => best,
+                Some(_) | None => candidate,
+            };
+        }
+        let settled_clearly = candidate.end == SqpEnd::Settled
+            && stationarity::biactive(&candidate.at, settings.biactive_tolerance).is_empty();
+        if stopped || settled_clearly || candidate.end == SqpEnd::Unbounded || changes_left == 0 {
+            return candidate;
+        }
+        if candidate.end == SqpEnd::Settled {
+            // A biactive pair: the pattern is not certain after all, and a verdict needs a converged point.
+            stop_when_settled = false;
+            changes_left -= 1;
+            start.copy_from(&candidate.x);
+            continue;
+        }
+        if !candidate.is_feasible(settings.tolerance) {
+            return candidate;
+        }
+        let descent = match judge(problem, &pattern, &mut candidate, settings, steps, cancel) {
+            Ok(descent) => descent,
+            Err(end) => {
+                candidate.end = end;
+                return candidate;
+            }
+        };
+        let Some(next) = descent else { return candidate };
+        start.copy_from(&candidate.x);
+        pattern = next;
+        best = Some(candidate);
+        changes_left -= 1;
+    }
+}
+
+/// Classifies a converged point; returns the branch that leads down from it.
+fn judge<P: Problem + ?Sized>(
+    problem: &P,
+    pattern: &[PairTreatment],
+    candidate: &mut Candidate,
+    settings: &Settings,
+    steps: &mut StepSolver,
+    cancel: &CancelFlag,
+) -> Result<Option<Vec<PairTreatment>>, SqpEnd> {
+    let converged = candidate.end == SqpEnd::Converged;
+    let verdict = stationarity::classify(
+        problem,
+        &candidate.x,
+        pattern,
+        converged.then_some(&candidate.multipliers),
+        settings,
+        steps,
+        cancel,
+    )
+    .map_err(|reason| match reason {
+        NoVerdict::Cancelled => SqpEnd::Cancelled,
+        NoVerdict::NotFinite(quantity) => SqpEnd::NotFinite(quantity),
+    })?;
+    candidate.stationarity = verdict.kind;
+    if let Some(multipliers) = verdict.multipliers {
+        candidate.multipliers = multipliers;
+    }
+    Ok(verdict.descent)
+}

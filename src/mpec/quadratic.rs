@@ -1,0 +1,254 @@
+//! Convex quadratic programs, by the interior-point method of Clarabel. No other file knows that solver.
+//!
+//! ```text
+//! min ½ dᵀ H d + q·d    s.t.   e + E d = 0,   c + C d >= 0,   lower <= d <= upper
+//! ```
+//!
+//! Lagrangian `½ dᵀHd + q·d - λ·(e + E d) - κ·(c + C d) - ν_l·(d - lower) - ν_u·(upper - d)`, `κ, ν_l, ν_u >= 0`: this
+//! fixes the signs of the multipliers everywhere in `mpec`. A second-order cone is one more block of rows, appended to
+//! the blocks of [`solve_interior`].
+//!
+//! Source: P. J. Goulart and Y. Chen, *Clarabel: An interior-point solver for conic programs with quadratic objectives*,
+//! arXiv:2405.12762.
+//!
+//! Non-finite data make the interior-point method answer with a wrong status instead of an error, so the data are
+//! checked first; its verdict "infeasible" is passed on as a suspicion only, which the elastic program settles.
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
+use nalgebra::{DMatrix, DVector};
+
+use crate::cancel::CancelFlag;
+
+/// Accuracy asked of the interior-point method; the active-set step that follows takes it to round-off.
+const TOLERANCE: f64 = 1e-10;
+/// Iterations of the interior-point method; 8 to 15 are usual.
+const ITERATIONS: u32 = 100;
+
+/// Data of one convex quadratic program in `d` (n entries, dimensionless).
+#[derive(Debug, Clone)]
+pub struct QuadraticProgram {
+    /// `H`, n x n, symmetric positive semidefinite.
+    pub hessian: DMatrix<f64>,
+    /// `q`, n.
+    pub gradient: DVector<f64>,
+    /// `E`, one row an equality.
+    pub equality: DMatrix<f64>,
+    /// `e`.
+    pub equality_values: DVector<f64>,
+    /// `C`, one row an inequality.
+    pub inequality: DMatrix<f64>,
+    /// `c`.
+    pub inequality_values: DVector<f64>,
+    /// Bounds on `d`; infinite where there is none.
+    pub lower: DVector<f64>,
+    pub upper: DVector<f64>,
+}
+
+/// Minimiser and multipliers of a [`QuadraticProgram`].
+#[derive(Debug, Clone)]
+pub struct QuadraticSolution {
+    pub step: DVector<f64>,
+    /// Free in sign.
+    pub equality_multipliers: DVector<f64>,
+    /// Nonnegative.
+    pub inequality_multipliers: DVector<f64>,
+    /// Nonnegative; zero where there is no bound.
+    pub lower_multipliers: DVector<f64>,
+    pub upper_multipliers: DVector<f64>,
+}
+
+/// Why a quadratic program gave no solution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum QuadraticFailure {
+    /// The data hold a NaN, or an infinity where none is allowed.
+    NotFinite,
+    /// The interior-point method holds the constraints for contradictory.
+    SuspectedInfeasible,
+    /// The interior-point method holds the objective for unbounded.
+    SuspectedUnbounded,
+    /// It ran out of iterations or precision.
+    Inaccurate,
+    /// Stopped by the cancel flag.
+    Cancelled,
+}
+
+impl QuadraticProgram {
+    /// True where every number is finite, bounds excepted, and no lower bound lies above its upper bound.
+    pub fn is_well_formed(&self) -> bool {
+        let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
+        finite(self.hessian.as_slice())
+            && finite(self.gradient.as_slice())
+            && finite(self.equality.as_slice())
+            && finite(self.equality_values.as_slice())
+            && finite(self.inequality.as_slice())
+            && finite(self.inequality_values.as_slice())
+            && self.lower.iter().zip(self.upper.iter()).all(|(lower, upper)| lower <= upper)
+    }
+
+    /// `½ dᵀHd + q·d`.
+    pub fn objective(&self, step: &DVector<f64>) -> f64 {
+        0.5 * self.curvature(step) + self.gradient.dot(step)
+    }
+
+    /// `dᵀHd`.
+    pub fn curvature(&self, step: &DVector<f64>) -> f64 {
+        step.dot(&(&self.hessian * step))
+    }
+}
+
+/// Solves by the interior-point method.
+///
+/// # Errors
+/// Every [`QuadraticFailure`]; none of them is a proof that the program has no solution.
+pub fn solve_interior(program: &QuadraticProgram, cancel: &CancelFlag) -> Result<QuadraticSolution, QuadraticFailure> {
+    if !program.is_well_formed() {
+        return Err(QuadraticFailure::NotFinite);
+    }
+    let variables = program.gradient.len();
+    let equalities = program.equality_values.len();
+    let inequalities = program.inequality_values.len();
+    let bounded = |bounds: &DVector<f64>| -> Vec<usize> { (0..variables).filter(|&j| bounds[j].is_finite()).collect() };
+    let (below, above) = (bounded(&program.lower), bounded(&program.upper));
+
+    // Rows in the solver's form A d + s = b: equalities, inequalities, lower bounds, upper bounds.
+    let mut right = Vec::with_capacity(equalities + inequalities + below.len() + above.len());
+    right.extend(program.equality_values.iter().map(|value| -value));
+    right.extend(program.inequality_values.iter());
+    right.extend(below.iter().map(|&j| -program.lower[j]));
+    right.extend(above.iter().map(|&j| program.upper[j]));
+    let rows = constraint_rows(program, &below, &above);
+    let cones = [SupportedConeT::ZeroConeT(equalities), SupportedConeT::NonnegativeConeT(right.len() - equalities)];
+
+    let mut solver = DefaultSolver::new(
+        &upper_triangle(&program.hessian),
+        program.gradient.as_slice(),
+        &rows,
+        &right,
+        &cones,
+        interior_settings(),
+    )
+    .map_err(|_| QuadraticFailure::Inaccurate)?;
+    let flag = cancel.clone();
+    solver.set_termination_callback(move |_| flag.is_cancelled());
+    solver.solve();
+
+    match solver.solution.status {
+        SolverStatus::Solved | SolverStatus::AlmostSolved => {}
+        SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
+            return Err(QuadraticFailure::SuspectedInfeasible);
+        }
+        SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => {
+            return Err(QuadraticFailure::SuspectedUnbounded);
+        }
+        SolverStatus::CallbackTerminated => return Err(QuadraticFailure::Cancelled),
+        SolverStatus::Unsolved
+        | SolverStatus::MaxIterations
+        | SolverStatus::MaxTime
+        | SolverStatus::NumericalError
+        | SolverStatus::InsufficientProgress => return Err(QuadraticFailure::Inaccurate),
+    }
+    let (x, z) = (&solver.solution.x, &solver.solution.z);
+    if x.iter().chain(z).any(|value| !value.is_finite()) {
+        return Err(QuadraticFailure::Inaccurate);
+    }
+    let mut lower_multipliers = DVector::zeros(variables);
+    let mut upper_multipliers = DVector::zeros(variables);
+    let bounds_start = equalities + inequalities;
+    for (row, &j) in below.iter().enumerate() {
+        lower_multipliers[j] = z[bounds_start + row].max(0.0);
+    }
+    for (row, &j) in above.iter().enumerate() {
+        upper_multipliers[j] = z[bounds_start + below.len() + row].max(0.0);
+    }
+    Ok(QuadraticSolution {
+        step: DVector::from_column_slice(x),
+        equality_multipliers: DVector::from_iterator(equalities, z[..equalities].iter().map(|value| -value)),
+        inequality_multipliers: DVector::from_iterator(
+            inequalities,
+            z[equalities..bounds_start].iter().map(|value| value.max(0.0)),
+        ),
+        lower_multipliers,
+        upper_multipliers,
+    })
+}
+
+/// Presolve is off since it would drop rows with an infinite right-hand side, which never arise here, at a cost.
+fn interior_settings() -> DefaultSettings<f64> {
+    DefaultSettings {
+        verbose: false,
+        presolve_enable: false,
+        max_iter: ITERATIONS,
+        max_threads: 1,
+        direct_solve_method: "qdldl".to_string(),
+        tol_gap_abs: TOLERANCE,
+        tol_gap_rel: TOLERANCE,
+        tol_feas: TOLERANCE,
+        ..DefaultSettings::default()
+    }
+}
+
+fn upper_triangle(matrix: &DMatrix<f64>) -> CscMatrix<f64> {
+    let mut columns = Columns::new(matrix.ncols());
+    for j in 0..matrix.ncols() {
+        for i in 0..=j {
+            columns.push(i, matrix[(i, j)]);
+        }
+        columns.close();
+    }
+    columns.into_matrix(matrix.nrows())
+}
+
+fn constraint_rows(program: &QuadraticProgram, below: &[usize], above: &[usize]) -> CscMatrix<f64> {
+    let (equalities, inequalities) = (program.equality.nrows(), program.inequality.nrows());
+    let mut columns = Columns::new(program.gradient.len());
+    let (mut next_below, mut next_above) = (0, 0);
+    for j in 0..program.gradient.len() {
+        for i in 0..equalities {
+            columns.push(i, program.equality[(i, j)]);
+        }
+        for i in 0..inequalities {
+            columns.push(equalities + i, -program.inequality[(i, j)]);
+        }
+        if below.get(next_below) == Some(&j) {
+            columns.push(equalities + inequalities + next_below, -1.0);
+            next_below += 1;
+        }
+        if above.get(next_above) == Some(&j) {
+            columns.push(equalities + inequalities + below.len() + next_above, 1.0);
+            next_above += 1;
+        }
+        columns.close();
+    }
+    columns.into_matrix(equalities + inequalities + below.len() + above.len())
+}
+
+/// A compressed-column matrix under construction; exact zeros are left out.
+struct Columns {
+    starts: Vec<usize>,
+    rows: Vec<usize>,
+    values: Vec<f64>,
+}
+
+impl Columns {
+    fn new(columns: usize) -> Self {
+        let mut starts = Vec::with_capacity(columns + 1);
+        starts.push(0);
+        Self { starts, rows: Vec::new(), values: Vec::new() }
+    }
+
+    fn push(&mut self, row: usize, value: f64) {
+        if value != 0.0 {
+            self.rows.push(row);
+            self.values.push(value);
+        }
+    }
+
+    fn close(&mut self) {
+        self.starts.push(self.rows.len());
+    }
+
+    fn into_matrix(self, rows: usize) -> CscMatrix<f64> {
+        CscMatrix::new(rows, self.starts.len() - 1, self.starts, self.rows, self.values)
+    }
+}

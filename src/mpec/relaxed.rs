@@ -1,0 +1,354 @@
+//! The smooth program that stands for the one with complementarity constraints, and its linearisation.
+//!
+//! Each pair `0 <= a ⊥ b >= 0` is treated in one of these ways ([`PairTreatment`]):
+//!
+//! ```text
+//! Product(ε):   a >= 0,  b >= 0,  ε - a b >= 0          the regularisation, ε falling to 0
+//! FirstZero:    a  = 0,  b >= 0                         one branch
+//! SecondZero:   a >= 0,  b  = 0                         the other
+//! BothFree:     a >= 0,  b >= 0                         relaxed: multipliers here decide strong stationarity
+//! BothZero:     a  = 0,  b  = 0                         tightened
+//! ```
+//!
+//! Linearised at `x`, with the step `d`: `a + ∇a·d`, and `ε - a b - (b ∇a + a ∇b)·d >= 0` for the product.
+//!
+//! Source: S. Scholtes, *Convergence properties of a regularization scheme for mathematical programs with
+//! complementarity constraints*, SIAM J. Optim. 11 (2001), doi:10.1137/S1052623499361233. With multipliers `λ_a, λ_b, π`
+//! of the three rows of a product, the pair's own multipliers are `ν_a = λ_a - π b` and `ν_b = λ_b - π a`.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::problem::Problem;
+use super::quadratic::{QuadraticProgram, QuadraticSolution};
+
+/// How one pair enters the smooth program.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PairTreatment {
+    /// Both nonnegative, their product at most this.
+    Product(f64),
+    FirstZero,
+    SecondZero,
+    BothFree,
+    BothZero,
+}
+
+impl PairTreatment {
+    fn first_is_zero(self) -> bool {
+        matches!(self, Self::FirstZero | Self::BothZero)
+    }
+
+    fn second_is_zero(self) -> bool {
+        matches!(self, Self::SecondZero | Self::BothZero)
+    }
+}
+
+/// The function of a [`Problem`] that returned a number that is not finite.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    Start,
+    Objective,
+    ObjectiveGradient,
+    Equalities,
+    EqualityJacobian,
+    Inequalities,
+    InequalityJacobian,
+    Pairs,
+    PairJacobians,
+    QuadraticModel,
+}
+
+/// Everything a [`Problem`] says at one point.
+#[derive(Debug, Clone)]
+pub struct Evaluation {
+    pub objective: f64,
+    pub gradient: DVector<f64>,
+    pub equality: DVector<f64>,
+    pub equality_jacobian: DMatrix<f64>,
+    pub inequality: DVector<f64>,
+    pub inequality_jacobian: DMatrix<f64>,
+    pub first: DVector<f64>,
+    pub second: DVector<f64>,
+    pub first_jacobian: DMatrix<f64>,
+    pub second_jacobian: DMatrix<f64>,
+}
+
+impl Evaluation {
+    pub fn new<P: Problem + ?Sized>(problem: &P) -> Self {
+        let n = problem.variables();
+        let (equalities, inequalities, pairs) = (problem.equalities(), problem.inequalities(), problem.pairs());
+        Self {
+            objective: 0.0,
+            gradient: DVector::zeros(n),
+            equality: DVector::zeros(equalities),
+            equality_jacobian: DMatrix::zeros(equalities, n),
+            inequality: DVector::zeros(inequalities),
+            inequality_jacobian: DMatrix::zeros(inequalities, n),
+            first: DVector::zeros(pairs),
+            second: DVector::zeros(pairs),
+            first_jacobian: DMatrix::zeros(pairs, n),
+            second_jacobian: DMatrix::zeros(pairs, n),
+        }
+    }
+
+    /// The functions' values at `x`.
+    ///
+    /// # Errors
+    /// The quantity that is not finite.
+    pub fn update_values<P: Problem + ?Sized>(&mut self, problem: &P, x: &DVector<f64>) -> Result<(), Quantity> {
+        self.objective = problem.objective(x);
+        problem.equality_values(x, &mut self.equality);
+        problem.inequality_values(x, &mut self.inequality);
+        problem.pair_values(x, &mut self.first, &mut self.second);
+        finite(&[self.objective], Quantity::Objective)?;
+        finite(self.equality.as_slice(), Quantity::Equalities)?;
+        finite(self.inequality.as_slice(), Quantity::Inequalities)?;
+        finite(self.first.as_slice(), Quantity::Pairs)?;
+        finite(self.second.as_slice(), Quantity::Pairs)
+    }
+
+    /// Their derivatives at `x`.
+    ///
+    /// # Errors
+    /// The quantity that is not finite.
+    pub fn update_derivatives<P: Problem + ?Sized>(&mut self, problem: &P, x: &DVector<f64>) -> Result<(), Quantity> {
+        for jacobian in [
+            &mut self.equality_jacobian,
+            &mut self.inequality_jacobian,
+            &mut self.first_jacobian,
+            &mut self.second_jacobian,
+        ] {
+            jacobian.fill(0.0);
+        }
+        self.gradient.fill(0.0);
+        problem.objective_gradient(x, &mut self.gradient);
+        problem.equality_jacobian(x, &mut self.equality_jacobian);
+        problem.inequality_jacobian(x, &mut self.inequality_jacobian);
+        problem.pair_jacobians(x, &mut self.first_jacobian, &mut self.second_jacobian);
+        finite(self.gradient.as_slice(), Quantity::ObjectiveGradient)?;
+        finite(self.equality_jacobian.as_slice(), Quantity::EqualityJacobian)?;
+        finite(self.inequality_jacobian.as_slice(), Quantity::InequalityJacobian)?;
+        finite(self.first_jacobian.as_slice(), Quantity::PairJacobians)?;
+        finite(self.second_jacobian.as_slice(), Quantity::PairJacobians)
+    }
+
+    /// Largest violation of `h = 0`, `g >= 0`, `a >= 0`, `b >= 0`.
+    pub fn largest_violation(&self) -> f64 {
+        let below_zero = |values: &DVector<f64>| values.iter().fold(0.0_f64, |worst, value| worst.max(-value));
+        self.equality
+            .amax_or_zero()
+            .max(below_zero(&self.inequality))
+            .max(below_zero(&self.first))
+            .max(below_zero(&self.second))
+    }
+
+    /// Largest `|a_i b_i|`.
+    pub fn largest_product(&self) -> f64 {
+        self.first.iter().zip(self.second.iter()).fold(0.0, |worst, (a, b)| worst.max((a * b).abs()))
+    }
+}
+
+trait AbsoluteMaximum {
+    fn amax_or_zero(&self) -> f64;
+}
+
+impl AbsoluteMaximum for DVector<f64> {
+    fn amax_or_zero(&self) -> f64 {
+        self.iter().fold(0.0, |worst, value| worst.max(value.abs()))
+    }
+}
+
+fn finite(values: &[f64], quantity: Quantity) -> Result<(), Quantity> {
+    if values.iter().all(|value| value.is_finite()) { Ok(()) } else { Err(quantity) }
+}
+
+/// What a row of the smooth program belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Row {
+    Equality(usize),
+    Inequality(usize),
+    First(usize),
+    Second(usize),
+    Product(usize),
+}
+
+/// Multipliers in the problem's own terms; signs as in `mpec::quadratic`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Multipliers {
+    /// One an equality, free in sign.
+    pub equality: DVector<f64>,
+    /// One an inequality, nonnegative.
+    pub inequality: DVector<f64>,
+    /// One a pair: `ν_a`, free in sign where `b > 0`.
+    pub first: DVector<f64>,
+    /// One a pair: `ν_b`.
+    pub second: DVector<f64>,
+    /// One a variable, nonnegative.
+    pub lower: DVector<f64>,
+    /// One a variable, nonnegative.
+    pub upper: DVector<f64>,
+}
+
+/// The rows of the smooth program for one choice of treatments.
+#[derive(Debug, Clone)]
+pub struct Rows {
+    treatments: Vec<PairTreatment>,
+    equality: Vec<Row>,
+    inequality: Vec<Row>,
+}
+
+impl Rows {
+    pub fn new(equalities: usize, inequalities: usize, treatments: Vec<PairTreatment>) -> Self {
+        let mut equality: Vec<Row> = (0..equalities).map(Row::Equality).collect();
+        let mut inequality: Vec<Row> = (0..inequalities).map(Row::Inequality).collect();
+        for (i, treatment) in treatments.iter().enumerate() {
+            if treatment.first_is_zero() { &mut equality } else { &mut inequality }.push(Row::First(i));
+            if treatment.second_is_zero() { &mut equality } else { &mut inequality }.push(Row::Second(i));
+            if matches!(treatment, PairTreatment::Product(_)) {
+                inequality.push(Row::Product(i));
+            }
+        }
+        Self { treatments, equality, inequality }
+    }
+
+    fn value(&self, at: &Evaluation, row: Row) -> f64 {
+        match row {
+            Row::Equality(i) => at.equality[i],
+            Row::Inequality(i) => at.inequality[i],
+            Row::First(i) => at.first[i],
+            Row::Second(i) => at.second[i],
+            Row::Product(i) => match self.treatments[i] {
+                PairTreatment::Product(relaxation) => relaxation - at.first[i] * at.second[i],
+                PairTreatment::FirstZero
+                | PairTreatment::SecondZero
+                | PairTreatment::BothFree
+                | PairTreatment::BothZero => 0.0,
+            },
+        }
+    }
+
+    /// Sum of the absolute violations of all rows.
+    pub fn violation(&self, at: &Evaluation) -> f64 {
+        let equalities: f64 = self.equality.iter().map(|&row| self.value(at, row).abs()).sum();
+        let inequalities: f64 = self.inequality.iter().map(|&row| (-self.value(at, row)).max(0.0)).sum();
+        equalities + inequalities
+    }
+
+    /// The quadratic program at `x`; its Hessian is left to the caller.
+    pub fn linearise(
+        &self,
+        at: &Evaluation,
+        x: &DVector<f64>,
+        bounds: &(DVector<f64>, DVector<f64>),
+        hessian: DMatrix<f64>,
+    ) -> QuadraticProgram {
+        let n = x.len();
+        let mut program = QuadraticProgram {
+            hessian,
+            gradient: at.gradient.clone(),
+            equality: DMatrix::zeros(self.equality.len(), n),
+            equality_values: DVector::zeros(self.equality.len()),
+            inequality: DMatrix::zeros(self.inequality.len(), n),
+            inequality_values: DVector::zeros(self.inequality.len()),
+            lower: &bounds.0 - x,
+            upper: &bounds.1 - x,
+        };
+        for (place, &row) in self.equality.iter().enumerate() {
+            program.equality_values[place] = self.value(at, row);
+            self.put_gradient(at, row, &mut program.equality, place);
+        }
+        for (place, &row) in self.inequality.iter().enumerate() {
+            program.inequality_values[place] = self.value(at, row);
+            self.put_gradient(at, row, &mut program.inequality, place);
+        }
+        self.drop_implied_bounds(&mut program);
+        program
+    }
+
+    fn put_gradient(&self, at: &Evaluation, row: Row, into: &mut DMatrix<f64>, place: usize) {
+        for j in 0..into.ncols() {
+            into[(place, j)] = match row {
+                Row::Equality(i) => at.equality_jacobian[(i, j)],
+                Row::Inequality(i) => at.inequality_jacobian[(i, j)],
+                Row::First(i) => at.first_jacobian[(i, j)],
+                Row::Second(i) => at.second_jacobian[(i, j)],
+                Row::Product(i) => -at.second[i] * at.first_jacobian[(i, j)] - at.first[i] * at.second_jacobian[(i, j)],
+            };
+        }
+    }
+
+    /// Where a pair's member is a single variable, its row and the variable's bound say the same, and a program that
+    /// says it twice has no unique multipliers. The bound goes.
+    fn drop_implied_bounds(&self, program: &mut QuadraticProgram) {
+        for (place, row) in self.equality.iter().enumerate() {
+            if let (Row::First(_) | Row::Second(_), Some((j, slope))) = (row, only_entry(&program.equality, place)) {
+                let target = -program.equality_values[place] / slope;
+                let margin = 1e-12 * (1.0 + target.abs());
+                if program.lower[j] <= target + margin && target - margin <= program.upper[j] {
+                    program.lower[j] = f64::NEG_INFINITY;
+                    program.upper[j] = f64::INFINITY;
+                }
+            }
+        }
+        for (place, row) in self.inequality.iter().enumerate() {
+            if let (Row::First(_) | Row::Second(_), Some((j, slope))) = (row, only_entry(&program.inequality, place)) {
+                let target = -program.inequality_values[place] / slope;
+                let margin = 1e-12 * (1.0 + target.abs());
+                if slope > 0.0 && program.lower[j] <= target + margin {
+                    program.lower[j] = f64::NEG_INFINITY;
+                } else if slope < 0.0 && program.upper[j] >= target - margin {
+                    program.upper[j] = f64::INFINITY;
+                }
+            }
+        }
+    }
+
+    /// The row values of `program` replaced by those of a second-order correction: the functions at the trial point
+    /// less their linear part.
+    pub fn correct(&self, program: &mut QuadraticProgram, trial: &Evaluation, step: &DVector<f64>) {
+        for (place, &row) in self.equality.iter().enumerate() {
+            program.equality_values[place] = self.value(trial, row);
+        }
+        for (place, &row) in self.inequality.iter().enumerate() {
+            program.inequality_values[place] = self.value(trial, row);
+        }
+        program.equality_values -= &program.equality * step;
+        program.inequality_values -= &program.inequality * step;
+    }
+
+    /// The multipliers of a quadratic program's rows, sorted back to what they belong to.
+    pub fn multipliers(&self, at: &Evaluation, solution: &QuadraticSolution) -> Multipliers {
+        let pairs = self.treatments.len();
+        let mut multipliers = Multipliers {
+            equality: DVector::zeros(at.equality.len()),
+            inequality: DVector::zeros(at.inequality.len()),
+            first: DVector::zeros(pairs),
+            second: DVector::zeros(pairs),
+            lower: solution.lower_multipliers.clone(),
+            upper: solution.upper_multipliers.clone(),
+        };
+        let equalities = self.equality.iter().zip(solution.equality_multipliers.iter());
+        let inequalities = self.inequality.iter().zip(solution.inequality_multipliers.iter());
+        for (&row, &value) in equalities.chain(inequalities) {
+            match row {
+                Row::Equality(i) => multipliers.equality[i] += value,
+                Row::Inequality(i) => multipliers.inequality[i] += value,
+                Row::First(i) => multipliers.first[i] += value,
+                Row::Second(i) => multipliers.second[i] += value,
+                Row::Product(i) => {
+                    multipliers.first[i] -= value * at.second[i];
+                    multipliers.second[i] -= value * at.first[i];
+                }
+            }
+        }
+        multipliers
+    }
+}
+
+/// Column and value of a row's only entry.
+fn only_entry(matrix: &DMatrix<f64>, row: usize) -> Option<(usize, f64)> {
+    let mut entries = (0..matrix.ncols()).filter(|&j| matrix[(row, j)] != 0.0);
+    match (entries.next(), entries.next()) {
+        (Some(j), None) => Some((j, matrix[(row, j)])),
+        _ => None,
+    }
+}

@@ -1,0 +1,110 @@
+//! What a solve returns.
+
+use nalgebra::DVector;
+use thiserror::Error;
+
+pub use super::relaxed::{Multipliers, Quantity};
+
+/// Which member of a pair is zero.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PairActivity {
+    /// `a = 0 < b`.
+    FirstZero,
+    /// `b = 0 < a`.
+    SecondZero,
+    /// Both zero to the biactive tolerance.
+    BothZero,
+    /// Neither is zero: the solve ended before complementarity was reached.
+    NeitherZero,
+}
+
+/// Why a solve ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// Feasible, complementary, and stationary in the sense of [`Solution::stationarity`].
+    Solved,
+    /// [`super::Finish::PatternSettled`]: the pattern is certain, the point is not refined.
+    PatternSettled,
+    /// Feasible and complementary, but no stationarity was established.
+    Feasible,
+    /// The violation is locally smallest and not zero, from every start tried.
+    Infeasible,
+    /// An iteration limit was reached before feasibility.
+    IterationLimit,
+    /// No step was found that makes progress, and the point is not feasible.
+    NoProgress,
+    /// The objective falls without bound on feasible points.
+    Unbounded,
+    /// A function returned a number that is not finite.
+    NotFinite(Quantity),
+    /// Stopped by the cancel flag.
+    Cancelled,
+}
+
+/// Kind of stationarity of the returned point, strongest first.
+///
+/// Multipliers `ν_a, ν_b` of the biactive pairs: strong, both nonnegative; Mordukhovich, both positive or one zero;
+/// Clarke, product nonnegative; weak, any. Source: H. Scheel and S. Scholtes, Math. Oper. Res. 25 (2000),
+/// doi:10.1287/moor.25.1.1.15213.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StationarityKind {
+    /// No first-order descent even with the biactive pairs' complementarity taken away.
+    Strong,
+    /// No first-order descent in any of the enumerated branches.
+    Branch,
+    Mordukhovich,
+    Clarke,
+    Weak,
+    /// Not stationary, or not established.
+    Unknown,
+}
+
+/// Work done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counts {
+    /// Quadratic programs, however solved; the elastic version of one does not count again.
+    pub qp_solves: usize,
+    /// Calls of the interior-point method.
+    pub interior_point_solves: usize,
+    /// Elastic programs among them.
+    pub elastic_solves: usize,
+    /// Steps of sequential quadratic programming.
+    pub sqp_iterations: usize,
+    /// Values of `ε` visited, restarts included.
+    pub relaxation_levels: usize,
+    /// Branch programs solved.
+    pub branches: usize,
+    /// Restarts from a larger `ε`.
+    pub restarts: usize,
+}
+
+/// A point and what is known of it.
+#[derive(Debug, Clone)]
+pub struct Solution {
+    pub status: Status,
+    /// The variables.
+    pub x: DVector<f64>,
+    pub objective: f64,
+    pub multipliers: Multipliers,
+    /// One a pair.
+    pub activity: Vec<PairActivity>,
+    pub stationarity: StationarityKind,
+    /// Largest violation of an equality, inequality or sign; bounds hold always.
+    pub largest_violation: f64,
+    /// Largest `|a_i b_i|`.
+    pub largest_product: f64,
+    pub counts: Counts,
+}
+
+/// Misuse.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum InputError {
+    #[error("the start has {found} variables, the problem {expected}")]
+    StartLength { expected: usize, found: usize },
+    #[error("the bounds have {lower} and {upper} entries, the problem {expected} variables")]
+    BoundsLength { expected: usize, lower: usize, upper: usize },
+    #[error("variable {variable} has the lower bound {lower} and the upper bound {upper}")]
+    Bounds { variable: usize, lower: f64, upper: f64 },
+    #[error("setting {name} is {value}; it must be {wanted}")]
+    Setting { name: &'static str, value: f64, wanted: &'static str },
+}

@@ -1,0 +1,366 @@
+//! A mathematical program with complementarity constraints, from a start to a classified point.
+//!
+//! 1. Warm start (or no pairs at all): the branch that the start itself suggests is solved; near a solution that takes
+//!    two or three quadratic programs.
+//! 2. Otherwise regularised programs with `ε` falling from its first to its last value; each starts where the last one
+//!    ended. As soon as every pair's pattern is clear, or has come back unchanged, `mpec::branch` takes over and
+//!    `mpec::stationarity` has the last word.
+//! 3. Where that gave no feasible stationary point: again from the start with a hundred times larger `ε`, a bounded
+//!    number of times; then, where nothing was feasible, from the branches around the least infeasible point. The best
+//!    point seen is returned, with a status that says what it is.
+//!
+//! What is found is a local solution. Source of the sequence: S. Scholtes, SIAM J. Optim. 11 (2001),
+//! doi:10.1137/S1052623499361233.
+
+use nalgebra::DVector;
+
+use super::branch::{self, Candidate};
+use super::elastic::StepSolver;
+use super::problem::Problem;
+use super::relaxed::{Evaluation, PairTreatment, Quantity, Rows};
+use super::result::{Counts, InputError, PairActivity, Solution, StationarityKind, Status};
+use super::settings::Settings;
+use super::sqp::{self, SqpEnd, SqpSettings};
+use crate::cancel::CancelFlag;
+
+/// Factor on `ε` from one restart to the next.
+const RESTART_FACTOR: f64 = 100.0;
+/// Most pairs whose branches are all tried before a problem is called infeasible, whatever the settings ask for.
+const ENUMERATION_CEILING: usize = 10;
+/// Past this, `ε` relaxes nothing any more.
+const LARGEST_RELAXATION: f64 = 1e8;
+/// Most values of `ε` in one descent, whatever the settings ask for.
+const LEVEL_LIMIT: usize = 200;
+
+/// Solves `problem` from `start`.
+///
+/// Numerical trouble is a [`Status`], never an error.
+///
+/// # Errors
+/// [`InputError`] for a start or bounds that do not fit the problem, or settings out of range.
+pub fn solve<P: Problem + ?Sized>(
+    problem: &P,
+    start: &DVector<f64>,
+    settings: &Settings,
+    cancel: &CancelFlag,
+) -> Result<Solution, InputError> {
+    let bounds = problem.bounds();
+    check_input(problem, start, &bounds, settings)?;
+    let mut run =
+        Run { problem, bounds, settings, cancel, steps: StepSolver::default(), best: None, seen: Ends::default() };
+    let stopped = run.go(start);
+    Ok(run.finish(start, stopped))
+}
+
+/// Ends that matter for the status when no point is feasible.
+#[derive(Debug, Clone, Copy, Default)]
+struct Ends {
+    infeasible: bool,
+    iteration_limit: bool,
+    unbounded: bool,
+    not_finite: Option<Quantity>,
+}
+
+/// A solve under way.
+struct Run<'a, P: Problem + ?Sized> {
+    problem: &'a P,
+    bounds: (DVector<f64>, DVector<f64>),
+    settings: &'a Settings,
+    cancel: &'a CancelFlag,
+    steps: StepSolver,
+    best: Option<Candidate>,
+    seen: Ends,
+}
+
+impl<P: Problem + ?Sized> Run<'_, P> {
+    /// Runs to the end; the reason where it was stopped before its time.
+    fn go(&mut self, start: &DVector<f64>) -> Option<Status> {
+        if start.iter().any(|value| !value.is_finite()) {
+            return Some(Status::NotFinite(Quantity::Start));
+        }
+        let mut at = Evaluation::new(self.problem);
+        if let Err(quantity) = at.update_values(self.problem, start) {
+            return Some(Status::NotFinite(quantity));
+        }
+        if (self.problem.pairs() == 0 || self.settings.warm_start && branch::is_clear(&at))
+            && let Some(end) = self.search(start, &at)
+        {
+            return end.reason();
+        }
+        if self.problem.pairs() == 0 {
+            return None;
+        }
+        let mut first_relaxation = self.settings.first_relaxation;
+        for restart in 0..=self.settings.restarts {
+            self.steps.counts.restarts = restart;
+            if let Some(end) = self.regularise(start, first_relaxation) {
+                return end.reason();
+            }
+            first_relaxation = (first_relaxation * RESTART_FACTOR).min(LARGEST_RELAXATION);
+        }
+        self.try_other_branches()
+    }
+
+    /// The last resort where no feasible point was found: the branches around the least infeasible one, those that
+    /// differ in one pair first; all of them where there are few pairs.
+    fn try_other_branches(&mut self) -> Option<Status> {
+        let best = self.best.as_ref().filter(|best| !best.is_feasible(self.settings.tolerance))?;
+        let (x, nearest) = (best.x.clone(), branch::nearest_pattern(&best.at));
+        let pairs = nearest.len();
+        let flips: Vec<Vec<usize>> = if pairs <= self.settings.enumeration_limit.min(ENUMERATION_CEILING) {
+            let mut subsets: Vec<usize> = (1..1_usize << pairs).collect();
+            subsets.sort_by_key(|subset| subset.count_ones());
+            subsets.into_iter().map(|subset| (0..pairs).filter(|pair| subset >> pair & 1 == 1).collect()).collect()
+        } else {
+            (0..pairs.min(1 << ENUMERATION_CEILING)).map(|pair| vec![pair]).collect()
+        };
+        for flipped in flips {
+            let mut pattern = nearest.clone();
+            for pair in flipped {
+                pattern[pair] = match pattern[pair] {
+                    PairTreatment::FirstZero => PairTreatment::SecondZero,
+                    PairTreatment::SecondZero
+                    | PairTreatment::Product(_)
+                    | PairTreatment::BothFree
+                    | PairTreatment::BothZero => PairTreatment::FirstZero,
+                };
+            }
+            if let Some(over) = self.search_from(&x, pattern) {
+                return over.reason();
+            }
+        }
+        None
+    }
+
+    /// One descent of `ε`; an end where there is nothing left to do.
+    fn regularise(&mut self, start: &DVector<f64>, first_relaxation: f64) -> Option<Over> {
+        let mut x = start.clone();
+        let mut relaxation = first_relaxation;
+        let mut last_searched: Option<Vec<PairTreatment>> = None;
+        let mut last_pattern: Option<Vec<PairTreatment>> = None;
+        let sequence = SqpSettings {
+            tolerance: self.settings.tolerance,
+            iteration_limit: self.settings.iteration_limit,
+            stop_when_settled: false,
+        };
+        for _ in 0..LEVEL_LIMIT {
+            self.steps.counts.relaxation_levels += 1;
+            let treatments = vec![PairTreatment::Product(relaxation); self.problem.pairs()];
+            let rows = Rows::new(self.problem.equalities(), self.problem.inequalities(), treatments);
+            let outcome = sqp::solve(self.problem, &rows, &self.bounds, &x, sequence, &mut self.steps, self.cancel);
+            match outcome.end {
+                SqpEnd::Cancelled => return Some(Over::Stopped(Status::Cancelled)),
+                SqpEnd::NotFinite(quantity) => {
+                    self.seen.not_finite = Some(quantity);
+                    return None;
+                }
+                SqpEnd::Unbounded => self.seen.unbounded = true,
+                SqpEnd::Infeasible => self.seen.infeasible = true,
+                SqpEnd::IterationLimit => self.seen.iteration_limit = true,
+                SqpEnd::Converged | SqpEnd::Settled | SqpEnd::Stalled => {}
+            }
+            x = outcome.x;
+            let is_last = relaxation <= self.settings.last_relaxation;
+            let pattern = branch::nearest_pattern(&outcome.at);
+            let same = last_pattern.as_ref() == Some(&pattern);
+            let hopeless = outcome.end == SqpEnd::Infeasible;
+            let worth_a_search = branch::is_clear(&outcome.at) || same || is_last || hopeless;
+            if worth_a_search && last_searched.as_ref() != Some(&pattern) {
+                if let Some(over) = self.search(&x, &outcome.at) {
+                    return Some(over);
+                }
+                last_searched = Some(pattern.clone());
+            }
+            last_pattern = Some(pattern);
+            // Where even this much relaxation left the rows contradictory, less of it can't help.
+            if is_last || hopeless {
+                return None;
+            }
+            relaxation = (relaxation * self.settings.relaxation_factor).max(self.settings.last_relaxation);
+        }
+        None
+    }
+
+    /// Descends from the branch nearest to `x`; an end where the point is final or the solve has to stop.
+    fn search(&mut self, x: &DVector<f64>, at: &Evaluation) -> Option<Over> {
+        self.search_from(x, branch::nearest_pattern(at))
+    }
+
+    /// Descends from the branch `pattern`.
+    fn search_from(&mut self, x: &DVector<f64>, pattern: Vec<PairTreatment>) -> Option<Over> {
+        let candidate =
+            branch::descend(self.problem, &self.bounds, x, pattern, self.settings, &mut self.steps, self.cancel);
+        let over = match candidate.end {
+            SqpEnd::Cancelled => Some(Over::Stopped(Status::Cancelled)),
+            SqpEnd::Infeasible => {
+                self.seen.infeasible = true;
+                None
+            }
+            SqpEnd::IterationLimit => {
+                self.seen.iteration_limit = true;
+                None
+            }
+            SqpEnd::Unbounded => {
+                self.seen.unbounded = true;
+                None
+            }
+            SqpEnd::NotFinite(quantity) => {
+                self.seen.not_finite = Some(quantity);
+                None
+            }
+            SqpEnd::Converged | SqpEnd::Settled | SqpEnd::Stalled => {
+                (candidate.end == SqpEnd::Settled || candidate.is_final(self.settings.tolerance)).then_some(Over::Found)
+            }
+        };
+        let tolerance = self.settings.tolerance;
+        if matches!(over, Some(Over::Found))
+            || self.best.as_ref().is_none_or(|best| is_better(&candidate, best, tolerance))
+        {
+            self.best = Some(candidate);
+        }
+        over
+    }
+
+    fn finish(self, start: &DVector<f64>, stopped: Option<Status>) -> Solution {
+        let tolerance = self.settings.tolerance;
+        let Some(candidate) = self.best else {
+            return empty_solution(self.problem, start, stopped.unwrap_or(self.seen.status()), self.steps.counts);
+        };
+        let is_feasible = candidate.is_feasible(tolerance);
+        let status = match (stopped, candidate.end) {
+            (Some(status), _) => status,
+            (None, SqpEnd::Settled) => Status::PatternSettled,
+            (None, SqpEnd::NotFinite(quantity)) => Status::NotFinite(quantity),
+            (None, SqpEnd::Unbounded) if is_feasible => Status::Unbounded,
+            (
+                None,
+                SqpEnd::Converged
+                | SqpEnd::Stalled
+                | SqpEnd::Infeasible
+                | SqpEnd::IterationLimit
+                | SqpEnd::Unbounded
+                | SqpEnd::Cancelled,
+            ) => match (is_feasible, candidate.stationarity) {
+                (false, _) => self.seen.status(),
+                (true, StationarityKind::Unknown) => Status::Feasible,
+                (true, _) => Status::Solved,
+            },
+        };
+        let both_zero = self.settings.biactive_tolerance;
+        let activity = candidate.at.first.iter().zip(candidate.at.second.iter());
+        Solution {
+            status,
+            objective: candidate.at.objective,
+            activity: activity.map(|(&a, &b)| activity_of(a, b, both_zero)).collect(),
+            stationarity: candidate.stationarity,
+            largest_violation: candidate.at.largest_violation(),
+            largest_product: candidate.at.largest_product(),
+            multipliers: candidate.multipliers,
+            x: candidate.x,
+            counts: self.steps.counts,
+        }
+    }
+}
+
+/// Why a solve need not go on.
+enum Over {
+    Found,
+    Stopped(Status),
+}
+
+impl Over {
+    fn reason(self) -> Option<Status> {
+        match self {
+            Self::Found => None,
+            Self::Stopped(status) => Some(status),
+        }
+    }
+}
+
+impl Ends {
+    fn status(self) -> Status {
+        if let Some(quantity) = self.not_finite {
+            Status::NotFinite(quantity)
+        } else if self.infeasible {
+            Status::Infeasible
+        } else if self.iteration_limit {
+            Status::IterationLimit
+        } else if self.unbounded {
+            Status::Unbounded
+        } else {
+            Status::NoProgress
+        }
+    }
+}
+
+fn is_better(candidate: &Candidate, best: &Candidate, tolerance: f64) -> bool {
+    match (candidate.is_feasible(tolerance), best.is_feasible(tolerance)) {
+        (true, false) => true,
+        (false, true) => false,
+        (true, true) => candidate.at.objective < best.at.objective,
+        (false, false) => candidate.infeasibility() < best.infeasibility(),
+    }
+}
+
+fn activity_of(a: f64, b: f64, tolerance: f64) -> PairActivity {
+    match (a <= tolerance, b <= tolerance) {
+        (true, true) => PairActivity::BothZero,
+        (true, false) => PairActivity::FirstZero,
+        (false, true) => PairActivity::SecondZero,
+        (false, false) => PairActivity::NeitherZero,
+    }
+}
+
+/// The start itself, where nothing was computed that is worth returning.
+fn empty_solution<P: Problem + ?Sized>(problem: &P, start: &DVector<f64>, status: Status, counts: Counts) -> Solution {
+    Solution {
+        status,
+        x: start.clone(),
+        objective: f64::NAN,
+        multipliers: sqp::no_multipliers(problem),
+        activity: vec![PairActivity::NeitherZero; problem.pairs()],
+        stationarity: StationarityKind::Unknown,
+        largest_violation: f64::INFINITY,
+        largest_product: f64::INFINITY,
+        counts,
+    }
+}
+
+fn check_input<P: Problem + ?Sized>(
+    problem: &P,
+    start: &DVector<f64>,
+    bounds: &(DVector<f64>, DVector<f64>),
+    settings: &Settings,
+) -> Result<(), InputError> {
+    let expected = problem.variables();
+    if start.len() != expected {
+        return Err(InputError::StartLength { expected, found: start.len() });
+    }
+    let (lower, upper) = (bounds.0.len(), bounds.1.len());
+    if lower != expected || upper != expected {
+        return Err(InputError::BoundsLength { expected, lower, upper });
+    }
+    for variable in 0..expected {
+        let (lower, upper) = (bounds.0[variable], bounds.1[variable]);
+        // Written so that a NaN is refused too.
+        if !(lower <= upper) || lower == f64::INFINITY || upper == f64::NEG_INFINITY {
+            return Err(InputError::Bounds { variable, lower, upper });
+        }
+    }
+    let positive = |name, value: f64| {
+        if value > 0.0 && value.is_finite() {
+            Ok(())
+        } else {
+            Err(InputError::Setting { name, value, wanted: "positive" })
+        }
+    };
+    positive("first_relaxation", settings.first_relaxation)?;
+    positive("last_relaxation", settings.last_relaxation)?;
+    positive("tolerance", settings.tolerance)?;
+    positive("biactive_tolerance", settings.biactive_tolerance)?;
+    let factor = settings.relaxation_factor;
+    if !(factor > 0.0 && factor < 1.0) {
+        return Err(InputError::Setting { name: "relaxation_factor", value: factor, wanted: "between 0 and 1" });
+    }
+    Ok(())
+}
