@@ -11,7 +11,11 @@ use crate::model::request::*;
 use crate::model::{InputErrors, JobRequest};
 
 fn number() -> impl Strategy<Value = f64> {
-    prop_oneof![any::<f64>().prop_filter("finite", |value| value.is_finite()), Just(0.0), (-9i32..9).prop_map(f64::from)]
+    prop_oneof![
+        any::<f64>().prop_filter("finite", |value| value.is_finite()),
+        Just(0.0),
+        (-9i32..9).prop_map(f64::from)
+    ]
 }
 
 fn name() -> impl Strategy<Value = String> {
@@ -80,18 +84,16 @@ fn stage() -> impl Strategy<Value = Stage> {
 fn model() -> impl Strategy<Value = Model> {
     let geometry = (of(name()), 0usize..5, map(numbers()), map(vec(component(), 0..4)), vec(element(), 0..4));
     let rest = (map(obstacle()), vec(contact(), 0..4), vec(stage(), 0..3));
-    (geometry, rest).prop_map(
-        |((name, dimension, nodes, supports, elements), (obstacles, contacts, stages))| Model {
-            name,
-            dimension,
-            nodes,
-            supports,
-            elements,
-            obstacles,
-            contacts,
-            stages,
-        },
-    )
+    (geometry, rest).prop_map(|((name, dimension, nodes, supports, elements), (obstacles, contacts, stages))| Model {
+        name,
+        dimension,
+        nodes,
+        supports,
+        elements,
+        obstacles,
+        contacts,
+        stages,
+    })
 }
 
 fn analysis() -> impl Strategy<Value = Analysis> {
