@@ -9,13 +9,19 @@ pub const MAX_LISTED_MISTAKES: usize = 100;
 /// Bytes of the name of a model, node, obstacle or stage.
 pub const MAX_NAME_BYTES: usize = 200;
 
+/// Nodes of a model; as many may be named in `supports`.
 pub const MAX_NODES: usize = 20_000;
+/// Elements of a model.
 pub const MAX_ELEMENTS: usize = 100_000;
+/// Obstacles of a model.
 pub const MAX_OBSTACLES: usize = 10_000;
+/// Contacts of a model.
 pub const MAX_CONTACTS: usize = 10_000;
+/// Stages of a model.
 pub const MAX_STAGES: usize = 1_000;
 /// Free displacement components; the linear algebra is dense, so memory goes with the square and time with the cube.
 pub const MAX_UNKNOWNS: usize = 3_000;
+/// Upper bound of `analysis.max_increments`.
 pub const MAX_INCREMENTS: u64 = 10_000_000;
 /// Upper bound of `analysis.max_modes`.
 pub const MAX_MODES: u64 = 10_000_000;
