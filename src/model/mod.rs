@@ -1,14 +1,27 @@
 //! What a user posts, decoded from JSON and checked.
 //!
-//! [`request`] holds the types of the contract, [`decode`] reads them from JSON text and says where each mistake is,
-//! [`check`] looks at what can only be judged on the whole (unknown names, zero lengths, penetration). Nothing here
-//! knows how a path is traced.
+//! [`request`] holds the types of the contract, [`mod@decode`] reads them from JSON text and says where each mistake is,
+//! [`mod@check`] looks at what can only be judged on the whole (unknown names, zero lengths, penetration). Nothing here
+//! knows how a path is traced. [`read`] does both.
 
 pub mod check;
 pub mod decode;
 pub mod error;
 pub mod json;
+pub mod limits;
+mod mistakes;
+mod names;
 pub mod request;
 
 pub use error::{InputError, InputErrors};
 pub use request::{Analysis, JobRequest, Model};
+
+/// Reads a job request from JSON text and checks it: what every edge (HTTP, command line) does with what comes in.
+///
+/// # Errors
+/// Everything that is wrong with the text, see [`decode::decode`], or else with what it says, see [`check::check`].
+pub fn read(text: &[u8]) -> Result<JobRequest, InputErrors> {
+    let request = decode::decode(text)?;
+    check::check(&request)?;
+    Ok(request)
+}

@@ -177,6 +177,7 @@ pub struct DisplacementBound {
 pub struct Analysis {
     pub method: Method,
     pub selection: Selection,
+    pub events: Events,
     pub arc_length: ArcLength,
     /// Counted over the whole job; 1 or more.
     pub max_increments: u64,
@@ -189,6 +190,7 @@ impl Default for Analysis {
         Self {
             method: Method::default(),
             selection: Selection::default(),
+            events: Events::default(),
             arc_length: ArcLength::default(),
             max_increments: 1000,
             max_modes: 65_536,
@@ -218,13 +220,29 @@ pub enum Selection {
     Straightest,
 }
 
+/// Which contact changes become points of the path. In this version every change does, however close together they are,
+/// so the two are the same.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Events {
+    /// The solver chooses.
+    #[default]
+    Auto,
+    /// Every contact change.
+    All,
+}
+
 /// Arc lengths are dimensionless: `‖(Δu/displacement_scale, Δs/load_scale)‖`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct ArcLength {
+    /// The first step. Absent: 0.02, or the nearest value between `min` and `max`.
     pub initial: f64,
+    /// Absent: 1e-9, or the smallest of the other two if that is less.
     pub min: f64,
+    /// Absent: 0.1, or the largest of the other two if that is more.
     pub max: f64,
     /// Length; computed from the scene when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -237,5 +255,18 @@ pub struct ArcLength {
 impl Default for ArcLength {
     fn default() -> Self {
         Self { initial: 0.02, min: 1e-9, max: 0.1, displacement_scale: None, load_scale: None }
+    }
+}
+
+impl ArcLength {
+    /// Bounds from those that are given; an absent one takes its default or follows the given ones, so that
+    /// `"max": 0.01` alone is not a contradiction. Given bounds are kept, contradictory or not.
+    pub fn with_defaults(initial: Option<f64>, min: Option<f64>, max: Option<f64>) -> Self {
+        let default = Self::default();
+        let given = [initial, min, max].into_iter().flatten();
+        let lower = min.unwrap_or_else(|| given.clone().fold(default.min, f64::min));
+        let upper = max.unwrap_or_else(|| given.fold(default.max, f64::max));
+        let initial = initial.unwrap_or_else(|| default.initial.min(upper).max(lower));
+        Self { initial, min: lower, max: upper, ..default }
     }
 }

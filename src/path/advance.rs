@@ -150,7 +150,9 @@ impl Start<'_> {
     ) -> Result<Vec<Watch>, Refused> {
         for watch in watches {
             let end = (&reached.corrected.state, &reached.rate);
-            let Some(place) = watch.dip(self.loading, self.modes, (self.state, self.rate), end, step) else { continue };
+            let start = (self.state, self.rate);
+            let zero = self.zero(*watch, reached);
+            let Some(place) = watch.dip(self.loading, self.modes, start, end, step, zero) else { continue };
             let inside = self.reach(place, work)?;
             let passed = self.passed(watches, &inside);
             if !passed.is_empty() {

@@ -76,7 +76,7 @@ impl Path<'_> {
                     }
                     self.take(&decision);
                 }
-                Err(refused) => {
+                Err(refused) => { if std::env::var("DBG").is_ok() { eprintln!("REFUSED {} {refused:?} {step}", self.index); }
                     step *= match refused {
                         Refused::Turned(angle) => (0.5 * TURN_SOUGHT / angle).clamp(0.1, 0.5),
                         Refused::Newton(_) => 0.5,

@@ -120,7 +120,7 @@ impl Watch {
         }
     }
 
-    /// A place inside `(0, step)` where the Hermite interpolant of the quantity is least, if that is negative.
+    /// A place inside `(0, step)` where the Hermite interpolant of the quantity is least, if that is below `-zero`.
     pub fn dip(
         self,
         loading: Loading<'_>,
@@ -128,19 +128,20 @@ impl Watch {
         start: (&State, &Rate),
         end: (&State, &Rate),
         step: f64,
+        zero: f64,
     ) -> Option<f64> {
         let (first, last) = (self.value(loading, modes, start.0, start.1), self.value(loading, modes, end.0, end.1));
         if let (Some(first_slope), Some(last_slope)) = (self.slope(loading, start.1), self.slope(loading, end.1)) {
-            return dip_of_cubic(first, first_slope * step, last, last_slope * step).map(|place| place * step);
+            return dip_of_cubic(first, first_slope * step, last, last_slope * step, zero).map(|place| place * step);
         }
         let from = self.primitive(loading, modes, start.0)?;
         let to = self.primitive(loading, modes, end.0)?;
-        dip_of_slope((to - from) / step, first, last).map(|place| place * step)
+        dip_of_slope((to - from) / step, first, last, zero).map(|place| place * step)
     }
 }
 
-/// Where on `(0, 1)` the cubic with these end values and slopes has a negative minimum.
-fn dip_of_cubic(first: f64, first_slope: f64, last: f64, last_slope: f64) -> Option<f64> {
+/// Where on `(0, 1)` the cubic with these end values and slopes has a minimum below `-zero`.
+fn dip_of_cubic(first: f64, first_slope: f64, last: f64, last_slope: f64, zero: f64) -> Option<f64> {
     if first_slope >= 0.0 || last_slope <= 0.0 {
         return None;
     }
@@ -150,11 +151,11 @@ fn dip_of_cubic(first: f64, first_slope: f64, last: f64, last_slope: f64) -> Opt
     let root = (b * b - 3.0 * a * first_slope).max(0.0).sqrt();
     let place = if b > 0.0 { -first_slope / (b + root) } else { (root - b) / (3.0 * a) };
     let value = first + place * (first_slope + place * (b + place * a));
-    (place > 0.0 && place < 1.0 && value < 0.0).then_some(place)
+    (place > 0.0 && place < 1.0 && value < -zero).then_some(place)
 }
 
-/// Where on `(0, 1)` the quadratic with these end values and this mean is least, if negative there.
-fn dip_of_slope(mean: f64, first: f64, last: f64) -> Option<f64> {
+/// Where on `(0, 1)` the quadratic with these end values and this mean is least, if below `-zero` there.
+fn dip_of_slope(mean: f64, first: f64, last: f64, zero: f64) -> Option<f64> {
     // q(x) = first + b x + a x²
     let a = 3.0 * (first + last - 2.0 * mean);
     let b = 6.0 * mean - 4.0 * first - 2.0 * last;
@@ -163,7 +164,7 @@ fn dip_of_slope(mean: f64, first: f64, last: f64) -> Option<f64> {
     }
     let place = -b / (2.0 * a);
     let value = first - b * b / (4.0 * a);
-    (place > 0.0 && place < 1.0 && value < 0.0).then_some(place)
+    (place > 0.0 && place < 1.0 && value < -zero).then_some(place)
 }
 
 #[cfg(test)]
@@ -173,10 +174,10 @@ mod tests {
     #[test]
     fn a_dip_between_two_positive_ends_is_seen() {
         // (x - 0.4)(x - 0.6) has its least value at 0.5.
-        let place = dip_of_cubic(0.24, -1.0, 0.24, 1.0).unwrap();
+        let place = dip_of_cubic(0.24, -1.0, 0.24, 1.0, 0.0).unwrap();
         assert!((place - 0.5).abs() < 1e-12);
-        assert!(dip_of_cubic(0.3, -1.0, 0.3, 1.0).is_none());
+        assert!(dip_of_cubic(0.3, -1.0, 0.3, 1.0, 0.0).is_none());
         let mean = 1.0 / 3.0 - 0.5 + 0.24;
-        assert!((dip_of_slope(mean, 0.24, 0.24).unwrap() - 0.5).abs() < 1e-12);
+        assert!((dip_of_slope(mean, 0.24, 0.24, 0.0).unwrap() - 0.5).abs() < 1e-12);
     }
 }

@@ -1,6 +1,8 @@
 //! Pieces that several test files share.
 #![allow(dead_code)]
 
+pub mod bad_documents;
+
 use arcslip::cancel::CancelFlag;
 use arcslip::measure::Judge;
 use arcslip::model::JobRequest;

@@ -1,0 +1,112 @@
+//! Stages: their names, loads and ends.
+
+use std::collections::HashSet;
+
+use super::structure::{component, component_name};
+use super::{Scope, numbers, proper_name};
+use crate::model::mistakes::{Mistakes, Place};
+use crate::model::names::quoted;
+use crate::model::request::{DisplacementBound, Stage, Until};
+
+pub(super) fn stages(scope: &Scope, mistakes: &mut Mistakes) {
+    let at = scope.at.member("stages");
+    if scope.model.stages.is_empty() {
+        mistakes.add(&at, || "there are no stages; at least one is expected");
+    }
+    let mut names = HashSet::new();
+    for (index, stage) in scope.model.stages.iter().enumerate() {
+        let at = at.index(index);
+        proper_name(&stage.name, &at.member("name"), mistakes);
+        if !names.insert(&stage.name) {
+            let name = quoted(&stage.name);
+            mistakes.add(&at.member("name"), || format!("the name {name} stands twice; each stage has its own"));
+        }
+        forces(scope, stage, &at, mistakes);
+        if let Some(ends) = &stage.until {
+            until(scope, ends, index == 0, &at.member("until"), mistakes);
+        }
+    }
+}
+
+/// A force on a supported component goes into the support; a pattern that goes there as a whole moves nothing.
+fn forces(scope: &Scope, stage: &Stage, at: &Place, mistakes: &mut Mistakes) {
+    let before = mistakes.count();
+    let forces_at = at.member("forces");
+    let mut loaded = false;
+    for (name, force) in &stage.forces {
+        let at = forces_at.member(name);
+        let node = scope.node(name, &at, mistakes);
+        if numbers::vector(force, scope.model.dimension, &at, mistakes) {
+            let moves = |node| force.iter().enumerate().any(|(index, &part)| part != 0.0 && scope.is_free(node, index));
+            loaded |= node.is_some_and(moves);
+        }
+    }
+    if !loaded && mistakes.count() == before {
+        let at = if stage.forces.is_empty() { at } else { &forces_at };
+        mistakes.add(at, || "the stage has no load; a force that is not zero on a free component is expected");
+    }
+}
+
+fn until(scope: &Scope, until: &Until, first: bool, at: &Place, mistakes: &mut Mistakes) {
+    if *until == Until::default() {
+        mistakes.add(at, || {
+            let known = "`load_above`, `load_below`, `displacement`, `limit_points`, `contact_change`, `increments`";
+            format!("no end is given; one or more of {known} is expected, or leave `until` out")
+        });
+    }
+    load_bounds(until, at, mistakes);
+    if let Some(bound) = &until.displacement {
+        displacement_bound(scope, bound, first, &at.member("displacement"), mistakes);
+    }
+    let counts = [
+        ("limit_points", until.limit_points),
+        ("contact_change", until.contact_change),
+        ("increments", until.increments),
+    ];
+    for (field, count) in counts {
+        if let Some(count) = count {
+            numbers::count(count, u64::MAX, &at.member(field), mistakes);
+        }
+    }
+}
+
+fn load_bounds(until: &Until, at: &Place, mistakes: &mut Mistakes) {
+    let bounds = [("load_above", until.load_above, 1.0, "above"), ("load_below", until.load_below, -1.0, "below")];
+    for (field, bound, sign, side) in bounds {
+        let Some(bound) = bound else { continue };
+        let at = at.member(field);
+        if numbers::number(bound, &at, mistakes) && sign * bound <= 0.0 {
+            mistakes.add(&at, || {
+                format!("found {bound:?}; the load factor of a stage starts at 0, so a number {side} 0 is expected")
+            });
+        }
+    }
+}
+
+fn displacement_bound(scope: &Scope, bound: &DisplacementBound, first: bool, at: &Place, mistakes: &mut Mistakes) {
+    let node = scope.node(&bound.node, &at.member("node"), mistakes);
+    let component_at = at.member("component");
+    let known = component(bound.component, scope.model.dimension, &component_at, mistakes);
+    let held = |node| !scope.is_free(node, bound.component.index());
+    if known && node.is_some_and(held) {
+        mistakes.add(&component_at, || {
+            let component = component_name(bound.component);
+            format!(
+                "the component {component} of {} is supported and never moves; a free one would do",
+                quoted(&bound.node)
+            )
+        });
+    }
+    if bound.above.is_some() == bound.below.is_some() {
+        mistakes.add(at, || "exactly one of `above` and `below` is expected");
+    }
+    for (field, value, sign) in [("above", bound.above, 1.0), ("below", bound.below, -1.0)] {
+        let Some(value) = value else { continue };
+        let at = at.member(field);
+        if numbers::number(value, &at, mistakes) && first && sign * value <= 0.0 {
+            mistakes.add(&at, || {
+                format!("found {value:?}; displacements start at 0, where this is reached already; a number {field} 0 is expected")
+            });
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! Nodes, supports and elements.
+
+use super::numbers::{self, difference, largest, norm};
+use super::{Scope, proper_name};
+use crate::model::limits::{COINCIDENCE_TOLERANCE, SYMMETRY_TOLERANCE};
+use crate::model::mistakes::{Mistakes, Place};
+use crate::model::names::quoted;
+use crate::model::request::{Component, Element};
+
+pub(super) fn nodes(scope: &Scope, mistakes: &mut Mistakes) {
+    let at = scope.at.member("nodes");
+    if scope.model.nodes.is_empty() {
+        mistakes.add(&at, || "there are no nodes; at least one is expected");
+    }
+    for (name, position) in &scope.model.nodes {
+        let at = at.member(name);
+        proper_name(name, &at, mistakes);
+        numbers::vector(position, scope.model.dimension, &at, mistakes);
+    }
+}
+
+pub(super) fn supports(scope: &Scope, mistakes: &mut Mistakes) {
+    let at = scope.at.member("supports");
+    for (name, components) in &scope.model.supports {
+        let at = at.member(name);
+        scope.node(name, &at, mistakes);
+        if components.is_empty() {
+            mistakes.add(&at, || "no component is named; name one or more, or leave the support out");
+        }
+        for (index, &held) in components.iter().enumerate() {
+            let at = at.index(index);
+            component(held, scope.model.dimension, &at, mistakes);
+            if components.iter().take(index).any(|&earlier| earlier == held) {
+                mistakes.add(&at, || format!("the component {} is named twice", component_name(held)));
+            }
+        }
+    }
+}
+
+/// Notes a component that the dimension does not have.
+pub(super) fn component(component: Component, dimension: usize, at: &Place, mistakes: &mut Mistakes) -> bool {
+    let known = component.index() < dimension;
+    if !known {
+        let name = component_name(component);
+        mistakes.add(at, || format!("there is no component {name} in {dimension} dimensions; `x` or `y` would do"));
+    }
+    known
+}
+
+pub(super) fn component_name(component: Component) -> &'static str {
+    match component {
+        Component::X => "`x`",
+        Component::Y => "`y`",
+        Component::Z => "`z`",
+    }
+}
+
+pub(super) fn elements(scope: &Scope, mistakes: &mut Mistakes) {
+    let at = scope.at.member("elements");
+    for (index, element) in scope.model.elements.iter().enumerate() {
+        let at = at.index(index);
+        match element {
+            Element::Bar { nodes, axial_stiffness, rest_length, prestress, strain: _ } => {
+                bar_nodes(scope, nodes, &at, mistakes);
+                numbers::positive(*axial_stiffness, &at.member("axial_stiffness"), mistakes);
+                if let Some(rest_length) = *rest_length {
+                    numbers::positive(rest_length, &at.member("rest_length"), mistakes);
+                }
+                numbers::number(*prestress, &at.member("prestress"), mistakes);
+            }
+            Element::Spring { nodes, stiffness } => {
+                if !matches!(nodes.len(), 1 | 2) {
+                    let found = nodes.len();
+                    let detail = move || format!("found {found} nodes; a spring has 1 (to the ground) or 2");
+                    mistakes.add(&at.member("nodes"), detail);
+                }
+                distinct_nodes(scope, nodes, &at, mistakes);
+                symmetric(stiffness, scope.model.dimension, &at.member("stiffness"), mistakes);
+            }
+        }
+    }
+}
+
+fn bar_nodes(scope: &Scope, nodes: &[String], at: &Place, mistakes: &mut Mistakes) {
+    let found = distinct_nodes(scope, nodes, at, mistakes);
+    let at = at.member("nodes");
+    if nodes.len() != 2 {
+        mistakes.add(&at, || format!("found {} nodes; a bar has 2", nodes.len()));
+    }
+    let Some([first, second]) = found.as_deref() else { return };
+    if let (Some(start), Some(end)) = (scope.position(*first), scope.position(*second)) {
+        let length = norm(&difference(end, start));
+        if length <= COINCIDENCE_TOLERANCE * largest(start).max(largest(end)) {
+            mistakes.add(&at, || {
+                format!("the bar has length {length:?}: its nodes are at the same place; a length above 0 is expected")
+            });
+        }
+    }
+}
+
+/// The numbers of the nodes if all are known and none stands twice.
+fn distinct_nodes(scope: &Scope, names: &[String], at: &Place, mistakes: &mut Mistakes) -> Option<Vec<usize>> {
+    let at = at.member("nodes");
+    let before = mistakes.count();
+    let mut found = Vec::with_capacity(names.len());
+    // An element has two nodes at most: of a longer list the rest is not looked at.
+    for (index, name) in names.iter().enumerate().take(2) {
+        let at = at.index(index);
+        found.extend(scope.node(name, &at, mistakes));
+        if names.iter().take(index).any(|earlier| earlier == name) {
+            mistakes.add(&at, || format!("the node {} stands twice; two different nodes are expected", quoted(name)));
+        }
+    }
+    (mistakes.count() == before).then_some(found)
+}
+
+fn symmetric(matrix: &[Vec<f64>], dimension: usize, at: &Place, mistakes: &mut Mistakes) {
+    let before = mistakes.count();
+    if matrix.len() != dimension {
+        let found = matrix.len();
+        mistakes.add(at, || format!("found {found} rows; {dimension} rows of {dimension} numbers are expected"));
+    }
+    for (index, row) in matrix.iter().enumerate() {
+        numbers::vector(row, dimension, &at.index(index), mistakes);
+    }
+    if mistakes.count() > before {
+        return;
+    }
+    let scale = matrix.iter().map(|row| largest(row)).fold(0.0, f64::max);
+    if scale == 0.0 {
+        mistakes.add(at, || "the stiffness is zero: the spring does nothing; leave it out");
+    }
+    for (index, row) in matrix.iter().enumerate() {
+        for (column, (&value, across)) in row.iter().zip(matrix).enumerate().take(index) {
+            let mirrored = across.get(index).copied().unwrap_or_default();
+            if (value - mirrored).abs() > SYMMETRY_TOLERANCE * scale {
+                let row_at = at.index(index);
+                mistakes.add(&row_at.index(column), || {
+                    format!("found {value:?}, and {mirrored:?} across the diagonal; a symmetric matrix is expected")
+                });
+            }
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! Reads how the path is to be traced.
+
+use super::reader::{Choices, Fields, Input, count, number};
+use crate::model::mistakes::Mistakes;
+use crate::model::request::{Analysis, ArcLength, Events, Method, Selection};
+
+const ANALYSIS: Fields = Fields {
+    what: "an analysis",
+    known: &["method", "selection", "events", "arc_length", "max_increments", "max_modes"],
+    later: &[
+        ("explore", "leave it out: one path is traced, and other directions are listed at its points"),
+        ("record", "leave it out: everything is recorded"),
+        ("keep_all", "leave it out: every increment is kept"),
+    ],
+};
+
+const ARC_LENGTH: Fields =
+    Fields { what: "an arc length", known: &["initial", "min", "max", "displacement_scale", "load_scale"], later: &[] };
+
+const METHOD: Choices<Method> =
+    Choices { what: "a method", known: &[("auto", Method::Auto), ("mpec", Method::Mpec)], later: &["regularised"] };
+
+const SELECTION: Choices<Selection> = Choices {
+    what: "a selection",
+    known: &[("max_dissipation", Selection::MaxDissipation), ("straightest", Selection::Straightest)],
+    later: &["min_potential_energy"],
+};
+
+const EVENTS: Choices<Events> =
+    Choices { what: "a treatment of events", known: &[("auto", Events::Auto), ("all", Events::All)], later: &[] };
+
+pub(super) fn analysis(input: &Input, mistakes: &mut Mistakes) -> Option<Analysis> {
+    let object = input.object(&ANALYSIS, mistakes)?;
+    let default = Analysis::default();
+    let method =
+        object.with_default("method", default.method, mistakes, |input, mistakes| input.choice(&METHOD, mistakes));
+    let selection = object
+        .with_default("selection", default.selection, mistakes, |input, mistakes| input.choice(&SELECTION, mistakes));
+    let events =
+        object.with_default("events", default.events, mistakes, |input, mistakes| input.choice(&EVENTS, mistakes));
+    let arc_length = object.with_default("arc_length", default.arc_length, mistakes, arc_length);
+    let max_increments = object.with_default("max_increments", default.max_increments, mistakes, count);
+    let max_modes = object.with_default("max_modes", default.max_modes, mistakes, count);
+    Some(Analysis {
+        method: method?,
+        selection: selection?,
+        events: events?,
+        arc_length: arc_length?,
+        max_increments: max_increments?,
+        max_modes: max_modes?,
+    })
+}
+
+fn arc_length(input: &Input, mistakes: &mut Mistakes) -> Option<ArcLength> {
+    let object = input.object(&ARC_LENGTH, mistakes)?;
+    let initial = object.optional("initial", mistakes, number);
+    let min = object.optional("min", mistakes, number);
+    let max = object.optional("max", mistakes, number);
+    let displacement_scale = object.optional("displacement_scale", mistakes, number);
+    let load_scale = object.optional("load_scale", mistakes, number);
+    let bounds = ArcLength::with_defaults(initial?, min?, max?);
+    Some(ArcLength { displacement_scale: displacement_scale?, load_scale: load_scale?, ..bounds })
+}

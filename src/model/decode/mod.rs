@@ -1,0 +1,42 @@
+//! JSON text to a job request, with all mistakes of form.
+//!
+//! The types and their names are those of [`super::request`]; a test holds the two equal. They are not read by serde's
+//! derived code because that stops at the first mistake and does not say where it is.
+
+mod analysis;
+mod model;
+mod reader;
+
+use super::json::Json;
+use super::mistakes::Mistakes;
+use super::{InputError, InputErrors, JobRequest};
+use reader::{Fields, Input};
+
+const JOB_REQUEST: Fields = Fields { what: "a job request", known: &["model", "analysis"], later: &[] };
+
+/// Reads a job request from JSON text and checks nothing but form; [`super::check::check`] looks at the rest.
+///
+/// # Errors
+/// Text that cannot be read as JSON is one error. Otherwise every mistake is listed (up to
+/// [`MAX_LISTED_MISTAKES`](super::limits::MAX_LISTED_MISTAKES)): missing, unknown and duplicate members, wrong types,
+/// unknown values, and what this version does not have.
+pub fn decode(text: &[u8]) -> Result<JobRequest, InputErrors> {
+    let document = Json::parse(text).map_err(|error| InputErrors(vec![error]))?;
+    let root = Input::root(&document);
+    let mut mistakes = Mistakes::default();
+    reader::note_duplicates(&root, &mut mistakes);
+    let request = job_request(&root, &mut mistakes);
+    mistakes.into_result()?;
+    // A reader that returns nothing has noted why, so the error here is for a defect: a refusal, not a panic.
+    request.ok_or_else(|| InputErrors(vec![InputError::new("", "the document could not be read as a job request")]))
+}
+
+fn job_request(input: &Input, mistakes: &mut Mistakes) -> Option<JobRequest> {
+    let object = input.object(&JOB_REQUEST, mistakes)?;
+    let model = object.required("model", mistakes, model::model);
+    let analysis = object.with_default("analysis", Default::default(), mistakes, analysis::analysis);
+    Some(JobRequest { model: model?, analysis: analysis? })
+}
+
+#[cfg(test)]
+mod tests;

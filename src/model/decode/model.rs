@@ -1,0 +1,199 @@
+//! Reads the model: nodes, supports, elements, obstacles, contacts, stages.
+
+use super::reader::{Choices, Fields, Input, count, number, numbers, text};
+use crate::model::mistakes::Mistakes;
+use crate::model::request::{Component, Contact, DisplacementBound, Element, Model, Obstacle, Stage, Strain, Until};
+
+const MODEL: Fields = Fields {
+    what: "a model",
+    known: &["name", "dimension", "nodes", "supports", "elements", "obstacles", "contacts", "stages"],
+    later: &[],
+};
+
+const BAR: Fields = Fields {
+    what: "a bar",
+    known: &["kind", "nodes", "axial_stiffness", "rest_length", "prestress", "strain"],
+    later: &[],
+};
+
+const SPRING: Fields = Fields { what: "a spring", known: &["kind", "nodes", "stiffness"], later: &[] };
+
+const PLANE: Fields = Fields { what: "a plane", known: &["kind", "point", "normal"], later: &[] };
+
+const CONTACT: Fields = Fields { what: "a contact", known: &["node", "obstacle", "friction"], later: &[] };
+
+const STAGE: Fields = Fields {
+    what: "a stage",
+    known: &["name", "forces", "until"],
+    later: &[("displacements", "`forces` would do"), ("obstacle_motion", "`forces` would do: obstacles stand still")],
+};
+
+const UNTIL: Fields = Fields {
+    what: "an end of a stage",
+    known: &["load_above", "load_below", "displacement", "limit_points", "contact_change", "increments"],
+    later: &[],
+};
+
+const DISPLACEMENT_BOUND: Fields =
+    Fields { what: "a displacement bound", known: &["node", "component", "above", "below"], later: &[] };
+
+#[derive(Debug, Clone, Copy)]
+enum ElementKind {
+    Bar,
+    Spring,
+}
+
+const ELEMENT_KIND: Choices<ElementKind> = Choices {
+    what: "a kind of element",
+    known: &[("bar", ElementKind::Bar), ("spring", ElementKind::Spring)],
+    later: &[],
+};
+
+#[derive(Debug, Clone, Copy)]
+enum ObstacleKind {
+    Plane,
+}
+
+const OBSTACLE_KIND: Choices<ObstacleKind> = Choices {
+    what: "a kind of obstacle",
+    known: &[("plane", ObstacleKind::Plane)],
+    later: &["ball", "segment", "box"],
+};
+
+const STRAIN: Choices<Strain> = Choices {
+    what: "a measure of strain",
+    known: &[("engineering", Strain::Engineering), ("green", Strain::Green), ("log", Strain::Log)],
+    later: &[],
+};
+
+const COMPONENT: Choices<Component> = Choices {
+    what: "a component",
+    known: &[("x", Component::X), ("y", Component::Y), ("z", Component::Z)],
+    later: &[],
+};
+
+pub(super) fn model(input: &Input, mistakes: &mut Mistakes) -> Option<Model> {
+    let object = input.object(&MODEL, mistakes)?;
+    let name = object.optional("name", mistakes, text);
+    let dimension = object.required("dimension", mistakes, count);
+    let nodes = object.required("nodes", mistakes, |input, mistakes| input.map(mistakes, numbers));
+    let supports = object
+        .with_default("supports", Default::default(), mistakes, |input, mistakes| input.map(mistakes, components));
+    let elements = object.required("elements", mistakes, |input, mistakes| input.list(mistakes, element));
+    let obstacles =
+        object.with_default("obstacles", Default::default(), mistakes, |input, mistakes| input.map(mistakes, obstacle));
+    let contacts =
+        object.with_default("contacts", Vec::new(), mistakes, |input, mistakes| input.list(mistakes, contact));
+    let stages = object.required("stages", mistakes, |input, mistakes| input.list(mistakes, stage));
+    Some(Model {
+        name: name?,
+        // A dimension too large for the machine's words is refused with all others that are not 2 or 3.
+        dimension: usize::try_from(dimension?).unwrap_or(usize::MAX),
+        nodes: nodes?,
+        supports: supports?,
+        elements: elements?,
+        obstacles: obstacles?,
+        contacts: contacts?,
+        stages: stages?,
+    })
+}
+
+fn component(input: &Input, mistakes: &mut Mistakes) -> Option<Component> {
+    input.choice(&COMPONENT, mistakes)
+}
+
+fn components(input: &Input, mistakes: &mut Mistakes) -> Option<Vec<Component>> {
+    input.list(mistakes, component)
+}
+
+fn strings(input: &Input, mistakes: &mut Mistakes) -> Option<Vec<String>> {
+    input.list(mistakes, text)
+}
+
+fn element(input: &Input, mistakes: &mut Mistakes) -> Option<Element> {
+    match input.kind(&ELEMENT_KIND, mistakes)? {
+        ElementKind::Bar => bar(input, mistakes),
+        ElementKind::Spring => spring(input, mistakes),
+    }
+}
+
+fn bar(input: &Input, mistakes: &mut Mistakes) -> Option<Element> {
+    let object = input.object(&BAR, mistakes)?;
+    let nodes = object.required("nodes", mistakes, strings);
+    let axial_stiffness = object.required("axial_stiffness", mistakes, number);
+    let rest_length = object.optional("rest_length", mistakes, number);
+    let prestress = object.with_default("prestress", 0.0, mistakes, number);
+    let strain =
+        object.with_default("strain", Strain::default(), mistakes, |input, mistakes| input.choice(&STRAIN, mistakes));
+    Some(Element::Bar {
+        nodes: nodes?,
+        axial_stiffness: axial_stiffness?,
+        rest_length: rest_length?,
+        prestress: prestress?,
+        strain: strain?,
+    })
+}
+
+fn spring(input: &Input, mistakes: &mut Mistakes) -> Option<Element> {
+    let object = input.object(&SPRING, mistakes)?;
+    let nodes = object.required("nodes", mistakes, strings);
+    let stiffness = object.required("stiffness", mistakes, |input, mistakes| input.list(mistakes, numbers));
+    Some(Element::Spring { nodes: nodes?, stiffness: stiffness? })
+}
+
+fn obstacle(input: &Input, mistakes: &mut Mistakes) -> Option<Obstacle> {
+    match input.kind(&OBSTACLE_KIND, mistakes)? {
+        ObstacleKind::Plane => plane(input, mistakes),
+    }
+}
+
+fn plane(input: &Input, mistakes: &mut Mistakes) -> Option<Obstacle> {
+    let object = input.object(&PLANE, mistakes)?;
+    let point = object.required("point", mistakes, numbers);
+    let normal = object.required("normal", mistakes, numbers);
+    Some(Obstacle::Plane { point: point?, normal: normal? })
+}
+
+fn contact(input: &Input, mistakes: &mut Mistakes) -> Option<Contact> {
+    let object = input.object(&CONTACT, mistakes)?;
+    let node = object.required("node", mistakes, text);
+    let obstacle = object.required("obstacle", mistakes, text);
+    let friction = object.with_default("friction", 0.0, mistakes, number);
+    Some(Contact { node: node?, obstacle: obstacle?, friction: friction? })
+}
+
+fn stage(input: &Input, mistakes: &mut Mistakes) -> Option<Stage> {
+    let object = input.object(&STAGE, mistakes)?;
+    let name = object.required("name", mistakes, text);
+    let forces =
+        object.with_default("forces", Default::default(), mistakes, |input, mistakes| input.map(mistakes, numbers));
+    let until = object.optional("until", mistakes, until);
+    Some(Stage { name: name?, forces: forces?, until: until? })
+}
+
+fn until(input: &Input, mistakes: &mut Mistakes) -> Option<Until> {
+    let object = input.object(&UNTIL, mistakes)?;
+    let load_above = object.optional("load_above", mistakes, number);
+    let load_below = object.optional("load_below", mistakes, number);
+    let displacement = object.optional("displacement", mistakes, displacement_bound);
+    let limit_points = object.optional("limit_points", mistakes, count);
+    let contact_change = object.optional("contact_change", mistakes, count);
+    let increments = object.optional("increments", mistakes, count);
+    Some(Until {
+        load_above: load_above?,
+        load_below: load_below?,
+        displacement: displacement?,
+        limit_points: limit_points?,
+        contact_change: contact_change?,
+        increments: increments?,
+    })
+}
+
+fn displacement_bound(input: &Input, mistakes: &mut Mistakes) -> Option<DisplacementBound> {
+    let object = input.object(&DISPLACEMENT_BOUND, mistakes)?;
+    let node = object.required("node", mistakes, text);
+    let component = object.required("component", mistakes, component);
+    let above = object.optional("above", mistakes, number);
+    let below = object.optional("below", mistakes, number);
+    Some(DisplacementBound { node: node?, component: component?, above: above?, below: below? })
+}

@@ -1,0 +1,192 @@
+//! The decoder against the types of the contract: what they write, it reads, and as serde's derived code reads it.
+
+use indexmap::IndexMap;
+use proptest::collection::vec;
+use proptest::option::of;
+use proptest::prelude::*;
+use proptest::strategy::Union;
+
+use super::decode;
+use crate::model::request::*;
+use crate::model::{InputErrors, JobRequest};
+
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        any::<f64>().prop_filter("finite", |value| value.is_finite()),
+        Just(0.0),
+        (-9i32..9).prop_map(f64::from)
+    ]
+}
+
+fn name() -> impl Strategy<Value = String> {
+    prop_oneof!["[a-z0-9]{0,3}", "[~/\"\\\\ä\n]{1,3}"]
+}
+
+fn numbers() -> impl Strategy<Value = Vec<f64>> {
+    vec(number(), 0..4)
+}
+
+fn map<V: std::fmt::Debug>(value: impl Strategy<Value = V>) -> impl Strategy<Value = IndexMap<String, V>> {
+    vec((name(), value), 0..4).prop_map(|members| members.into_iter().collect())
+}
+
+fn one_of<T: Clone + std::fmt::Debug + 'static>(values: impl IntoIterator<Item = T>) -> Union<Just<T>> {
+    Union::new(values.into_iter().map(Just))
+}
+
+fn component() -> impl Strategy<Value = Component> {
+    one_of([Component::X, Component::Y, Component::Z])
+}
+
+fn element() -> impl Strategy<Value = Element> {
+    let strain = one_of([Strain::Engineering, Strain::Green, Strain::Log]);
+    let bar = (vec(name(), 0..3), number(), of(number()), number(), strain).prop_map(
+        |(nodes, axial_stiffness, rest_length, prestress, strain)| Element::Bar {
+            nodes,
+            axial_stiffness,
+            rest_length,
+            prestress,
+            strain,
+        },
+    );
+    let spring =
+        (vec(name(), 0..3), vec(numbers(), 0..4)).prop_map(|(nodes, stiffness)| Element::Spring { nodes, stiffness });
+    prop_oneof![bar, spring]
+}
+
+fn obstacle() -> impl Strategy<Value = Obstacle> {
+    (numbers(), numbers()).prop_map(|(point, normal)| Obstacle::Plane { point, normal })
+}
+
+fn contact() -> impl Strategy<Value = Contact> {
+    (name(), name(), number()).prop_map(|(node, obstacle, friction)| Contact { node, obstacle, friction })
+}
+
+fn until() -> impl Strategy<Value = Until> {
+    let bound = (name(), component(), of(number()), of(number()))
+        .prop_map(|(node, component, above, below)| DisplacementBound { node, component, above, below });
+    (of(number()), of(number()), of(bound), of(any::<u64>()), of(any::<u64>()), of(any::<u64>())).prop_map(
+        |(load_above, load_below, displacement, limit_points, contact_change, increments)| Until {
+            load_above,
+            load_below,
+            displacement,
+            limit_points,
+            contact_change,
+            increments,
+        },
+    )
+}
+
+fn stage() -> impl Strategy<Value = Stage> {
+    (name(), map(numbers()), of(until())).prop_map(|(name, forces, until)| Stage { name, forces, until })
+}
+
+fn model() -> impl Strategy<Value = Model> {
+    let geometry = (of(name()), 0usize..5, map(numbers()), map(vec(component(), 0..4)), vec(element(), 0..4));
+    let rest = (map(obstacle()), vec(contact(), 0..4), vec(stage(), 0..3));
+    (geometry, rest).prop_map(|((name, dimension, nodes, supports, elements), (obstacles, contacts, stages))| Model {
+        name,
+        dimension,
+        nodes,
+        supports,
+        elements,
+        obstacles,
+        contacts,
+        stages,
+    })
+}
+
+fn analysis() -> impl Strategy<Value = Analysis> {
+    let arc_length = (number(), number(), number(), of(number()), of(number())).prop_map(
+        |(initial, min, max, displacement_scale, load_scale)| ArcLength {
+            initial,
+            min,
+            max,
+            displacement_scale,
+            load_scale,
+        },
+    );
+    let method = one_of([Method::Auto, Method::Mpec]);
+    let selection = one_of([Selection::MaxDissipation, Selection::Straightest]);
+    let events = one_of([Events::Auto, Events::All]);
+    (method, selection, events, arc_length, any::<u64>(), any::<u64>()).prop_map(
+        |(method, selection, events, arc_length, max_increments, max_modes)| Analysis {
+            method,
+            selection,
+            events,
+            arc_length,
+            max_increments,
+            max_modes,
+        },
+    )
+}
+
+proptest! {
+    #[test]
+    fn what_the_types_write_is_read_back(model in model(), analysis in analysis()) {
+        let request = JobRequest { model, analysis };
+        let text = serde_json::to_vec_pretty(&request).unwrap();
+        prop_assert_eq!(&decode(&text).unwrap(), &request);
+        prop_assert_eq!(&serde_json::from_slice::<JobRequest>(&text).unwrap(), &request);
+    }
+}
+
+fn errors(text: &str) -> InputErrors {
+    decode(text.as_bytes()).unwrap_err()
+}
+
+#[test]
+fn defaults_are_those_of_the_types() {
+    let text = br#"{"model": {"dimension": 2, "nodes": {}, "elements": [
+        {"kind": "bar", "nodes": ["a", "b"], "axial_stiffness": 1}],
+        "contacts": [{"node": "a", "obstacle": "o"}], "stages": [{"name": "s", "until": {}}]}}"#;
+    assert_eq!(decode(text).unwrap(), serde_json::from_slice(text).unwrap());
+}
+
+#[test]
+fn absent_arc_lengths_follow_the_given_ones() {
+    let bounds = |initial, min, max| {
+        let arc_length = ArcLength::with_defaults(initial, min, max);
+        (arc_length.initial, arc_length.min, arc_length.max)
+    };
+    assert_eq!(bounds(None, None, None), (0.02, 1e-9, 0.1));
+    assert_eq!(bounds(None, None, Some(0.01)), (0.01, 1e-9, 0.01));
+    assert_eq!(bounds(None, Some(0.5), None), (0.5, 0.5, 0.5));
+    assert_eq!(bounds(Some(3.0), None, None), (3.0, 1e-9, 3.0));
+    assert_eq!(bounds(Some(1e-12), None, None), (1e-12, 1e-12, 0.1));
+    assert_eq!(bounds(Some(1.0), Some(2.0), Some(0.5)), (1.0, 2.0, 0.5));
+}
+
+#[test]
+fn every_mistake_is_listed_with_its_place() {
+    let errors = errors(
+        r#"{"modle": 1, "model": {"dimension": "2", "nodes": {"a": [0, null], "a": [0, 0]}, "elements": [
+            {"kind": "bra"}, {"nodes": []}, 7, {"kind": "spring", "nodes": [1], "stifness": []}], "stages": {}}}"#,
+    );
+    let pointers: Vec<&str> = errors.0.iter().map(|error| error.pointer.as_str()).collect();
+    assert_eq!(
+        pointers,
+        [
+            "/model/nodes/a",
+            "/modle",
+            "/model/dimension",
+            "/model/nodes/a/1",
+            "/model/elements/0/kind",
+            "/model/elements/1",
+            "/model/elements/2",
+            "/model/elements/3/stifness",
+            "/model/elements/3/nodes/0",
+            "/model/elements/3",
+            "/model/stages",
+        ]
+    );
+    assert_eq!(errors.0[2].detail, "found the string `2`; a whole number is expected");
+    assert_eq!(errors.0[4].detail, "`bra` is not a kind of element; did you mean `bar`? Known: `bar`, `spring`");
+}
+
+#[test]
+fn a_flood_of_mistakes_is_bounded() {
+    let errors = errors(&format!("{{\"model\": {{\"elements\": [{}0]}}}}", "0,".repeat(100_000))).0;
+    assert_eq!(errors.len(), crate::model::limits::MAX_LISTED_MISTAKES + 1);
+    assert!(errors.last().unwrap().detail.contains("more mistakes are not listed"));
+}

@@ -1,0 +1,103 @@
+//! Text that is not JSON or does not have the form of a request.
+
+use serde_json::json;
+
+use super::{BadDocument, at, elsewhere, good_request, raw, without};
+
+pub fn broken_text() -> Vec<BadDocument> {
+    let good = serde_json::to_string(&good_request()).expect("JSON");
+    let huge = good.replace("-1.5", "1e999");
+    let not_a_number = good.replace("-1.5", "NaN");
+    let twice = good.replace("\"dimension\":2", "\"dimension\":2,\"dimension\":2");
+    let node_twice = good.replace("\"tip\":[-1.5,0]", "\"tip\":[-1.5,0],\"tip\":[-1,0]");
+    let no_utf8: Vec<u8> = good.bytes().map(|byte| if byte == b'f' { 0xff } else { byte }).collect();
+    vec![
+        raw("empty", "", "empty"),
+        raw("white space only", " \n\t", "empty"),
+        raw("not JSON", "model: {}", "line 1 column 1"),
+        raw("truncated", good.split_at(good.len() / 2).0, "EOF while parsing"),
+        raw("text after the document", format!("{good} {good}"), "trailing characters"),
+        raw("trailing comma", "{\"model\": {},\n}", "line 2 column 1"),
+        raw("not UTF-8", no_utf8, "not UTF-8 at line 1"),
+        raw("byte order mark", format!("\u{feff}{good}"), "byte order mark"),
+        raw("number out of range", huge, "number out of range"),
+        raw("not a number", not_a_number, "line 1"),
+        raw("deep arrays", "[".repeat(200_000), "recursion limit exceeded"),
+        raw("deep objects", "{\"model\":".repeat(200_000), "recursion limit exceeded"),
+        raw("lone surrogate", "{\"\\ud800\": 1}", "unexpected end of hex escape"),
+        raw("an array", "[]", "found an array of 0; a job request, an object, is expected"),
+        raw("a string", "\"model\"", "found the string `model`"),
+        raw("null", "null", "found null"),
+        BadDocument {
+            name: "duplicate field",
+            text: twice.into(),
+            pointer: "/model/dimension",
+            detail: "stands twice",
+        },
+        BadDocument {
+            name: "duplicate node",
+            text: node_twice.into(),
+            pointer: "/model/nodes/tip",
+            detail: "stands twice",
+        },
+    ]
+}
+
+pub fn wrong_form() -> Vec<BadDocument> {
+    let missing = |name, removed, pointer, detail| BadDocument { name, text: without(removed), pointer, detail };
+    vec![
+        missing("no model", "/model", "", "the field `model` is missing"),
+        missing("no dimension", "/model/dimension", "/model", "the field `dimension` is missing"),
+        missing("no nodes", "/model/nodes", "/model", "the field `nodes` is missing"),
+        missing("no elements", "/model/elements", "/model", "the field `elements` is missing"),
+        missing("no stages", "/model/stages", "/model", "the field `stages` is missing"),
+        missing("no element kind", "/model/elements/0/kind", "/model/elements/0", "`kind` is missing"),
+        missing(
+            "no stiffness",
+            "/model/elements/0/axial_stiffness",
+            "/model/elements/0",
+            "`axial_stiffness` is missing",
+        ),
+        missing("no obstacle named", "/model/contacts/0/obstacle", "/model/contacts/0", "`obstacle` is missing"),
+        at("unknown field", "/modell", json!({}), "did you mean `model`?"),
+        at("unknown field of a model", "/model/node", json!({}), "did you mean `nodes`?"),
+        at("unknown field of a bar", "/model/elements/0/stiffness", json!(1), "did you mean `axial_stiffness`?"),
+        at("unknown field of a contact", "/model/contacts/0/mu", json!(1), "known: `node`, `obstacle`, `friction`"),
+        at("unknown field of an analysis", "/analysis/max_increment", json!(1), "did you mean `max_increments`?"),
+        at("unknown end", "/model/stages/0/until/load", json!(1), "unknown field `load`"),
+        at("unknown element", "/model/elements/0/kind", json!("beam"), "is not a kind of element"),
+        at("unknown obstacle kind", "/model/obstacles/floor/kind", json!("plain"), "did you mean `plane`?"),
+        at("unknown strain", "/model/elements/0/strain", json!("greene"), "did you mean `green`?"),
+        at("unknown component", "/model/supports/pin/0", json!("u"), "known: `x`, `y`, `z`"),
+        at("unknown method", "/analysis/method", json!("Auto"), "did you mean `auto`?"),
+        at("nodes as an array", "/model/nodes", json!([[0, 1]]), "found an array of 1; an object is expected"),
+        at("elements as an object", "/model/elements", json!({}), "found an object; an array is expected"),
+        at("coordinate as a string", "/model/nodes/tip/0", json!("-1.5"), "found the string `-1.5`; a number"),
+        at("coordinate null", "/model/nodes/tip/0", json!(null), "found null; a number"),
+        at("coordinates as a number", "/model/nodes/tip", json!(1), "found the number `1`; an array"),
+        at("node name as a number", "/model/elements/0/nodes/1", json!(7), "found the number `7`; a string"),
+        at("kind as a number", "/model/elements/0/kind", json!(7), "a kind of element (`bar`, `spring`) is expected"),
+        at("fractional count", "/analysis/max_increments", json!(1.5), "found the number `1.5`; a whole number"),
+        at("negative count", "/analysis/max_increments", json!(-1), "found the number `-1`; a whole number"),
+        at("boolean friction", "/model/contacts/0/friction", json!(true), "found the boolean `true`; a number"),
+        at("friction null", "/model/contacts/0/friction", json!(null), "found null; a number"),
+        at("analysis as a string", "/analysis", json!("mpec"), "an analysis, an object, is expected"),
+    ]
+}
+
+pub fn not_available() -> Vec<BadDocument> {
+    let ball = json!({"kind": "ball", "center": [0, 0], "radius": 1, "side": "outside"});
+    let later = "is not available in this version";
+    vec![
+        at("method regularised", "/analysis/method", json!("regularised"), later),
+        at("selection by energy", "/analysis/selection", json!("min_potential_energy"), later),
+        at("explore", "/analysis/explore", json!(true), later),
+        at("record", "/analysis/record", json!([]), later),
+        at("keep all", "/analysis/keep_all", json!(true), later),
+        elsewhere("ball", &[("/model/obstacles/floor", ball)], "/model/obstacles/floor/kind", later),
+        at("segment", "/model/obstacles/floor/kind", json!("segment"), "`plane` would do"),
+        at("box", "/model/obstacles/floor/kind", json!("box"), "`plane` would do"),
+        at("prescribed displacements", "/model/stages/0/displacements", json!({}), "`forces` would do"),
+        at("moving obstacle", "/model/stages/0/obstacle_motion", json!({}), "obstacles stand still"),
+    ]
+}

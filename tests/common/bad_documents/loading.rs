@@ -1,0 +1,83 @@
+//! Stages, their ends, and the analysis.
+
+use serde_json::{Value, json};
+
+use super::{BadDocument, at, elsewhere};
+
+pub fn stages() -> Vec<BadDocument> {
+    let again = json!({"name": "push", "forces": {"tip": [1, 0]}});
+    vec![
+        at("no stage at all", "/model/stages", json!([]), "at least one"),
+        at("empty stage name", "/model/stages/0/name", json!(""), "the name is empty"),
+        at("stage name of two lines", "/model/stages/0/name", json!("a\nb"), "control character"),
+        at("stage name twice", "/model/stages/-", again, "stands twice").told("/model/stages/1/name"),
+        at("force on an unknown node", "/model/stages/0/forces/pit", json!([1, 0]), "did you mean `pin`?"),
+        at("force with a short vector", "/model/stages/0/forces/tip", json!([1]), "found 1 numbers"),
+        at("no load: zero", "/model/stages/0/forces/tip", json!([0, 0]), "no load").told("/model/stages/0/forces"),
+        at("no load: none", "/model/stages/0/forces", json!({}), "no load").told("/model/stages/0"),
+        at("no load: on a support", "/model/stages/0/forces", json!({"pin": [1, 1]}), "no load"),
+    ]
+}
+
+pub fn ends() -> Vec<BadDocument> {
+    let until = "/model/stages/0/until";
+    let bound = |members: Value| {
+        let mut bound = json!({"node": "tip", "component": "x"});
+        if let (Value::Object(bound), Value::Object(members)) = (&mut bound, members) {
+            bound.extend(members);
+        }
+        vec![("/model/stages/0/until/displacement", bound)]
+    };
+    let place = "/model/stages/0/until/displacement";
+    let unknown = bound(json!({"node": "tio", "above": 1}));
+    vec![
+        at("no end in until", until, json!({}), "no end is given"),
+        at("until as a number", until, json!(1), "an end of a stage, an object, is expected"),
+        at("load bound at the start", "/model/stages/0/until/load_above", json!(0), "above 0 is expected"),
+        at("load bound behind the start", "/model/stages/0/until/load_below", json!(0.5), "below 0 is expected"),
+        at("no limit point", "/model/stages/0/until/limit_points", json!(0), "1 or more"),
+        at("no contact change", "/model/stages/0/until/contact_change", json!(0), "1 or more"),
+        at("no increment", "/model/stages/0/until/increments", json!(0), "1 or more"),
+        elsewhere("bound without a side", &bound(json!({})), place, "exactly one of"),
+        elsewhere("bound with both sides", &bound(json!({"above": 1, "below": -1})), place, "exactly one of"),
+        elsewhere(
+            "bound at the start",
+            &bound(json!({"above": 0})),
+            "/model/stages/0/until/displacement/above",
+            "start at 0",
+        ),
+        elsewhere(
+            "bound on an unknown node",
+            &unknown,
+            "/model/stages/0/until/displacement/node",
+            "did you mean `tip`?",
+        ),
+        elsewhere(
+            "bound on a support",
+            &bound(json!({"node": "pin", "above": 1})),
+            "/model/stages/0/until/displacement/component",
+            "never moves",
+        ),
+        elsewhere(
+            "bound out of the plane",
+            &bound(json!({"component": "z", "above": 1})),
+            "/model/stages/0/until/displacement/component",
+            "no component `z`",
+        ),
+    ]
+}
+
+pub fn analysis() -> Vec<BadDocument> {
+    vec![
+        at("no arc length", "/analysis/arc_length/min", json!(0), "above 0"),
+        at("negative arc length", "/analysis/arc_length/initial", json!(-0.1), "above 0"),
+        at("arc length too short", "/analysis/arc_length/initial", json!(1e-7), "between `min`"),
+        at("arc length too long", "/analysis/arc_length/initial", json!(7), "between `min`"),
+        at("arc lengths crossed", "/analysis/arc_length/max", json!(1e-9), "at least `min`"),
+        at("no displacement scale", "/analysis/arc_length/displacement_scale", json!(0), "above 0"),
+        at("negative load scale", "/analysis/arc_length/load_scale", json!(-1), "above 0"),
+        at("no increments", "/analysis/max_increments", json!(0), "1 or more"),
+        at("absurd increments", "/analysis/max_increments", json!(u64::MAX), "at most 10000000"),
+        at("no modes", "/analysis/max_modes", json!(0), "1 or more"),
+    ]
+}

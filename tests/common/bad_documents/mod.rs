@@ -1,0 +1,109 @@
+//! Documents that must be refused, each with the place and a fragment of the detail of one mistake that must be named.
+//!
+//! They are read by the library, posted over HTTP and given to the command line, so that every edge refuses the same.
+
+mod form;
+mod loading;
+mod model;
+
+use serde_json::{Value, json};
+
+/// A document that is not an acceptable job request.
+#[derive(Debug, Clone)]
+pub struct BadDocument {
+    /// What is wrong with it; unique.
+    pub name: &'static str,
+    pub text: Vec<u8>,
+    /// JSON pointer of one of the mistakes.
+    pub pointer: &'static str,
+    /// A part of that mistake's detail.
+    pub detail: &'static str,
+}
+
+impl BadDocument {
+    /// The mistake is there instead.
+    fn told(mut self, pointer: &'static str) -> Self {
+        self.pointer = pointer;
+        self
+    }
+}
+
+/// Every bad document.
+pub fn bad_documents() -> Vec<BadDocument> {
+    [
+        form::broken_text(),
+        form::wrong_form(),
+        form::not_available(),
+        model::structure(),
+        model::mechanisms(),
+        model::contacts(),
+        loading::stages(),
+        loading::ends(),
+        loading::analysis(),
+        model::sizes(),
+    ]
+    .concat()
+}
+
+/// The request that the others spoil: it is accepted.
+pub fn good_request() -> Value {
+    json!({
+        "model": {
+            "dimension": 2,
+            "nodes": {"pin": [0, 1], "tip": [-1.5, 0]},
+            "supports": {"pin": ["x", "y"]},
+            "elements": [
+                {"kind": "bar", "nodes": ["pin", "tip"], "axial_stiffness": 1},
+                {"kind": "spring", "nodes": ["tip"], "stiffness": [[1, 0.5], [0.5, 2]]},
+            ],
+            "obstacles": {"floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}},
+            "contacts": [{"node": "tip", "obstacle": "floor", "friction": 0.3}],
+            "stages": [{"name": "push", "forces": {"tip": [1, 0]}, "until": {"load_above": 1}}],
+        },
+        "analysis": {"arc_length": {"initial": 0.05, "min": 1e-6, "max": 0.2}, "max_increments": 500},
+    })
+}
+
+/// The good request with values put in: a pointer whose last part is a new member adds it, `-` appends to an array.
+fn with(changes: &[(&str, Value)]) -> Vec<u8> {
+    let mut request = good_request();
+    for (pointer, value) in changes {
+        let (parent, last) = pointer.rsplit_once('/').expect("a pointer");
+        match request.pointer_mut(parent).expect("a place in the good request") {
+            Value::Object(members) => {
+                members.insert(last.to_owned(), value.clone());
+            }
+            Value::Array(items) if last == "-" => items.push(value.clone()),
+            Value::Array(items) => items[last.parse::<usize>().expect("an index")] = value.clone(),
+            other => panic!("{pointer} leads into {other}"),
+        }
+    }
+    serde_json::to_vec(&request).expect("JSON")
+}
+
+fn without(pointer: &str) -> Vec<u8> {
+    let mut request = good_request();
+    let (parent, last) = pointer.rsplit_once('/').expect("a pointer");
+    let members = request.pointer_mut(parent).and_then(Value::as_object_mut).expect("an object");
+    members.remove(last).expect("a member of the good request");
+    serde_json::to_vec(&request).expect("JSON")
+}
+
+fn raw(name: &'static str, text: impl Into<Vec<u8>>, detail: &'static str) -> BadDocument {
+    BadDocument { name, text: text.into(), pointer: "", detail }
+}
+
+/// One value put in, and the mistake at that very place.
+fn at(name: &'static str, pointer: &'static str, value: Value, detail: &'static str) -> BadDocument {
+    BadDocument { name, text: with(&[(pointer, value)]), pointer, detail }
+}
+
+/// One value put in, and the mistake somewhere else.
+fn elsewhere(
+    name: &'static str,
+    changes: &[(&str, Value)],
+    pointer: &'static str,
+    detail: &'static str,
+) -> BadDocument {
+    BadDocument { name, text: with(changes), pointer, detail }
+}

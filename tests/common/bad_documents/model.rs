@@ -1,0 +1,122 @@
+//! Structures, contacts and sizes that cannot be solved.
+
+use serde_json::{Value, json};
+
+use super::{BadDocument, at, elsewhere, raw};
+
+pub fn structure() -> Vec<BadDocument> {
+    let unsymmetric = json!([[1, 0.5], [0.4, 2]]);
+    vec![
+        at("one dimension", "/model/dimension", json!(1), "found 1; 2 or 3"),
+        at("many dimensions", "/model/dimension", json!(u64::MAX), "2 or 3 is expected"),
+        at("no node at all", "/model/nodes", json!({}), "at least one"),
+        at("too many coordinates", "/model/nodes/tip", json!([-1.5, 0, 0]), "found 3 numbers; 2 are expected"),
+        at("too few coordinates", "/model/nodes/tip", json!([]), "found 0 numbers"),
+        at("huge coordinate", "/model/nodes/tip/0", json!(1e200), "choose other units"),
+        at("tiny coordinate", "/model/nodes/tip/0", json!(1e-200), "0, or at least 1e-75"),
+        at("empty node name", "/model/nodes/", json!([0, 0]), "the name is empty"),
+        at("support of an unknown node", "/model/supports/pn", json!(["x"]), "did you mean `pin`?"),
+        at("support of nothing", "/model/supports/pin", json!([]), "no component is named"),
+        at("support named twice", "/model/supports/pin/1", json!("x"), "`x` is named twice"),
+        at("support out of the plane", "/model/supports/pin/1", json!("z"), "no component `z` in 2 dimensions"),
+        at("bar to an unknown node", "/model/elements/0/nodes/1", json!("tap"), "did you mean `tip`?"),
+        at("bar to itself", "/model/elements/0/nodes/1", json!("pin"), "stands twice"),
+        at("bar of three nodes", "/model/elements/0/nodes", json!(["pin", "tip", "tip"]), "a bar has 2"),
+        at("bar of no nodes", "/model/elements/0/nodes", json!([]), "found 0 nodes; a bar has 2"),
+        at("bar without stiffness", "/model/elements/0/axial_stiffness", json!(0), "above 0"),
+        at("bar of negative stiffness", "/model/elements/0/axial_stiffness", json!(-1), "above 0"),
+        at("bar without rest length", "/model/elements/0/rest_length", json!(0.0), "above 0"),
+        at("huge prestress", "/model/elements/0/prestress", json!(-1e300), "choose other units"),
+        elsewhere(
+            "bar of no length",
+            &[("/model/nodes/tip", json!([0, 1]))],
+            "/model/elements/0/nodes",
+            "the same place",
+        ),
+        at("spring of no nodes", "/model/elements/1/nodes", json!([]), "found 0 nodes; a spring has 1"),
+        at("spring of three nodes", "/model/elements/1/nodes", json!(["tip", "pin", "tip"]), "found 3 nodes"),
+        at("spring to an unknown node", "/model/elements/1/nodes/0", json!("top"), "did you mean `tip`?"),
+        at("spring without symmetry", "/model/elements/1/stiffness", unsymmetric, "symmetric")
+            .told("/model/elements/1/stiffness/1/0"),
+        at("spring of one row", "/model/elements/1/stiffness", json!([[1, 0]]), "found 1 rows; 2 rows"),
+        at("spring with a short row", "/model/elements/1/stiffness/1", json!([1]), "found 1 numbers; 2"),
+        at("spring that does nothing", "/model/elements/1/stiffness", json!([[0, 0], [0, 0]]), "the stiffness is zero"),
+    ]
+}
+
+pub fn mechanisms() -> Vec<BadDocument> {
+    let apart = [("/model/nodes/a", json!([5, 5])), ("/model/nodes/b", json!([6, 5]))];
+    let joined = json!({"kind": "bar", "nodes": ["a", "b"], "axial_stiffness": 1});
+    let floating = [apart.as_slice(), &[("/model/elements/-", joined)]].concat();
+    vec![
+        at("node that nothing holds", "/model/nodes/lost", json!([5, 5]), "no element holds the node `lost`"),
+        elsewhere("element list empty", &[("/model/elements", json!([]))], "/model/nodes/tip", "no element holds"),
+        elsewhere("part that floats", &floating, "/model/nodes/a", "hangs on nothing"),
+    ]
+}
+
+pub fn contacts() -> Vec<BadDocument> {
+    let ceiling = json!({"kind": "plane", "point": [0, 0], "normal": [0, -2]});
+    let low_ceiling = json!({"kind": "plane", "point": [0, -1], "normal": [0, -1]});
+    let against = |obstacle: &str| json!({"node": "tip", "obstacle": obstacle});
+    let both = |plane| [("/model/obstacles/ceiling", plane), ("/model/contacts/-", against("ceiling"))];
+    let upright = json!({"kind": "bar", "nodes": ["pin", "tip"], "axial_stiffness": 1});
+    let space = [
+        ("/model/dimension", json!(3)),
+        ("/model/nodes", json!({"pin": [0, 1, 0], "tip": [0, 0, 0]})),
+        ("/model/supports", json!({"pin": ["x", "y", "z"]})),
+        ("/model/elements", json!([upright])),
+        ("/model/obstacles/floor", json!({"kind": "plane", "point": [0, 0, 0], "normal": [0, 1, 0]})),
+        ("/model/stages/0/forces/tip", json!([1, 0, 0])),
+    ];
+    let behind = [("/model/nodes/tip", json!([-1.5, -0.25]))];
+    let held = [("/model/supports/tip", json!(["y"]))];
+    vec![
+        at("plane without normal", "/model/obstacles/floor/normal", json!([0, 0]), "the normal is zero"),
+        at("plane with a short normal", "/model/obstacles/floor/normal", json!([1]), "found 1 numbers"),
+        at("plane with a long point", "/model/obstacles/floor/point", json!([0, 0, 0]), "found 3 numbers"),
+        at("contact of an unknown node", "/model/contacts/0/node", json!("tipp"), "did you mean `tip`?"),
+        at("contact with an unknown obstacle", "/model/contacts/0/obstacle", json!("flor"), "did you mean `floor`?"),
+        at("negative friction", "/model/contacts/0/friction", json!(-0.3), "a coefficient of 0 or more"),
+        at("huge friction", "/model/contacts/0/friction", json!(1e100), "at most 1e75"),
+        elsewhere("friction in space", &space, "/model/contacts/0/friction", "3 dimensions is not available"),
+        at("contact twice", "/model/contacts/-", against("floor"), "stands twice").told("/model/contacts/1"),
+        elsewhere(
+            "contact of a support",
+            &[("/model/contacts/0/node", json!("pin"))],
+            "/model/contacts/0/node",
+            "cannot move",
+        ),
+        elsewhere("contact across a support", &held, "/model/contacts/0/node", "cannot move along"),
+        elsewhere("initial penetration", &behind, "/model/contacts/0", "gap -0.25"),
+        elsewhere("no room", &both(ceiling), "/model/contacts/1", "`floor` and `ceiling` leave 0.0 between them"),
+        elsewhere("less than no room", &both(low_ceiling), "/model/contacts/1", "leave -1.0 between them"),
+    ]
+}
+
+pub fn sizes() -> Vec<BadDocument> {
+    let named = |count: usize, value: Value| {
+        Value::Object((0..count).map(|index| (format!("n{index}"), value.clone())).collect())
+    };
+    let bar = json!({"kind": "bar", "nodes": ["pin", "tip"], "axial_stiffness": 1});
+    let contact = json!({"node": "tip", "obstacle": "floor"});
+    let stage = json!({"name": "s", "forces": {"tip": [1, 0]}});
+    let long_name = "n".repeat(201);
+    let very_long_name = format!("/model/nodes/{}", "n".repeat(1_000_000));
+    vec![
+        at("too many nodes", "/model/nodes", named(20_001, json!([0, 0])), "found 20001 nodes; at most 20000"),
+        at(
+            "too many unknowns",
+            "/model/nodes",
+            named(1_501, json!([0, 0])),
+            "3002 free displacement components; at most 3000",
+        ),
+        at("too many elements", "/model/elements", json!(vec![bar; 100_001]), "at most 100000"),
+        at("too many contacts", "/model/contacts", json!(vec![contact; 10_001]), "at most 10000"),
+        at("too many stages", "/model/stages", json!(vec![stage; 1_001]), "at most 1000"),
+        at("long model name", "/model/name", json!(long_name), "has 201 bytes; at most 200"),
+        elsewhere("long node name", &[(&very_long_name, json!([0, 0]))], "/model/nodes", "has 1000000 bytes"),
+        raw("long text", vec![b' '; 16 * 1024 * 1024 + 1], "at most 16777216"),
+        raw("too many values", format!("[{}0]", "0,".repeat(4_000_000)), "more than 4000000 values"),
+    ]
+}
