@@ -91,7 +91,6 @@ impl Path<'_> {
         let mut decision = decide::decide(self.loading(), &self.here.state, &standings, before, rules);
         if self.scene.analysis.method == Method::Mpec && decision.taken.is_some() {
             let confirmed = self.confirmed_by_program(&decision.options);
-            if std::env::var("DBG").is_ok() { eprintln!("CHANGE {} {:?} {:?}", self.index, confirmed, decision.taken); }
             let best = decide::preferred(&decision.options, incoming, rules, |index| confirmed[index]);
             decision.taken = best.or(decision.taken);
         }

@@ -131,4 +131,8 @@ pub struct Diagnostics {
     pub newton_iterations: u64,
     pub qp_solves: u64,
     pub mpec_solves: u64,
+    /// With `method: "mpec"`: whether the program named the mode of this increment. Where it did not (it is solved
+    /// locally, and a contact just at the end of its mode is a coin's edge), the mode was kept by continuity.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mode_named_by_mpec: Option<bool>,
 }

@@ -12,11 +12,22 @@ const FIRST_TRIAL: f64 = 0.25;
 const TRIALS: usize = 5;
 
 impl Path<'_> {
-    /// The contact modes that the program names for an increment of this arc length along the present direction.
-    pub(super) fn name_increment(&mut self, rate: &Rate, step: f64) -> Option<Named> {
+    /// Whether the program, started along the present direction, ends in the present mode.
+    ///
+    /// Its increment has about the arc length asked for, not exactly; where it names another mode, it may have gone past
+    /// the end of this one, and is asked again for shorter increments.
+    pub(super) fn program_keeps_mode(&mut self, rate: &Rate, step: f64) -> bool {
         let modes = self.here.modes.clone();
         let state = self.here.state.clone();
-        self.name(&state, rate, &modes, step, Thoroughness::Full)
+        let mut tried = step;
+        for _ in 0..TRIALS {
+            let named = self.name(&state, rate, &modes, tried, Thoroughness::Full);
+            if named.is_some_and(|named| named.modes == modes) {
+                return true;
+            }
+            tried *= 0.3;
+        }
+        false
     }
 
     fn name(&mut self, base: &State, expected: &Rate, modes: &[Mode], step: f64, how: Thoroughness) -> Option<Named> {

@@ -67,10 +67,6 @@ pub enum Thoroughness {
 pub struct Named {
     /// The contact modes at the end of the increment.
     pub modes: Vec<Mode>,
-    /// Some pair was biactive, so that its mode is a choice.
-    pub ambiguous: bool,
-    /// Dissipation per arc length at the solution.
-    pub dissipation: f64,
 }
 
 /// Work of the programs solved.
@@ -178,7 +174,7 @@ impl<'a> IncrementProgram<'a> {
             }
             let size = solution.x.rows(0, self.loading.structure.unknowns() + 1).norm();
             if (0.5..=2.0).contains(&size) {
-                return (Some(self.read(&solution.x, &solution.activity, present)), counts);
+                return (Some(self.read(&solution.activity, present)), counts);
             }
             self.arc_weight *= size.clamp(0.02, 50.0);
             start = solution.x;
@@ -186,21 +182,15 @@ impl<'a> IncrementProgram<'a> {
         (None, counts)
     }
 
-    fn read(&self, x: &DVector<f64>, activity: &[PairActivity], present: &[Mode]) -> Named {
+    fn read(&self, activity: &[PairActivity], present: &[Mode]) -> Named {
         let mut modes = vec![Mode::Free; self.loading.contacts.len()];
-        let mut ambiguous = false;
-        let mut dissipation = 0.0;
-        let mut pairs = activity.iter();
+        let mut pairs = activity.iter().copied();
+        let mut next = || pairs.next().unwrap_or(PairActivity::NeitherZero);
         for entry in &self.reach {
-            let normal = pairs.next().copied().unwrap_or(PairActivity::NeitherZero);
             let present = present[entry.contact];
-            let slips = if entry.friction > 0.0 {
-                let forward = pairs.next().copied().unwrap_or(PairActivity::NeitherZero);
-                let backward = pairs.next().copied().unwrap_or(PairActivity::NeitherZero);
-                ambiguous |= normal == PairActivity::FirstZero
-                    && (forward == PairActivity::BothZero || backward == PairActivity::BothZero);
-                dissipation -= entry.traction * (x[entry.first + 2] - x[entry.first + 3]);
-                match (forward, backward) {
+            let normal = next();
+            let closed = if entry.friction > 0.0 {
+                match (next(), next()) {
                     (PairActivity::FirstZero, _) => Mode::Slip { direction: [1.0, 0.0] },
                     (_, PairActivity::FirstZero) => Mode::Slip { direction: [-1.0, 0.0] },
                     (PairActivity::BothZero, _) | (_, PairActivity::BothZero) if present.is_active() => present,
@@ -209,15 +199,13 @@ impl<'a> IncrementProgram<'a> {
             } else {
                 Mode::Slip { direction: [0.0; 2] }
             };
-            ambiguous |= normal == PairActivity::BothZero;
             modes[entry.contact] = match normal {
-                PairActivity::FirstZero => slips,
+                PairActivity::FirstZero => closed,
                 PairActivity::BothZero => present,
                 PairActivity::SecondZero | PairActivity::NeitherZero => Mode::Free,
             };
         }
-        let size = x.rows(0, self.loading.structure.unknowns() + 1).norm();
-        Named { modes, ambiguous, dissipation: dissipation * self.force / size }
+        Named { modes }
     }
 
     /// Rows and directions of the contact's node: `(unknown, normal component, tangent component)`.

@@ -31,6 +31,7 @@ pub(super) struct Row<'a> {
     pub force_scale: f64,
     pub elapsed_s: f64,
     pub work: Work,
+    pub mode_named: Option<bool>,
 }
 
 /// Status of a contact in a mode.
@@ -90,6 +91,7 @@ pub(super) fn increment(scene: &Scene, row: &Row<'_>) -> Increment {
             newton_iterations: row.work.newton_iterations,
             qp_solves: row.work.qp_solves,
             mpec_solves: row.work.mpec_solves,
+            mode_named_by_mpec: row.mode_named,
         },
     }
 }

@@ -25,6 +25,8 @@ pub(super) struct Accepted {
     pub dissipation: f64,
     /// Total at the point, from the start of the path.
     pub strain: f64,
+    /// Whether the increment's program named the mode; `None` where it was not asked.
+    pub mode_named: Option<bool>,
 }
 
 impl Path<'_> {
@@ -38,9 +40,9 @@ impl Path<'_> {
                 return Err(StopReason::Cancelled);
             }
             let Some(rate) = self.here.rate.clone() else { return Err(StopReason::NoDirection) };
-            let named = match self.scene.analysis.method {
+            let named_as_kept = match self.scene.analysis.method {
                 Method::Auto => None,
-                Method::Mpec => self.name_increment(&rate, step),
+                Method::Mpec => Some(self.program_keeps_mode(&rate, step)),
             };
             let start = Start {
                 loading: self.loading(),
@@ -55,8 +57,9 @@ impl Path<'_> {
             self.work = work;
             match outcome {
                 Ok(reached) => {
-                    if let Some(named)=&named && std::env::var("DBG").is_ok() { if named.modes != self.here.modes && reached.event.is_none() { eprintln!("DISAGREE {} {:?} {:?} {}", self.index, named, self.here.modes, step); } } else if std::env::var("DBG").is_ok() { eprintln!("NONE {} {step}", self.index); }
-                    let accepted = self.balance(&rate, reached);
+                    let mut accepted = self.balance(&rate, reached);
+                    // Where the mode ends inside the step, the program names the next one, from there.
+                    accepted.mode_named = named_as_kept.map(|kept| kept || accepted.reached.event.is_some());
                     let factor = self.next_step_factor(&rate, &accepted, step);
                     if factor > REJECTED || step * factor < least {
                         self.step = (step * factor).clamp(least, most);
@@ -76,7 +79,7 @@ impl Path<'_> {
                     }
                     self.take(&decision);
                 }
-                Err(refused) => { if std::env::var("DBG").is_ok() { eprintln!("REFUSED {} {refused:?} {step}", self.index); }
+                Err(refused) => {
                     step *= match refused {
                         Refused::Turned(angle) => (0.5 * TURN_SOUGHT / angle).clamp(0.1, 0.5),
                         Refused::Newton(_) => 0.5,
@@ -96,7 +99,7 @@ impl Path<'_> {
         let end = (&reached.corrected.state, &reached.rate);
         let (work, dissipation) = energy::work_and_dissipation(self.loading(), &self.here.modes, start, end);
         let strain = self.scene.structure.strain_energy(&reached.corrected.state.displacement) - self.initial_strain;
-        Accepted { reached, work, dissipation, strain }
+        Accepted { reached, work, dissipation, strain, mode_named: None }
     }
 
     /// How the next step should compare with this one: by the path's turn, Newton's work and the energy balance.

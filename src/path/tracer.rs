@@ -196,6 +196,7 @@ impl<'a> Path<'a> {
             taken: decision.taken,
             residual: 0.0,
             error_estimate: 0.0,
+            mode_named: None,
         })
     }
 
@@ -283,6 +284,7 @@ impl<'a> Path<'a> {
             taken: arrival.taken,
             residual: reached.corrected.residual,
             error_estimate: reached.corrected.last_correction,
+            mode_named: accepted.mode_named,
         });
         if matches!(self.phase, Phase::Running) && stage_ends {
             self.next_stage();
@@ -327,6 +329,7 @@ impl<'a> Path<'a> {
                 force_scale: self.force_scale,
                 elapsed_s: self.began.elapsed().as_secs_f64(),
                 work: self.work,
+                mode_named: emitted.mode_named,
             },
         );
         self.report.increments = self.index;
@@ -348,6 +351,7 @@ struct Emitted<'a> {
     taken: Option<usize>,
     residual: f64,
     error_estimate: f64,
+    mode_named: Option<bool>,
 }
 
 
