@@ -112,13 +112,13 @@ fn solve_equalities(program: &QuadraticProgram, set: &WorkingSet) -> Option<Quad
     }
     let factors = matrix.clone().lu();
     let mut unknowns = factors.solve(&right)?;
-    // One step of refinement, and the residual that remains tells a singular system.
+    // One step of refinement, and the residual that remains tells a singular system: measured against the right-hand
+    // side alone, since a nearly singular system has huge unknowns.
     let residual = &right - &matrix * &unknowns;
     unknowns += factors.solve(&residual)?;
     let residual = (&right - &matrix * &unknowns).amax();
-    let scale = right.amax() + matrix.amax() * unknowns.amax();
     // Written so that a NaN fails too.
-    if !(residual <= ROUND_OFF * scale || scale == 0.0) || !unknowns.iter().all(|value| value.is_finite()) {
+    if !(residual <= ROUND_OFF * (1.0 + right.amax())) || !unknowns.iter().all(|value| value.is_finite()) {
         return None;
     }
     let mut solution = QuadraticSolution {

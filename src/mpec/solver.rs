@@ -101,18 +101,18 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         self.try_other_branches()
     }
 
-    /// The last resort where no feasible point was found: the branches around the least infeasible one, those that
-    /// differ in one pair first; all of them where there are few pairs.
+    /// The last resort where no feasible point was found: the branch nearest to the least infeasible one, then
+    /// those that differ in one pair; all of them where there are few pairs.
     fn try_other_branches(&mut self) -> Option<Status> {
         let best = self.best.as_ref().filter(|best| !best.is_feasible(self.settings.tolerance))?;
         let (x, nearest) = (best.x.clone(), branch::nearest_pattern(&best.at));
         let pairs = nearest.len();
         let flips: Vec<Vec<usize>> = if pairs <= self.settings.enumeration_limit.min(ENUMERATION_CEILING) {
-            let mut subsets: Vec<usize> = (1..1_usize << pairs).collect();
+            let mut subsets: Vec<usize> = (0..1_usize << pairs).collect();
             subsets.sort_by_key(|subset| subset.count_ones());
             subsets.into_iter().map(|subset| (0..pairs).filter(|pair| subset >> pair & 1 == 1).collect()).collect()
         } else {
-            (0..pairs.min(1 << ENUMERATION_CEILING)).map(|pair| vec![pair]).collect()
+            std::iter::once(vec![]).chain((0..pairs.min(1 << ENUMERATION_CEILING)).map(|pair| vec![pair])).collect()
         };
         for flipped in flips {
             let mut pattern = nearest.clone();
