@@ -117,8 +117,7 @@ fn solve_equalities(program: &QuadraticProgram, set: &WorkingSet) -> Option<Quad
     let residual = &right - &matrix * &unknowns;
     unknowns += factors.solve(&residual)?;
     let residual = (&right - &matrix * &unknowns).amax();
-    // Written so that a NaN fails too.
-    if !(residual <= ROUND_OFF * (1.0 + right.amax())) || !unknowns.iter().all(|value| value.is_finite()) {
+    if !unknowns.iter().all(|value| value.is_finite()) || residual > ROUND_OFF * (1.0 + right.amax()) {
         return None;
     }
     let mut solution = QuadraticSolution {
