@@ -197,6 +197,8 @@ fn warm_path_converged() {
         "warm, converged: {increments} increments, {programs} programs, {interior} interior-point, at most {largest}"
     );
     println!("warm, converged: {:.1} us an increment", time.as_secs_f64() * 1e6 / increments as f64);
+    assert!(largest <= 4);
+    assert_eq!(interior, 0);
 }
 
 /// From no displacement at all, where the slipping contact is biactive.
@@ -225,6 +227,7 @@ fn cold_path_finds_the_same_mode() {
     }
     println!("cold: {increments} increments, {programs} programs, {interior} interior-point, at most {largest}");
     println!("cold: {:.1} us an increment", time.as_secs_f64() * 1e6 / increments as f64);
+    assert!(largest <= 8);
 }
 
 /// Off the floor, pulled along the bar's axis: no reaction, so one of the two friction pairs is always biactive.
