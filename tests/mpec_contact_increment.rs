@@ -197,6 +197,8 @@ fn warm_path_converged() {
         "warm, converged: {increments} increments, {programs} programs, {interior} interior-point, at most {largest}"
     );
     println!("warm, converged: {:.1} us an increment", time.as_secs_f64() * 1e6 / increments as f64);
+    assert!(largest <= 4);
+    assert_eq!(interior, 0);
 }
 
 /// From no displacement at all, where the slipping contact is biactive.
@@ -225,4 +227,61 @@ fn cold_path_finds_the_same_mode() {
     }
     println!("cold: {increments} increments, {programs} programs, {interior} interior-point, at most {largest}");
     println!("cold: {:.1} us an increment", time.as_secs_f64() * 1e6 / increments as f64);
+    assert!(largest <= 8);
+}
+
+/// Off the floor, pulled along the bar's axis: no reaction, so one of the two friction pairs is always biactive.
+fn free_increment() -> (Increment, DVector<f64>) {
+    let x = -1.9;
+    let (force, stiffness) = internal_force(x, 1.0);
+    let norm = stiffness[0][0].hypot(1.0);
+    let previous = [-1.0 / norm, 0.0, -stiffness[0][0] / norm];
+    let increment = Increment {
+        tip: [x, 1.0],
+        load: force[0],
+        tangential_reaction: 0.0,
+        previous,
+        arc_weight: 1.0 / STEP,
+        forward_weight: 1.0,
+    };
+    let slip = 0.9 * STEP * previous[0];
+    let guess = DVector::from_vec(vec![slip, 0.0, 0.9 * STEP * previous[2], 0.0, 0.0, -slip, 0.0]);
+    (increment, guess)
+}
+
+#[test]
+fn a_free_node_is_solved_although_its_friction_is_degenerate() {
+    let (increment, guess) = free_increment();
+    for settings in
+        [Settings::warm(), Settings::default(), Settings { finish: Finish::PatternSettled, ..Settings::warm() }]
+    {
+        let solution = mpec::solve(&increment, &guess, &settings, &CancelFlag::default()).expect("valid input");
+        println!("free: {:?} {:?} {:?}", solution.status, solution.stationarity, solution.counts);
+        assert_eq!(solution.status, Status::Solved);
+        assert_eq!(solution.activity[0], PairActivity::SecondZero);
+        assert_eq!(solution.activity[2], PairActivity::FirstZero);
+        assert_eq!(solution.x[3], 0.0);
+        let (force, _) = internal_force(increment.tip[0] + solution.x[0], 1.0);
+        assert!((force[0] - increment.load - solution.x[2]).abs() < 1e-9);
+        assert!(((solution.x[0].powi(2) + solution.x[2].powi(2)).sqrt() - STEP).abs() < 1e-3 * STEP);
+    }
+}
+
+/// The first increment starts with the bar unstressed: contact closed, reaction zero, friction cone shrunk to a point.
+#[test]
+fn the_first_increment_leaves_the_degenerate_start() {
+    let increment = Increment {
+        tip: [START, 0.0],
+        load: 0.0,
+        tangential_reaction: 0.0,
+        previous: [0.0, 0.0, 1.0],
+        arc_weight: 1.0 / STEP,
+        forward_weight: 1.0,
+    };
+    let solution =
+        mpec::solve(&increment, &DVector::zeros(7), &Settings::default(), &CancelFlag::default()).expect("valid input");
+    println!("start: {:?} {:?} {:?}", solution.status, solution.stationarity, solution.counts);
+    assert_eq!(solution.status, Status::Solved);
+    check_slipping(&solution, &increment, 1e-9);
+    assert!(solution.x[0] > 0.0 && solution.x[2] > 0.0);
 }

@@ -234,7 +234,7 @@ fn branch_minima(problem: &Quadratic) -> Vec<f64> {
 fn random_programs_end_at_a_minimum_of_a_branch() {
     let mut numbers = Numbers(7);
     let (mut solved, mut feasible, mut global) = (0, 0, 0);
-    let count = 300;
+    let count = 200;
     for round in 0..count {
         let (n, pairs) = (3 + round % 4, 1 + round % 5);
         let root = numbers.matrix(n, n);
@@ -246,8 +246,10 @@ fn random_programs_end_at_a_minimum_of_a_branch() {
         let minima = branch_minima(&problem);
         let start: Vec<f64> = (0..n).map(|_| numbers.next()).collect();
         let solution = solve(&problem, &start, &Settings::default());
-        let again = solve(&problem, &start, &Settings::default());
-        assert_eq!(solution.x, again.x, "round {round}: not the same bits");
+        if round % 10 == 0 {
+            let again = solve(&problem, &start, &Settings::default());
+            assert_eq!(solution.x, again.x, "round {round}: not the same bits");
+        }
         let Some(least) = minima.iter().copied().reduce(f64::min) else {
             assert_eq!(solution.status, Status::Infeasible, "round {round}: {solution:?}");
             continue;

@@ -19,6 +19,8 @@ use super::quadratic::{QuadraticProgram, QuadraticSolution};
 
 /// Relative slack in "holds", "nonnegative" and "solves the system".
 const ROUND_OFF: f64 = 1e-11;
+/// Block subtracted for the multipliers where rows depend on each other, relative to `1 + max |H|`.
+const MULTIPLIER_BLOCK: f64 = 1e-8;
 
 /// Which inequalities and bounds are taken for active.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -110,17 +112,16 @@ fn solve_equalities(program: &QuadraticProgram, set: &WorkingSet) -> Option<Quad
     for &k in &above {
         put_row(&|j| if j == k { -1.0 } else { 0.0 }, program.upper[k]);
     }
-    let factors = matrix.clone().lu();
-    let mut unknowns = factors.solve(&right)?;
-    // One step of refinement, and the residual that remains tells a singular system.
-    let residual = &right - &matrix * &unknowns;
-    unknowns += factors.solve(&residual)?;
-    let residual = (&right - &matrix * &unknowns).amax();
-    let scale = right.amax() + matrix.amax() * unknowns.amax();
-    // Written so that a NaN fails too.
-    if !(residual <= ROUND_OFF * scale || scale == 0.0) || !unknowns.iter().all(|value| value.is_finite()) {
-        return None;
-    }
+    let unknowns = solve_refined(&matrix, matrix.clone(), &right, 1).or_else(|| {
+        // Rows that say the same twice make the system singular but not contradictory. A small negative block for the
+        // multipliers makes it regular, and refinement against the true matrix takes the block's effect out again.
+        let mut regular = matrix.clone();
+        let weight = MULTIPLIER_BLOCK * (1.0 + program.hessian.amax());
+        for place in variables..variables + active {
+            regular[(place, place)] -= weight;
+        }
+        solve_refined(&matrix, regular, &right, 4)
+    })?;
     let mut solution = QuadraticSolution {
         step: unknowns.rows(0, variables).into_owned(),
         equality_multipliers: -unknowns.rows(variables, equalities).into_owned(),
@@ -138,6 +139,25 @@ fn solve_equalities(program: &QuadraticProgram, set: &WorkingSet) -> Option<Quad
     scatter(&below, &mut solution.lower_multipliers);
     scatter(&above, &mut solution.upper_multipliers);
     Some(solution)
+}
+
+/// Solves with the factors of `factored`, refined against `matrix`; `None` where a residual remains. The residual is
+/// measured against the right-hand side alone, since a nearly singular system has huge unknowns.
+fn solve_refined(
+    matrix: &DMatrix<f64>,
+    factored: DMatrix<f64>,
+    right: &DVector<f64>,
+    refinements: usize,
+) -> Option<DVector<f64>> {
+    let factors = factored.lu();
+    let mut unknowns = factors.solve(right)?;
+    for _ in 0..refinements {
+        let residual = right - matrix * &unknowns;
+        unknowns += factors.solve(&residual)?;
+    }
+    let residual = (right - matrix * &unknowns).amax();
+    let is_solved = unknowns.iter().all(|value| value.is_finite()) && residual <= ROUND_OFF * (1.0 + right.amax());
+    is_solved.then_some(unknowns)
 }
 
 /// Takes violated rows in and rows with negative multipliers out; false where nothing had to change.

@@ -11,8 +11,9 @@
 use nalgebra::DVector;
 
 use super::elastic::StepSolver;
+use super::evaluation::Evaluation;
 use super::problem::Problem;
-use super::relaxed::{Evaluation, Multipliers, PairTreatment, Rows};
+use super::relaxed::{Multipliers, PairTreatment, Rows};
 use super::result::StationarityKind;
 use super::settings::{Finish, Settings};
 use super::sqp::{self, SqpEnd, SqpSettings};

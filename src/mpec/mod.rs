@@ -17,11 +17,14 @@
 //! | `stationarity` | how stationary a point is |
 //! | `sqp`, `secant` | one smooth program |
 //! | `relaxed` | the smooth program's rows and their linearisation |
+//! | `evaluation`, `input` | the problem at one point; what the caller got wrong |
 //! | `elastic`, `active_set`, [`quadratic`] | one quadratic program |
 
 mod active_set;
 mod branch;
 mod elastic;
+mod evaluation;
+mod input;
 pub mod problem;
 pub mod quadratic;
 mod relaxed;

@@ -18,7 +18,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::problem::Problem;
+use super::evaluation::Evaluation;
 use super::quadratic::{QuadraticProgram, QuadraticSolution};
 
 /// How one pair enters the smooth program.
@@ -40,125 +40,6 @@ impl PairTreatment {
     fn second_is_zero(self) -> bool {
         matches!(self, Self::SecondZero | Self::BothZero)
     }
-}
-
-/// The function of a [`Problem`] that returned a number that is not finite.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quantity {
-    Start,
-    Objective,
-    ObjectiveGradient,
-    Equalities,
-    EqualityJacobian,
-    Inequalities,
-    InequalityJacobian,
-    Pairs,
-    PairJacobians,
-    QuadraticModel,
-}
-
-/// Everything a [`Problem`] says at one point.
-#[derive(Debug, Clone)]
-pub struct Evaluation {
-    pub objective: f64,
-    pub gradient: DVector<f64>,
-    pub equality: DVector<f64>,
-    pub equality_jacobian: DMatrix<f64>,
-    pub inequality: DVector<f64>,
-    pub inequality_jacobian: DMatrix<f64>,
-    pub first: DVector<f64>,
-    pub second: DVector<f64>,
-    pub first_jacobian: DMatrix<f64>,
-    pub second_jacobian: DMatrix<f64>,
-}
-
-impl Evaluation {
-    pub fn new<P: Problem + ?Sized>(problem: &P) -> Self {
-        let n = problem.variables();
-        let (equalities, inequalities, pairs) = (problem.equalities(), problem.inequalities(), problem.pairs());
-        Self {
-            objective: 0.0,
-            gradient: DVector::zeros(n),
-            equality: DVector::zeros(equalities),
-            equality_jacobian: DMatrix::zeros(equalities, n),
-            inequality: DVector::zeros(inequalities),
-            inequality_jacobian: DMatrix::zeros(inequalities, n),
-            first: DVector::zeros(pairs),
-            second: DVector::zeros(pairs),
-            first_jacobian: DMatrix::zeros(pairs, n),
-            second_jacobian: DMatrix::zeros(pairs, n),
-        }
-    }
-
-    /// The functions' values at `x`.
-    ///
-    /// # Errors
-    /// The quantity that is not finite.
-    pub fn update_values<P: Problem + ?Sized>(&mut self, problem: &P, x: &DVector<f64>) -> Result<(), Quantity> {
-        self.objective = problem.objective(x);
-        problem.equality_values(x, &mut self.equality);
-        problem.inequality_values(x, &mut self.inequality);
-        problem.pair_values(x, &mut self.first, &mut self.second);
-        finite(&[self.objective], Quantity::Objective)?;
-        finite(self.equality.as_slice(), Quantity::Equalities)?;
-        finite(self.inequality.as_slice(), Quantity::Inequalities)?;
-        finite(self.first.as_slice(), Quantity::Pairs)?;
-        finite(self.second.as_slice(), Quantity::Pairs)
-    }
-
-    /// Their derivatives at `x`.
-    ///
-    /// # Errors
-    /// The quantity that is not finite.
-    pub fn update_derivatives<P: Problem + ?Sized>(&mut self, problem: &P, x: &DVector<f64>) -> Result<(), Quantity> {
-        for jacobian in [
-            &mut self.equality_jacobian,
-            &mut self.inequality_jacobian,
-            &mut self.first_jacobian,
-            &mut self.second_jacobian,
-        ] {
-            jacobian.fill(0.0);
-        }
-        self.gradient.fill(0.0);
-        problem.objective_gradient(x, &mut self.gradient);
-        problem.equality_jacobian(x, &mut self.equality_jacobian);
-        problem.inequality_jacobian(x, &mut self.inequality_jacobian);
-        problem.pair_jacobians(x, &mut self.first_jacobian, &mut self.second_jacobian);
-        finite(self.gradient.as_slice(), Quantity::ObjectiveGradient)?;
-        finite(self.equality_jacobian.as_slice(), Quantity::EqualityJacobian)?;
-        finite(self.inequality_jacobian.as_slice(), Quantity::InequalityJacobian)?;
-        finite(self.first_jacobian.as_slice(), Quantity::PairJacobians)?;
-        finite(self.second_jacobian.as_slice(), Quantity::PairJacobians)
-    }
-
-    /// Largest violation of `h = 0`, `g >= 0`, `a >= 0`, `b >= 0`.
-    pub fn largest_violation(&self) -> f64 {
-        let below_zero = |values: &DVector<f64>| values.iter().fold(0.0_f64, |worst, value| worst.max(-value));
-        self.equality
-            .amax_or_zero()
-            .max(below_zero(&self.inequality))
-            .max(below_zero(&self.first))
-            .max(below_zero(&self.second))
-    }
-
-    /// Largest `|a_i b_i|`.
-    pub fn largest_product(&self) -> f64 {
-        self.first.iter().zip(self.second.iter()).fold(0.0, |worst, (a, b)| worst.max((a * b).abs()))
-    }
-}
-
-trait AbsoluteMaximum {
-    fn amax_or_zero(&self) -> f64;
-}
-
-impl AbsoluteMaximum for DVector<f64> {
-    fn amax_or_zero(&self) -> f64 {
-        self.iter().fold(0.0, |worst, value| worst.max(value.abs()))
-    }
-}
-
-fn finite(values: &[f64], quantity: Quantity) -> Result<(), Quantity> {
-    if values.iter().all(|value| value.is_finite()) { Ok(()) } else { Err(quantity) }
 }
 
 /// What a row of the smooth program belongs to.

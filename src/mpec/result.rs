@@ -3,7 +3,8 @@
 use nalgebra::DVector;
 use thiserror::Error;
 
-pub use super::relaxed::{Multipliers, Quantity};
+pub use super::evaluation::Quantity;
+pub use super::relaxed::Multipliers;
 
 /// Which member of a pair is zero.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

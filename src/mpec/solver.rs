@@ -16,8 +16,10 @@ use nalgebra::DVector;
 
 use super::branch::{self, Candidate};
 use super::elastic::StepSolver;
+use super::evaluation::{Evaluation, Quantity};
+use super::input::check_input;
 use super::problem::Problem;
-use super::relaxed::{Evaluation, PairTreatment, Quantity, Rows};
+use super::relaxed::{PairTreatment, Rows};
 use super::result::{Counts, InputError, PairActivity, Solution, StationarityKind, Status};
 use super::settings::Settings;
 use super::sqp::{self, SqpEnd, SqpSettings};
@@ -101,18 +103,18 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         self.try_other_branches()
     }
 
-    /// The last resort where no feasible point was found: the branches around the least infeasible one, those that
-    /// differ in one pair first; all of them where there are few pairs.
+    /// The last resort where no feasible point was found: the branch nearest to the least infeasible one, then
+    /// those that differ in one pair; all of them where there are few pairs.
     fn try_other_branches(&mut self) -> Option<Status> {
         let best = self.best.as_ref().filter(|best| !best.is_feasible(self.settings.tolerance))?;
         let (x, nearest) = (best.x.clone(), branch::nearest_pattern(&best.at));
         let pairs = nearest.len();
         let flips: Vec<Vec<usize>> = if pairs <= self.settings.enumeration_limit.min(ENUMERATION_CEILING) {
-            let mut subsets: Vec<usize> = (1..1_usize << pairs).collect();
+            let mut subsets: Vec<usize> = (0..1_usize << pairs).collect();
             subsets.sort_by_key(|subset| subset.count_ones());
             subsets.into_iter().map(|subset| (0..pairs).filter(|pair| subset >> pair & 1 == 1).collect()).collect()
         } else {
-            (0..pairs.min(1 << ENUMERATION_CEILING)).map(|pair| vec![pair]).collect()
+            std::iter::once(vec![]).chain((0..pairs.min(1 << ENUMERATION_CEILING)).map(|pair| vec![pair])).collect()
         };
         for flipped in flips {
             let mut pattern = nearest.clone();
@@ -324,43 +326,4 @@ fn empty_solution<P: Problem + ?Sized>(problem: &P, start: &DVector<f64>, status
         largest_product: f64::INFINITY,
         counts,
     }
-}
-
-fn check_input<P: Problem + ?Sized>(
-    problem: &P,
-    start: &DVector<f64>,
-    bounds: &(DVector<f64>, DVector<f64>),
-    settings: &Settings,
-) -> Result<(), InputError> {
-    let expected = problem.variables();
-    if start.len() != expected {
-        return Err(InputError::StartLength { expected, found: start.len() });
-    }
-    let (lower, upper) = (bounds.0.len(), bounds.1.len());
-    if lower != expected || upper != expected {
-        return Err(InputError::BoundsLength { expected, lower, upper });
-    }
-    for variable in 0..expected {
-        let (lower, upper) = (bounds.0[variable], bounds.1[variable]);
-        // Written so that a NaN is refused too.
-        if !(lower <= upper) || lower == f64::INFINITY || upper == f64::NEG_INFINITY {
-            return Err(InputError::Bounds { variable, lower, upper });
-        }
-    }
-    let positive = |name, value: f64| {
-        if value > 0.0 && value.is_finite() {
-            Ok(())
-        } else {
-            Err(InputError::Setting { name, value, wanted: "positive" })
-        }
-    };
-    positive("first_relaxation", settings.first_relaxation)?;
-    positive("last_relaxation", settings.last_relaxation)?;
-    positive("tolerance", settings.tolerance)?;
-    positive("biactive_tolerance", settings.biactive_tolerance)?;
-    let factor = settings.relaxation_factor;
-    if !(factor > 0.0 && factor < 1.0) {
-        return Err(InputError::Setting { name: "relaxation_factor", value: factor, wanted: "between 0 and 1" });
-    }
-    Ok(())
 }

@@ -18,9 +18,10 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::elastic::{Step, StepSolver};
+use super::evaluation::{Evaluation, Quantity};
 use super::problem::Problem;
 use super::quadratic::{QuadraticFailure, QuadraticProgram};
-use super::relaxed::{Evaluation, Multipliers, Quantity, Rows};
+use super::relaxed::{Multipliers, Rows};
 use super::secant::Secant;
 use crate::cancel::CancelFlag;
 

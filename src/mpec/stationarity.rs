@@ -19,9 +19,10 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::elastic::StepSolver;
+use super::evaluation::{Evaluation, Quantity};
 use super::problem::Problem;
 use super::quadratic::{QuadraticFailure, QuadraticProgram};
-use super::relaxed::{Evaluation, Multipliers, PairTreatment, Quantity, Rows};
+use super::relaxed::{Multipliers, PairTreatment, Rows};
 use super::result::StationarityKind;
 use super::settings::Settings;
 use crate::cancel::CancelFlag;
