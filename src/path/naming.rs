@@ -5,6 +5,7 @@ use super::program::{IncrementProgram, Named, Thoroughness};
 use super::state::{Rate, State};
 use super::tracer::Path;
 use crate::contact::Mode;
+use crate::mpec::Problem;
 
 /// Arc length at which a direction is first put to the program, as a fraction of the path's next step.
 const FIRST_TRIAL: f64 = 0.25;
@@ -36,6 +37,10 @@ impl Path<'_> {
         let reactions = ahead.reactions.iter().fold(0.0_f64, |largest, reaction| largest.max(reaction.size()));
         let force = self.force_scale.max(ahead.load.abs()).max(reactions).max(f64::MIN_POSITIVE);
         let mut program = IncrementProgram::new(loading, base, expected, step, force);
+        if program.pairs() == 0 {
+            // No contact can be reached: there is nothing to decide.
+            return Some(Named { modes: modes.to_vec() });
+        }
         let start = program.variables_at(expected);
         let (named, counts) = program.name(&start, modes, how, &self.cancel);
         self.work.qp_solves += counts.qp_solves;

@@ -41,8 +41,8 @@ impl Path<'_> {
             }
             let Some(rate) = self.here.rate.clone() else { return Err(StopReason::NoDirection) };
             let named_as_kept = match self.scene.analysis.method {
-                Method::Auto => None,
-                Method::Mpec => Some(self.program_keeps_mode(&rate, step)),
+                Method::Mpec if !self.scene.contacts.is_empty() => Some(self.program_keeps_mode(&rate, step)),
+                Method::Mpec | Method::Auto => None,
             };
             let start = Start {
                 loading: self.loading(),
