@@ -44,6 +44,8 @@ pub enum Place<'a> {
 pub struct Corrected {
     pub state: State,
     pub iterations: u64,
+    /// Iterations until the error was small; those after it polish, and their number is round-off's.
+    pub iterations_to_small: u64,
     /// Equilibrium residual over the force scale.
     pub residual: f64,
     /// Size of the last correction of `(u, s)`.
@@ -64,7 +66,9 @@ const MOST_ITERATIONS: u64 = 16;
 /// Relative residual that an accepted point must have.
 pub const ACCEPTED_RESIDUAL: f64 = 1e-11;
 /// Relative residual below which iterating on gains nothing.
-const ROUND_OFF: f64 = 2e-16;
+const ROUND_OFF: f64 = 1e-15;
+/// Error below which Newton's method is as good as converged.
+const SMALL: f64 = 1e-6;
 
 /// One mode's equations.
 pub struct ModeSystem<'a> {
@@ -273,6 +277,7 @@ impl<'a> ModeSystem<'a> {
         let mut force = vec![0.0; self.loading.structure.freedoms()];
         let mut iterations = 0;
         let mut last_correction = 0.0;
+        let mut iterations_to_small = None;
         let mut best: Option<(f64, Corrected)> = None;
         loop {
             let (largest, forces) = self.residual(&state, &mut values, &mut force);
@@ -285,10 +290,21 @@ impl<'a> ModeSystem<'a> {
             if !error.is_finite() {
                 return Err(Failure::NotConverged);
             }
+            if error <= SMALL {
+                iterations_to_small.get_or_insert(iterations);
+            }
             let improved = best.as_ref().is_none_or(|(least, _)| error < 0.5 * least);
             if best.as_ref().is_none_or(|(least, _)| error <= *least) {
                 let state = state.clone();
-                let corrected = Corrected { state, iterations, residual, last_correction, force_scale: forces };
+                let iterations_to_small = iterations_to_small.unwrap_or(iterations);
+                let corrected = Corrected {
+                    state,
+                    iterations,
+                    iterations_to_small,
+                    residual,
+                    last_correction,
+                    force_scale: forces,
+                };
                 best = Some((error, corrected));
             }
             let least = best.as_ref().map_or(f64::INFINITY, |(least, _)| *least);

@@ -10,8 +10,8 @@ use crate::model::request::Method;
 
 /// The turn of the path (radians) that a step aims at.
 const TURN_SOUGHT: f64 = 0.08;
-/// Newton iterations that a step aims at.
-const ITERATIONS_SOUGHT: f64 = 5.0;
+/// Newton iterations to a small error that a step aims at.
+const ITERATIONS_SOUGHT: f64 = 4.0;
 
 /// Energy imbalance of an increment, over the largest energy so far, that a step aims at.
 const IMBALANCE_SOUGHT: f64 = 5e-9;
@@ -27,6 +27,12 @@ pub(super) struct Accepted {
     pub strain: f64,
     /// Whether the increment's program named the mode; `None` where it was not asked.
     pub mode_named: Option<bool>,
+}
+
+/// The next smaller of eight values an octave: what the factor is computed from is a difference of nearly equal
+/// energies, and its round-off must not move the points of the path.
+fn quantised(factor: f64) -> f64 {
+    ((factor.log2() * 8.0).floor() / 8.0).exp2()
 }
 
 impl Path<'_> {
@@ -108,12 +114,12 @@ impl Path<'_> {
         let done = (reached.step / tried).clamp(0.1, 1.0);
         let turn = rate.product(&reached.rate).clamp(-1.0, 1.0).acos() / done;
         let by_turn = TURN_SOUGHT / turn.max(1e-3 * TURN_SOUGHT);
-        let by_work = ITERATIONS_SOUGHT / reached.corrected.iterations.max(1) as f64;
+        let by_work = ITERATIONS_SOUGHT / reached.corrected.iterations_to_small.max(1) as f64;
         let imbalance = (accepted.work - accepted.dissipation - (accepted.strain - self.energy.strain)).abs();
         let size = self.largest_energy.max(accepted.work.abs()).max(accepted.strain.abs()).max(f64::MIN_POSITIVE);
         // The balance of one increment has an error of fifth order in its arc length.
         let by_energy = (IMBALANCE_SOUGHT / (imbalance / size).max(1e-3 * IMBALANCE_SOUGHT)).powf(0.2);
-        by_turn.min(by_work).min(by_energy).clamp(0.2, 1.8)
+        quantised(by_turn.min(by_work).min(by_energy).clamp(0.2, 1.8))
     }
 
 }

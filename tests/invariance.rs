@@ -1,0 +1,116 @@
+//! What must hold for every input: the same bits for the same model, and nothing but round-off from other units.
+
+mod common;
+
+use arcslip::model::JobRequest;
+use arcslip::model::request::{Element, Obstacle};
+use arcslip::path::Increment;
+use common::{scene, trace};
+
+/// The same request in other units of length and force.
+fn in_units(mut request: JobRequest, length: f64, force: f64) -> JobRequest {
+    let scale = |values: &mut Vec<f64>, by: f64| values.iter_mut().for_each(|value| *value *= by);
+    for coordinates in request.model.nodes.values_mut() {
+        scale(coordinates, length);
+    }
+    for element in &mut request.model.elements {
+        match element {
+            Element::Bar { axial_stiffness, rest_length, prestress, .. } => {
+                *axial_stiffness *= force;
+                *prestress *= force;
+                rest_length.iter_mut().for_each(|rest| *rest *= length);
+            }
+            Element::Spring { stiffness, .. } => stiffness.iter_mut().for_each(|row| scale(row, force / length)),
+        }
+    }
+    for obstacle in request.model.obstacles.values_mut() {
+        match obstacle {
+            Obstacle::Plane { point, normal } => {
+                scale(point, length);
+                scale(normal, 1.0 / length);
+            }
+        }
+    }
+    for stage in &mut request.model.stages {
+        stage.forces.values_mut().for_each(|values| scale(values, force));
+        if let Some(until) = &mut stage.until
+            && let Some(bound) = &mut until.displacement
+        {
+            bound.above.iter_mut().for_each(|value| *value *= length);
+            bound.below.iter_mut().for_each(|value| *value *= length);
+        }
+    }
+    request
+}
+
+/// Everything but the clock, as text.
+fn bits(increments: &[Increment]) -> String {
+    let mut increments = increments.to_vec();
+    increments.iter_mut().for_each(|increment| increment.diagnostics.elapsed_s = 0.0);
+    serde_json::to_string(&increments).unwrap()
+}
+
+#[test]
+fn the_same_model_gives_the_same_bits() {
+    for built_in in arcslip::scenes::ALL {
+        let request = scene(built_in.name);
+        let first = bits(&trace(&request).0);
+        let handles: Vec<_> = (0..4)
+            .map(|_| {
+                let request = request.clone();
+                std::thread::spawn(move || bits(&trace(&request).0))
+            })
+            .collect();
+        for handle in handles {
+            assert_eq!(handle.join().unwrap(), first, "{}", built_in.name);
+        }
+    }
+}
+
+#[test]
+fn units_change_nothing_but_round_off() {
+    for built_in in arcslip::scenes::ALL {
+        let (plain, _) = trace(&scene(built_in.name));
+        for (length, force) in [(1e3, 1e-6), (1e9, 1.0), (1e-9, 1.0), (1.0, 1e9), (1.0, 1e-9), (3.0, 7.0)] {
+            let (other, _) = trace(&in_units(scene(built_in.name), length, force));
+            let place = format!("{} in units of {length:e}, {force:e}", built_in.name);
+            assert_eq!(plain.len(), other.len(), "{place}");
+            for (a, b) in plain.iter().zip(&other) {
+                assert_eq!(a.point.kind, b.point.kind, "{place}, increment {}", a.index);
+                assert_eq!(a.point.bifurcation, b.point.bifurcation, "{place}, increment {}", a.index);
+                assert!((a.load_factor - b.load_factor).abs() <= 1e-9, "{place}, increment {}", a.index);
+                for (a, b) in a.displacements.values().flatten().zip(b.displacements.values().flatten()) {
+                    assert!((a - b / length).abs() <= 1e-8, "{place}: {a} {b}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_written_increment_reads_back_to_the_same_bits() {
+    let (increments, _) = trace(&scene("arch-type-truss"));
+    for increment in increments {
+        let text = serde_json::to_string(&increment).unwrap();
+        let back: Increment = serde_json::from_str(&text).unwrap();
+        assert_eq!(back, increment);
+        assert_eq!(serde_json::to_string(&back).unwrap(), text);
+    }
+}
+
+/// Energy balance falls with the step.
+#[test]
+fn energy_balance_falls_with_the_step() {
+    for name in ["one-bar-truss", "arch-type-truss", "von-mises-truss"] {
+        let error = |most: f64| {
+            let mut request = scene(name);
+            request.analysis.arc_length.max = most;
+            request.analysis.arc_length.initial = most;
+            request.analysis.max_increments = 100_000;
+            let (increments, _) = trace(&request);
+            increments.last().map_or(f64::NAN, |increment| increment.diagnostics.energy_error)
+        };
+        let (coarse, fine) = (error(4e-3), error(2e-3));
+        assert!(fine < coarse / 8.0, "{name}: {coarse:e} falls to {fine:e}");
+    }
+}
