@@ -281,6 +281,7 @@ fn desilva() {
     check("desilva", &problem, &[0.0; 6], &[-1.0], StationarityKind::Strong);
 }
 
+/// The minimisers, all with objective 0, are not isolated: (5, 9) is reached here, (9, 6) is the listed one.
 #[test]
 fn nash1_from_all_five_starts() {
     let problem = Listed {

@@ -5,8 +5,8 @@
 //! small `ε` does not, and its solution is complementary exactly. The objective falls from branch to branch, hence no
 //! branch comes twice; the number of changes is bounded all the same.
 //!
-//! Source: the active-set view of Z.-Q. Luo, J.-S. Pang and D. Ralph, *Mathematical Programs with Equilibrium
-//! Constraints* (Cambridge University Press, 1996), doi:10.1017/CBO9780511983658, chapter 6 (piecewise programming).
+//! Source: the piecewise programming of Z.-Q. Luo, J.-S. Pang and D. Ralph, *Mathematical Programs with Equilibrium
+//! Constraints* (Cambridge University Press, 1996), doi:10.1017/CBO9780511983658.
 
 use nalgebra::DVector;
 

@@ -8,6 +8,10 @@
 //! programming. Nothing here knows of structures or contacts; [`Problem`] is all that is asked, [`solve`] all that is
 //! called.
 //!
+//! Cost, measured in a release build on increments of a one-bar truss (7 variables, 3 equalities, 3 pairs): a quadratic
+//! program takes 2 µs from a good working set and 80 to 240 µs by the interior-point method; a warm increment names its
+//! pattern in 2 programs and converges in 4, without the interior-point method.
+//!
 //! | module | what it holds |
 //! |---|---|
 //! | [`problem`] | what a problem has to tell |

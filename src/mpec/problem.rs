@@ -5,7 +5,9 @@ use nalgebra::{DMatrix, DVector};
 /// `min f(x)` s.t. `h(x) = 0`, `g(x) >= 0`, `lower <= x <= upper`, `0 <= a(x) ⊥ b(x) >= 0`.
 ///
 /// All functions are evaluated at `x` of length [`Problem::variables`]; outputs are overwritten. Jacobians have one
-/// row a function and one column a variable and arrive zeroed.
+/// row a function and one column a variable and arrive zeroed. Everything is dimensionless and best scaled to numbers
+/// near one: tolerances are absolute. A value that is not finite ends the solve with a status that names its function,
+/// except at a trial point, where it only shortens the step.
 pub trait Problem {
     /// Number of variables.
     fn variables(&self) -> usize;
@@ -18,20 +20,28 @@ pub trait Problem {
     /// Lower and upper bounds; infinite where there is none.
     fn bounds(&self) -> (DVector<f64>, DVector<f64>);
 
+    /// `f`, the function that is minimised.
     fn objective(&self, x: &DVector<f64>) -> f64;
+    /// `∇f`; arrives zeroed.
     fn objective_gradient(&self, x: &DVector<f64>, gradient: &mut DVector<f64>);
 
+    /// `h`.
     fn equality_values(&self, _x: &DVector<f64>, _values: &mut DVector<f64>) {}
+    /// `∇h`.
     fn equality_jacobian(&self, _x: &DVector<f64>, _jacobian: &mut DMatrix<f64>) {}
+    /// `g`.
     fn inequality_values(&self, _x: &DVector<f64>, _values: &mut DVector<f64>) {}
+    /// `∇g`.
     fn inequality_jacobian(&self, _x: &DVector<f64>, _jacobian: &mut DMatrix<f64>) {}
 
     /// Both members of every pair.
     fn pair_values(&self, x: &DVector<f64>, first: &mut DVector<f64>, second: &mut DVector<f64>);
+    /// Gradients of both members of every pair.
     fn pair_jacobians(&self, x: &DVector<f64>, first: &mut DMatrix<f64>, second: &mut DMatrix<f64>);
 
     /// A positive semidefinite matrix for the quadratic programs' objective. Where `None` is returned, the solver
-    /// builds one from differences of the Lagrangian's gradient (damped BFGS).
+    /// builds one from differences of the Lagrangian's gradient (damped BFGS). The answer has to be of one kind at every
+    /// `x`. A model that leaves out the constraints' curvature makes convergence linear instead of superlinear.
     fn quadratic_model(&self, _x: &DVector<f64>) -> Option<DMatrix<f64>> {
         None
     }
