@@ -1,0 +1,79 @@
+//! What is kept: jobs, their increments, and who is working on what.
+//!
+//! [`Store`] is the whole boundary: above it nobody knows SQL, below it nobody knows HTTP or how a path is traced.
+//! [`record`] holds what goes in and out, [`signals`] wakes those who wait for a change, [`sqlite`] is the engine.
+//! Called by `jobs` (which writes) and by `http` (which reads).
+
+pub mod error;
+pub mod record;
+pub mod signals;
+mod sqlite;
+
+use async_trait::async_trait;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::sync::watch;
+use uuid::Uuid;
+
+pub use error::StoreError;
+pub use record::{Claim, Ending, JobRecord, Lease, LeaseAnswer, Line, ListFilter, NewJob, Page, Status, Submitted};
+
+pub type Result<T> = std::result::Result<T, StoreError>;
+
+/// An engine that keeps jobs. Every write of a worker carries its [`Lease`] and changes nothing once that is lost.
+#[async_trait]
+pub trait Store: Send + Sync + 'static {
+    /// Stores a job as `queued`, or finds the one that came with the same idempotency key.
+    async fn submit(&self, job: NewJob) -> Result<Submitted>;
+
+    async fn job(&self, id: Uuid) -> Result<Option<JobRecord>>;
+
+    /// Newest first.
+    async fn jobs(&self, filter: ListFilter) -> Result<Vec<JobRecord>>;
+
+    /// Increments with an index above `after`, in order; at most `page.rows` of them and, past the first, at most about
+    /// `page.bytes`. Empty exactly when there are no more.
+    async fn increments(&self, id: Uuid, after: Option<u64>, page: Page) -> Result<Vec<Line>>;
+
+    /// A queued job is cancelled at once, a running one marked, an ended one left alone. `None`: no such job.
+    async fn request_cancel(&self, id: Uuid) -> Result<Option<JobRecord>>;
+
+    /// Drops a job and all its increments; a worker on it loses its lease. `false`: no such job.
+    async fn delete(&self, id: Uuid) -> Result<bool>;
+
+    /// Takes the next queued job, if any.
+    async fn claim(&self, worker: &str, lease: Duration) -> Result<Option<Claim>>;
+
+    /// Prolongs a lease.
+    async fn renew(&self, lease: &Lease, duration: Duration) -> Result<LeaseAnswer>;
+
+    /// Appends increments, moves the job's progress and prolongs the lease, all or nothing.
+    async fn append(&self, lease: &Lease, lines: &[Line], duration: Duration) -> Result<LeaseAnswer>;
+
+    /// Ends a job.
+    async fn finish(&self, lease: &Lease, ending: Ending) -> Result<LeaseAnswer>;
+
+    /// Hands a job back to the queue with its attempt, for a worker that is going away in good order.
+    async fn release(&self, lease: &Lease) -> Result<LeaseAnswer>;
+
+    /// Puts jobs whose lease has run out back into the queue; those without attempts left become `failed`.
+    /// Answers how many were touched.
+    async fn reclaim_expired(&self) -> Result<u64>;
+
+    /// Proves that the store takes writes.
+    async fn probe(&self) -> Result<()>;
+
+    /// Changes whenever something of this job was stored here. Subscribe first, then read: no change is missed.
+    fn job_changes(&self, id: Uuid) -> watch::Receiver<u64>;
+
+    /// Changes whenever a job was put into the queue here.
+    fn queue_changes(&self) -> watch::Receiver<u64>;
+
+    async fn close(&self);
+}
+
+/// Opens (and creates, and migrates) the database in that file.
+pub async fn open(file: &Path) -> Result<Arc<dyn Store>> {
+    Ok(Arc::new(sqlite::SqliteStore::open(file).await?))
+}

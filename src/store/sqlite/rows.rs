@@ -1,0 +1,54 @@
+//! Rows to records, and numbers to what SQLite can hold.
+
+use crate::store::{JobRecord, Result, Status, StoreError};
+use jiff::Timestamp;
+use sqlx::Row;
+use sqlx::sqlite::SqliteRow;
+
+/// The columns [`job`] reads.
+macro_rules! job_columns {
+    () => {
+        "id, name, status, plan, report, stop_reason, error, max_increments, last_index, attempt, max_attempts, \
+         cancel_requested, created_at, started_at, ended_at"
+    };
+}
+pub(super) use job_columns;
+
+pub(super) fn job(row: &SqliteRow) -> Result<JobRecord> {
+    let status: String = row.try_get("status")?;
+    let last_index: Option<i64> = row.try_get("last_index")?;
+    Ok(JobRecord {
+        id: row.try_get("id")?,
+        name: row.try_get("name")?,
+        status: Status::from_name(&status).ok_or_else(|| damaged(format!("status {status:?}")))?,
+        plan: row.try_get("plan")?,
+        report: row.try_get("report")?,
+        stop_reason: row.try_get("stop_reason")?,
+        error: row.try_get("error")?,
+        max_increments: unsigned(row.try_get("max_increments")?)?,
+        last_index: last_index.map(unsigned).transpose()?,
+        attempt: row.try_get("attempt")?,
+        max_attempts: row.try_get("max_attempts")?,
+        cancel_requested: row.try_get("cancel_requested")?,
+        created_at: time(row.try_get("created_at")?)?,
+        started_at: row.try_get::<Option<i64>, _>("started_at")?.map(time).transpose()?,
+        ended_at: row.try_get::<Option<i64>, _>("ended_at")?.map(time).transpose()?,
+    })
+}
+
+pub(super) fn unsigned(number: i64) -> Result<u64> {
+    u64::try_from(number).map_err(|error| damaged(format!("{number}: {error}")))
+}
+
+/// Numbers past what SQLite holds only ever stand for "no bound" or "past the end", and so does the largest it holds.
+pub(super) fn signed(number: u64) -> i64 {
+    i64::try_from(number).unwrap_or(i64::MAX)
+}
+
+fn time(milliseconds: i64) -> Result<Timestamp> {
+    Timestamp::from_millisecond(milliseconds).map_err(|error| StoreError::Damaged(Box::new(error)))
+}
+
+fn damaged(what: String) -> StoreError {
+    StoreError::Damaged(what.into())
+}
