@@ -1,0 +1,8 @@
+//! An increment as one line of JSON.
+
+use crate::path::Increment;
+
+/// Without the line's end. Numbers read back to the same bits.
+pub fn json_line(increment: &Increment) -> serde_json::Result<String> {
+    serde_json::to_string(increment)
+}
