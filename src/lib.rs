@@ -35,6 +35,7 @@ pub mod linear_algebra;
 pub mod measure;
 pub mod model;
 pub mod mpec;
+pub mod output;
 pub mod path;
 pub mod scenes;
 pub mod structure;

@@ -56,7 +56,9 @@ impl StopReason {
             Self::StagesCompleted => "every stage reached its end",
             Self::MaxIncrements => "the number of increments asked for was reached",
             Self::Mechanism => "what follows is a mechanism: a motion that no element resists",
-            Self::NoDirection => "no quasi-static continuation exists: from here the structure can only move dynamically",
+            Self::NoDirection => {
+                "no quasi-static continuation exists: from here the structure can only move dynamically"
+            }
             Self::Cycle => "the path is back at a state it has been in",
             Self::StepUnderflow => "no step of at least arc_length.min converges",
             Self::Degenerate => "the possible directions form a set of more than one dimension: none can be named",

@@ -1,0 +1,114 @@
+//! Increments on their way to the store: gathered for a moment, then appended in one transaction.
+
+use super::Settings;
+use crate::cancel::CancelFlag;
+use crate::store::{Lease, LeaseAnswer, Line, Store, StoreError};
+use std::time::Duration;
+use tokio::sync::mpsc;
+use tokio::time::{Instant, MissedTickBehavior, interval_at, timeout_at};
+use tokio_util::sync::CancellationToken;
+
+/// Tries of one write while the store is passingly unavailable, each after twice the pause of the one before.
+const TRIES: u32 = 5;
+const FIRST_PAUSE: Duration = Duration::from_millis(50);
+
+/// Why no more increments are stored.
+#[derive(Debug)]
+pub enum Drained {
+    /// The solver has sent its last one, and it is stored.
+    Complete,
+    /// The service is going down; what is not stored yet is computed again by the next attempt.
+    ShuttingDown,
+    /// The job is gone or another's.
+    LeaseLost,
+    Failed(StoreError),
+}
+
+/// Stores increments until the solver ends or one of the reasons above stops it; the lease is prolonged on the way.
+pub async fn drain(
+    store: &dyn Store,
+    settings: &Settings,
+    lease: &Lease,
+    lines: &mut mpsc::Receiver<Line>,
+    cancel: &CancelFlag,
+    shutdown: &CancellationToken,
+) -> Drained {
+    let heartbeat = settings.lease / 3;
+    let mut beats = interval_at(Instant::now() + heartbeat, heartbeat.max(Duration::from_millis(1)));
+    beats.set_missed_tick_behavior(MissedTickBehavior::Delay);
+    let mut batch = Vec::new();
+    loop {
+        let mut complete = false;
+        tokio::select! {
+            biased;
+            () = shutdown.cancelled() => return Drained::ShuttingDown,
+            _ = beats.tick() => {}
+            received = gather(lines, &mut batch, settings) => complete = received == Received::Last,
+        }
+        // A cancelled gather leaves what it had in the batch, so a beat stores it too.
+        match append(store, settings, lease, &batch).await {
+            Ok(LeaseAnswer::Held { cancel_requested }) => {
+                if cancel_requested {
+                    cancel.cancel();
+                }
+            }
+            Ok(LeaseAnswer::Lost) => return Drained::LeaseLost,
+            Err(error) => return Drained::Failed(error),
+        }
+        batch.clear();
+        if complete {
+            return Drained::Complete;
+        }
+    }
+}
+
+#[derive(PartialEq, Eq)]
+enum Received {
+    Some,
+    Last,
+}
+
+/// Waits for one increment, then a moment for those that follow it closely.
+async fn gather(lines: &mut mpsc::Receiver<Line>, batch: &mut Vec<Line>, settings: &Settings) -> Received {
+    if batch.is_empty() && lines.recv_many(batch, settings.flush_rows).await == 0 {
+        return Received::Last;
+    }
+    let deadline = Instant::now() + settings.flush_interval;
+    while batch.len() < settings.flush_rows {
+        let room = settings.flush_rows - batch.len();
+        match timeout_at(deadline, lines.recv_many(batch, room)).await {
+            Ok(0) => return Received::Last,
+            Ok(_) => {}
+            Err(_) => return Received::Some,
+        }
+    }
+    Received::Some
+}
+
+async fn append(
+    store: &dyn Store,
+    settings: &Settings,
+    lease: &Lease,
+    batch: &[Line],
+) -> Result<LeaseAnswer, StoreError> {
+    retry(|| store.append(lease, batch, settings.lease)).await
+}
+
+/// Repeats a write that failed for a passing reason.
+pub async fn retry<T, F>(mut write: impl FnMut() -> F) -> Result<T, StoreError>
+where
+    F: Future<Output = Result<T, StoreError>>,
+{
+    let mut pause = FIRST_PAUSE;
+    for _ in 1..TRIES {
+        match write().await {
+            Err(error) if error.is_passing() => {
+                tracing::warn!(%error, "a write is repeated");
+                tokio::time::sleep(pause).await;
+                pause *= 2;
+            }
+            answer => return answer,
+        }
+    }
+    write().await
+}

@@ -1,0 +1,110 @@
+//! From a request to a running solve: the queue's front (submit, cancel, delete) and the workers behind it.
+//!
+//! [`solver`] is the seam to the path tracer, [`submission`] what is done with a request before it is queued, [`solve`]
+//! one solve on a thread of its own, [`batch`] its increments on their way to the store, [`worker`] the loop around both,
+//! [`crew`] all workers of a process, [`demonstration`] the built-in scenes as jobs. Called by `http` and `command`;
+//! knows `store`, `path` and `model`.
+
+pub mod batch;
+pub mod crew;
+pub mod demonstration;
+pub mod running;
+pub mod settings;
+pub mod solve;
+pub mod solver;
+pub mod submission;
+pub mod worker;
+
+use crate::model::InputErrors;
+use crate::path::Plan;
+use crate::store::{JobRecord, NewJob, Store, StoreError, Submitted};
+use running::Running;
+use std::sync::Arc;
+use uuid::Uuid;
+
+pub use crew::Crew;
+pub use settings::Settings;
+pub use solver::{PathSolver, Solver};
+
+/// Why a request was not carried out.
+#[derive(Debug, thiserror::Error)]
+pub enum JobsError {
+    #[error("the request is not JSON: {0}")]
+    NotJson(String),
+    #[error("the model cannot be solved")]
+    Input(InputErrors),
+    #[error("this idempotency key came before with another request")]
+    KeyReused,
+    #[error("no job {0}")]
+    NoJob(Uuid),
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    #[error("a task ended early: {0}")]
+    Task(#[from] tokio::task::JoinError),
+    #[error("a plan could not be written: {0}")]
+    Write(#[from] serde_json::Error),
+}
+
+/// The jobs of this service; cheap to clone.
+#[derive(Clone)]
+pub struct Jobs {
+    pub(crate) store: Arc<dyn Store>,
+    pub(crate) solver: Arc<dyn Solver>,
+    pub(crate) settings: Settings,
+    pub(crate) running: Running,
+}
+
+impl Jobs {
+    pub fn new(store: Arc<dyn Store>, solver: Arc<dyn Solver>, settings: Settings) -> Self {
+        Self { store, solver, settings, running: Running::default() }
+    }
+
+    pub fn store(&self) -> &dyn Store {
+        self.store.as_ref()
+    }
+
+    /// The plan of a request; nothing is queued.
+    pub async fn validate(&self, request: Vec<u8>) -> Result<Plan, JobsError> {
+        Ok(self.prepare(request).await?.plan)
+    }
+
+    pub async fn submit(&self, request: Vec<u8>, idempotency_key: Option<String>) -> Result<JobRecord, JobsError> {
+        let prepared = self.prepare(request).await?;
+        let job = NewJob {
+            name: prepared.name,
+            plan: serde_json::to_string(&prepared.plan)?,
+            request: prepared.text,
+            max_increments: prepared.max_increments,
+            max_attempts: self.settings.max_attempts,
+            priority: 0,
+            idempotency_key,
+        };
+        match self.store.submit(job).await? {
+            Submitted::Created(job) => {
+                tracing::info!(job = %job.id, "queued");
+                Ok(job)
+            }
+            Submitted::Repeated(job) => Ok(job),
+            Submitted::KeyReused => Err(JobsError::KeyReused),
+        }
+    }
+
+    pub async fn cancel(&self, id: Uuid) -> Result<JobRecord, JobsError> {
+        let job = self.store.request_cancel(id).await?.ok_or(JobsError::NoJob(id))?;
+        // A job that runs elsewhere learns of it when its lease is renewed; one that runs here need not wait.
+        self.running.cancel(id);
+        Ok(job)
+    }
+
+    pub async fn delete(&self, id: Uuid) -> Result<(), JobsError> {
+        let deleted = self.store.delete(id).await?;
+        self.running.cancel(id);
+        if deleted { Ok(()) } else { Err(JobsError::NoJob(id)) }
+    }
+
+    /// Reading and checking a large model takes time that the runtime's threads do not have.
+    async fn prepare(&self, request: Vec<u8>) -> Result<submission::Prepared, JobsError> {
+        let solver = Arc::clone(&self.solver);
+        tokio::task::spawn_blocking(move || submission::prepare(solver.as_ref(), request)).await?
+    }
+}

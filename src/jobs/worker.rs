@@ -1,0 +1,139 @@
+//! The loop of one worker: take a job, solve it, store what comes, say how it ended.
+
+use super::batch::{self, Drained};
+use super::solve::{self, Solve, SolveEnd};
+use super::{Jobs, running};
+use crate::cancel::CancelFlag;
+use crate::path::{Outcome, Report, StopReason};
+use crate::store::{Claim, Ending, LeaseAnswer, Status, StoreError};
+use tokio_util::sync::CancellationToken;
+use tracing::Instrument;
+
+/// Works until `shutdown`; a job under way then goes back to the queue.
+pub async fn work(jobs: Jobs, name: String, shutdown: CancellationToken) {
+    let mut queue = jobs.store.queue_changes();
+    while !shutdown.is_cancelled() {
+        // Marked as seen before looking, so that a job queued in between wakes us at once.
+        queue.borrow_and_update();
+        match jobs.store.claim(&name, jobs.settings.lease).await {
+            Ok(Some(claim)) => {
+                let span =
+                    tracing::info_span!("job", job = %claim.lease.job, attempt = claim.lease.attempt, worker = name);
+                run(&jobs, claim, &shutdown).instrument(span).await;
+                continue;
+            }
+            Ok(None) => {}
+            Err(error) => tracing::warn!(%error, worker = name, "no job could be claimed"),
+        }
+        tokio::select! {
+            () = shutdown.cancelled() => {}
+            _ = queue.changed() => {}
+            () = tokio::time::sleep(jobs.settings.poll_interval) => {}
+        }
+    }
+}
+
+async fn run(jobs: &Jobs, claim: Claim, shutdown: &CancellationToken) {
+    tracing::info!(stored = claim.last_index, "started");
+    match trace(jobs, &claim, shutdown).await {
+        Ok(Finished::Ended(status)) => tracing::info!(status = status.name(), "ended"),
+        Ok(Finished::Released) => tracing::info!("back in the queue"),
+        Ok(Finished::Lost) => tracing::info!("deleted, or given to another worker"),
+        // Nothing more can be said in the store now; the lease runs out and the job is tried again.
+        Err(error) => tracing::error!(%error, source = ?std::error::Error::source(&error), "the end was not stored"),
+    }
+}
+
+enum Finished {
+    Ended(Status),
+    Released,
+    Lost,
+}
+
+async fn trace(jobs: &Jobs, claim: &Claim, shutdown: &CancellationToken) -> Result<Finished, StoreError> {
+    let lease = &claim.lease;
+    let (cancel, _entry): (CancelFlag, running::Entry) = jobs.running.enter(lease.job);
+    // A cancel between the claim and the line above found no flag to set.
+    if jobs.store.job(lease.job).await?.is_none_or(|job| job.cancel_requested) {
+        cancel.cancel();
+    }
+    let mut solve = match solve::start(jobs.solver.clone(), claim, cancel.clone()) {
+        Ok(solve) => solve,
+        Err(error) => return end(jobs, claim, Ending::failed(format!("no thread could be started: {error}"))).await,
+    };
+    let store = jobs.store.as_ref();
+    match batch::drain(store, &jobs.settings, lease, &mut solve.lines, &cancel, shutdown).await {
+        Drained::Complete => {
+            let ending = ending(solve.end.await.unwrap_or(SolveEnd::Silent));
+            end(jobs, claim, ending).await
+        }
+        Drained::ShuttingDown => {
+            cancel.cancel();
+            // Closed before the solver can see the flag's effect: nothing it sends after a stop may be stored.
+            solve.lines.close();
+            let answer = batch::retry(|| store.release(lease)).await;
+            stop(solve).await;
+            Ok(match answer? {
+                LeaseAnswer::Held { .. } => Finished::Released,
+                LeaseAnswer::Lost => Finished::Lost,
+            })
+        }
+        Drained::LeaseLost => {
+            cancel.cancel();
+            stop(solve).await;
+            Ok(Finished::Lost)
+        }
+        Drained::Failed(error) => {
+            cancel.cancel();
+            stop(solve).await;
+            tracing::error!(%error, source = ?std::error::Error::source(&error), "increments could not be stored");
+            end(jobs, claim, Ending::failed(format!("increments could not be stored: {error}"))).await
+        }
+    }
+}
+
+/// Waits for the thread; what it still sends is dropped.
+async fn stop(solve: Solve) {
+    drop(solve.lines);
+    // Without an answer the thread has ended too.
+    let _ = solve.end.await;
+}
+
+async fn end(jobs: &Jobs, claim: &Claim, ending: Ending) -> Result<Finished, StoreError> {
+    let status = ending.status;
+    Ok(match batch::retry(|| jobs.store.finish(&claim.lease, ending.clone())).await? {
+        LeaseAnswer::Held { .. } => Finished::Ended(status),
+        LeaseAnswer::Lost => Finished::Lost,
+    })
+}
+
+fn ending(end: SolveEnd) -> Ending {
+    match end {
+        SolveEnd::Reported(report) => {
+            reported(&report).unwrap_or_else(|error| Ending::failed(format!("the report cannot be written: {error}")))
+        }
+        SolveEnd::Refused(errors) => Ending::failed(format!("the stored request is not accepted: {errors}")),
+        SolveEnd::Panicked(text) => Ending::failed(format!("the solver panicked: {text}")),
+        SolveEnd::Unwritable(error) => Ending::failed(format!("an increment cannot be written: {error}")),
+        SolveEnd::Silent => Ending::failed("the solver ended without a report"),
+    }
+}
+
+fn reported(report: &Report) -> serde_json::Result<Ending> {
+    let status = match report.stop_reason.outcome() {
+        Outcome::Completed => Status::Completed,
+        Outcome::Stopped => Status::Stopped,
+        Outcome::Cancelled => Status::Cancelled,
+    };
+    Ok(Ending {
+        status,
+        stop_reason: Some(reason_name(report.stop_reason)?),
+        report: Some(serde_json::to_string(report)?),
+        error: None,
+    })
+}
+
+/// The reason as the contract spells it.
+fn reason_name(reason: StopReason) -> serde_json::Result<String> {
+    serde_json::from_value(serde_json::to_value(reason)?)
+}
