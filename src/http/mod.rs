@@ -1,1 +1,78 @@
-//! x
+//! The service's HTTP face; version 1 of the interface.
+//!
+//! [`problem`] is the one edge where errors become answers, [`extract`] reads requests, [`view`] holds what is answered;
+//! [`jobs`], [`increments`], [`stream`], [`csv`], [`scenes`], [`probes`] and [`pages`] are the calls, [`document`] their
+//! OpenAPI description, [`request_id`] what names each request, [`server`] listening and going down in good order.
+//! Called by `command`; knows `jobs` and, for reading, `store`.
+
+pub mod csv;
+pub mod document;
+pub mod extract;
+pub mod increments;
+pub mod jobs;
+pub mod pages;
+pub mod probes;
+pub mod problem;
+pub mod request_id;
+pub mod scenes;
+pub mod server;
+pub mod stream;
+pub mod view;
+
+use crate::jobs::Jobs;
+use crate::jobs::crew::Attendance;
+use axum::extract::DefaultBodyLimit;
+use axum::middleware::from_fn;
+use axum::{Router, routing};
+use std::sync::Arc;
+use tokio_util::sync::CancellationToken;
+use tower_http::catch_panic::CatchPanicLayer;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+use utoipa_swagger_ui::{Config, SwaggerUi};
+
+/// Bytes of a request's body.
+pub const BODY_LIMIT: usize = 16 << 20;
+
+/// What every call can reach.
+#[derive(Clone)]
+pub struct Service {
+    pub jobs: Jobs,
+    pub attendance: Attendance,
+    /// Cancelled when the service goes down; open streams end then.
+    pub shutdown: CancellationToken,
+}
+
+fn api() -> OpenApiRouter<Service> {
+    OpenApiRouter::with_openapi(document::base())
+        .routes(routes!(jobs::submit, jobs::list))
+        .routes(routes!(jobs::get, jobs::delete))
+        .routes(routes!(jobs::cancel))
+        .routes(routes!(increments::page))
+        .routes(routes!(stream::stream))
+        .routes(routes!(csv::path_csv))
+        .routes(routes!(scenes::list))
+        .routes(routes!(scenes::get))
+        .routes(routes!(probes::alive))
+        .routes(routes!(probes::ready))
+}
+
+/// The OpenAPI document as it is served and committed.
+pub fn openapi_json() -> serde_json::Result<String> {
+    document::finish(api().into_openapi())
+}
+
+/// Every route, with what applies to all of them.
+pub fn router(service: Service) -> serde_json::Result<Router> {
+    let (routes, description) = api().split_for_parts();
+    let description: Arc<str> = document::finish(description)?.into();
+    Ok(routes
+        .route("/", routing::get(pages::index))
+        .route("/openapi.json", routing::get(move || pages::openapi(description.clone())))
+        .with_state(service)
+        .merge(SwaggerUi::new("/docs").config(Config::from("/openapi.json")))
+        .layer(DefaultBodyLimit::max(BODY_LIMIT))
+        .layer(CatchPanicLayer::custom(problem::from_panic))
+        .layer(from_fn(problem::every_error))
+        .layer(from_fn(request_id::name_request)))
+}

@@ -1,0 +1,62 @@
+//! The path as a table.
+
+use super::extract::JobId;
+use super::problem::Problem;
+use super::{Service, document};
+use crate::jobs::JobsError;
+use crate::output::Table;
+use crate::path::Increment;
+use crate::store::Page;
+use async_stream::try_stream;
+use axum::body::Body;
+use axum::extract::State;
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
+use std::io;
+use tokio_stream::Stream;
+use uuid::Uuid;
+
+const PAGE: Page = Page { rows: 500, bytes: 1 << 20 };
+
+/// The increments stored so far, one row each.
+///
+/// The first line names the columns: `index, stage, load_factor, arc_length, step, point, bifurcation, event`, then
+/// `node.x`, `node.y` for every node, `node/obstacle.status`, `.gap`, `.normal_reaction`, `.tangential_reaction.1`,
+/// `.slip.1` for every contact, the energies and the diagnostics. A path without increments has no lines at all.
+#[utoipa::path(
+    get, path = "/v1/jobs/{id}/path.csv", tag = document::INCREMENTS, operation_id = "get_path_csv",
+    params(("id" = Uuid, Path, description = "The job's id.")),
+    responses((status = 200, description = "The table.", body = String, content_type = "text/csv"))
+)]
+pub async fn path_csv(State(service): State<Service>, JobId(id): JobId) -> Result<Response, Problem> {
+    service.jobs.store().job(id).await?.ok_or(JobsError::NoJob(id))?;
+    let headers = [
+        (header::CONTENT_TYPE, "text/csv; charset=utf-8".to_owned()),
+        (header::CONTENT_DISPOSITION, format!("attachment; filename=\"path-{id}.csv\"")),
+    ];
+    Ok((headers, Body::from_stream(rows(service, id))).into_response())
+}
+
+/// Reads a page at a time, so that a long path needs no more memory than a short one.
+fn rows(service: Service, id: Uuid) -> impl Stream<Item = io::Result<String>> {
+    try_stream! {
+        let mut after = None;
+        let mut table: Option<Table> = None;
+        loop {
+            let page = service.jobs.store().increments(id, after, PAGE).await.map_err(io::Error::other)?;
+            let Some(last) = page.last() else { break };
+            after = Some(last.index);
+            let mut text = String::new();
+            for line in &page {
+                let increment: Increment = serde_json::from_str(&line.body)?;
+                let columns = table.get_or_insert_with(|| {
+                    let columns = Table::fitting(&increment);
+                    text.push_str(&columns.header());
+                    columns
+                });
+                text.push_str(&columns.row(&increment));
+            }
+            yield text;
+        }
+    }
+}

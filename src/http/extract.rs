@@ -1,0 +1,96 @@
+//! What calls read from requests; every refusal is a problem.
+
+use super::problem::{Kind, Problem};
+use axum::body::Bytes;
+use axum::extract::rejection::BytesRejection;
+use axum::extract::{FromRequest, FromRequestParts, Path, Query, Request};
+use axum::http::request::Parts;
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::IntoResponse;
+use serde::de::DeserializeOwned;
+use uuid::Uuid;
+
+const LONGEST_KEY: usize = 255;
+
+/// A JSON body as it came; who reads it says what is wrong with it.
+pub struct JsonText(pub Vec<u8>);
+
+impl<S: Send + Sync> FromRequest<S> for JsonText {
+    type Rejection = Problem;
+
+    async fn from_request(request: Request, state: &S) -> Result<Self, Problem> {
+        if !is_json(request.headers()) {
+            return Err(Problem::new(Kind::UnsupportedMediaType, "send the header Content-Type: application/json"));
+        }
+        Ok(Self(Bytes::from_request(request, state).await.map_err(refused_body)?.into()))
+    }
+}
+
+fn is_json(headers: &HeaderMap) -> bool {
+    let media_type = headers.get(header::CONTENT_TYPE).and_then(|value| value.to_str().ok()).unwrap_or_default();
+    let essence = media_type.split(';').next().unwrap_or_default();
+    essence.trim().eq_ignore_ascii_case("application/json")
+}
+
+fn refused_body(rejection: BytesRejection) -> Problem {
+    match rejection.into_response().status() {
+        StatusCode::PAYLOAD_TOO_LARGE => {
+            Problem::new(Kind::BodyTooLarge, format!("at most {} bytes are taken", super::BODY_LIMIT))
+        }
+        _ => Problem::new(Kind::RequestFailed, "the body broke off before its end"),
+    }
+}
+
+/// The id in the address.
+pub struct JobId(pub Uuid);
+
+impl<S: Send + Sync> FromRequestParts<S> for JobId {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
+        match Path::<Uuid>::from_request_parts(parts, state).await {
+            Ok(Path(id)) => Ok(Self(id)),
+            Err(_) => Err(Problem::parameter("id", "a job's id is a UUID, as POST /v1/jobs answers it")),
+        }
+    }
+}
+
+/// The query's parameters.
+pub struct Parameters<T>(pub T);
+
+impl<S: Send + Sync, T: DeserializeOwned> FromRequestParts<S> for Parameters<T> {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
+        match Query::<T>::from_request_parts(parts, state).await {
+            Ok(Query(parameters)) => Ok(Self(parameters)),
+            Err(rejection) => Err(Problem::new(Kind::InvalidParameter, rejection.body_text())),
+        }
+    }
+}
+
+/// The `Idempotency-Key` header, if there is one.
+pub fn idempotency_key(headers: &HeaderMap) -> Result<Option<String>, Problem> {
+    let Some(value) = headers.get("idempotency-key") else { return Ok(None) };
+    let refuse = || Problem::parameter("Idempotency-Key", "1 to 255 printable ASCII characters");
+    let key = value.to_str().map_err(|_| refuse())?;
+    if (1..=LONGEST_KEY).contains(&key.len()) { Ok(Some(key.to_owned())) } else { Err(refuse()) }
+}
+
+/// The `Last-Event-ID` header: the index of the last increment the client has.
+pub fn last_event_id(headers: &HeaderMap) -> Result<Option<u64>, Problem> {
+    let Some(value) = headers.get("last-event-id") else { return Ok(None) };
+    let refuse = || Problem::parameter("Last-Event-ID", "the index of the last increment received: 0 or more");
+    let text = value.to_str().map_err(|_| refuse())?;
+    // Browsers that have seen no event yet may send an empty one.
+    if text.is_empty() { Ok(None) } else { text.parse().map(Some).map_err(|_| refuse()) }
+}
+
+/// A number within its bounds, or the default.
+pub fn bounded(name: &str, given: Option<u32>, default: u32, largest: u32) -> Result<u32, Problem> {
+    match given {
+        None => Ok(default),
+        Some(number) if (1..=largest).contains(&number) => Ok(number),
+        Some(number) => Err(Problem::parameter(name, format_args!("{number} is not in 1 to {largest}"))),
+    }
+}

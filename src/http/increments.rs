@@ -1,0 +1,48 @@
+//! Stored increments, a page at a time.
+
+use super::extract::{JobId, Parameters, bounded};
+use super::problem::Problem;
+use super::view::IncrementPage;
+use super::{Service, document};
+use crate::jobs::JobsError;
+use crate::store::Page;
+use axum::Json;
+use axum::extract::State;
+use serde::Deserialize;
+use serde_json::value::RawValue;
+
+const PAGE_DEFAULT: u32 = 1_000;
+const PAGE_LARGEST: u32 = 10_000;
+/// A page ends early when its increments are large.
+const PAGE_BYTES: usize = 8 << 20;
+
+#[derive(Debug, Deserialize, utoipa::IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub struct PageParameters {
+    /// Only increments with a larger index: `next_after` of the page before.
+    after: Option<u64>,
+    /// Increments at most; a page of large increments may hold fewer and not be the last.
+    #[param(minimum = 1, maximum = 10_000, default = 1_000)]
+    limit: Option<u32>,
+}
+
+/// Increments stored so far, in order.
+#[utoipa::path(
+    get, path = "/v1/jobs/{id}/increments", tag = document::INCREMENTS, operation_id = "list_increments",
+    params(("id" = Uuid, Path, description = "The job's id."), PageParameters),
+    responses((status = 200, description = "A page of increments, empty when there are no more for now.", body = IncrementPage))
+)]
+pub async fn page(
+    State(service): State<Service>,
+    JobId(id): JobId,
+    Parameters(parameters): Parameters<PageParameters>,
+) -> Result<Json<IncrementPage>, Problem> {
+    let rows = bounded("limit", parameters.limit, PAGE_DEFAULT, PAGE_LARGEST)?;
+    let store = service.jobs.store();
+    store.job(id).await?.ok_or(JobsError::NoJob(id))?;
+    let lines = store.increments(id, parameters.after, Page { rows, bytes: PAGE_BYTES }).await?;
+    let next_after = lines.last().map(|line| line.index).or(parameters.after);
+    let increments = lines.into_iter().map(|line| RawValue::from_string(line.body)).collect::<Result<_, _>>()?;
+    Ok(Json(IncrementPage { increments, next_after }))
+}

@@ -1,0 +1,122 @@
+//! Jobs: submit, list, read, cancel, delete.
+
+use super::extract::{JobId, JsonText, Parameters, bounded, idempotency_key};
+use super::problem::Problem;
+use super::view::{Job, JobList, address};
+use super::{Service, document};
+use crate::jobs::JobsError;
+use crate::model::JobRequest;
+use crate::path::Plan;
+use crate::store::{ListFilter, Status};
+use axum::Json;
+use axum::extract::State;
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
+use uuid::Uuid;
+
+const LIST_DEFAULT: u32 = 50;
+const LIST_LARGEST: u32 = 200;
+
+#[derive(Debug, Deserialize, utoipa::IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub struct SubmitParameters {
+    /// Check the request and answer its plan; queue nothing.
+    #[serde(default)]
+    validate: bool,
+}
+
+/// Queue a job, or only check it.
+#[utoipa::path(
+    post, path = "/v1/jobs", tag = document::JOBS, operation_id = "submit_job",
+    params(
+        SubmitParameters,
+        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255,
+         description = "Sent again with the same body, it answers the job of the first time; with another body it is refused.")
+    ),
+    request_body = JobRequest,
+    responses(
+        (status = 202, description = "Queued, or queued before under the same idempotency key.", body = Job,
+         headers(("Location" = String, description = "The job's address."))),
+        (status = 200, description = "With `validate=true`: what would be done.", body = Plan),
+    )
+)]
+pub async fn submit(
+    State(service): State<Service>,
+    Parameters(parameters): Parameters<SubmitParameters>,
+    headers: HeaderMap,
+    JsonText(request): JsonText,
+) -> Result<Response, Problem> {
+    if parameters.validate {
+        return Ok(Json(service.jobs.validate(request).await?).into_response());
+    }
+    let job = service.jobs.submit(request, idempotency_key(&headers)?).await?;
+    let location = address(job.id);
+    Ok((StatusCode::ACCEPTED, [(header::LOCATION, location)], Json(Job::try_from(job)?)).into_response())
+}
+
+#[derive(Debug, Deserialize, utoipa::IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub struct ListParameters {
+    /// Only jobs with this status.
+    status: Option<Status>,
+    /// `next_cursor` of the page before.
+    cursor: Option<Uuid>,
+    #[param(minimum = 1, maximum = 200, default = 50)]
+    limit: Option<u32>,
+}
+
+/// List jobs, newest first.
+#[utoipa::path(
+    get, path = "/v1/jobs", tag = document::JOBS, operation_id = "list_jobs", params(ListParameters),
+    responses((status = 200, description = "A page of jobs.", body = JobList))
+)]
+pub async fn list(
+    State(service): State<Service>,
+    Parameters(parameters): Parameters<ListParameters>,
+) -> Result<Json<JobList>, Problem> {
+    let limit = bounded("limit", parameters.limit, LIST_DEFAULT, LIST_LARGEST)?;
+    // One more than asked for tells whether there is a next page.
+    let filter = ListFilter { status: parameters.status, before: parameters.cursor, limit: limit + 1 };
+    let mut records = service.jobs.store().jobs(filter).await?;
+    let more = records.len() > limit as usize;
+    records.truncate(limit as usize);
+    let next_cursor = records.last().map(|job| job.id).filter(|_| more);
+    let jobs = records.into_iter().map(Job::try_from).collect::<Result<_, _>>()?;
+    Ok(Json(JobList { jobs, next_cursor }))
+}
+
+/// One job: status, plan, progress, stop reason, report.
+#[utoipa::path(
+    get, path = "/v1/jobs/{id}", tag = document::JOBS, operation_id = "get_job",
+    params(("id" = Uuid, Path, description = "The job's id.")),
+    responses((status = 200, description = "The job.", body = Job))
+)]
+pub async fn get(State(service): State<Service>, JobId(id): JobId) -> Result<Json<Job>, Problem> {
+    let job = service.jobs.store().job(id).await?.ok_or(JobsError::NoJob(id))?;
+    Ok(Json(job.try_into()?))
+}
+
+/// Stop a job within one iteration; what is stored is kept. An ended job stays as it is.
+#[utoipa::path(
+    post, path = "/v1/jobs/{id}/cancel", tag = document::JOBS, operation_id = "cancel_job",
+    params(("id" = Uuid, Path, description = "The job's id.")),
+    responses((status = 202, description = "The job; a running one ends shortly.", body = Job))
+)]
+pub async fn cancel(State(service): State<Service>, JobId(id): JobId) -> Result<(StatusCode, Json<Job>), Problem> {
+    let job = service.jobs.cancel(id).await?;
+    Ok((StatusCode::ACCEPTED, Json(job.try_into()?)))
+}
+
+/// Stop a job and drop what is stored.
+#[utoipa::path(
+    delete, path = "/v1/jobs/{id}", tag = document::JOBS, operation_id = "delete_job",
+    params(("id" = Uuid, Path, description = "The job's id.")),
+    responses((status = 204, description = "The job is gone."))
+)]
+pub async fn delete(State(service): State<Service>, JobId(id): JobId) -> Result<StatusCode, Problem> {
+    service.jobs.delete(id).await?;
+    Ok(StatusCode::NO_CONTENT)
+}

@@ -1,0 +1,147 @@
+//! What is answered, as JSON.
+
+use crate::path::{Increment, Plan, Report, StopReason};
+use crate::store::{JobRecord, Status};
+use jiff::Timestamp;
+use serde::Serialize;
+use serde_json::value::RawValue;
+use utoipa::ToSchema;
+use uuid::Uuid;
+
+/// A job, without its increments.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Job {
+    pub id: Uuid,
+    /// The model's own name.
+    pub name: Option<String>,
+    pub status: Status,
+    pub progress: Progress,
+    /// What the scene needs, and what is left out and why.
+    #[schema(value_type = Plan)]
+    pub plan: Box<RawValue>,
+    /// Why the path ended; null before that, and for failed jobs.
+    #[schema(value_type = Option<StopReason>)]
+    pub stop_reason: Option<String>,
+    #[schema(value_type = Option<Report>)]
+    pub report: Option<Box<RawValue>>,
+    /// Why the job failed.
+    pub error: Option<String>,
+    /// A cancel was asked for; the job ends within one iteration.
+    pub cancel_requested: bool,
+    /// Times the job was started.
+    pub attempt: u32,
+    pub max_attempts: u32,
+    #[schema(value_type = String, format = DateTime)]
+    pub created_at: Timestamp,
+    #[schema(value_type = Option<String>, format = DateTime)]
+    pub started_at: Option<Timestamp>,
+    #[schema(value_type = Option<String>, format = DateTime)]
+    pub ended_at: Option<Timestamp>,
+    pub links: Links,
+}
+
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Progress {
+    /// Increments stored so far.
+    pub increments: u64,
+    /// Index of the last one; null before the first.
+    pub last_index: Option<u64>,
+    /// What the request bounds them by.
+    pub max_increments: u64,
+}
+
+/// Addresses of what belongs to a job.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Links {
+    #[serde(rename = "self")]
+    pub itself: String,
+    pub increments: String,
+    pub stream: String,
+    pub path_csv: String,
+}
+
+impl TryFrom<JobRecord> for Job {
+    type Error = serde_json::Error;
+
+    fn try_from(record: JobRecord) -> Result<Self, serde_json::Error> {
+        let itself = address(record.id);
+        Ok(Self {
+            id: record.id,
+            name: record.name,
+            status: record.status,
+            progress: Progress {
+                increments: record.last_index.map_or(0, |index| index + 1),
+                last_index: record.last_index,
+                max_increments: record.max_increments,
+            },
+            plan: RawValue::from_string(record.plan)?,
+            stop_reason: record.stop_reason,
+            report: record.report.map(RawValue::from_string).transpose()?,
+            error: record.error,
+            cancel_requested: record.cancel_requested,
+            attempt: record.attempt,
+            max_attempts: record.max_attempts,
+            created_at: record.created_at,
+            started_at: record.started_at,
+            ended_at: record.ended_at,
+            links: Links {
+                increments: format!("{itself}/increments"),
+                stream: format!("{itself}/stream"),
+                path_csv: format!("{itself}/path.csv"),
+                itself,
+            },
+        })
+    }
+}
+
+pub fn address(id: Uuid) -> String {
+    format!("/v1/jobs/{id}")
+}
+
+#[derive(Debug, Serialize, ToSchema)]
+pub struct JobList {
+    /// Newest first.
+    pub jobs: Vec<Job>,
+    /// Pass it as `cursor` for the next page; null on the last one.
+    pub next_cursor: Option<Uuid>,
+}
+
+/// Stored increments, in order.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct IncrementPage {
+    /// Empty when there are no more for now.
+    #[schema(value_type = Vec<Increment>)]
+    pub increments: Vec<Box<RawValue>>,
+    /// Pass it as `after` for the next page: the last index of this one, or what was asked for when it is empty.
+    pub next_after: Option<u64>,
+}
+
+/// A built-in scene.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct SceneSummary {
+    pub name: &'static str,
+    /// What it shows.
+    pub shows: &'static str,
+    /// Where its job request is, ready to post.
+    pub link: String,
+}
+
+#[derive(Debug, Serialize, ToSchema)]
+pub struct SceneList {
+    pub scenes: Vec<SceneSummary>,
+}
+
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Health {
+    /// Always `alive`.
+    pub status: &'static str,
+    pub version: &'static str,
+}
+
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Readiness {
+    /// Always `ready`; what is not ready answers 503.
+    pub status: &'static str,
+    /// Workers alive in this process.
+    pub workers: usize,
+}
