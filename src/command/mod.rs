@@ -1,1 +1,78 @@
-//! x
+//! The command line: one file a command.
+//!
+//! Exit status: 0 done, 1 stopped or failed, 2 bad input. Called by `main` alone.
+
+mod check;
+mod health;
+mod input;
+mod openapi;
+mod scenes;
+mod serve;
+mod solve;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+const FAILED: u8 = 1;
+const BAD_INPUT: u8 = 2;
+
+/// Equilibrium paths of structures with unilateral contact and Coulomb friction.
+#[derive(Debug, Parser)]
+#[command(name = "arcslip", version)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Serve(serve::Arguments),
+    Solve(solve::Arguments),
+    Check(check::Arguments),
+    Scenes(scenes::Arguments),
+    Health(health::Arguments),
+    #[command(hide = true)]
+    Openapi(openapi::Arguments),
+}
+
+/// How a command ended, when not well.
+#[derive(Debug)]
+pub enum Failure {
+    /// The input is at fault: one line each.
+    Input(Vec<String>),
+    /// Something else is.
+    Other(String),
+}
+
+impl Failure {
+    fn other(error: impl std::fmt::Display) -> Self {
+        Self::Other(error.to_string())
+    }
+}
+
+type Outcome = Result<ExitCode, Failure>;
+
+/// Runs what the process was asked for.
+pub fn run() -> ExitCode {
+    let outcome = match Arguments::parse().command {
+        Command::Serve(arguments) => serve::run(&arguments),
+        Command::Solve(arguments) => solve::run(&arguments),
+        Command::Check(arguments) => check::run(&arguments),
+        Command::Scenes(arguments) => scenes::run(&arguments),
+        Command::Health(arguments) => health::run(&arguments),
+        Command::Openapi(arguments) => openapi::run(&arguments),
+    };
+    match outcome {
+        Ok(code) => code,
+        Err(Failure::Input(lines)) => {
+            for line in lines {
+                eprintln!("{line}");
+            }
+            ExitCode::from(BAD_INPUT)
+        }
+        Err(Failure::Other(text)) => {
+            eprintln!("arcslip: {text}");
+            ExitCode::from(FAILED)
+        }
+    }
+}

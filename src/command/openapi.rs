@@ -1,0 +1,13 @@
+//! `arcslip openapi`: the description that is committed under `openapi/`.
+
+use super::{Failure, Outcome};
+use std::process::ExitCode;
+
+/// Print the OpenAPI document.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {}
+
+pub fn run(_arguments: &Arguments) -> Outcome {
+    print!("{}", crate::http::openapi_json().map_err(Failure::other)?);
+    Ok(ExitCode::SUCCESS)
+}

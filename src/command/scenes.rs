@@ -1,0 +1,28 @@
+//! `arcslip scenes`: what is built in.
+
+use super::Outcome;
+use crate::scenes;
+use std::process::ExitCode;
+
+/// List the built-in scenes, or print one, ready to change and solve.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Print this scene's job request instead.
+    name: Option<String>,
+}
+
+pub fn run(arguments: &Arguments) -> Outcome {
+    match &arguments.name {
+        Some(name) => match scenes::find(name) {
+            Some(scene) => print!("{}", scene.request),
+            None => return Err(super::Failure::Input(vec![format!("{name}: no built-in scene has this name")])),
+        },
+        None => {
+            let width = scenes::ALL.iter().map(|scene| scene.name.len()).max().unwrap_or_default();
+            for scene in scenes::ALL {
+                println!("{:width$}  {}", scene.name, scene.shows);
+            }
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}

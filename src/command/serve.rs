@@ -1,0 +1,78 @@
+//! `arcslip serve`: the HTTP service and its workers.
+
+use super::{Failure, Outcome};
+use crate::http::server::Server;
+use crate::jobs::{PathSolver, Settings, demonstration};
+use crate::store;
+use std::net::SocketAddr;
+use std::num::NonZero;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+use tokio::signal::unix::{SignalKind, signal};
+use tracing_subscriber::EnvFilter;
+
+/// Take jobs over HTTP, solve them, keep them.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Address and port to listen on.
+    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:8080", env = "ARCSLIP_LISTEN")]
+    listen: SocketAddr,
+    /// Where jobs are kept; created if it is not there.
+    #[arg(long, value_name = "FILE", default_value = "arcslip.db", env = "ARCSLIP_DATABASE")]
+    database: PathBuf,
+    /// Solves at a time; 0 answers HTTP only. Default: one a processor.
+    #[arg(long, value_name = "N", env = "ARCSLIP_WORKERS")]
+    workers: Option<usize>,
+    /// Queue every built-in scene once.
+    #[arg(long)]
+    demo: bool,
+    /// How the log is written; `RUST_LOG` says how much.
+    #[arg(long, value_enum, default_value_t = LogFormat::Text, env = "ARCSLIP_LOG")]
+    log: LogFormat,
+}
+
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum LogFormat {
+    Text,
+    Json,
+}
+
+pub fn run(arguments: &Arguments) -> Outcome {
+    start_log(arguments.log);
+    tokio::runtime::Builder::new_multi_thread().enable_all().build().map_err(Failure::other)?.block_on(serve(arguments))
+}
+
+async fn serve(arguments: &Arguments) -> Outcome {
+    // Heard from the start, so that a signal during start-up is not lost.
+    let mut interrupt = signal(SignalKind::interrupt()).map_err(Failure::other)?;
+    let mut terminate = signal(SignalKind::terminate()).map_err(Failure::other)?;
+    let store = store::open(&arguments.database).await.map_err(Failure::other)?;
+    let workers = arguments.workers.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, NonZero::get));
+    let settings = Settings { workers, ..Settings::default() };
+    let server =
+        Server::start(arguments.listen, store, Arc::new(PathSolver), settings).await.map_err(Failure::other)?;
+    if arguments.demo {
+        demonstration::queue_scenes(server.jobs()).await.map_err(Failure::other)?;
+    }
+    println!("arcslip listens on http://{}", server.address());
+    tracing::info!(address = %server.address(), database = %arguments.database.display(), workers, "listening");
+    tokio::select! {
+        _ = interrupt.recv() => {}
+        _ = terminate.recv() => {}
+    }
+    tracing::info!("going down");
+    if !server.stop().await {
+        tracing::warn!("went down before everything had ended");
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn start_log(format: LogFormat) {
+    let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new("info"));
+    let log = tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr);
+    match format {
+        LogFormat::Text => log.init(),
+        LogFormat::Json => log.json().init(),
+    }
+}

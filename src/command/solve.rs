@@ -1,0 +1,109 @@
+//! `arcslip solve`: a model's path, one line an increment, as it converges.
+
+use super::{Failure, Outcome, input};
+use crate::cancel::CancelFlag;
+use crate::jobs::{PathSolver, Solver};
+use crate::output::{Table, json_line};
+use crate::path::{self, Increment};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::fs::File;
+use std::io::{IsTerminal, Write};
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Trace a model's path.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    model: input::Model,
+    /// Write increments here rather than to standard output.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    #[arg(long, value_enum, default_value_t = Format::Ndjson)]
+    format: Format,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Format {
+    /// One JSON object a line.
+    Ndjson,
+    /// A table with named columns.
+    Csv,
+}
+
+pub fn run(arguments: &Arguments) -> Outcome {
+    let request = arguments.model.read()?;
+    // Checked before the file is opened, so that a mistake does not cost an earlier result.
+    PathSolver.plan(&request).map_err(input::refused)?;
+    let mut writer = Writer::open(arguments)?;
+    let progress = progress_bar(request.analysis.max_increments, arguments.out.is_some());
+    let mut unwritten = None;
+    let report = PathSolver
+        .solve(&request, CancelFlag::default(), &mut |increment| {
+            progress.set_position(increment.index + 1);
+            match writer.write(&increment) {
+                Ok(()) => ControlFlow::Continue(()),
+                Err(error) => {
+                    unwritten = Some(error);
+                    ControlFlow::Break(())
+                }
+            }
+        })
+        .map_err(input::refused)?;
+    progress.finish_and_clear();
+    if let Some(error) = unwritten {
+        return Err(Failure::Other(format!("the path could not be written: {error}")));
+    }
+    let Some(report) = report else { return Err(Failure::Other("the solver ended without a report".to_owned())) };
+    eprintln!("{} {}", report.sentence, serde_json::to_string(&report).map_err(Failure::other)?);
+    Ok(match report.stop_reason.outcome() {
+        path::Outcome::Completed => ExitCode::SUCCESS,
+        path::Outcome::Stopped | path::Outcome::Cancelled => ExitCode::from(super::FAILED),
+    })
+}
+
+/// Nothing is drawn unless a person watches and the increments go elsewhere.
+fn progress_bar(max_increments: u64, to_file: bool) -> ProgressBar {
+    let elsewhere = to_file || !std::io::stdout().is_terminal();
+    if !(std::io::stderr().is_terminal() && elsewhere) {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{bar:40} {pos} of at most {len} increments, {elapsed}")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(max_increments).with_style(style)
+}
+
+struct Writer {
+    to: Box<dyn Write>,
+    format: Format,
+    table: Option<Table>,
+}
+
+impl Writer {
+    fn open(arguments: &Arguments) -> Result<Self, Failure> {
+        let to: Box<dyn Write> = match &arguments.out {
+            Some(file) => {
+                Box::new(File::create(file).map_err(|error| Failure::Other(format!("{}: {error}", file.display())))?)
+            }
+            None => Box::new(std::io::stdout()),
+        };
+        Ok(Self { to, format: arguments.format, table: None })
+    }
+
+    /// Each increment is written in one piece and at once.
+    fn write(&mut self, increment: &Increment) -> std::io::Result<()> {
+        let text = match self.format {
+            Format::Ndjson => json_line(increment)? + "\n",
+            Format::Csv => match &self.table {
+                Some(table) => table.row(increment),
+                None => {
+                    let table = self.table.insert(Table::fitting(increment));
+                    table.header() + &table.row(increment)
+                }
+            },
+        };
+        self.to.write_all(text.as_bytes())?;
+        self.to.flush()
+    }
+}
