@@ -6,7 +6,7 @@ use arcslip::model::JobRequest;
 use arcslip::model::request::Method;
 use arcslip::path::increment::{PointKind, Status};
 use arcslip::path::{Increment, StopReason};
-use common::{scene, trace};
+use common::paths::{scene, trace};
 
 const METHODS: [Method; 2] = [Method::Auto, Method::Mpec];
 

@@ -5,7 +5,7 @@ mod common;
 use arcslip::model::JobRequest;
 use arcslip::model::request::{Element, Obstacle};
 use arcslip::path::Increment;
-use common::{scene, trace};
+use common::paths::{scene, trace};
 
 /// The same request in other units of length and force.
 fn in_units(mut request: JobRequest, length: f64, force: f64) -> JobRequest {

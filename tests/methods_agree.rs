@@ -3,7 +3,7 @@
 mod common;
 
 use arcslip::model::request::Method;
-use common::{scene, trace};
+use common::paths::{scene, trace};
 
 #[test]
 fn auto_and_mpec_agree_on_every_scene() {

@@ -1,6 +1,6 @@
 //! `arcslip check`: is this model all right, and what would be done?
 
-use super::{Failure, Outcome, input};
+use super::{Failure, Outcome, input, say};
 use crate::path::Scene;
 use std::process::ExitCode;
 
@@ -13,6 +13,6 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Outcome {
     let scene = Scene::new(&arguments.model.read()?).map_err(input::refused)?;
-    println!("{}", serde_json::to_string_pretty(scene.plan()).map_err(Failure::other)?);
+    say(serde_json::to_string_pretty(scene.plan()).map_err(Failure::other)? + "\n")?;
     Ok(ExitCode::SUCCESS)
 }

@@ -1,6 +1,6 @@
 //! `arcslip health`: asks a running service, for containers that have no other client.
 
-use super::{Failure, Outcome};
+use super::{Failure, Outcome, say};
 use std::io::{Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::process::ExitCode;
@@ -19,7 +19,7 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Outcome {
     let status = status_line(&arguments.url)?;
-    println!("{status}");
+    say(format_args!("{status}\n"))?;
     match status.split(' ').nth(1) {
         Some("200") => Ok(ExitCode::SUCCESS),
         _ => Ok(ExitCode::from(super::FAILED)),

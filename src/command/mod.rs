@@ -11,6 +11,7 @@ mod serve;
 mod solve;
 
 use clap::{Parser, Subcommand};
+use std::io::Write;
 use std::process::ExitCode;
 
 const FAILED: u8 = 1;
@@ -51,6 +52,11 @@ impl Failure {
 }
 
 type Outcome = Result<ExitCode, Failure>;
+
+/// Writes to standard output, whose reader may have gone.
+fn say(text: impl std::fmt::Display) -> Result<(), Failure> {
+    write!(std::io::stdout(), "{text}").map_err(|error| Failure::Other(format!("standard output: {error}")))
+}
 
 /// Runs what the process was asked for.
 pub fn run() -> ExitCode {

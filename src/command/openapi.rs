@@ -1,6 +1,6 @@
 //! `arcslip openapi`: the description that is committed under `openapi/`.
 
-use super::{Failure, Outcome};
+use super::{Failure, Outcome, say};
 use std::process::ExitCode;
 
 /// Print the OpenAPI document.
@@ -8,6 +8,6 @@ use std::process::ExitCode;
 pub struct Arguments {}
 
 pub fn run(_arguments: &Arguments) -> Outcome {
-    print!("{}", crate::http::openapi_json().map_err(Failure::other)?);
+    say(crate::http::openapi_json().map_err(Failure::other)?)?;
     Ok(ExitCode::SUCCESS)
 }

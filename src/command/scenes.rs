@@ -1,6 +1,6 @@
 //! `arcslip scenes`: what is built in.
 
-use super::Outcome;
+use super::{Failure, Outcome, say};
 use crate::scenes;
 use std::process::ExitCode;
 
@@ -14,13 +14,13 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Outcome {
     match &arguments.name {
         Some(name) => match scenes::find(name) {
-            Some(scene) => print!("{}", scene.request),
-            None => return Err(super::Failure::Input(vec![format!("{name}: no built-in scene has this name")])),
+            Some(scene) => say(scene.request)?,
+            None => return Err(Failure::Input(vec![format!("{name}: no built-in scene has this name")])),
         },
         None => {
             let width = scenes::ALL.iter().map(|scene| scene.name.len()).max().unwrap_or_default();
             for scene in scenes::ALL {
-                println!("{:width$}  {}", scene.name, scene.shows);
+                say(format_args!("{:width$}  {}\n", scene.name, scene.shows))?;
             }
         }
     }

@@ -1,9 +1,10 @@
 //! `arcslip serve`: the HTTP service and its workers.
 
-use super::{Failure, Outcome};
+use super::{Failure, Outcome, say};
 use crate::http::server::Server;
 use crate::jobs::{PathSolver, Settings, demonstration};
 use crate::store;
+use std::io::IsTerminal;
 use std::net::SocketAddr;
 use std::num::NonZero;
 use std::path::PathBuf;
@@ -55,7 +56,8 @@ async fn serve(arguments: &Arguments) -> Outcome {
     if arguments.demo {
         demonstration::queue_scenes(server.jobs()).await.map_err(Failure::other)?;
     }
-    println!("arcslip listens on http://{}", server.address());
+    // Where standard output is closed, the log says the same.
+    let _ = say(format_args!("arcslip listens on http://{}\n", server.address()));
     tracing::info!(address = %server.address(), database = %arguments.database.display(), workers, "listening");
     tokio::select! {
         _ = interrupt.recv() => {}
@@ -70,9 +72,14 @@ async fn serve(arguments: &Arguments) -> Outcome {
 
 fn start_log(format: LogFormat) {
     let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new("info"));
-    let log = tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr);
+    let log = tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_ansi(std::io::stderr().is_terminal())
+        .with_writer(std::io::stderr);
     match format {
         LogFormat::Text => log.init(),
         LogFormat::Json => log.json().init(),
     }
+    // A panic in a solve belongs to its job: in the log it stands under that job's span.
+    std::panic::set_hook(Box::new(|panic| tracing::error!(%panic, "a panic")));
 }

@@ -144,7 +144,10 @@ fn follow(service: Service, id: Uuid, mut after: Option<u64>) -> impl Stream<Ite
 }
 
 fn events(service: Service, id: Uuid, after: Option<u64>) -> impl Stream<Item = Result<Event, Infallible>> {
+    // The request's span ends with its answer's head; what a stream has to say later still belongs to it.
+    let span = tracing::Span::current();
     follow(service, id, after).map(move |happening| {
+        let _entered = span.enter();
         let retry = || Event::default().retry(RETRY);
         Ok(match happening {
             Happening::Increment(line) => {
@@ -170,8 +173,10 @@ fn events(service: Service, id: Uuid, after: Option<u64>) -> impl Stream<Item = 
 fn lines(service: Service, id: Uuid, after: Option<u64>) -> impl Stream<Item = io::Result<String>> {
     // An error breaks the body off, so that a client can tell a whole path from a part of one.
     let broken = |why: &str| Some(Err(io::Error::other(why.to_owned())));
-    follow(service, id, after)
-        .map(move |happening| match happening {
+    let span = tracing::Span::current();
+    follow(service, id, after).filter_map(move |happening| {
+        let _entered = span.enter();
+        match happening {
             Happening::Increment(line) => Some(Ok(line.body + "\n")),
             Happening::Ended(_) => None,
             Happening::Deleted => broken("the job was deleted"),
@@ -180,6 +185,6 @@ fn lines(service: Service, id: Uuid, after: Option<u64>) -> impl Stream<Item = i
                 tracing::error!(%error, job = %id, "a stream broke off");
                 broken("the store is not available")
             }
-        })
-        .filter_map(|line| line)
+        }
+    })
 }

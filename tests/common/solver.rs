@@ -1,0 +1,128 @@
+//! A solver that makes increments up: as many as `max_increments` says, the same in every run but for `elapsed_s`.
+
+use arcslip::cancel::CancelFlag;
+use arcslip::jobs::Solver;
+use arcslip::model::{InputErrors, JobRequest};
+use arcslip::path::increment::{ContactState, Diagnostics, Energy, Point, PointKind, Status};
+use arcslip::path::{Increment, Plan, Report, StopReason};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::Duration;
+
+/// Models of this name panic at their third increment.
+pub const PANICS: &str = "panics";
+
+#[derive(Clone, Default)]
+pub struct MadeUp {
+    /// Between increments.
+    pub pause: Duration,
+    /// Waits before this index until [`MadeUp::let_go`].
+    pub hold_at: Option<u64>,
+    released: Arc<AtomicBool>,
+    /// Solves begun; told apart by it, `elapsed_s` shows which run an increment is from.
+    pub runs: Arc<AtomicU64>,
+}
+
+impl MadeUp {
+    pub fn holding_at(index: u64) -> Self {
+        Self { hold_at: Some(index), ..Self::default() }
+    }
+
+    pub fn pausing(pause: Duration) -> Self {
+        Self { pause, ..Self::default() }
+    }
+
+    pub fn let_go(&self) {
+        self.released.store(true, Ordering::Relaxed);
+    }
+
+    fn wait(&self, index: u64, cancel: &CancelFlag) {
+        std::thread::sleep(self.pause);
+        while self.hold_at == Some(index) && !self.released.load(Ordering::Relaxed) && !cancel.is_cancelled() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+}
+
+impl Solver for MadeUp {
+    fn plan(&self, request: &JobRequest) -> Result<Plan, InputErrors> {
+        Ok(Plan {
+            unknowns: 2,
+            contacts: 1,
+            stages: request.model.stages.len() as u64,
+            displacement_scale: 1.0,
+            force_scale: 1.0,
+            load_scales: vec![1.0],
+            left_out: vec![],
+        })
+    }
+
+    fn solve(
+        &self,
+        request: &JobRequest,
+        cancel: CancelFlag,
+        accept: &mut dyn FnMut(Increment) -> ControlFlow<()>,
+    ) -> Result<Option<Report>, InputErrors> {
+        let run = self.runs.fetch_add(1, Ordering::Relaxed) + 1;
+        let mut stop_reason = StopReason::MaxIncrements;
+        let mut increments = 0;
+        for index in 0..request.analysis.max_increments {
+            self.wait(index, &cancel);
+            if cancel.is_cancelled() {
+                stop_reason = StopReason::Cancelled;
+                break;
+            }
+            assert!(!(request.model.name.as_deref() == Some(PANICS) && index == 3), "a made-up defect");
+            increments += 1;
+            if accept(increment(index, run)).is_break() {
+                return Ok(None);
+            }
+        }
+        Ok(Some(Report {
+            stop_reason,
+            sentence: stop_reason.sentence().to_owned(),
+            increments,
+            elapsed_s: run as f64,
+            largest_residual: 0.0,
+            largest_complementarity: 0.0,
+            largest_energy_error: 0.0,
+            factorisations: increments,
+            newton_iterations: increments,
+            qp_solves: 0,
+            mpec_solves: 0,
+        }))
+    }
+}
+
+fn increment(index: u64, run: u64) -> Increment {
+    let along = index as f64 * 0.1;
+    Increment {
+        index,
+        stage: "push, \"slowly\"".into(),
+        load_factor: along.sin(),
+        arc_length: along,
+        step: 0.1,
+        displacements: [("tip".into(), vec![along.cos() / 3.0, -1e-300])].into_iter().collect(),
+        contacts: vec![ContactState {
+            node: "tip".into(),
+            obstacle: "floor".into(),
+            status: Status::Slip,
+            gap: 0.0,
+            normal_reaction: along,
+            tangential_reaction: vec![-0.3 * along],
+            slip: vec![0.1],
+        }],
+        point: Point {
+            kind: if index == 0 { PointKind::Start } else { PointKind::Regular },
+            bifurcation: false,
+            event: None,
+            better_direction: false,
+            unexplored_modes: 0,
+            degenerate: false,
+        },
+        directions: None,
+        energy: Energy { external_work: along, strain: 0.6 * along, dissipated: 0.4 * along },
+        diagnostics: Diagnostics { elapsed_s: run as f64, ..Diagnostics::default() },
+    }
+}

@@ -1,0 +1,101 @@
+//! Every error is a problem document with a stable type, and tells nothing of the machine.
+#![cfg(feature = "server")]
+
+mod common;
+
+use common::service::request;
+use common::server::TestServer;
+use common::solver::MadeUp;
+use reqwest::{Method, RequestBuilder};
+use serde_json::{Value, json};
+
+/// Sends, and checks what holds for every error.
+async fn problem(ask: RequestBuilder, status: u16, kind: &str) -> Value {
+    let answer = ask.send().await.expect("an answer");
+    assert_eq!(answer.status(), status, "{kind}");
+    assert_eq!(answer.headers()["content-type"], "application/problem+json", "{kind}");
+    assert!(answer.headers().contains_key("x-request-id"), "{kind}");
+    let text = answer.text().await.expect("a body");
+    for leak in ["SELECT", "INSERT", "sqlx", "sqlite", "src/", ".rs", "/tmp", "panicked"] {
+        assert!(!text.contains(leak), "{text}");
+    }
+    let problem: Value = serde_json::from_str(&text).expect("a problem");
+    assert_eq!(problem["type"], format!("/problems/{kind}"));
+    assert_eq!(problem["status"], status);
+    assert!(problem["title"].is_string() && problem["detail"].is_string(), "{problem}");
+    problem
+}
+
+#[tokio::test]
+async fn addresses_and_methods() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let server = TestServer::start(&folder.path().join("jobs.db"), MadeUp::default()).await;
+    let unknown = "00000000-0000-7000-8000-000000000000";
+    for path in ["/nothing", "/v1", "/v1/jobs/", "/docs/nothing", "/v1/scenes/nothing"] {
+        problem(server.ask(Method::GET, path), 404, "not-found").await;
+    }
+    for path in ["", "/increments", "/stream", "/path.csv"] {
+        problem(server.ask(Method::GET, &format!("/v1/jobs/{unknown}{path}")), 404, "not-found").await;
+    }
+    problem(server.ask(Method::POST, &format!("/v1/jobs/{unknown}/cancel")), 404, "not-found").await;
+    problem(server.ask(Method::DELETE, &format!("/v1/jobs/{unknown}")), 404, "not-found").await;
+    problem(server.ask(Method::PUT, "/v1/jobs"), 405, "method-not-allowed").await;
+    problem(server.ask(Method::POST, "/healthz"), 405, "method-not-allowed").await;
+    let answer = server.ask(Method::PATCH, "/v1/jobs").send().await.expect("an answer");
+    assert!(answer.headers()["allow"].to_str().expect("text").contains("POST"));
+}
+
+#[tokio::test]
+async fn parameters_and_headers() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let server = TestServer::start(&folder.path().join("jobs.db"), MadeUp::default()).await;
+    let id = server.submit(&request("errors", 1)).await;
+    for query in ["limit=0", "limit=201", "limit=-1", "limit=x", "status=done", "cursor=1", "colour=red"] {
+        problem(server.ask(Method::GET, &format!("/v1/jobs?{query}")), 400, "invalid-parameter").await;
+    }
+    for query in ["limit=0", "limit=10001", "after=-1", "after=x", "before=1"] {
+        let path = format!("/v1/jobs/{id}/increments?{query}");
+        problem(server.ask(Method::GET, &path), 400, "invalid-parameter").await;
+    }
+    for path in ["/v1/jobs/1", "/v1/jobs/x/stream", "/v1/jobs/x/increments", "/v1/jobs/x/path.csv"] {
+        problem(server.ask(Method::GET, path), 400, "invalid-parameter").await;
+    }
+    let stream = format!("/v1/jobs/{id}/stream");
+    for last in ["x", "-1", "1.5"] {
+        let ask = server.ask(Method::GET, &stream).header("last-event-id", last);
+        problem(ask, 400, "invalid-parameter").await;
+    }
+    problem(server.ask(Method::GET, &stream).header("accept", "image/png"), 406, "not-acceptable").await;
+    let post = || server.ask(Method::POST, "/v1/jobs").json(&request("errors", 1));
+    problem(post().header("idempotency-key", ""), 400, "invalid-parameter").await;
+    problem(post().header("idempotency-key", "k".repeat(256)), 400, "invalid-parameter").await;
+    problem(server.ask(Method::POST, "/v1/jobs?validate=perhaps").json(&json!({})), 400, "invalid-parameter").await;
+}
+
+#[tokio::test]
+async fn bodies() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let server = TestServer::start(&folder.path().join("jobs.db"), MadeUp::default()).await;
+    let post = |content_type: &str, body: Vec<u8>| {
+        server.ask(Method::POST, "/v1/jobs").header("content-type", content_type).body(body)
+    };
+    let sound = request("errors", 1).to_string().into_bytes();
+    for content_type in ["text/plain", "application/xml", "application/x-www-form-urlencoded", ""] {
+        problem(post(content_type, sound.clone()), 415, "unsupported-media-type").await;
+    }
+    problem(server.ask(Method::POST, "/v1/jobs").body(sound), 415, "unsupported-media-type").await;
+    for body in ["", "{", "nonsense", "{\"model\": }", "{} {}", "\u{1}"] {
+        problem(post("application/json", body.as_bytes().to_vec()), 400, "invalid-json").await;
+    }
+    problem(post("application/json", vec![b'"', 0xff, b'"']), 400, "invalid-json").await;
+    problem(post("application/json", "[".repeat(100_000).into_bytes()), 400, "invalid-json").await;
+    for body in ["{}", "[]", "null", "7", "{\"model\": 1}", "{\"model\": {}, \"colour\": 1}"] {
+        let problem = problem(post("application/json", body.as_bytes().to_vec()), 422, "invalid-model").await;
+        let errors = problem["errors"].as_array().expect("errors");
+        assert!(!errors.is_empty());
+        assert!(errors.iter().all(|error| error["pointer"].is_string() && error["detail"].is_string()));
+    }
+    let too_large = vec![b' '; (16 << 20) + 1];
+    problem(post("application/json; charset=utf-8", too_large), 413, "body-too-large").await;
+    assert_eq!(server.get_json("/v1/jobs").await["jobs"], json!([]));
+}

@@ -1,0 +1,137 @@
+//! Going down and coming back: nothing stored is lost, no index is missing or twice.
+#![cfg(feature = "server")]
+
+mod common;
+
+use arcslip::store::{self, Ending, LeaseAnswer, Line, NewJob, Page, Status, Submitted};
+use common::server::TestServer;
+use common::solver::MadeUp;
+use common::service::{indices, request, without_elapsed};
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+const ALL: Page = Page { rows: 10_000, bytes: usize::MAX };
+
+#[tokio::test]
+async fn a_job_goes_on_after_a_restart_with_every_index_once() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let database = folder.path().join("jobs.db");
+    let solver = MadeUp::holding_at(40);
+    let server = TestServer::start(&database, solver.clone()).await;
+    let id = server.submit(&request("restarted", 100)).await;
+    server.until(&id, |job| job["progress"]["increments"] == 40).await;
+    let mut open_stream = server.stream(&id, None).await;
+    let began = Instant::now();
+    assert!(server.stop().await, "everything ends within the bound");
+    assert!(began.elapsed() < Duration::from_secs(5));
+    // The open stream ended by itself and says when to come back.
+    let mut events = Vec::new();
+    while let Some(event) = open_stream.next().await {
+        events.push(event);
+    }
+    assert_eq!(events.len(), 41);
+    assert_eq!(events[40].retry, "2000");
+
+    solver.let_go();
+    let server = TestServer::start(&database, solver.clone()).await;
+    let job = server.ended(&id).await;
+    assert_eq!(job["status"], "completed");
+    assert_eq!(job["attempt"], 1, "going down in good order costs no attempt");
+    assert_eq!(solver.runs.load(Ordering::Relaxed), 2);
+    let lines = server.lines(&id).await;
+    assert_eq!(indices(lines.iter().map(String::as_str)), (0..100).collect::<Vec<_>>());
+    // What was stored before is not rewritten: it still carries the first run's time.
+    for (place, line) in lines.iter().enumerate() {
+        let run = if place < 40 { "\"elapsed_s\":1.0" } else { "\"elapsed_s\":2.0" };
+        assert!(line.contains(run), "{line}");
+    }
+    let undisturbed = server.submit(&request("restarted", 100)).await;
+    server.ended(&undisturbed).await;
+    let strip = |lines: Vec<String>| lines.iter().map(|line| without_elapsed(line)).collect::<Vec<_>>();
+    assert_eq!(strip(lines), strip(server.lines(&undisturbed).await));
+    assert!(server.stop().await);
+}
+
+#[tokio::test]
+async fn a_lost_workers_job_is_taken_over_and_its_late_writes_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let database = folder.path().join("jobs.db");
+    let lost = store::open(&database).await.expect("a store");
+    let id = queue(lost.as_ref(), 3).await;
+    let claim = lost.claim("lost", Duration::from_millis(50)).await.expect("a claim").expect("a job");
+    let before = [line(0, "{\"index\":0,\"elapsed_s\":0}"), line(1, "{\"index\":1,\"elapsed_s\":0}")];
+    lost.append(&claim.lease, &before, Duration::from_millis(50)).await.expect("stored");
+
+    let server = TestServer::start(&database, MadeUp::default()).await;
+    let job = server.ended(&id.to_string()).await;
+    assert_eq!(job["status"], "completed");
+    assert_eq!(job["attempt"], 2);
+    let lines = server.lines(&id.to_string()).await;
+    assert_eq!(indices(lines.iter().map(String::as_str)), (0..6).collect::<Vec<_>>());
+    assert_eq!(lines[..2], [before[0].body.clone(), before[1].body.clone()]);
+
+    let late = [line(6, "{}")];
+    let minute = Duration::from_secs(60);
+    assert_eq!(lost.append(&claim.lease, &late, minute).await.expect("an answer"), LeaseAnswer::Lost);
+    assert_eq!(lost.renew(&claim.lease, minute).await.expect("an answer"), LeaseAnswer::Lost);
+    assert_eq!(lost.release(&claim.lease).await.expect("an answer"), LeaseAnswer::Lost);
+    assert_eq!(lost.finish(&claim.lease, Ending::failed("late")).await.expect("an answer"), LeaseAnswer::Lost);
+    assert_eq!(server.ended(&id.to_string()).await, job);
+    assert_eq!(lost.increments(id, None, ALL).await.expect("increments").len(), 6);
+}
+
+#[tokio::test]
+async fn a_job_that_loses_every_worker_fails_with_the_reason() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let store = store::open(&folder.path().join("jobs.db")).await.expect("a store");
+    let id = queue(store.as_ref(), 2).await;
+    for attempt in 1..=2 {
+        let claim = store.claim("lost", Duration::ZERO).await.expect("a claim").expect("a job");
+        assert_eq!(claim.lease.attempt, attempt);
+        tokio::time::sleep(Duration::from_millis(5)).await;
+        assert_eq!(store.reclaim_expired().await.expect("an answer"), 1);
+    }
+    assert!(store.claim("another", Duration::ZERO).await.expect("an answer").is_none());
+    let job = store.job(id).await.expect("an answer").expect("a job");
+    assert_eq!(job.status, Status::Failed);
+    assert_eq!(job.error.as_deref(), Some("the worker was lost in each of 2 attempts"));
+}
+
+#[tokio::test]
+async fn a_batch_is_stored_whole_or_not_at_all() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let store = store::open(&folder.path().join("jobs.db")).await.expect("a store");
+    let id = queue(store.as_ref(), 2).await;
+    let minute = Duration::from_secs(60);
+    let claim = store.claim("worker", minute).await.expect("a claim").expect("a job");
+    let first: Vec<Line> = (0..1200).map(|index| line(index, "{}")).collect();
+    store.append(&claim.lease, &first, minute).await.expect("stored");
+    let with_repeat = [line(1200, "{}"), line(1199, "{}")];
+    assert!(store.append(&claim.lease, &with_repeat, minute).await.is_err());
+    let stored = store.increments(id, Some(1000), ALL).await.expect("increments");
+    assert_eq!(stored.len(), 199);
+    assert_eq!(store.job(id).await.expect("an answer").expect("a job").last_index, Some(1199));
+    // Large increments come in smaller pages.
+    let page = store.increments(id, None, Page { rows: 100, bytes: 10 }).await.expect("increments");
+    assert_eq!(page.len(), 5);
+}
+
+async fn queue(store: &dyn store::Store, max_attempts: u32) -> uuid::Uuid {
+    let job = NewJob {
+        name: None,
+        request: request("queued", 6).to_string(),
+        plan: "{}".to_owned(),
+        max_increments: 6,
+        max_attempts,
+        priority: 0,
+        idempotency_key: None,
+    };
+    match store.submit(job).await.expect("queued") {
+        Submitted::Created(job) => job.id,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn line(index: u64, body: &str) -> Line {
+    Line { index, body: body.to_owned() }
+}
