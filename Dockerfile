@@ -1,0 +1,17 @@
+# Build: the README's command.
+FROM rust:1.95-bookworm AS build
+WORKDIR /arcslip
+COPY . .
+RUN cargo build --release
+
+FROM debian:bookworm-slim
+RUN useradd --system --uid 10001 --no-create-home arcslip && install --directory --owner=arcslip /data
+COPY --from=build /arcslip/target/release/arcslip /usr/local/bin/arcslip
+USER arcslip
+VOLUME /data
+ENV ARCSLIP_DATABASE=/data/arcslip.db ARCSLIP_LISTEN=0.0.0.0:8080
+EXPOSE 8080
+STOPSIGNAL SIGTERM
+HEALTHCHECK --interval=15s --timeout=6s --start-period=10s CMD ["arcslip", "health"]
+ENTRYPOINT ["arcslip"]
+CMD ["serve"]
