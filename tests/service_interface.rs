@@ -25,6 +25,11 @@ async fn the_committed_description_is_the_one_that_is_served() {
     let committed = Path::new(env!("CARGO_MANIFEST_DIR")).join("openapi/openapi.json");
     let committed = std::fs::read_to_string(committed).expect("the committed description");
     assert!(served == committed, "write it anew: cargo run -- openapi > openapi/openapi.json");
+    let document: Value = serde_json::from_str(&committed).expect("JSON");
+    // Two types of one Rust name must not become one schema.
+    let schemas = &document["components"]["schemas"];
+    assert_eq!(schemas["Status"]["enum"][0], "free");
+    assert_eq!(schemas["JobStatus"]["enum"][0], "queued");
     let printed = arcslip().arg("openapi").output().expect("the program runs");
     assert_eq!(String::from_utf8(printed.stdout).expect("text"), committed);
 }

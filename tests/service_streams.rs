@@ -96,3 +96,24 @@ async fn deleting_a_job_ends_its_streams() {
     let names: Vec<String> = stream.rest().await.into_iter().map(|event| event.event).collect();
     assert_eq!(names, ["deleted"]);
 }
+
+#[tokio::test]
+async fn a_server_without_workers_streams_and_cancels_what_another_process_solves() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let database = folder.path().join("jobs.db");
+    let mut settings = common::server::settings();
+    settings.workers = 0;
+    let front = TestServer::start_with(&database, MadeUp::default(), settings).await;
+    let back = TestServer::start(&database, MadeUp::holding_at(3)).await;
+    let id = front.submit(&request("elsewhere", 10)).await;
+    let mut stream = front.stream(&id, None).await;
+    for index in ["0", "1", "2"] {
+        assert_eq!(stream.next().await.map(|event| event.id).as_deref(), Some(index));
+    }
+    front.post(&format!("/v1/jobs/{id}/cancel"), &Value::Null).await;
+    let rest = stream.rest().await;
+    assert_eq!(rest.len(), 1);
+    let job: Value = serde_json::from_str(&rest[0].data).expect("a job");
+    assert_eq!(job["status"], "cancelled");
+    assert!(back.stop().await && front.stop().await);
+}

@@ -52,7 +52,7 @@ enum Finished {
 
 async fn trace(jobs: &Jobs, claim: &Claim, shutdown: &CancellationToken) -> Result<Finished, StoreError> {
     let lease = &claim.lease;
-    let (cancel, _entry): (CancelFlag, running::Entry) = jobs.running.enter(lease.job);
+    let (cancel, _entry): (CancelFlag, running::Entry) = jobs.running.enter(lease);
     // A cancel between the claim and the line above found no flag to set.
     if jobs.store.job(lease.job).await?.is_none_or(|job| job.cancel_requested) {
         cancel.cancel();
