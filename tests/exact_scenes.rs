@@ -31,16 +31,8 @@ fn one_bar_load(friction: f64, x: f64) -> f64 {
 
 /// Limit points of that branch: zeros of `ds/dx`, from 30-digit arithmetic.
 const ONE_BAR_LIMITS: [(&str, f64, [(f64, f64); 2]); 2] = [
-    (
-        "one-bar-truss",
-        0.3,
-        [(-0.557709058500982, 0.2733153855772578), (0.8506427737191122, -0.1139816591452569)],
-    ),
-    (
-        "one-bar-truss-rough",
-        1.0,
-        [(-0.3439878262095172, 0.525388017529103), (1.23899488443231, -0.01753282676883096)],
-    ),
+    ("one-bar-truss", 0.3, [(-0.557709058500982, 0.2733153855772578), (0.8506427737191122, -0.1139816591452569)]),
+    ("one-bar-truss-rough", 1.0, [(-0.3439878262095172, 0.525388017529103), (1.23899488443231, -0.01753282676883096)]),
 ];
 
 #[test]
@@ -96,7 +88,8 @@ fn klarbring() {
             close(corner.displacements["node"][1], 0.0, 1e-14, "corner's height");
         }
         for increment in increments.iter().filter(|increment| &*increment.stage == "pull") {
-            let (s, x, y) = (increment.load_factor, increment.displacements["node"][0], increment.displacements["node"][1]);
+            let (s, x, y) =
+                (increment.load_factor, increment.displacements["node"][0], increment.displacements["node"][1]);
             if increment.index < corners[0].index {
                 close(x, 0.0, 0.0, "stuck");
             } else if increment.index <= corners[1].index {
@@ -114,7 +107,8 @@ fn klarbring() {
 /// slip at `u_x = x`: `r_n = p - b x`, `s = a x + μ (p - b x)`; free at `x = p/b`.
 #[test]
 fn klarbring_in_other_stiffnesses_and_units() {
-    for (a, b, c, friction) in [(1.0, 0.8, 1.0, 1.5), (2.0, 1.5, 3.0, 1.8), (1.0, 0.9, 0.9, 4.0), (5.0, 4.0, 4.0, 1.3)] {
+    for (a, b, c, friction) in [(1.0, 0.8, 1.0, 1.5), (2.0, 1.5, 3.0, 1.8), (1.0, 0.9, 0.9, 4.0), (5.0, 4.0, 4.0, 1.3)]
+    {
         for (length, force) in [(1.0, 1.0), (1e9, 1.0), (1e-9, 1.0), (1.0, 1e9), (1.0, 1e-9), (1e-3, 1e-6)] {
             let unit = force / length;
             let mut request = scene("klarbring");

@@ -3,8 +3,8 @@
 
 mod common;
 
-use common::service::request;
 use common::server::TestServer;
+use common::service::request;
 use common::solver::MadeUp;
 use reqwest::{Method, RequestBuilder};
 use serde_json::{Value, json};

@@ -5,8 +5,8 @@ mod common;
 
 use arcslip::jobs::PathSolver;
 use common::server::TestServer;
-use common::solver::MadeUp;
 use common::service::{indices, request, without_elapsed};
+use common::solver::MadeUp;
 use reqwest::{Method, StatusCode};
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Write};

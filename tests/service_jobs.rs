@@ -4,8 +4,8 @@
 mod common;
 
 use common::server::TestServer;
-use common::solver::{MadeUp, PANICS};
 use common::service::{indices, request};
+use common::solver::{MadeUp, PANICS};
 use reqwest::{Method, StatusCode};
 use serde_json::{Value, json};
 use std::time::Duration;

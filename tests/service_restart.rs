@@ -5,8 +5,8 @@ mod common;
 
 use arcslip::store::{self, Ending, LeaseAnswer, Line, NewJob, Page, Status, Submitted};
 use common::server::TestServer;
-use common::solver::MadeUp;
 use common::service::{indices, request, without_elapsed};
+use common::solver::MadeUp;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 

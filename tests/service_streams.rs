@@ -4,8 +4,8 @@
 mod common;
 
 use common::server::TestServer;
-use common::solver::MadeUp;
 use common::service::{indices, request};
+use common::solver::MadeUp;
 use reqwest::Method;
 use serde_json::Value;
 use std::time::Duration;

@@ -170,7 +170,12 @@ impl<'m> Judge<'m> {
 }
 
 /// `L`, `L0` and the unit direction of a bar.
-fn bar_geometry(model: &Model, nodes: &[String], rest: Option<f64>, u: &[Vec<f64>]) -> (f64, f64, Vec<f64>, [usize; 2]) {
+fn bar_geometry(
+    model: &Model,
+    nodes: &[String],
+    rest: Option<f64>,
+    u: &[Vec<f64>],
+) -> (f64, f64, Vec<f64>, [usize; 2]) {
     let index = |name: &String| model.nodes.get_index_of(name).unwrap_or(0);
     let ends = [index(&nodes[0]), index(&nodes[1])];
     let reference: Vec<f64> = (0..model.dimension).map(|k| model.nodes[ends[1]][k] - model.nodes[ends[0]][k]).collect();

@@ -134,9 +134,7 @@ impl Start<'_> {
         watches.iter().copied().find(|watch| {
             let scale = COINCIDING * watch.scale(self.force_scale.max(reached.corrected.force_scale));
             let last = self.value(*watch, &reached.corrected.state, &reached.rate);
-            watch.is_of_contact()
-                && last <= scale
-                && self.value(*watch, self.state, self.rate) > scale
+            watch.is_of_contact() && last <= scale && self.value(*watch, self.state, self.rate) > scale
         })
     }
 

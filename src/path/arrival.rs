@@ -54,14 +54,8 @@ impl Path<'_> {
         stage_ends: bool,
     ) -> Arrival {
         let standings = self.standings(&self.here.state);
-        let mut point = Point {
-            kind,
-            bifurcation: false,
-            event,
-            better_direction: false,
-            unexplored_modes: 0,
-            degenerate: false,
-        };
+        let mut point =
+            Point { kind, bifurcation: false, event, better_direction: false, unexplored_modes: 0, degenerate: false };
         let settled = standings.iter().all(|standing| matches!(standing, Standing::Settled(_)));
         if settled {
             return Arrival { point, options: Vec::new(), taken: None, stop: None, stage_ends };
@@ -138,5 +132,4 @@ impl Path<'_> {
         self.visited.push(Visited { stage: self.stage, state, modes });
         known
     }
-
 }

@@ -88,7 +88,14 @@ pub fn list(
         let Some((modes, later_load)) = confirmed else { continue };
         let load_sign = sign_of(if sign_of(candidate.rate.load) == 0.0 { later_load } else { candidate.rate.load });
         let retrace = incoming.is_some_and(|incoming| is_reverse(&candidate.rate, incoming));
-        options.push(Choice { rate: candidate.rate, modes, dissipation: candidate.dissipation, load_sign, retrace, mechanism });
+        options.push(Choice {
+            rate: candidate.rate,
+            modes,
+            dissipation: candidate.dissipation,
+            load_sign,
+            retrace,
+            mechanism,
+        });
     }
     (options, found)
 }
@@ -166,15 +173,10 @@ pub fn decide(
 }
 
 /// The direction that the rule puts first, among those that are eligible.
-pub fn preferred(
-    options: &[Choice],
-    previous: &Rate,
-    rules: Rules,
-    eligible: impl Fn(usize) -> bool,
-) -> Option<usize> {
-    (0..options.len()).filter(|&index| eligible(index)).reduce(|best, other| {
-        if is_preferred(&options[other], &options[best], previous, rules) { other } else { best }
-    })
+pub fn preferred(options: &[Choice], previous: &Rate, rules: Rules, eligible: impl Fn(usize) -> bool) -> Option<usize> {
+    (0..options.len())
+        .filter(|&index| eligible(index))
+        .reduce(|best, other| if is_preferred(&options[other], &options[best], previous, rules) { other } else { best })
 }
 
 /// Whether the first of two directions goes before the second.

@@ -29,8 +29,7 @@ pub fn work_and_dissipation(loading: Loading<'_>, modes: &[Mode], start: Placed<
     let chord = start.0.distance(end.0);
     let angle = start.1.product(end.1).clamp(-1.0, 1.0).acos();
     let length = chord * (1.0 + angle * angle / 24.0);
-    let load =
-        Ends { first: start.0.load, first_rate: start.1.load, last: end.0.load, last_rate: end.1.load };
+    let load = Ends { first: start.0.load, first_rate: start.1.load, last: end.0.load, last_rate: end.1.load };
     // Motions are measured from the start, so that large displacements cost no digits.
     let change: Vec<f64> = end.0.displacement.iter().zip(&start.0.displacement).map(|(a, b)| a - b).collect();
     let path = Ends {

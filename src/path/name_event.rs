@@ -12,12 +12,7 @@ pub(super) fn describe_start(scene: &Scene) -> String {
 }
 
 /// Which contacts change, from what to what; where the path ends, which contacts stand at the limit of their mode.
-pub(super) fn describe_change(
-    scene: &Scene,
-    old: &[Mode],
-    new: Option<&[Mode]>,
-    standings: &[Standing],
-) -> String {
+pub(super) fn describe_change(scene: &Scene, old: &[Mode], new: Option<&[Mode]>, standings: &[Standing]) -> String {
     let mut parts = Vec::new();
     for (index, before) in old.iter().enumerate() {
         let (node, obstacle) = &scene.contact_names[index];

@@ -165,10 +165,8 @@ impl<'a> IncrementProgram<'a> {
             let Ok(solution) = mpec::solve(self, &start, &settings, cancel) else { return (None, counts) };
             counts.qp_solves += solution.counts.qp_solves as u64;
             counts.mpec_solves += 1;
-            let usable = matches!(
-                solution.status,
-                mpec::Status::Solved | mpec::Status::PatternSettled | mpec::Status::Feasible
-            );
+            let usable =
+                matches!(solution.status, mpec::Status::Solved | mpec::Status::PatternSettled | mpec::Status::Feasible);
             if !usable {
                 return (None, counts);
             }

@@ -110,8 +110,7 @@ fn contact_rows(scene: &Scene, row: &Row<'_>) -> (Vec<ContactState>, f64) {
         let gap = contact.obstacle.gap(&position);
         let reaction = row.state.reactions[index];
         let tangents = contact.obstacle.tangents(dimension);
-        let motion =
-            |k: usize| -> f64 { (0..dimension).map(|c| (position[c] - before[c]) * tangents[k][c]).sum() };
+        let motion = |k: usize| -> f64 { (0..dimension).map(|c| (position[c] - before[c]) * tangents[k][c]).sum() };
         let scaled = 1.0 / row.force_scale.max(f64::MIN_POSITIVE);
         let normal = reaction.normal * scaled;
         violation = violation.max(-gap).max(-normal).max(gap.min(normal).abs());

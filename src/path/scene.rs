@@ -6,15 +6,15 @@
 //! `σ = φ / max |f|`. All follow the units of the input, so that a change of units changes nothing but round-off.
 
 use super::plan::{LeftOut, Plan};
-use crate::contact::obstacle::Obstacle;
 use crate::contact::Contact;
+use crate::contact::obstacle::Obstacle;
 use crate::linear_algebra::{Factorisation, null_space};
 use crate::model::request::{self, Analysis, JobRequest, Model};
 use crate::model::{InputError, InputErrors};
+use crate::structure::Structure;
 use crate::structure::bar::Bar;
 use crate::structure::element::Element;
 use crate::structure::spring::Spring;
-use crate::structure::Structure;
 use nalgebra::DMatrix;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -44,9 +44,16 @@ pub(super) struct StageLoad {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum End {
     /// `sign (s - bound) >= 0`
-    Load { bound: f64, sign: f64 },
+    Load {
+        bound: f64,
+        sign: f64,
+    },
     /// `sign (u - bound) >= 0`
-    Displacement { freedom: usize, bound: f64, sign: f64 },
+    Displacement {
+        freedom: usize,
+        bound: f64,
+        sign: f64,
+    },
     LimitPoints(u64),
     ContactChanges(u64),
     Increments(u64),

@@ -20,7 +20,11 @@ pub const ZERO: f64 = 1e-10;
 
 /// Standing of every contact.
 pub fn standings(structure: &Structure, contacts: &[Contact], state: &State, force_scale: f64) -> Vec<Standing> {
-    contacts.iter().enumerate().map(|(index, contact)| standing(structure, contact, state, index, force_scale)).collect()
+    contacts
+        .iter()
+        .enumerate()
+        .map(|(index, contact)| standing(structure, contact, state, index, force_scale))
+        .collect()
 }
 
 fn standing(structure: &Structure, contact: &Contact, state: &State, index: usize, force_scale: f64) -> Standing {
@@ -28,7 +32,11 @@ fn standing(structure: &Structure, contact: &Contact, state: &State, index: usiz
     let zero = ZERO * force_scale;
     if reaction.normal <= zero {
         let position = contact.position(structure.dimension, &structure.reference, &state.displacement);
-        return if contact.obstacle.gap(&position) <= ZERO { Standing::Touching } else { Standing::Settled(Mode::Free) };
+        return if contact.obstacle.gap(&position) <= ZERO {
+            Standing::Touching
+        } else {
+            Standing::Settled(Mode::Free)
+        };
     }
     if contact.friction == 0.0 {
         return Standing::Settled(Mode::Slip { direction: [0.0; 2] });

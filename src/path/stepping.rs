@@ -121,5 +121,4 @@ impl Path<'_> {
         let by_energy = (IMBALANCE_SOUGHT / (imbalance / size).max(1e-3 * IMBALANCE_SOUGHT)).powf(0.2);
         quantised(by_turn.min(by_work).min(by_energy).clamp(0.2, 1.8))
     }
-
 }

@@ -83,7 +83,12 @@ impl<'a> Path<'a> {
             phase: Phase::NotStarted,
             stage: 0,
             held: vec![0.0; scene.structure.freedoms()],
-            here: Here { state: state.clone(), modes: vec![Mode::Free; scene.contacts.len()], rate: None, load_sign: 0.0 },
+            here: Here {
+                state: state.clone(),
+                modes: vec![Mode::Free; scene.contacts.len()],
+                rate: None,
+                load_sign: 0.0,
+            },
             step,
             index: 0,
             arc_length: 0.0,
@@ -151,8 +156,7 @@ impl<'a> Path<'a> {
     /// Decides how the stage begins and takes its first direction.
     fn begin_stage(&mut self) -> Decision {
         let standings = self.standings(&self.here.state);
-        let decision =
-            decide::decide(self.loading(), &self.here.state, &standings, Before::StageStart, self.rules());
+        let decision = decide::decide(self.loading(), &self.here.state, &standings, Before::StageStart, self.rules());
         self.take(&decision);
         self.step = self.step.min(self.scene.analysis.arc_length.initial);
         decision
@@ -227,9 +231,10 @@ impl<'a> Path<'a> {
             load: 0.0,
             reactions: self.here.state.reactions.clone(),
         };
-        self.scene.stages[self.stage].ends.iter().any(|end| {
-            Watch::End(*end).value(self.loading(), &self.here.modes, &self.here.state, &still) <= 0.0
-        })
+        self.scene.stages[self.stage]
+            .ends
+            .iter()
+            .any(|end| Watch::End(*end).value(self.loading(), &self.here.modes, &self.here.state, &still) <= 0.0)
     }
 
     /// Holds what the stage reached and goes to the next; `false` where there is none.
@@ -334,8 +339,7 @@ impl<'a> Path<'a> {
         );
         self.report.increments = self.index;
         self.report.largest_residual = self.report.largest_residual.max(row.diagnostics.residual);
-        self.report.largest_complementarity =
-            self.report.largest_complementarity.max(row.diagnostics.complementarity);
+        self.report.largest_complementarity = self.report.largest_complementarity.max(row.diagnostics.complementarity);
         self.report.largest_energy_error = self.report.largest_energy_error.max(energy_error);
         row
     }
@@ -353,7 +357,6 @@ struct Emitted<'a> {
     error_estimate: f64,
     mode_named: Option<bool>,
 }
-
 
 impl Iterator for Path<'_> {
     type Item = Increment;
