@@ -25,6 +25,8 @@ pub struct Reached {
     /// The path's direction there, in the mode that led to it.
     pub rate: Rate,
     pub step: f64,
+    /// Distance to the path (dimensionless).
+    pub error_estimate: f64,
     /// What ended the step early.
     pub event: Option<Watch>,
 }
@@ -73,9 +75,10 @@ impl Start<'_> {
         let corrected = system.correct(guess, place, self.force_scale).map_err(Refused::Newton)?;
         work.newton_iterations += corrected.iterations;
         work.factorisations += corrected.iterations + 1;
-        let rate = system.tangent(&corrected.state, self.rate).ok_or(Refused::Newton(Failure::Singular))?;
+        let (rate, error_estimate) =
+            system.tangent_and_error(&corrected, self.rate).ok_or(Refused::Newton(Failure::Singular))?;
         let step = corrected.state.distance(self.state);
-        Ok(Reached { corrected, rate, step, event: None })
+        Ok(Reached { corrected, rate, step, error_estimate, event: None })
     }
 
     /// A step of an arc length, or to the first event before.

@@ -8,10 +8,13 @@ use super::state::Rate;
 use super::stop::StopReason;
 use super::tracer::{Path, Visited};
 use super::watch::Watch;
+use crate::contact::Reaction;
 use crate::model::request::Method;
 
 /// States closer than this are one.
 const SAME_STATE: f64 = 1e-9;
+/// A reaction this small against the largest force so far is what the location of its zero left over.
+const ROUND_OFF: f64 = 1e-14;
 
 /// What a point turned out to be.
 pub(super) struct Arrival {
@@ -80,6 +83,12 @@ impl Path<'_> {
     fn contact_change(&mut self, incoming: &Rate) -> Arrival {
         self.counts.contact_changes += 1;
         let standings = self.standings(&self.here.state);
+        for (reaction, standing) in self.here.state.reactions.iter_mut().zip(&standings) {
+            // The event was located to round-off; the rest of a reaction that is zero there is dropped.
+            if *standing == Standing::Touching && reaction.size() <= ROUND_OFF * self.force_scale {
+                *reaction = Reaction::default();
+            }
+        }
         let before = Before::Incoming(incoming);
         let rules = self.rules();
         let mut decision = decide::decide(self.loading(), &self.here.state, &standings, before, rules);

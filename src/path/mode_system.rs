@@ -48,8 +48,8 @@ pub struct Corrected {
     pub iterations_to_small: u64,
     /// Equilibrium residual over the force scale.
     pub residual: f64,
-    /// Size of the last correction of `(u, s)`.
-    pub last_correction: f64,
+    /// Equilibrium and contact equations left over, one a row.
+    left_over: DVector<f64>,
     /// Largest force in the structure, its loads and its contacts.
     pub force_scale: f64,
 }
@@ -276,7 +276,6 @@ impl<'a> ModeSystem<'a> {
         let mut values = DVector::zeros(self.size);
         let mut force = vec![0.0; self.loading.structure.freedoms()];
         let mut iterations = 0;
-        let mut last_correction = 0.0;
         let mut iterations_to_small = None;
         let mut best: Option<(f64, Corrected)> = None;
         loop {
@@ -302,7 +301,7 @@ impl<'a> ModeSystem<'a> {
                     iterations,
                     iterations_to_small,
                     residual,
-                    last_correction,
+                    left_over: values.clone(),
                     force_scale: forces,
                 };
                 best = Some((error, corrected));
@@ -325,7 +324,6 @@ impl<'a> ModeSystem<'a> {
                 return Err(Failure::Singular);
             }
             let correction = self.rate_from(&values);
-            last_correction = correction.size();
             state = self.consistent(state.advanced(&correction, -1.0));
             iterations += 1;
         }
@@ -360,9 +358,27 @@ impl<'a> ModeSystem<'a> {
     /// The path's direction in this mode: the null vector of the equations, of unit arc length, on the side of
     /// `towards`. `None` where the equations have no such vector or more than one.
     pub fn tangent(&self, state: &State, towards: &Rate) -> Option<Rate> {
+        self.tangent_by(&self.bordered(state, towards)?)
+    }
+
+    /// The path's direction at a converged point, and an estimate of the point's error: the size of one more Newton
+    /// correction across the path.
+    pub fn tangent_and_error(&self, corrected: &Corrected, towards: &Rate) -> Option<(Rate, f64)> {
+        let factorisation = self.bordered(&corrected.state, towards)?;
+        let rate = self.tangent_by(&factorisation)?;
+        let mut values = corrected.left_over.clone();
+        values[self.size - 1] = 0.0;
+        let error = if factorisation.solve(&mut values) { self.rate_from(&values).size() } else { return None };
+        Some((rate, error))
+    }
+
+    fn bordered(&self, state: &State, towards: &Rate) -> Option<Factorisation> {
         let mut matrix = self.matrix(state);
         self.border(&mut matrix, towards);
-        let factorisation = Factorisation::new(matrix)?;
+        Factorisation::new(matrix)
+    }
+
+    fn tangent_by(&self, factorisation: &Factorisation) -> Option<Rate> {
         let mut values = DVector::zeros(self.size);
         values[self.size - 1] = 1.0;
         if !factorisation.solve(&mut values) {

@@ -288,7 +288,7 @@ impl<'a> Path<'a> {
             options: &arrival.options,
             taken: arrival.taken,
             residual: reached.corrected.residual,
-            error_estimate: reached.corrected.last_correction,
+            error_estimate: reached.error_estimate,
             mode_named: accepted.mode_named,
         });
         if matches!(self.phase, Phase::Running) && stage_ends {
