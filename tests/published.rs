@@ -1,0 +1,166 @@
+//! Published problems without contact, in two and three dimensions.
+
+mod common;
+
+use arcslip::path::increment::PointKind;
+use common::paths::{request, trace};
+use serde_json::{Map, Value, json};
+
+/// The 12-bar space truss (Green strain, EA = 1).
+fn twelve_bar_truss(strain: &str) -> Value {
+    let nodes = [
+        [-1.697, -1.0, 0.0],
+        [0.0, -1.0, 0.0],
+        [1.697, -1.0, 0.0],
+        [-1.414, 0.0, 1.0],
+        [0.0, 0.0, 1.0],
+        [1.414, 0.0, 1.0],
+        [-1.697, 1.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [1.697, 1.0, 0.0],
+    ];
+    let bars = [(4, 1), (4, 7), (6, 3), (6, 9), (5, 1), (5, 2), (5, 3), (5, 4), (5, 6), (5, 7), (5, 8), (5, 9)];
+    let named: Map<String, Value> = nodes.iter().enumerate().map(|(k, x)| (format!("n{}", k + 1), json!(x))).collect();
+    let supports: Map<String, Value> =
+        [1, 2, 3, 7, 8, 9].iter().map(|k| (format!("n{k}"), json!(["x", "y", "z"]))).collect();
+    let elements: Vec<Value> = bars
+        .iter()
+        .map(|(a, b)| {
+            json!({"kind": "bar", "nodes": [format!("n{a}"), format!("n{b}")], "axial_stiffness": 1.0, "strain": strain})
+        })
+        .collect();
+    json!({
+        "model": {
+            "name": "12-bar space truss", "dimension": 3, "nodes": named, "supports": supports, "elements": elements,
+            "stages": [{
+                "name": "load",
+                "forces": {"n4": [0, 0, -1.5], "n5": [0, 0, -1.0], "n6": [0, 0, -1.5]},
+                "until": {"limit_points": 8}
+            }]
+        },
+        "analysis": {"max_increments": 20000}
+    })
+}
+
+#[test]
+fn twelve_bar_truss_in_space() {
+    let (increments, _) = trace(&request(&twelve_bar_truss("green").to_string()));
+    let limits: Vec<_> = increments.iter().filter(|i| i.point.kind == PointKind::SmoothLimit).collect();
+    let exact = [
+        (0.059145, -0.2820, -0.0385),
+        (-0.043884, -0.8415, 0.1473),
+        (0.071019, -1.7363, -0.4868),
+        (-0.082531, -1.5672, -1.2493),
+    ];
+    assert_eq!(limits.len(), 8);
+    for (found, (load, u4, u5)) in limits.iter().zip(exact) {
+        assert!((found.load_factor - load).abs() < 1e-6, "{} {load}", found.load_factor);
+        assert!((found.displacements["n4"][2] - u4).abs() < 2e-4, "{} {u4}", found.displacements["n4"][2]);
+        assert!((found.displacements["n5"][2] - u5).abs() < 2e-4, "{} {u5}", found.displacements["n5"][2]);
+    }
+    for (found, mirrored) in limits[4..].iter().zip([0.082531, -0.071019, 0.043884, -0.059146]) {
+        assert!((found.load_factor - mirrored).abs() < 2e-6, "{} {mirrored}", found.load_factor);
+    }
+    let (increments, _) = trace(&request(&twelve_bar_truss("engineering").to_string()));
+    let limits: Vec<_> = increments.iter().filter(|i| i.point.kind == PointKind::SmoothLimit).collect();
+    for (found, load) in limits.iter().zip([0.069026, -0.047882, 0.09509, -0.10275]) {
+        assert!((found.load_factor - load).abs() < 1e-5, "{} {load}", found.load_factor);
+    }
+}
+
+/// The 24-bar star dome (Green strain). Minimising the two-parameter symmetric problem in 20-digit arithmetic gives the
+/// first limit load/EA 3.155799708e-4 at apex drop 0.76855727. (A value in circulation, 3.155739e-4 at 0.7688, is two
+/// parts in 100 000 lower.)
+#[test]
+fn star_dome() {
+    let mut nodes = Map::new();
+    nodes.insert("apex".into(), json!([0.0, 0.0, 8.216]));
+    let place = |radius: f64, degrees: f64, z: f64| {
+        json!([radius * degrees.to_radians().cos(), radius * degrees.to_radians().sin(), z])
+    };
+    let (mut supports, mut elements) = (Map::new(), Vec::new());
+    let bar = |a: String, b: String| json!({"kind": "bar", "nodes": [a, b], "axial_stiffness": 1.0, "strain": "green"});
+    for k in 0..6 {
+        nodes.insert(format!("ring{k}"), place(25.0, 60.0 * f64::from(k), 6.216));
+        nodes.insert(format!("base{k}"), place(50.0, 30.0 + 60.0 * f64::from(k), 0.0));
+        supports.insert(format!("base{k}"), json!(["x", "y", "z"]));
+        elements.push(bar("apex".into(), format!("ring{k}")));
+        elements.push(bar(format!("ring{k}"), format!("ring{}", (k + 1) % 6)));
+        elements.push(bar(format!("ring{k}"), format!("base{k}")));
+        elements.push(bar(format!("ring{}", (k + 1) % 6), format!("base{k}")));
+    }
+    let model = json!({"model": {
+        "name": "star dome", "dimension": 3, "nodes": nodes, "supports": supports, "elements": elements,
+        "stages": [{"name": "load", "forces": {"apex": [0, 0, -1]}, "until": {"limit_points": 2}}]
+    }});
+    let (increments, _) = trace(&request(&model.to_string()));
+    let limit = increments.iter().find(|i| i.point.kind == PointKind::SmoothLimit).expect("a limit point");
+    assert!((limit.load_factor - 3.155799708e-4).abs() < 1e-13, "{}", limit.load_factor);
+    assert!((limit.displacements["apex"][2] + 0.76855727).abs() < 1e-8, "{}", limit.displacements["apex"][2]);
+}
+
+/// A frictionless node on a tilted plane in space: `K u = s f + r n`, `r = -s f·n` (unit stiffness).
+#[test]
+fn a_frictionless_plane_in_space() {
+    let model = json!({"model": {
+        "name": "node on a tilted plane", "dimension": 3, "nodes": {"node": [0, 0, 0]},
+        "elements": [{"kind": "spring", "nodes": ["node"], "stiffness": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}],
+        "obstacles": {"slope": {"kind": "plane", "point": [0, 0, 0], "normal": [1, 2, 2]}},
+        "contacts": [{"node": "node", "obstacle": "slope", "friction": 0}],
+        "stages": [{"name": "press", "forces": {"node": [0, 0, -3]}, "until": {"load_above": 1}},
+                   {"name": "pull", "forces": {"node": [0, 0, 3]}, "until": {"load_above": 2}}]
+    }});
+    let (increments, _) = trace(&request(&model.to_string()));
+    let pressed = increments.iter().find(|i| &*i.stage == "press" && i.load_factor == 1.0).expect("pressed");
+    assert!((pressed.contacts[0].normal_reaction - 2.0).abs() < 1e-14);
+    for (u, exact) in pressed.displacements["node"].iter().zip([2.0 / 3.0, 4.0 / 3.0, -5.0 / 3.0]) {
+        assert!((u - exact).abs() < 1e-14, "{u} {exact}");
+    }
+    let lift = increments.iter().find(|i| i.point.kind == PointKind::ContactChange).expect("lift-off");
+    assert!((lift.load_factor - 1.0).abs() < 1e-12);
+    let last = increments.last().expect("an end");
+    assert!((last.displacements["node"][2] - 3.0).abs() < 1e-13);
+}
+
+/// Prestress and a rest length of its own are two ways to the same bar (engineering strain): `N0 = EA (L - L0)/L0`.
+#[test]
+fn prestress_and_rest_length() {
+    let model = |bar: Value| {
+        json!({"model": {
+            "name": "taut string", "dimension": 2,
+            "nodes": {"a": [-1, 0], "mid": [0, 0], "b": [1, 0]}, "supports": {"a": ["x", "y"], "b": ["x", "y"]},
+            "elements": [
+                {"kind": "bar", "nodes": ["a", "mid"], "axial_stiffness": bar["ea"], "rest_length": bar["rest"], "prestress": bar["prestress"]},
+                {"kind": "bar", "nodes": ["mid", "b"], "axial_stiffness": bar["ea"], "rest_length": bar["rest"], "prestress": bar["prestress"]}
+            ],
+            "stages": [{"name": "push", "forces": {"mid": [0, 1]}, "until": {"displacement": {"node": "mid", "component": "y", "above": 0.5}}}]
+        }})
+    };
+    // EA/L0 equal in both: N = k (L - L0) against N = k (L - 1) + k (1 - L0).
+    let by_rest = model(json!({"ea": 0.8, "rest": 0.8, "prestress": 0}));
+    let by_prestress = model(json!({"ea": 1.0, "rest": 1.0, "prestress": 0.2}));
+    let end = |model: Value| trace(&request(&model.to_string())).0.last().expect("an end").load_factor;
+    let length = 1.25_f64.sqrt();
+    let exact = 2.0 * (length - 0.8) * 0.5 / length;
+    assert!((end(by_rest) - exact).abs() < 1e-14);
+    assert!((end(by_prestress) - exact).abs() < 1e-14);
+}
+
+/// Logarithmic strain: `P = 2 EA ln λ/λ (h - v)/L` on the von Mises truss, at every point.
+#[test]
+fn logarithmic_strain() {
+    let mut truss = common::paths::scene("von-mises-truss");
+    for element in &mut truss.model.elements {
+        if let arcslip::model::request::Element::Bar { strain, .. } = element {
+            *strain = arcslip::model::request::Strain::Log;
+        }
+    }
+    let rest = 1.0_f64.hypot(0.5);
+    for increment in trace(&truss).0 {
+        let height = 0.5 + increment.displacements["apex"][1];
+        let length = 1.0_f64.hypot(height);
+        let stretch = length / rest;
+        let exact = -2.0 * stretch.ln() / stretch * height / length;
+        assert!((increment.load_factor - exact).abs() < 1e-13, "{} {exact}", increment.load_factor);
+    }
+}
