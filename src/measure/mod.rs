@@ -6,7 +6,7 @@
 //! contact         max |min(g/ℓ, r_n/F)|                                       natural map of 0 <= g ⊥ r_n >= 0
 //! cone            max (|r_t| - μ r_n)/F
 //! friction        stick: |slip|/ℓ;   slip: |r_t + μ r_n slip/|slip||/F;   free: |r|/F
-//! energy          |W - E - D| / largest energy so far
+//! energy          |W - E - D| / largest energy so far (at least 1e-12 F ℓ)
 //! ```
 //!
 //! (Natural map: F. Facchinei, J.-S. Pang, *Finite-Dimensional Variational Inequalities and Complementarity Problems*,
@@ -83,11 +83,12 @@ impl<'m> Judge<'m> {
         for value in [energy.external_work, energy.strain, energy.dissipated] {
             self.largest_energy = self.largest_energy.max(value.abs());
         }
-        if self.largest_energy > 0.0 {
+        let size = self.largest_energy.max(1e-12 * self.largest_force * self.length);
+        if size > 0.0 {
             let imbalance = energy.external_work - energy.strain - energy.dissipated;
-            errors.energy = imbalance.abs() / self.largest_energy;
+            errors.energy = imbalance.abs() / size;
             let strain = strain_energy(self.model, &displacements) - self.initial_strain;
-            errors.strain_energy = (energy.strain - strain).abs() / self.largest_energy;
+            errors.strain_energy = (energy.strain - strain).abs() / size;
         }
         errors
     }

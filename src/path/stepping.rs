@@ -15,6 +15,10 @@ const ITERATIONS_SOUGHT: f64 = 4.0;
 
 /// Energy imbalance of an increment, over the largest energy so far, that a step aims at.
 const IMBALANCE_SOUGHT: f64 = 5e-9;
+/// Stretch of a bar at which steps that do not converge are its collapse.
+const COLLAPSED: f64 = 1e-4;
+/// Energies below this fraction of the force scale times the displacement scale are round-off.
+pub(super) const NO_ENERGY: f64 = 1e-12;
 /// A step after which the next would have to be shorter than this fraction of it is taken again, shorter.
 const REJECTED: f64 = 0.55;
 
@@ -92,11 +96,17 @@ impl Path<'_> {
                         Refused::AtStart(_) => 0.25,
                     };
                     if step < least {
-                        return Err(StopReason::StepUnderflow);
+                        return Err(self.reason_of_underflow());
                     }
                 }
             }
         }
+    }
+
+    /// Why steps became too short.
+    fn reason_of_underflow(&self) -> StopReason {
+        let stretch = self.scene.structure.smallest_stretch(&self.here.state.displacement);
+        if stretch < COLLAPSED { StopReason::CollapsedBar } else { StopReason::StepUnderflow }
     }
 
     /// Work, dissipation and strain energy of a point reached.
@@ -116,7 +126,8 @@ impl Path<'_> {
         let by_turn = TURN_SOUGHT / turn.max(1e-3 * TURN_SOUGHT);
         let by_work = ITERATIONS_SOUGHT / reached.corrected.iterations_to_small.max(1) as f64;
         let imbalance = (accepted.work - accepted.dissipation - (accepted.strain - self.energy.strain)).abs();
-        let size = self.largest_energy.max(accepted.work.abs()).max(accepted.strain.abs()).max(f64::MIN_POSITIVE);
+        let floor = (NO_ENERGY * self.force_scale.max(reached.corrected.force_scale)).max(f64::MIN_POSITIVE);
+        let size = self.largest_energy.max(accepted.work.abs()).max(accepted.strain.abs()).max(floor);
         // The balance of one increment has an error of fifth order in its arc length.
         let by_energy = (IMBALANCE_SOUGHT / (imbalance / size).max(1e-3 * IMBALANCE_SOUGHT)).powf(0.2);
         quantised(by_turn.min(by_work).min(by_energy).clamp(0.2, 1.8))

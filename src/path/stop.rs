@@ -19,6 +19,8 @@ pub enum StopReason {
     Cycle,
     /// No step of at least `arc_length.min` converges.
     StepUnderflow,
+    /// A bar has shrunk to a point, where its direction is lost.
+    CollapsedBar,
     /// The directions form a set of more than one dimension, so that none can be named.
     Degenerate,
     /// More contact modes than `max_modes` would have to be examined to go on.
@@ -45,6 +47,7 @@ impl StopReason {
             | Self::NoDirection
             | Self::Cycle
             | Self::StepUnderflow
+            | Self::CollapsedBar
             | Self::Degenerate
             | Self::ModeLimit => Outcome::Stopped,
         }
@@ -61,6 +64,7 @@ impl StopReason {
             }
             Self::Cycle => "the path is back at a state it has been in",
             Self::StepUnderflow => "no step of at least arc_length.min converges",
+            Self::CollapsedBar => "a bar has shrunk to a point, where its direction is lost",
             Self::Degenerate => "the possible directions form a set of more than one dimension: none can be named",
             Self::ModeLimit => "more contact modes than max_modes would have to be examined to go on",
             Self::Cancelled => "cancelled",

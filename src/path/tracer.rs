@@ -13,7 +13,7 @@ use super::report::Report;
 use super::scene::{End, Scene};
 use super::standing::{Standing, standings};
 use super::state::{Rate, State};
-use super::stepping::Accepted;
+use super::stepping::{Accepted, NO_ENERGY};
 use super::stop::StopReason;
 use super::watch::Watch;
 use crate::cancel::CancelFlag;
@@ -312,7 +312,8 @@ impl<'a> Path<'a> {
             self.largest_energy = self.largest_energy.max(value.abs());
         }
         let imbalance = (energy.external_work - energy.strain - energy.dissipated).abs();
-        let energy_error = if self.largest_energy > 0.0 { imbalance / self.largest_energy } else { 0.0 };
+        let size = self.largest_energy.max(NO_ENERGY * self.force_scale);
+        let energy_error = if size > 0.0 { imbalance / size } else { 0.0 };
         let row = record::increment(
             self.scene,
             &Row {

@@ -55,6 +55,11 @@ impl Bar {
         Deformed { direction, length, elongation }
     }
 
+    /// `L/L0`
+    pub fn stretch(&self, structure: &Structure, displacement: &[f64]) -> f64 {
+        self.deformed(structure, displacement).length / self.rest_length
+    }
+
     /// `ε`, `N` and `N'`.
     fn response(&self, elongation: f64) -> (f64, f64, f64) {
         let (stiffness, rest) = (self.axial_stiffness, self.rest_length);

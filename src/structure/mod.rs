@@ -71,6 +71,14 @@ impl Structure {
         }
     }
 
+    /// The smallest stretch `L/L0` of any bar; infinite without bars.
+    pub fn smallest_stretch(&self, displacement: &[f64]) -> f64 {
+        self.elements.iter().fold(f64::INFINITY, |smallest, element| match element {
+            Element::Bar(bar) => smallest.min(bar.stretch(self, displacement)),
+            Element::Spring(_) => smallest,
+        })
+    }
+
     /// `W(u)`.
     pub fn strain_energy(&self, displacement: &[f64]) -> f64 {
         self.elements.iter().map(|element| element.energy(self, displacement)).sum()
