@@ -15,6 +15,8 @@ use serde::Serialize;
 use std::any::Any;
 
 const MEDIA_TYPE: &str = "application/problem+json";
+/// When what is unavailable is worth asking for again.
+const RETRY_AFTER_SECONDS: HeaderValue = HeaderValue::from_static("2");
 
 /// Every kind of problem: the last part of its `type`, its status, its title.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -199,7 +201,11 @@ impl IntoResponse for Problem {
         let document = Document { kind, title, status: status.as_u16(), detail: self.detail, errors: self.errors };
         // Five plain members: there is nothing in them that JSON cannot hold.
         let body = serde_json::to_vec(&document).unwrap_or_default();
-        (status, [(header::CONTENT_TYPE, MEDIA_TYPE)], body).into_response()
+        let mut response = (status, [(header::CONTENT_TYPE, MEDIA_TYPE)], body).into_response();
+        if self.kind == Kind::Unavailable {
+            response.headers_mut().insert(header::RETRY_AFTER, RETRY_AFTER_SECONDS);
+        }
+        response
     }
 }
 

@@ -14,8 +14,11 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use tokio::sync::{mpsc, oneshot};
 
-/// Increments between solver and store.
+/// Increments between solver and store: enough to solve on while a batch is written.
 const IN_FLIGHT: usize = 512;
+/// Their bytes, roughly: an increment is hardly larger than its model, so large models get fewer places.
+const IN_FLIGHT_BYTES: usize = 32 << 20;
+const FEWEST_IN_FLIGHT: usize = 8;
 /// Recursion over a model is shallow, but the main thread's stack is what the solver is tested with.
 const STACK_BYTES: usize = 8 << 20;
 
@@ -40,7 +43,7 @@ pub struct Solve {
 /// Starts the thread. Increments up to `claim.last_index` are stored already: they are computed again (the run is
 /// deterministic) and not sent.
 pub fn start(solver: Arc<dyn Solver>, claim: &Claim, cancel: CancelFlag) -> std::io::Result<Solve> {
-    let (line_sender, lines) = mpsc::channel(IN_FLIGHT);
+    let (line_sender, lines) = mpsc::channel(places(claim.request.len()));
     let (end_sender, end) = oneshot::channel();
     let (request, stored) = (claim.request.clone(), claim.last_index);
     let span = tracing::Span::current();
@@ -54,6 +57,10 @@ pub fn start(solver: Arc<dyn Solver>, claim: &Claim, cancel: CancelFlag) -> std:
         },
     )?;
     Ok(Solve { lines, end })
+}
+
+fn places(model_bytes: usize) -> usize {
+    (IN_FLIGHT_BYTES / model_bytes.max(1)).clamp(FEWEST_IN_FLIGHT, IN_FLIGHT)
 }
 
 fn run(

@@ -3,6 +3,8 @@
 #![allow(dead_code)]
 
 pub mod bad_documents;
+#[cfg(feature = "server")]
+pub mod faulty_store;
 pub mod paths;
 #[cfg(feature = "server")]
 pub mod server;

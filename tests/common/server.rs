@@ -2,7 +2,7 @@
 
 use arcslip::http::server::Server;
 use arcslip::jobs::{Settings, Solver};
-use arcslip::store;
+use arcslip::store::{self, Store};
 use reqwest::{Client, Method, RequestBuilder, Response, StatusCode};
 use serde_json::Value;
 use std::path::Path;
@@ -37,6 +37,10 @@ impl TestServer {
 
     pub async fn start_with(database: &Path, solver: impl Solver, settings: Settings) -> Self {
         let store = store::open(database).await.expect("the database opens");
+        Self::start_on(store, solver, settings).await
+    }
+
+    pub async fn start_on(store: Arc<dyn Store>, solver: impl Solver, settings: Settings) -> Self {
         let any = "127.0.0.1:0".parse().expect("an address");
         let server = Server::start(any, store, Arc::new(solver), settings).await.expect("the server starts");
         let url = format!("http://{}", server.address());

@@ -1,0 +1,121 @@
+//! A store whose writes can be made to fail; everything else is the real one.
+
+use arcslip::store::{
+    Claim, Ending, JobRecord, Lease, LeaseAnswer, Line, ListFilter, NewJob, Page, Result, Store, StoreError, Submitted,
+};
+use async_trait::async_trait;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+use tokio::sync::watch;
+use uuid::Uuid;
+
+pub struct FaultyStore {
+    inner: Arc<dyn Store>,
+    /// So many appends fail as if the database were locked.
+    pub locked_appends: AtomicU32,
+    /// Appends and submissions fail as if the disk were full.
+    pub full: AtomicBool,
+    /// Probes fail.
+    pub down: AtomicBool,
+    /// Indices in the order in which they were stored.
+    pub stored: Mutex<Vec<u64>>,
+}
+
+impl FaultyStore {
+    pub fn around(inner: Arc<dyn Store>) -> Arc<Self> {
+        Arc::new(Self {
+            inner,
+            locked_appends: AtomicU32::new(0),
+            full: AtomicBool::new(false),
+            down: AtomicBool::new(false),
+            stored: Mutex::default(),
+        })
+    }
+
+    fn room(&self) -> Result<()> {
+        if self.full.load(Ordering::Relaxed) {
+            Err(StoreError::Full("INSERT INTO x: /tmp/x is full".into()))
+        } else {
+            Ok(())
+        }
+    }
+}
+
+#[async_trait]
+impl Store for FaultyStore {
+    async fn submit(&self, job: NewJob) -> Result<Submitted> {
+        self.room()?;
+        self.inner.submit(job).await
+    }
+
+    async fn job(&self, id: Uuid) -> Result<Option<JobRecord>> {
+        self.inner.job(id).await
+    }
+
+    async fn jobs(&self, filter: ListFilter) -> Result<Vec<JobRecord>> {
+        self.inner.jobs(filter).await
+    }
+
+    async fn increments(&self, id: Uuid, after: Option<u64>, page: Page) -> Result<Vec<Line>> {
+        self.inner.increments(id, after, page).await
+    }
+
+    async fn request_cancel(&self, id: Uuid) -> Result<Option<JobRecord>> {
+        self.inner.request_cancel(id).await
+    }
+
+    async fn delete(&self, id: Uuid) -> Result<bool> {
+        self.inner.delete(id).await
+    }
+
+    async fn claim(&self, worker: &str, lease: Duration) -> Result<Option<Claim>> {
+        self.inner.claim(worker, lease).await
+    }
+
+    async fn renew(&self, lease: &Lease, duration: Duration) -> Result<LeaseAnswer> {
+        self.inner.renew(lease, duration).await
+    }
+
+    async fn append(&self, lease: &Lease, lines: &[Line], duration: Duration) -> Result<LeaseAnswer> {
+        self.room()?;
+        let locked = self.locked_appends.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1));
+        if locked.is_ok() {
+            return Err(StoreError::Unavailable("locked".into()));
+        }
+        let answer = self.inner.append(lease, lines, duration).await?;
+        self.stored.lock().expect("no panic under the lock").extend(lines.iter().map(|line| line.index));
+        Ok(answer)
+    }
+
+    async fn finish(&self, lease: &Lease, ending: Ending) -> Result<LeaseAnswer> {
+        self.inner.finish(lease, ending).await
+    }
+
+    async fn release(&self, lease: &Lease) -> Result<LeaseAnswer> {
+        self.inner.release(lease).await
+    }
+
+    async fn reclaim_expired(&self) -> Result<u64> {
+        self.inner.reclaim_expired().await
+    }
+
+    async fn probe(&self) -> Result<()> {
+        if self.down.load(Ordering::Relaxed) {
+            return Err(StoreError::Unavailable("disk I/O error".into()));
+        }
+        self.inner.probe().await
+    }
+
+    fn job_changes(&self, id: Uuid) -> watch::Receiver<u64> {
+        self.inner.job_changes(id)
+    }
+
+    fn queue_changes(&self) -> watch::Receiver<u64> {
+        self.inner.queue_changes()
+    }
+
+    async fn close(&self) {
+        self.inner.close().await;
+    }
+}

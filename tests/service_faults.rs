@@ -1,0 +1,69 @@
+//! A store that fails: what passes is tried again, what does not fails the job with its reason, and clients are told.
+#![cfg(feature = "server")]
+
+mod common;
+
+use arcslip::store;
+use common::faulty_store::FaultyStore;
+use common::server::{TestServer, settings};
+use common::service::request;
+use common::solver::MadeUp;
+use serde_json::Value;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+async fn start(folder: &Path, solver: MadeUp) -> (Arc<FaultyStore>, TestServer) {
+    let store = FaultyStore::around(store::open(&folder.join("jobs.db")).await.expect("a store"));
+    let server = TestServer::start_on(store.clone(), solver, settings()).await;
+    (store, server)
+}
+
+#[tokio::test]
+async fn a_database_that_is_locked_for_a_moment_costs_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (store, server) = start(folder.path(), MadeUp::default()).await;
+    store.locked_appends.store(2, Ordering::Relaxed);
+    let id = server.submit(&request("delayed", 600)).await;
+    let job = server.ended(&id).await;
+    assert_eq!(job["status"], "completed", "{job}");
+    assert_eq!(job["attempt"], 1);
+    assert_eq!(*store.stored.lock().expect("a list"), (0..600).collect::<Vec<_>>());
+}
+
+#[tokio::test]
+async fn a_full_disk_fails_the_job_keeps_what_is_stored_and_passes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let solver = MadeUp::holding_at(5);
+    let (store, server) = start(folder.path(), solver.clone()).await;
+    let id = server.submit(&request("stuffed", 10)).await;
+    server.until(&id, |job| job["progress"]["increments"] == 5).await;
+    store.full.store(true, Ordering::Relaxed);
+    let refused = server.post("/v1/jobs", &request("another", 5)).await;
+    assert_eq!(refused.status(), 507);
+    let text = refused.text().await.expect("a body");
+    assert!(text.contains("/problems/storage-full") && !text.contains("INSERT") && !text.contains("/tmp"), "{text}");
+    solver.let_go();
+    let job = server.ended(&id).await;
+    assert_eq!(job["status"], "failed");
+    assert!(job["error"].as_str().expect("a text").contains("disk that holds the database is full"), "{job}");
+    assert_eq!(job["progress"]["increments"], 5);
+    store.full.store(false, Ordering::Relaxed);
+    let next = server.submit(&request("another", 5)).await;
+    assert_eq!(server.ended(&next).await["status"], "completed");
+}
+
+#[tokio::test]
+async fn a_store_that_takes_no_writes_is_not_ready() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (store, server) = start(folder.path(), MadeUp::default()).await;
+    store.down.store(true, Ordering::Relaxed);
+    let answer = server.get("/readyz").await;
+    assert_eq!(answer.status(), 503);
+    assert!(answer.headers().contains_key("retry-after"));
+    let problem: Value = answer.json().await.expect("a problem");
+    assert_eq!(problem["type"], "/problems/unavailable");
+    assert_eq!(server.get_json("/healthz").await["status"], "alive");
+    store.down.store(false, Ordering::Relaxed);
+    assert_eq!(server.get_json("/readyz").await["status"], "ready");
+}
