@@ -3,6 +3,8 @@
 
 mod common;
 
+use arcslip::jobs::PathSolver;
+use common::bad_documents::bad_documents;
 use common::server::TestServer;
 use common::service::request;
 use common::solver::MadeUp;
@@ -97,5 +99,31 @@ async fn bodies() {
     }
     let too_large = vec![b' '; (16 << 20) + 1];
     problem(post("application/json; charset=utf-8", too_large), 413, "body-too-large").await;
+    assert_eq!(server.get_json("/v1/jobs").await["jobs"], json!([]));
+}
+
+#[tokio::test]
+async fn every_bad_document_is_refused_with_its_pointer() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let server = TestServer::start(&folder.path().join("jobs.db"), PathSolver).await;
+    for document in bad_documents() {
+        let post = server.ask(Method::POST, "/v1/jobs").header("content-type", "application/json");
+        let answer = post.body(document.text).send().await.expect("an answer");
+        let status = answer.status().as_u16();
+        let problem: Value = answer.json().await.expect("a problem");
+        let kind = problem["type"].as_str().expect("a type");
+        match (status, kind) {
+            (400, "/problems/invalid-json") | (422, "/problems/invalid-model") => {
+                let errors = problem["errors"].as_array().expect("errors");
+                assert!(
+                    errors.iter().any(|error| error["pointer"] == document.pointer),
+                    "{}: {problem}",
+                    document.name
+                );
+            }
+            (413, "/problems/body-too-large") => {}
+            _ => panic!("{}: {problem}", document.name),
+        }
+    }
     assert_eq!(server.get_json("/v1/jobs").await["jobs"], json!([]));
 }

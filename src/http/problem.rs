@@ -4,7 +4,7 @@
 //! machine and no stack trace, which go to the log under the request's id.
 
 use crate::jobs::JobsError;
-use crate::model::InputError;
+use crate::model::{InputError, InputErrors};
 use crate::store::StoreError;
 use axum::body::Body;
 use axum::extract::Request;
@@ -141,6 +141,14 @@ impl Problem {
         Self { kind, detail: detail.into(), errors: Vec::new() }
     }
 
+    fn input(kind: Kind, errors: InputErrors) -> Self {
+        let detail = match errors.0.as_slice() {
+            [only] => only.to_string(),
+            several => format!("{} mistakes were found", several.len()),
+        };
+        Self { kind, detail, errors: errors.0 }
+    }
+
     pub fn parameter(name: &str, detail: impl std::fmt::Display) -> Self {
         Self::new(Kind::InvalidParameter, format!("{name}: {detail}"))
     }
@@ -153,14 +161,8 @@ impl Problem {
 impl From<JobsError> for Problem {
     fn from(error: JobsError) -> Self {
         match error {
-            JobsError::NotJson(detail) => Self::new(Kind::InvalidJson, detail),
-            JobsError::Input(errors) => {
-                let detail = match errors.0.as_slice() {
-                    [only] => only.to_string(),
-                    several => format!("{} mistakes were found", several.len()),
-                };
-                Self { kind: Kind::InvalidModel, detail, errors: errors.0 }
-            }
+            JobsError::NotJson(errors) => Self::input(Kind::InvalidJson, errors),
+            JobsError::Input(errors) => Self::input(Kind::InvalidModel, errors),
             JobsError::KeyReused => {
                 Self::new(Kind::KeyReused, "repeat the first request byte for byte, or send another Idempotency-Key")
             }

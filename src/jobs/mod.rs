@@ -30,7 +30,7 @@ pub use solver::{PathSolver, Solver};
 #[derive(Debug, thiserror::Error)]
 pub enum JobsError {
     #[error("the request is not JSON: {0}")]
-    NotJson(String),
+    NotJson(InputErrors),
     #[error("the model cannot be solved")]
     Input(InputErrors),
     #[error("this idempotency key came before with another request")]

@@ -1,9 +1,10 @@
 //! What is done with a request before it is queued: read, checked, planned.
 
 use super::{JobsError, Solver};
-use crate::model::{InputErrors, decode};
+use crate::model::{InputError, InputErrors, decode};
 use crate::path::Plan;
 use serde::de::IgnoredAny;
+use std::string::FromUtf8Error;
 
 /// A request that can be queued.
 #[derive(Debug)]
@@ -16,16 +17,20 @@ pub struct Prepared {
 }
 
 pub fn prepare(solver: &dyn Solver, request: Vec<u8>) -> Result<Prepared, JobsError> {
-    let text = String::from_utf8(request).map_err(|error| JobsError::NotJson(error.to_string()))?;
-    let decoded = decode::decode(text.as_bytes()).map_err(|errors| wrong_input(&text, errors))?;
+    let decoded = decode::decode(&request).map_err(|errors| wrong_input(&request, errors))?;
     let plan = solver.plan(&decoded).map_err(JobsError::Input)?;
+    let text = String::from_utf8(request).map_err(not_text)?;
     Ok(Prepared { text, name: decoded.model.name, plan, max_increments: decoded.analysis.max_increments })
 }
 
 /// Text that is no JSON at all is told apart from JSON that is no job.
-fn wrong_input(text: &str, errors: InputErrors) -> JobsError {
-    match serde_json::from_str::<IgnoredAny>(text) {
+fn wrong_input(request: &[u8], errors: InputErrors) -> JobsError {
+    match serde_json::from_slice::<IgnoredAny>(request) {
         Ok(_) => JobsError::Input(errors),
-        Err(error) => JobsError::NotJson(error.to_string()),
+        Err(_) => JobsError::NotJson(errors),
     }
+}
+
+fn not_text(error: FromUtf8Error) -> JobsError {
+    JobsError::NotJson(InputErrors(vec![InputError::new("", error.to_string())]))
 }
