@@ -25,10 +25,9 @@ pub fn prepare(solver: &dyn Solver, request: Vec<u8>) -> Result<Prepared, JobsEr
 
 /// Text that is no JSON at all is told apart from JSON that is no job.
 fn wrong_input(request: &[u8], errors: InputErrors) -> JobsError {
-    match serde_json::from_slice::<IgnoredAny>(request) {
-        Ok(_) => JobsError::Input(errors),
-        Err(_) => JobsError::NotJson(errors),
-    }
+    // Bytes first: what serde_json skips it does not check for being UTF-8.
+    let is_json = std::str::from_utf8(request).is_ok_and(|text| serde_json::from_str::<IgnoredAny>(text).is_ok());
+    if is_json { JobsError::Input(errors) } else { JobsError::NotJson(errors) }
 }
 
 fn not_text(error: FromUtf8Error) -> JobsError {
