@@ -29,8 +29,11 @@ fn one_bar_load(friction: f64, x: f64) -> f64 {
     (1.0 - length / rest) * (friction - x) / length
 }
 
+/// Scene, friction, and the places and loads of both limit points.
+type OneBar = (&'static str, f64, [(f64, f64); 2]);
+
 /// Limit points of that branch: zeros of `ds/dx`, from 30-digit arithmetic.
-const ONE_BAR_LIMITS: [(&str, f64, [(f64, f64); 2]); 2] = [
+const ONE_BAR_LIMITS: [OneBar; 2] = [
     ("one-bar-truss", 0.3, [(-0.557709058500982, 0.2733153855772578), (0.8506427737191122, -0.1139816591452569)]),
     ("one-bar-truss-rough", 1.0, [(-0.3439878262095172, 0.525388017529103), (1.23899488443231, -0.01753282676883096)]),
 ];

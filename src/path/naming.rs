@@ -1,7 +1,7 @@
 //! Where the MPEC names the mode: every increment of `method: "mpec"`, and its directions where a mode ends.
 
 use super::decide::Choice;
-use super::program::{IncrementProgram, Named, Thoroughness};
+use super::program::{IncrementProgram, Named};
 use super::state::{Rate, State};
 use super::tracer::Path;
 use crate::contact::Mode;
@@ -22,7 +22,7 @@ impl Path<'_> {
         let state = self.here.state.clone();
         let mut tried = step;
         for _ in 0..TRIALS {
-            let named = self.name(&state, rate, &modes, tried, Thoroughness::Full);
+            let named = self.name(&state, rate, &modes, tried);
             if named.is_some_and(|named| named.modes == modes) {
                 return true;
             }
@@ -31,7 +31,7 @@ impl Path<'_> {
         false
     }
 
-    fn name(&mut self, base: &State, expected: &Rate, modes: &[Mode], step: f64, how: Thoroughness) -> Option<Named> {
+    fn name(&mut self, base: &State, expected: &Rate, modes: &[Mode], step: f64) -> Option<Named> {
         let loading = self.loading();
         let ahead = base.advanced(expected, step);
         let reactions = ahead.reactions.iter().fold(0.0_f64, |largest, reaction| largest.max(reaction.size()));
@@ -42,7 +42,7 @@ impl Path<'_> {
             return Some(Named { modes: modes.to_vec() });
         }
         let start = program.variables_at(expected);
-        let (named, counts) = program.name(&start, modes, how, &self.cancel);
+        let (named, counts) = program.name(&start, modes, &self.cancel);
         self.work.qp_solves += counts.qp_solves;
         self.work.mpec_solves += counts.mpec_solves;
         named
@@ -61,7 +61,7 @@ impl Path<'_> {
             let mut agrees = false;
             if !option.retrace && !option.mechanism {
                 for _ in 0..TRIALS {
-                    let named = self.name(&state, &option.rate, &option.modes, step, Thoroughness::Local);
+                    let named = self.name(&state, &option.rate, &option.modes, step);
                     if named.is_some_and(|named| named.modes == option.modes) {
                         agrees = true;
                         break;

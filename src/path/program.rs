@@ -53,15 +53,6 @@ struct InReach {
     traction: f64,
 }
 
-/// How hard a solution is looked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Thoroughness {
-    /// With every restart.
-    Full,
-    /// Only near the start.
-    Local,
-}
-
 /// What the program says of an increment.
 #[derive(Debug, Clone)]
 pub struct Named {
@@ -147,17 +138,15 @@ impl<'a> IncrementProgram<'a> {
     /// Solves from a start and reads the contact modes off the solution; `None` where no solution was found.
     ///
     /// `present` decides where a pair is biactive.
-    pub fn name(
-        &mut self,
-        start: &DVector<f64>,
-        present: &[Mode],
-        how: Thoroughness,
-        cancel: &CancelFlag,
-    ) -> (Option<Named>, Counts) {
-        let warm = Settings { finish: Finish::PatternSettled, ..Settings::warm() };
-        let settings = match how {
-            Thoroughness::Full => warm,
-            Thoroughness::Local => Settings { restarts: 0, iteration_limit: 20, enumeration_limit: 3, ..warm },
+    pub fn name(&mut self, start: &DVector<f64>, present: &[Mode], cancel: &CancelFlag) -> (Option<Named>, Counts) {
+        // The start is a predictor in a mode that is likely right: where no solution lies near it, a shorter increment
+        // helps more than a longer search.
+        let settings = Settings {
+            finish: Finish::PatternSettled,
+            restarts: 0,
+            iteration_limit: 20,
+            enumeration_limit: 3,
+            ..Settings::warm()
         };
         let mut counts = Counts::default();
         let mut start = start.clone();

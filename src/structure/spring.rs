@@ -27,10 +27,8 @@ impl Spring {
 
     fn forces(&self, dimension: usize, relative: &[f64; 3]) -> [f64; 3] {
         let mut forces = [0.0; 3];
-        for row in 0..dimension {
-            for column in 0..dimension {
-                forces[row] += self.stiffness[row][column] * relative[column];
-            }
+        for (force, row) in forces.iter_mut().zip(&self.stiffness).take(dimension) {
+            *force = row.iter().zip(relative).take(dimension).map(|(stiffness, motion)| stiffness * motion).sum();
         }
         forces
     }
