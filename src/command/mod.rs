@@ -6,6 +6,7 @@ mod check;
 mod health;
 mod input;
 mod openapi;
+mod plot;
 mod scenes;
 mod serve;
 mod solve;

@@ -1,15 +1,17 @@
 //! `arcslip solve`: a model's path, one line an increment, as it converges.
 
+use super::plot::{self, Against};
 use super::{Failure, Outcome, input};
 use crate::cancel::CancelFlag;
 use crate::jobs::{PathSolver, Solver};
+use crate::model::Model;
 use crate::output::{Table, json_line};
 use crate::path::{self, Increment};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::fs::File;
 use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Trace a model's path.
@@ -22,6 +24,12 @@ pub struct Arguments {
     out: Option<PathBuf>,
     #[arg(long, value_enum, default_value_t = Format::Ndjson)]
     format: Format,
+    /// Draw load factor against a displacement here, as an SVG.
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
+    /// The displacement that is drawn, such as `tip.x`. Default: the one that goes farthest.
+    #[arg(long, value_name = "NODE.COMPONENT", requires = "plot")]
+    against: Option<String>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -36,6 +44,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let request = arguments.model.read()?;
     // Checked before the file is opened, so that a mistake does not cost an earlier result.
     PathSolver.plan(&request).map_err(input::refused)?;
+    let mut picture = Picture::planned(arguments, &request.model)?;
     let mut writer = Writer::open(arguments)?;
     let progress = progress_bar(request.analysis.max_increments, arguments.out.is_some());
     let mut unwritten = None;
@@ -43,7 +52,12 @@ pub fn run(arguments: &Arguments) -> Outcome {
         .solve(&request, CancelFlag::default(), &mut |increment| {
             progress.set_position(increment.index + 1);
             match writer.write(&increment) {
-                Ok(()) => ControlFlow::Continue(()),
+                Ok(()) => {
+                    if let Some(picture) = &mut picture {
+                        picture.increments.push(increment);
+                    }
+                    ControlFlow::Continue(())
+                }
                 Err(error) => {
                     unwritten = Some(error);
                     ControlFlow::Break(())
@@ -54,6 +68,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
     progress.finish_and_clear();
     if let Some(error) = unwritten {
         return Err(Failure::Other(format!("the path could not be written: {error}")));
+    }
+    if let Some(picture) = picture {
+        picture.write(&request.model)?;
     }
     let Some(report) = report else { return Err(Failure::Other("the solver ended without a report".to_owned())) };
     eprintln!("{} {}", report.sentence, serde_json::to_string(&report).map_err(Failure::other)?);
@@ -105,5 +122,25 @@ impl Writer {
         };
         self.to.write_all(text.as_bytes())?;
         self.to.flush()
+    }
+}
+
+/// A picture to be drawn when the path has ended: what goes farthest is known only then.
+struct Picture<'a> {
+    file: &'a Path,
+    against: Option<Against>,
+    increments: Vec<Increment>,
+}
+
+impl<'a> Picture<'a> {
+    fn planned(arguments: &'a Arguments, model: &Model) -> Result<Option<Self>, Failure> {
+        let against = arguments.against.as_deref().map(|text| Against::read(text, model)).transpose();
+        let against = against.map_err(|error| Failure::Input(vec![error.to_string()]))?;
+        Ok(arguments.plot.as_deref().map(|file| Self { file, against, increments: Vec::new() }))
+    }
+
+    fn write(self, model: &Model) -> Result<(), Failure> {
+        let svg = plot::svg(model, &self.increments, self.against).map_err(Failure::other)?;
+        std::fs::write(self.file, svg).map_err(|error| Failure::Other(format!("{}: {error}", self.file.display())))
     }
 }

@@ -10,7 +10,7 @@ pub mod error;
 pub mod json;
 pub mod limits;
 mod mistakes;
-mod names;
+pub(crate) mod names;
 pub mod request;
 
 pub use error::{InputError, InputErrors};

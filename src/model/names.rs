@@ -12,7 +12,7 @@ const LIKENESS: f64 = 0.5;
 const SHOWN: usize = 60;
 
 /// The text in quotes, cut where it is long, control characters escaped.
-pub(super) fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     let mut shown: String = text.chars().take(SHOWN).flat_map(char::escape_debug).collect();
     if text.chars().nth(SHOWN).is_some() {
         shown.push('…');
@@ -21,7 +21,7 @@ pub(super) fn quoted(text: &str) -> String {
 }
 
 /// `; did you mean `tip`? Known: `pin`, `tip``, or what there is to say of that.
-pub(super) fn suggestion<'a>(unknown: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
+pub(crate) fn suggestion<'a>(unknown: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
     let known_list = listed(known.clone());
     match nearest(unknown, known) {
         Some(name) => format!("; did you mean {}? Known: {known_list}", quoted(name)),

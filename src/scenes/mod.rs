@@ -1,6 +1,7 @@
 //! The built-in scenes: models as JSON, ready to post.
 //!
-//! They are served, demonstrated, tested and verified from here.
+//! They are served, demonstrated, tested and verified from here. `pictures` holds what `arcslip solve --plot` draws of
+//! some of them; a test holds them to that.
 
 /// A model ready to post.
 #[derive(Debug, Clone, Copy)]

@@ -1,0 +1,117 @@
+//! An axis: its range, and numbers as texts.
+
+use plotters::coord::types::RangedCoordf64;
+use plotters::prelude::Ranged;
+use std::ops::Range;
+
+/// Free room at either end of an axis, in units of what is drawn.
+const MARGIN: f64 = 0.07;
+/// Powers of ten that are written out; beyond them the axis carries the power.
+const WRITTEN_OUT: std::ops::RangeInclusive<i32> = -3..=4;
+/// Values this small against the largest are zero but for rounding.
+const ROUNDING: f64 = 1e-12;
+/// Significant digits of a load in the legend.
+const DIGITS: usize = 6;
+
+/// One of the two axes. What is drawn are values over a power of ten, since the library's ticks want numbers near 1.
+#[derive(Debug, Clone)]
+pub struct Axis {
+    exponent: i32,
+    pub range: Range<f64>,
+    decimals: usize,
+}
+
+impl Axis {
+    /// The axis that shows these values, 0 among them: every path starts there.
+    pub fn showing(values: impl Iterator<Item = f64>, ticks: usize) -> Self {
+        let (low, high) = values.fold((0.0_f64, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
+        let largest = high.max(-low);
+        // An axis on which nothing moves still has a length.
+        let (low, high) = if largest > 0.0 { (low, high) } else { (-1.0, 1.0) };
+        let power = if largest > 0.0 { largest.log10().floor() as i32 } else { 0 };
+        let exponent = if WRITTEN_OUT.contains(&power) { 0 } else { power };
+        let margin = MARGIN * (high - low);
+        let mut axis = Self { exponent, range: 0.0..0.0, decimals: 0 };
+        axis.range = axis.drawn(low - margin)..axis.drawn(high + margin);
+        axis.decimals = RangedCoordf64::from(axis.range.clone())
+            .key_points(ticks)
+            .iter()
+            .filter(|tick| tick.abs() > ROUNDING * (axis.range.end - axis.range.start))
+            .map(|tick| plain(*tick, DIGITS).split_once('.').map_or(0, |(_, decimals)| decimals.len()))
+            .max()
+            .unwrap_or_default();
+        axis
+    }
+
+    /// Where a value stands on the axis.
+    pub fn drawn(&self, value: f64) -> f64 {
+        value / 10_f64.powi(self.exponent)
+    }
+
+    /// The text of a tick.
+    pub fn tick(&self, drawn: f64) -> String {
+        let text = format!("{drawn:.*}", self.decimals);
+        // What rounds to zero has no sign.
+        if text.trim_start_matches(['-', '0', '.']).is_empty() { text.trim_start_matches('-').to_owned() } else { text }
+    }
+
+    /// The axis' name with its power of ten.
+    pub fn named(&self, name: &str) -> String {
+        if self.exponent == 0 { name.to_owned() } else { format!("{name} / 1e{}", self.exponent) }
+    }
+
+    /// A value in words, for the legend.
+    pub fn number(&self, value: f64) -> String {
+        let largest = self.range.start.abs().max(self.range.end.abs());
+        if self.drawn(value).abs() <= ROUNDING * largest {
+            return "0".to_owned();
+        }
+        let power = value.abs().log10().floor() as i32;
+        if WRITTEN_OUT.contains(&power) {
+            return plain(value, DIGITS);
+        }
+        // Rounded first, so that the shortest text is short.
+        let text = format!("{value:.*e}", DIGITS - 1);
+        text.parse::<f64>().map_or(text, |rounded| format!("{rounded:e}"))
+    }
+}
+
+/// A number of that many significant digits, without zeros at its end.
+fn plain(value: f64, digits: usize) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let before_point = value.abs().log10().floor() as i32 + 1;
+    let decimals = usize::try_from(digits as i32 - before_point).unwrap_or_default();
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Axis;
+
+    #[test]
+    fn numbers_are_short() {
+        let axis = Axis::showing([0.3, -0.1].into_iter(), 10);
+        assert_eq!(axis.number(0.273_315_28), "0.273315");
+        assert_eq!(axis.number(8e-19), "0");
+        assert_eq!(axis.number(-0.1), "-0.1");
+        // As the library rounds them: 0.05, and 0 is 1e-17.
+        assert_eq!(axis.tick(0.05), "0.05");
+        assert_eq!(axis.tick(-1e-17), "0.00");
+        assert_eq!(axis.named("load factor"), "load factor");
+    }
+
+    #[test]
+    fn large_and_small_values_carry_their_power() {
+        let axis = Axis::showing([2.5e9].into_iter(), 10);
+        assert_eq!(axis.named("load factor"), "load factor / 1e9");
+        assert_eq!(axis.number(2.5e9), "2.5e9");
+        assert!(axis.range.end < 10.0);
+        let axis = Axis::showing([3e-20].into_iter(), 10);
+        assert!(axis.range.end > 1.0);
+        let still = Axis::showing([0.0].into_iter(), 10);
+        assert!(still.range.start < 0.0 && still.range.end > 0.0);
+    }
+}
