@@ -51,7 +51,7 @@ pub enum Refused {
 }
 
 /// The direction may turn by this much in a step.
-const MOST_TURN: f64 = 0.6;
+pub const MOST_TURN: f64 = 0.6;
 /// How far a watched quantity may be negative before it counts as passed.
 const PASSED: f64 = 1e-13;
 /// Two quantities that are zero within this are zero together.
@@ -78,6 +78,15 @@ impl Start<'_> {
         let (rate, error_estimate) =
             system.tangent_and_error(&corrected, self.rate).ok_or(Refused::Newton(Failure::Singular))?;
         let step = corrected.state.distance(self.state);
+        // The sphere around the start meets the path behind, too, and may meet other branches: the chord has to go the
+        // way of both directions.
+        let turn = self
+            .state
+            .angle_of_chord(&corrected.state, self.rate)
+            .max(self.state.angle_of_chord(&corrected.state, &rate));
+        if turn > MOST_TURN {
+            return Err(Refused::Turned(turn));
+        }
         Ok(Reached { corrected, rate, step, error_estimate, event: None })
     }
 

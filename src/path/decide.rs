@@ -4,6 +4,7 @@
 //! Then the rule: the largest dissipation per arc length (Kanno and Martins), or the straightest. Ties go to the
 //! straightest in displacement, `u̇·u̇_prev` alone: a rule in which the load enters would depend on its units.
 
+use super::advance::MOST_TURN;
 use super::directions::{Candidate, Found, directions, is_mechanism};
 use super::mode_system::{Loading, ModeSystem, Place};
 use super::standing::Standing;
@@ -112,6 +113,9 @@ fn confirm(loading: Loading<'_>, state: &State, candidate: &Candidate, force_sca
         let guess = state.advanced(&candidate.rate, TRIAL_STEP);
         let place = Place::ArcLength { from: state, step: TRIAL_STEP };
         let corrected = system.correct(guess, place, force_scale).ok()?;
+        if state.angle_of_chord(&corrected.state, &candidate.rate) > MOST_TURN {
+            return None;
+        }
         let rate = system.tangent(&corrected.state, &candidate.rate)?;
         let feasible = watch::of_mode(loading, modes).iter().all(|watch| {
             let value = watch.value(loading, modes, &corrected.state, &rate);

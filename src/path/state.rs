@@ -50,6 +50,22 @@ impl State {
     }
 }
 
+impl State {
+    /// The angle (radians) between the chord to another state and a rate; 0 for no chord.
+    pub fn angle_of_chord(&self, other: &Self, rate: &Rate) -> f64 {
+        let along: f64 = other
+            .displacement
+            .iter()
+            .zip(&self.displacement)
+            .zip(&rate.displacement)
+            .map(|((to, from), rate)| (to - from) * rate)
+            .sum::<f64>()
+            + (other.load - self.load) * rate.load;
+        let size = self.distance(other) * rate.size();
+        if size > 0.0 { (along / size).clamp(-1.0, 1.0).acos() } else { 0.0 }
+    }
+}
+
 impl Rate {
     /// `‖(u̇, ṡ)‖`
     pub fn size(&self) -> f64 {

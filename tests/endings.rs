@@ -1,0 +1,109 @@
+//! How paths end: each reason by a scene, with the last good point.
+
+mod common;
+
+use arcslip::cancel::CancelFlag;
+use arcslip::path::increment::PointKind;
+use arcslip::path::{Path, Scene, StopReason};
+use common::paths::{request, scene, trace};
+use serde_json::{Map, Value, json};
+
+/// The row of n snapping bars.
+fn row(n: usize) -> Value {
+    let (mut nodes, mut supports, mut forces) = (Map::new(), Map::new(), Map::new());
+    let (mut elements, mut contacts) = (Vec::new(), Vec::new());
+    let bar =
+        |a: String, b: String, stiffness: f64| json!({"kind": "bar", "nodes": [a, b], "axial_stiffness": stiffness});
+    for i in 0..n {
+        let foot = 1.5 + 0.1 * i as f64 / (n - 1) as f64;
+        nodes.insert(format!("pin{i}"), json!([3 * i, 1]));
+        nodes.insert(format!("tip{i}"), json!([3.0 * i as f64 - foot, 0]));
+        supports.insert(format!("pin{i}"), json!(["x", "y"]));
+        forces.insert(format!("tip{i}"), json!([1, 0]));
+        elements.push(bar(format!("pin{i}"), format!("tip{i}"), 1.0));
+        contacts.push(json!({"node": format!("tip{i}"), "obstacle": "floor", "friction": 0.3}));
+    }
+    (1..n).for_each(|i| elements.push(bar(format!("tip{}", i - 1), format!("tip{i}"), 0.5)));
+    json!({"model": {
+        "name": format!("row of {n} snapping bars"), "dimension": 2, "nodes": nodes, "supports": supports,
+        "elements": elements, "obstacles": {"floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}},
+        "contacts": contacts, "stages": [{"name": "push", "forces": forces}]
+    }})
+}
+
+/// One bar snaps alone and the path truly ends: exhaustive enumeration finds no direction at s = 0.104818.
+#[test]
+fn the_row_of_four_ends_without_a_direction() {
+    let (increments, report) = trace(&request(&row(4).to_string()));
+    assert_eq!(report.stop_reason, StopReason::NoDirection);
+    let last = increments.last().expect("an end");
+    assert_eq!(last.point.kind, PointKind::End);
+    assert!((last.load_factor - 0.104818).abs() < 1e-6);
+    for (tip, x) in [1.912378, 1.043896, 0.916531, 0.791225].iter().enumerate() {
+        assert!((last.displacements[format!("tip{tip}").as_str()][0] - x).abs() < 1e-6);
+    }
+}
+
+/// Both bars of a flat frame fold onto one another: the distance of their free ends falls to nothing.
+#[test]
+fn a_bar_that_shrinks_to_a_point_is_named() {
+    let model = json!({"model": {
+        "name": "two nodes pressed together", "dimension": 2,
+        "nodes": {"wall": [0, 0], "ram": [1, 0]}, "supports": {"wall": ["x", "y"], "ram": ["y"]},
+        "elements": [{"kind": "bar", "nodes": ["wall", "ram"], "axial_stiffness": 1}],
+        "stages": [{"name": "press", "forces": {"ram": [-1, 0]}}]
+    }});
+    let (_, report) = trace(&request(&model.to_string()));
+    assert_eq!(report.stop_reason, StopReason::CollapsedBar, "{report:?}");
+}
+
+#[test]
+fn the_number_of_increments_is_kept() {
+    let mut request = scene("klarbring");
+    request.analysis.max_increments = 17;
+    let (increments, report) = trace(&request);
+    assert_eq!((increments.len(), report.stop_reason), (18, StopReason::MaxIncrements));
+}
+
+#[test]
+fn stages_end_by_counts() {
+    for (until, kind, count) in [
+        (json!({"limit_points": 1}), PointKind::SmoothLimit, 1),
+        (json!({"contact_change": 2}), PointKind::ContactChange, 2),
+    ] {
+        let mut model = row(3);
+        model["model"]["stages"][0]["until"] = until;
+        let (increments, report) = trace(&request(&model.to_string()));
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted);
+        assert_eq!(increments.iter().filter(|i| i.point.kind == kind).count(), count);
+        assert_eq!(increments.last().map(|i| i.point.kind), Some(kind));
+    }
+}
+
+#[test]
+fn cancelling_stops_within_one_increment() {
+    let request = scene("three-snapping-bars");
+    let scene = Scene::new(&request).expect("a scene");
+    let cancel = CancelFlag::default();
+    let mut path = Path::new(&scene, cancel.clone());
+    assert!(path.nth(5).is_some());
+    cancel.cancel();
+    assert!(path.next().is_none());
+    assert_eq!(path.report().map(|report| report.stop_reason), Some(StopReason::Cancelled));
+}
+
+/// A square of four bars without a diagonal shears freely.
+#[test]
+fn an_unsupported_mechanism_is_bad_input() {
+    let bar = |a: &str, b: &str| json!({"kind": "bar", "nodes": [a, b], "axial_stiffness": 1});
+    let model = json!({"model": {
+        "dimension": 2,
+        "nodes": {"a": [0, 0], "b": [1, 0], "c": [1, 1], "d": [0, 1]}, "supports": {"a": ["x", "y"], "b": ["x", "y"]},
+        "elements": [bar("b", "c"), bar("c", "d"), bar("d", "a")],
+        "stages": [{"name": "push", "forces": {"c": [1, 0]}}]
+    }});
+    let errors = Scene::new(&request(&model.to_string())).expect_err("a mechanism");
+    assert_eq!(errors.0.len(), 1);
+    assert!(errors.0[0].pointer.starts_with("/model/nodes/"), "{errors}");
+    assert!(errors.0[0].detail.contains("mechanism"), "{errors}");
+}
