@@ -21,12 +21,12 @@
 //! contacts is the usual one. The zero set of a piecewise linear map from n+1 to n unknowns is an even number of rays
 //! where it is not degenerate: an odd count is reported.
 
+use super::condensed::Condensed;
 use super::mode_system::{Loading, ModeSystem};
 use super::standing::Standing;
 use super::state::{Rate, State};
-use crate::contact::{Mode, Reaction};
-use crate::linear_algebra::{Factorisation, null_space};
-use nalgebra::{DMatrix, DVector};
+use crate::contact::Mode;
+use crate::linear_algebra::null_space;
 
 /// A feasible direction.
 #[derive(Debug, Clone)]
@@ -53,11 +53,11 @@ pub struct Found {
 }
 
 /// Inequalities (of rates of unit arc length) that hold within this are weak.
-const WEAK: f64 = 1e-9;
+pub(super) const WEAK: f64 = 1e-9;
 /// Directions closer than this are one.
 const SAME: f64 = 1e-7;
 /// Relative pivot that decides the rank of a mode's equations.
-const RANK: f64 = 1e-11;
+pub(super) const RANK: f64 = 1e-11;
 
 /// Lists the directions; `incoming` helps to border the equations where the held structure is singular.
 pub fn directions(
@@ -107,280 +107,8 @@ pub fn is_mechanism(loading: Loading<'_>, state: &State, rate: &Rate) -> bool {
         && loading.structure.resistance(&state.displacement, &rate.displacement) < WEAK
 }
 
-/// A velocity of a changeable contact.
-#[derive(Debug, Clone, Copy)]
-enum Velocity {
-    Normal,
-    Tangential,
-}
-
-/// A changeable contact with the places of its velocities among the columns, and its reaction rates as linear forms.
-struct Changeable {
-    contact: usize,
-    standing: Standing,
-    friction: f64,
-    normal_column: Option<usize>,
-    tangential_column: Option<usize>,
-    normal_rate: DVector<f64>,
-    tangential_rate: DVector<f64>,
-    /// Size of the pressing reaction: what a unit of slip dissipates is `μ` times this.
-    normal: f64,
-}
-
-/// The rate equations condensed on the changeable contacts: column `j` is the full rate for unit `v_j`, the last one
-/// is `z₀`.
-struct Condensed<'a> {
-    loading: Loading<'a>,
-    columns: Vec<Rate>,
-    changeable: Vec<Changeable>,
-}
-
-impl<'a> Condensed<'a> {
-    fn new(
-        system: &ModeSystem<'_>,
-        loading: Loading<'a>,
-        state: &State,
-        standings: &[Standing],
-        incoming: Option<&Rate>,
-    ) -> Option<Self> {
-        let factorisation = bordered(system, loading, state, incoming)?;
-        let mut changeable = Vec::new();
-        let mut velocities = Vec::new();
-        for (contact, standing) in standings.iter().enumerate() {
-            let friction = loading.contacts[contact].friction;
-            let mut place = |velocity: Velocity| {
-                velocities.push((contact, velocity));
-                Some(velocities.len() - 1)
-            };
-            let (normal_column, tangential_column) = match standing {
-                Standing::Settled(_) => continue,
-                Standing::OnCone { .. } => (None, place(Velocity::Tangential)),
-                Standing::Touching if friction > 0.0 => (place(Velocity::Normal), place(Velocity::Tangential)),
-                Standing::Touching => (place(Velocity::Normal), None),
-            };
-            changeable.push(Changeable {
-                contact,
-                standing: *standing,
-                friction,
-                normal_column,
-                tangential_column,
-                normal_rate: DVector::zeros(0),
-                tangential_rate: DVector::zeros(0),
-                normal: state.reactions[contact].normal,
-            });
-        }
-        let mut columns = Vec::with_capacity(velocities.len() + 1);
-        for (contact, velocity) in velocities {
-            let mut values = DVector::zeros(system.size());
-            let offset = match velocity {
-                Velocity::Normal => 0,
-                Velocity::Tangential => 1,
-            };
-            values[system.row_of(contact) + offset] = 1.0;
-            if !factorisation.solve(&mut values) {
-                return None;
-            }
-            columns.push(system.rate_from(&values));
-        }
-        let mut values = DVector::zeros(system.size());
-        values[system.size() - 1] = 1.0;
-        if !factorisation.solve(&mut values) {
-            return None;
-        }
-        columns.push(system.rate_from(&values));
-        for entry in &mut changeable {
-            let reaction = |column: &Rate| column.reactions[entry.contact];
-            entry.normal_rate = DVector::from_iterator(columns.len(), columns.iter().map(|c| reaction(c).normal));
-            entry.tangential_rate =
-                DVector::from_iterator(columns.len(), columns.iter().map(|c| reaction(c).tangential[0]));
-        }
-        Some(Self { loading, columns, changeable })
-    }
-
-    /// Options of one contact.
-    fn options(&self, entry: &Changeable) -> Vec<Mode> {
-        match entry.standing {
-            Standing::Settled(mode) => vec![mode],
-            Standing::OnCone { direction } => vec![Mode::Stick, Mode::Slip { direction }],
-            Standing::Touching if entry.friction > 0.0 => vec![
-                Mode::Free,
-                Mode::Stick,
-                Mode::Slip { direction: [1.0, 0.0] },
-                Mode::Slip { direction: [-1.0, 0.0] },
-            ],
-            Standing::Touching => vec![Mode::Free, Mode::Slip { direction: [0.0; 2] }],
-        }
-    }
-
-    fn enumerate(&self, held: &[Mode], state: &State, most_modes: u64, found: &mut Found) {
-        let options: Vec<Vec<Mode>> = self.changeable.iter().map(|entry| self.options(entry)).collect();
-        let total = options.iter().try_fold(1u64, |total, option| total.checked_mul(option.len() as u64));
-        let examined = total.unwrap_or(u64::MAX).min(most_modes);
-        found.unexplored = total.unwrap_or(u64::MAX) - examined;
-        for number in 0..examined {
-            let mut rest = number;
-            let chosen: Vec<Mode> = options
-                .iter()
-                .map(|option| {
-                    let mode = option[(rest % option.len() as u64) as usize];
-                    rest /= option.len() as u64;
-                    mode
-                })
-                .collect();
-            self.examine(&chosen, held, state, found);
-        }
-    }
-
-    /// The directions of one mode.
-    fn examine(&self, chosen: &[Mode], held: &[Mode], state: &State, found: &mut Found) {
-        let columns = self.columns.len();
-        let mut equations = DMatrix::zeros(columns - 1, columns);
-        let mut next = 0;
-        let mut add = |form: DVector<f64>| {
-            equations.set_row(next, &form.transpose());
-            next += 1;
-        };
-        let unit = |column: usize| DVector::from_fn(columns, |row, _| f64::from(u8::from(row == column)));
-        for (entry, mode) in self.changeable.iter().zip(chosen) {
-            match mode {
-                Mode::Free => {
-                    add(entry.normal_rate.clone());
-                    if entry.tangential_column.is_some() {
-                        add(entry.tangential_rate.clone());
-                    }
-                }
-                Mode::Stick => {
-                    for column in [entry.normal_column, entry.tangential_column].into_iter().flatten() {
-                        add(unit(column));
-                    }
-                }
-                Mode::Slip { direction } => {
-                    if let Some(column) = entry.normal_column {
-                        add(unit(column));
-                    }
-                    if entry.tangential_column.is_some() {
-                        add(&entry.tangential_rate + &entry.normal_rate * (entry.friction * direction[0]));
-                    }
-                }
-            }
-        }
-        let Some(basis) = null_space(&equations, RANK) else {
-            found.degenerate = true;
-            return;
-        };
-        if basis.ncols() > 1 {
-            found.degenerate = true;
-            found.mechanism |= basis.column_iter().any(|column| {
-                let (rate, _) = self.combine(&column.into_owned());
-                is_mechanism(self.loading, state, &rate)
-            });
-            return;
-        }
-        for sense in [1.0, -1.0] {
-            let weights: DVector<f64> = basis.column(0) * sense;
-            let (mut rate, weights) = self.combine(&weights);
-            if rate.size() < 0.5 {
-                // Reactions that change with nothing else: redundant contacts.
-                found.degenerate = true;
-                return;
-            }
-            let Some(weak) = self.feasible(chosen, &weights, rate.largest_reaction()) else { continue };
-            let mut modes = held.to_vec();
-            for (entry, mode) in self.changeable.iter().zip(chosen) {
-                modes[entry.contact] = *mode;
-                match mode {
-                    Mode::Free => rate.reactions[entry.contact] = Reaction::default(),
-                    Mode::Stick => {}
-                    Mode::Slip { direction } => {
-                        let drag = -entry.friction * rate.reactions[entry.contact].normal;
-                        rate.reactions[entry.contact].tangential = [drag * direction[0], drag * direction[1]];
-                    }
-                }
-            }
-            let dissipation = self.dissipation(&weights);
-            merge(found, Candidate { rate, labels: vec![modes], weak, dissipation });
-        }
-    }
-
-    /// The rate of unit arc length for weights of the columns, and the weights that give it; of no size where the
-    /// weights move nothing.
-    fn combine(&self, weights: &DVector<f64>) -> (Rate, DVector<f64>) {
-        let mut rate = self.columns[0].clone();
-        rate.scale(weights[0]);
-        for (column, weight) in self.columns.iter().zip(weights.iter()).skip(1) {
-            rate.displacement.iter_mut().zip(&column.displacement).for_each(|(sum, value)| *sum += weight * value);
-            rate.load += weight * column.load;
-            for (sum, value) in rate.reactions.iter_mut().zip(&column.reactions) {
-                sum.normal += weight * value.normal;
-                sum.tangential[0] += weight * value.tangential[0];
-                sum.tangential[1] += weight * value.tangential[1];
-            }
-        }
-        let size = rate.size();
-        if size > WEAK * rate.largest_reaction() {
-            rate.scale(1.0 / size);
-            (rate, weights / size)
-        } else {
-            rate.scale(0.0);
-            (rate, weights.clone())
-        }
-    }
-
-    /// Whether the inequalities hold; `Some(true)` where one of them holds with equality.
-    fn feasible(&self, chosen: &[Mode], weights: &DVector<f64>, reaction_size: f64) -> Option<bool> {
-        if !weights.iter().all(|weight| weight.is_finite()) {
-            return None;
-        }
-        let force = WEAK * reaction_size.max(f64::MIN_POSITIVE);
-        let mut weak = false;
-        let mut holds = |value: f64, tolerance: f64| {
-            weak |= value.abs() <= tolerance;
-            value >= -tolerance
-        };
-        for (entry, mode) in self.changeable.iter().zip(chosen) {
-            let normal_rate = entry.normal_rate.dot(weights);
-            let tangential_rate = entry.tangential_rate.dot(weights);
-            let velocity = |column: Option<usize>| column.map_or(0.0, |column| weights[column]);
-            let touching = entry.standing == Standing::Touching;
-            let feasible = match mode {
-                Mode::Free => holds(velocity(entry.normal_column), WEAK),
-                Mode::Stick => match entry.standing {
-                    Standing::OnCone { direction } => {
-                        holds(entry.friction * normal_rate + direction[0] * tangential_rate, force)
-                    }
-                    Standing::Settled(_) | Standing::Touching => {
-                        holds(entry.friction * normal_rate - tangential_rate.abs(), force)
-                    }
-                },
-                Mode::Slip { direction } => {
-                    let along = direction[0] * velocity(entry.tangential_column);
-                    let sliding = entry.friction == 0.0 || holds(along, WEAK);
-                    let pressed = !touching || holds(normal_rate, force);
-                    sliding && pressed
-                }
-            };
-            if !feasible {
-                return None;
-            }
-        }
-        Some(weak)
-    }
-
-    fn dissipation(&self, weights: &DVector<f64>) -> f64 {
-        self.changeable
-            .iter()
-            .map(|entry| match (entry.standing, entry.tangential_column) {
-                (Standing::OnCone { direction }, Some(column)) => {
-                    entry.friction * entry.normal * direction[0] * weights[column]
-                }
-                _ => 0.0,
-            })
-            .sum()
-    }
-}
-
 /// Keeps one entry for one motion, whatever its labels; labels with more sticking contacts come first.
-fn merge(found: &mut Found, candidate: Candidate) {
+pub(super) fn merge(found: &mut Found, candidate: Candidate) {
     for known in &mut found.candidates {
         let size = known.rate.largest_reaction().max(candidate.rate.largest_reaction()).max(f64::MIN_POSITIVE);
         let same_motion = (1.0 - known.rate.product(&candidate.rate)) < 0.5 * SAME * SAME;
@@ -397,34 +125,4 @@ fn merge(found: &mut Found, candidate: Candidate) {
         }
     }
     found.candidates.push(candidate);
-}
-
-/// A factorisation of the held system with a border that makes it regular: the load, the incoming direction, or the
-/// null vector itself.
-fn bordered(
-    system: &ModeSystem<'_>,
-    loading: Loading<'_>,
-    state: &State,
-    incoming: Option<&Rate>,
-) -> Option<Factorisation> {
-    let matrix = system.matrix(state);
-    let mut by_load = matrix.clone();
-    by_load[(system.size() - 1, loading.structure.unknowns())] = 1.0;
-    if let Some(factorisation) = Factorisation::new(by_load) {
-        return Some(factorisation);
-    }
-    if let Some(rate) = incoming {
-        let mut by_rate = matrix.clone();
-        system.border(&mut by_rate, rate);
-        if let Some(factorisation) = Factorisation::new(by_rate) {
-            return Some(factorisation);
-        }
-    }
-    let basis = null_space(&matrix.rows(0, system.size() - 1).into_owned(), RANK)?;
-    if basis.ncols() != 1 {
-        return None;
-    }
-    let mut by_null_vector = matrix;
-    by_null_vector.set_row(system.size() - 1, &basis.column(0).transpose());
-    Factorisation::new(by_null_vector)
 }

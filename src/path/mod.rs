@@ -7,13 +7,14 @@
 //! | `scene`, `plan` | a request made dimensionless; what it needs and what is left out |
 //! | `state`, `mode_system` | a point; the equations of one contact mode and Newton's method on them |
 //! | `watch`, `root`, `advance` | what ends a mode; one step, ended exactly at the first event |
-//! | `standing`, `directions`, `decide` | which contacts can change; every direction; which one is taken |
+//! | `standing`, `directions`, `condensed`, `decide` | which contacts can change; every direction; which one is taken |
 //! | `program`, `naming` | the MPEC of an increment; where it names the mode |
 //! | `energy`, `record`, `increment`, `report`, `stop` | balances, rows, totals, reasons |
 //! | `tracer`, `stepping`, `arrival` | the iterator; how far a step goes; what a point turned out to be |
 
 mod advance;
 mod arrival;
+mod condensed;
 mod decide;
 mod directions;
 mod energy;
