@@ -19,6 +19,8 @@ pub type Tangential = [f64; 2];
 pub struct Contact {
     pub node: usize,
     pub obstacle: Obstacle,
+    /// Gap of the undeformed structure; kept apart so that a place far from the origin costs no digits.
+    pub initial_gap: f64,
     /// Coulomb's coefficient; 0 where friction can do nothing.
     pub friction: f64,
 }
@@ -59,13 +61,11 @@ impl Reaction {
 }
 
 impl Contact {
-    /// Position of the contact's node.
-    pub fn position(&self, dimension: usize, reference: &[f64], displacement: &[f64]) -> [f64; 3] {
-        let mut position = [0.0; 3];
+    /// Signed distance of the node from the obstacle, positive on the free side.
+    pub fn gap(&self, dimension: usize, displacement: &[f64]) -> f64 {
         let first = self.node * dimension;
-        for (component, value) in position.iter_mut().enumerate().take(dimension) {
-            *value = reference[first + component] + displacement[first + component];
-        }
-        position
+        let normal = self.obstacle.normal();
+        let moved: f64 = displacement[first..first + dimension].iter().zip(&normal).map(|(u, n)| u * n).sum();
+        self.initial_gap + moved
     }
 }

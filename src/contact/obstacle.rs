@@ -1,24 +1,17 @@
-//! Obstacles: signed distance, normal and tangents.
+//! Obstacles: normal and tangents.
 
 /// A rigid obstacle.
 #[derive(Debug, Clone)]
 pub enum Obstacle {
-    /// A half-space with unit `normal` into the free side: `g = (x - point)·normal`.
-    Plane { point: [f64; 3], normal: [f64; 3] },
+    /// A half-space with unit `normal` into the free side.
+    Plane { normal: [f64; 3] },
 }
 
 impl Obstacle {
-    /// Signed distance, positive on the free side.
-    pub fn gap(&self, position: &[f64; 3]) -> f64 {
-        match self {
-            Self::Plane { point, normal } => (0..3).map(|k| (position[k] - point[k]) * normal[k]).sum(),
-        }
-    }
-
-    /// Unit normal into the free side, at the foot of the position.
+    /// Unit normal into the free side.
     pub fn normal(&self) -> [f64; 3] {
         match self {
-            Self::Plane { normal, .. } => *normal,
+            Self::Plane { normal } => *normal,
         }
     }
 

@@ -54,6 +54,8 @@ pub enum Refused {
 pub const MOST_TURN: f64 = 0.6;
 /// How far a watched quantity may be negative before it counts as passed.
 const PASSED: f64 = 1e-13;
+/// A bound of the stage (dimensionless) within this is reached.
+pub const AT_END: f64 = 1e-12;
 /// Two quantities that are zero within this are zero together.
 const COINCIDING: f64 = 1e-10;
 
@@ -115,6 +117,13 @@ impl Start<'_> {
             event = Some(watch);
             passed = self.passed(&watches, &reached);
             passed.retain(|other| *other != watch);
+        }
+        if event.is_none() {
+            // A step may end exactly where the stage does.
+            event = ends
+                .iter()
+                .map(|end| Watch::End(*end))
+                .find(|watch| self.value(*watch, &reached.corrected.state, &reached.rate) <= AT_END);
         }
         if let Some(Watch::LoadRate { .. }) = event {
             // Where a contact reaches the end of its mode at the limit point itself, the change is what matters.

@@ -94,7 +94,7 @@ impl Path<'_> {
         let mut decision = decide::decide(self.loading(), &self.here.state, &standings, before, rules);
         if self.scene.analysis.method == Method::Mpec && decision.taken.is_some() {
             let confirmed = self.confirmed_by_program(&decision.options);
-            let best = decide::preferred(&decision.options, incoming, rules, |index| confirmed[index]);
+            let best = decide::preferred(&decision.options, incoming, self.rules(), |index| confirmed[index]);
             decision.taken = best.or(decision.taken);
         }
         let old_modes = self.here.modes.clone();

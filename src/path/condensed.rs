@@ -8,6 +8,7 @@ use super::directions::{Candidate, Found, RANK, WEAK, is_mechanism, merge};
 use super::mode_system::{Loading, ModeSystem};
 use super::standing::Standing;
 use super::state::{Rate, State};
+use crate::cancel::CancelFlag;
 use crate::contact::{Mode, Reaction};
 use crate::linear_algebra::{Factorisation, null_space};
 use nalgebra::{DMatrix, DVector};
@@ -103,28 +104,39 @@ impl<'a> Condensed<'a> {
         Some(Self { loading, columns, changeable })
     }
 
-    /// Options of one contact.
+    /// Options of one contact, holding first: where the number examined is bounded, the held structure is among them.
     fn options(&self, entry: &Changeable) -> Vec<Mode> {
         match entry.standing {
             Standing::Settled(mode) => vec![mode],
             Standing::OnCone { direction } => vec![Mode::Stick, Mode::Slip { direction }],
             Standing::Touching if entry.friction > 0.0 => vec![
-                Mode::Free,
                 Mode::Stick,
                 Mode::Slip { direction: [1.0, 0.0] },
                 Mode::Slip { direction: [-1.0, 0.0] },
+                Mode::Free,
             ],
-            Standing::Touching => vec![Mode::Free, Mode::Slip { direction: [0.0; 2] }],
+            Standing::Touching => vec![Mode::Slip { direction: [0.0; 2] }, Mode::Free],
         }
     }
 
     /// Examines the contact modes one after another, at most so many.
-    pub(super) fn enumerate(&self, held: &[Mode], state: &State, most_modes: u64, found: &mut Found) {
+    pub(super) fn enumerate(
+        &self,
+        held: &[Mode],
+        state: &State,
+        most_modes: u64,
+        cancel: &CancelFlag,
+        found: &mut Found,
+    ) {
         let options: Vec<Vec<Mode>> = self.changeable.iter().map(|entry| self.options(entry)).collect();
         let total = options.iter().try_fold(1u64, |total, option| total.checked_mul(option.len() as u64));
         let examined = total.unwrap_or(u64::MAX).min(most_modes);
         found.unexplored = total.unwrap_or(u64::MAX) - examined;
         for number in 0..examined {
+            if cancel.is_cancelled() {
+                found.unexplored += examined - number;
+                return;
+            }
             let mut rest = number;
             let chosen: Vec<Mode> = options
                 .iter()

@@ -11,6 +11,7 @@ use super::standing::Standing;
 use super::state::{Rate, State, dot};
 use super::stop::StopReason;
 use super::watch;
+use crate::cancel::CancelFlag;
 use crate::contact::Mode;
 use crate::model::request::Selection;
 
@@ -58,10 +59,11 @@ const TRIAL_TOLERANCE: f64 = 1e-11;
 
 /// Settings and scales of a decision.
 #[derive(Debug, Clone, Copy)]
-pub struct Rules {
+pub struct Rules<'a> {
     pub selection: Selection,
     pub most_modes: u64,
     pub force_scale: f64,
+    pub cancel: &'a CancelFlag,
 }
 
 /// Lists the directions at a point.
@@ -70,13 +72,13 @@ pub fn list(
     state: &State,
     standings: &[Standing],
     before: Before<'_>,
-    rules: Rules,
+    rules: Rules<'_>,
 ) -> (Vec<Choice>, Found) {
     let incoming = match before {
         Before::Incoming(rate) => Some(rate),
         Before::StageStart => None,
     };
-    let mut found = directions(loading, state, standings, incoming, rules.most_modes);
+    let mut found = directions(loading, state, standings, incoming, rules.most_modes, rules.cancel);
     let candidates = std::mem::take(&mut found.candidates);
     let mut options = Vec::with_capacity(candidates.len());
     for candidate in candidates {
@@ -143,7 +145,7 @@ pub fn decide(
     state: &State,
     standings: &[Standing],
     before: Before<'_>,
-    rules: Rules,
+    rules: Rules<'_>,
 ) -> Decision {
     let (options, found) = list(loading, state, standings, before, rules);
     let odd = options.len() % 2 == 1;
@@ -152,6 +154,10 @@ pub fn decide(
     let previous = match before {
         Before::Incoming(rate) => rate,
         Before::StageStart => {
+            if found.unexplored > 0 && open.iter().all(|&index| options[index].load_sign <= 0.0) {
+                // The load is to rise, and the mode in which it does may be among those not examined.
+                open.clear();
+            }
             if open.iter().any(|&index| options[index].load_sign > 0.0) {
                 open.retain(|&index| options[index].load_sign > 0.0);
             }
@@ -162,8 +168,8 @@ pub fn decide(
     let stop = match taken {
         Some(index) if options[index].mechanism => Some(StopReason::Mechanism),
         Some(_) => None,
-        None if found.mechanism => Some(StopReason::Mechanism),
         None if found.unexplored > 0 => Some(StopReason::ModeLimit),
+        None if found.mechanism => Some(StopReason::Mechanism),
         None if found.degenerate => Some(StopReason::Degenerate),
         None => Some(StopReason::NoDirection),
     };
@@ -177,14 +183,19 @@ pub fn decide(
 }
 
 /// The direction that the rule puts first, among those that are eligible.
-pub fn preferred(options: &[Choice], previous: &Rate, rules: Rules, eligible: impl Fn(usize) -> bool) -> Option<usize> {
+pub fn preferred(
+    options: &[Choice],
+    previous: &Rate,
+    rules: Rules<'_>,
+    eligible: impl Fn(usize) -> bool,
+) -> Option<usize> {
     (0..options.len())
         .filter(|&index| eligible(index))
         .reduce(|best, other| if is_preferred(&options[other], &options[best], previous, rules) { other } else { best })
 }
 
 /// Whether the first of two directions goes before the second.
-fn is_preferred(first: &Choice, second: &Choice, previous: &Rate, rules: Rules) -> bool {
+fn is_preferred(first: &Choice, second: &Choice, previous: &Rate, rules: Rules<'_>) -> bool {
     let cosine = |choice: &Choice| {
         let size = dot(&choice.rate.displacement, &choice.rate.displacement).sqrt();
         let along = dot(&choice.rate.displacement, &previous.displacement);

@@ -25,6 +25,7 @@ use super::condensed::Condensed;
 use super::mode_system::{Loading, ModeSystem};
 use super::standing::Standing;
 use super::state::{Rate, State};
+use crate::cancel::CancelFlag;
 use crate::contact::Mode;
 use crate::linear_algebra::null_space;
 
@@ -66,6 +67,7 @@ pub fn directions(
     standings: &[Standing],
     incoming: Option<&Rate>,
     most_modes: u64,
+    cancel: &CancelFlag,
 ) -> Found {
     let held: Vec<Mode> = standings
         .iter()
@@ -84,7 +86,7 @@ pub fn directions(
         found.mechanism = resists_nothing(&system, loading, state);
         return found;
     };
-    condensed.enumerate(&held, state, most_modes, &mut found);
+    condensed.enumerate(&held, state, most_modes, cancel, &mut found);
     found
 }
 

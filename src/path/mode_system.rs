@@ -186,8 +186,7 @@ impl<'a> ModeSystem<'a> {
                     + reaction.tangential[1] * tangents[1][component];
             }
             let row = self.row_of(index);
-            let position = contact.position(dimension, &structure.reference, &state.displacement);
-            values[row] = contact.obstacle.gap(&position);
+            values[row] = contact.gap(dimension, &state.displacement);
             if *mode == Mode::Stick {
                 for (k, tangent) in tangents.iter().enumerate().take(dimension - 1) {
                     values[row + 1 + k] = (0..dimension)

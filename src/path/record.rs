@@ -105,12 +105,12 @@ fn contact_rows(scene: &Scene, row: &Row<'_>) -> (Vec<ContactState>, f64) {
     let mut violation = 0.0_f64;
     let mut rows = Vec::with_capacity(scene.contacts.len());
     for (index, contact) in scene.contacts.iter().enumerate() {
-        let position = contact.position(dimension, &structure.reference, &row.state.displacement);
-        let before = contact.position(dimension, &structure.reference, &row.before.displacement);
-        let gap = contact.obstacle.gap(&position);
+        let gap = contact.gap(dimension, &row.state.displacement);
+        let first = contact.node * dimension;
+        let moved = |c: usize| row.state.displacement[first + c] - row.before.displacement[first + c];
         let reaction = row.state.reactions[index];
         let tangents = contact.obstacle.tangents(dimension);
-        let motion = |k: usize| -> f64 { (0..dimension).map(|c| (position[c] - before[c]) * tangents[k][c]).sum() };
+        let motion = |k: usize| -> f64 { (0..dimension).map(|c| moved(c) * tangents[k][c]).sum() };
         let scaled = 1.0 / row.force_scale.max(f64::MIN_POSITIVE);
         let normal = reaction.normal * scaled;
         violation = violation.max(-gap).max(-normal).max(gap.min(normal).abs());

@@ -2,13 +2,15 @@
 //!
 //! Lengths are divided by `displacement_scale` `ℓ`, forces by `force_scale` `φ`, each stage's load factor by its
 //! `load_scale` `σ`; a pattern `f` becomes `f σ/φ`. By default `ℓ` is the longest bar and `φ` the smallest axial
-//! stiffness; without bars, `φ` is the largest force of any stage and `ℓ` that force over the largest spring stiffness.
+//! stiffness; without bars, `φ` is the largest force of any stage and `ℓ` that force over the
+//! largest spring stiffness (Frobenius norm).
 //! `σ = φ / max |f|`. All follow the units of the input, so that a change of units changes nothing but round-off.
 
 use super::plan::{LeftOut, Plan};
 use crate::contact::Contact;
 use crate::contact::obstacle::Obstacle;
 use crate::linear_algebra::{Factorisation, null_space};
+use crate::model::limits::PENETRATION_TOLERANCE;
 use crate::model::request::{self, Analysis, JobRequest, Model};
 use crate::model::{InputError, InputErrors};
 use crate::structure::Structure;
@@ -61,6 +63,8 @@ pub(super) enum End {
 
 /// Contacts closer than this (dimensionless) count as closed when the supports are judged.
 const CLOSED: f64 = 1e-10;
+/// Forces at the start below this fraction of the largest are round-off.
+const BALANCED: f64 = 1e-11;
 
 impl Scene {
     /// Checks the request as a whole and makes it dimensionless.
@@ -105,7 +109,29 @@ impl Scene {
         let analysis = request.analysis.clone();
         let scene = Self { structure, contacts, contact_names, node_names, stages, analysis, plan };
         scene.refuse_mechanism()?;
+        scene.refuse_imbalance()?;
         Ok(scene)
+    }
+
+    /// Refuses prestress and rest lengths that do not balance in the undeformed structure: a path starts at rest.
+    fn refuse_imbalance(&self) -> Result<(), InputErrors> {
+        let structure = &self.structure;
+        let mut force = vec![0.0; structure.freedoms()];
+        let largest = structure.internal_force(&vec![0.0; structure.freedoms()], &mut force);
+        let unbalanced = structure.freedom_of.iter().map(|freedom| (*freedom, force[*freedom].abs()));
+        let Some((freedom, worst)) = unbalanced.max_by(|a, b| a.1.total_cmp(&b.1)) else { return Ok(()) };
+        if worst <= BALANCED * largest {
+            return Ok(());
+        }
+        let name = &self.node_names[freedom / structure.dimension];
+        Err(InputErrors(vec![InputError::new(
+            pointer_to_node(name),
+            format!(
+                "prestress and rest lengths leave a force of {:e} on \"{name}\" at the start; a path starts from a state \
+                 at rest: give prestress that balances at every free node, or bring it on as a stage's forces",
+                worst * self.plan.force_scale
+            ),
+        )]))
     }
 
     /// What the scene needs and what is left out.
@@ -122,8 +148,7 @@ impl Scene {
         structure.add_tangent(&still, &mut matrix);
         let stiffness = matrix.amax();
         for contact in &self.contacts {
-            let position = contact.position(dimension, &structure.reference, &still);
-            if contact.obstacle.gap(&position) > CLOSED {
+            if contact.gap(dimension, &still) > CLOSED {
                 continue;
             }
             let tangents = contact.obstacle.tangents(dimension);
@@ -153,9 +178,8 @@ impl Scene {
                 let freedom = structure.freedom_of[unknown];
                 let name = &self.node_names[freedom / dimension];
                 let component = ["x", "y", "z"][freedom % dimension];
-                let pointer = format!("/model/nodes/{}", name.replace('~', "~0").replace('/', "~1"));
                 return Err(InputErrors(vec![InputError::new(
-                    pointer,
+                    pointer_to_node(name),
                     format!(
                         "the structure is a mechanism: \"{name}\" can move along {component} with no element, support or \
                          closed contact resisting; support it, or connect it by bars or springs that resist the motion"
@@ -167,6 +191,15 @@ impl Scene {
     }
 }
 
+fn pointer_to_node(name: &str) -> String {
+    format!("/model/nodes/{}", name.replace('~', "~0").replace('/', "~1"))
+}
+
+/// Euclidean norm: the scales must not depend on the axes.
+fn norm(values: &[f64]) -> f64 {
+    values.iter().map(|value| value * value).sum::<f64>().sqrt()
+}
+
 /// `ℓ` and `φ`.
 fn scales(model: &Model, analysis: &Analysis) -> (f64, f64) {
     let (mut longest, mut softest, mut spring) = (0.0_f64, f64::INFINITY, 0.0_f64);
@@ -174,17 +207,17 @@ fn scales(model: &Model, analysis: &Analysis) -> (f64, f64) {
         match element {
             request::Element::Bar { nodes, axial_stiffness, .. } => {
                 let ends = (&model.nodes[&nodes[0]], &model.nodes[&nodes[1]]);
-                let squared: f64 = ends.0.iter().zip(ends.1).map(|(a, b)| (a - b) * (a - b)).sum();
-                longest = longest.max(squared.sqrt());
+                let difference: Vec<f64> = ends.0.iter().zip(ends.1).map(|(a, b)| a - b).collect();
+                longest = longest.max(norm(&difference));
                 softest = softest.min(*axial_stiffness);
             }
             request::Element::Spring { stiffness, .. } => {
-                spring = stiffness.iter().flatten().fold(spring, |largest, value| largest.max(value.abs()));
+                spring = spring.max(norm(&stiffness.concat()));
             }
         }
     }
-    let loads = model.stages.iter().flat_map(|stage| stage.forces.values().flatten());
-    let largest_load = loads.fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let loads = model.stages.iter().flat_map(|stage| stage.forces.values());
+    let largest_load = loads.fold(0.0_f64, |largest, force| largest.max(norm(force)));
     let (mut length, mut force) = if longest > 0.0 {
         (longest, softest)
     } else if spring > 0.0 && largest_load > 0.0 {
@@ -203,7 +236,10 @@ fn scales(model: &Model, analysis: &Analysis) -> (f64, f64) {
 
 fn build_structure(model: &Model, numbers: &HashMap<&str, usize>, length: f64, force: f64) -> Structure {
     let dimension = model.dimension;
-    let reference: Vec<f64> = model.nodes.values().flatten().map(|value| value / length).collect();
+    // Measured from the first node: a place far from the origin costs no digits.
+    let origin = model.nodes.values().next().cloned().unwrap_or_default();
+    let local = |node: &Vec<f64>| -> Vec<f64> { node.iter().zip(&origin).map(|(x, x0)| (x - x0) / length).collect() };
+    let reference: Vec<f64> = model.nodes.values().flat_map(local).collect();
     let mut supported = vec![false; reference.len()];
     for (name, components) in &model.supports {
         for component in components {
@@ -256,20 +292,22 @@ fn build_contact(
     structure: &Structure,
 ) -> Contact {
     let dimension = model.dimension;
-    let obstacle = match &model.obstacles[&contact.obstacle] {
+    let (obstacle, initial_gap) = match &model.obstacles[&contact.obstacle] {
         request::Obstacle::Plane { point, normal } => {
             let largest = normal.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-            let size = normal.iter().map(|value| (value / largest) * (value / largest)).sum::<f64>().sqrt() * largest;
-            let padded = |values: &[f64], scale: f64| {
-                let mut padded = [0.0; 3];
-                values.iter().enumerate().for_each(|(k, value)| padded[k] = value / scale);
-                padded
-            };
-            Obstacle::Plane { point: padded(point, length), normal: padded(normal, size) }
+            let size = norm(&normal.iter().map(|value| value / largest).collect::<Vec<f64>>()) * largest;
+            let mut unit = [0.0; 3];
+            normal.iter().enumerate().for_each(|(k, value)| unit[k] = value / size);
+            let place = &model.nodes[&contact.node];
+            let gap: f64 = (0..dimension).map(|k| (place[k] - point[k]) * unit[k]).sum();
+            // What is within the round-off of the coordinates is contact.
+            let reach = place.iter().chain(point).fold(0.0_f64, |largest, value| largest.max(value.abs()));
+            let closed = gap.abs() <= PENETRATION_TOLERANCE * length + 4.0 * f64::EPSILON * reach;
+            (Obstacle::Plane { normal: unit }, if closed { 0.0 } else { gap / length })
         }
     };
     let free = (0..dimension).filter(|k| structure.unknown_of[node * dimension + k].is_some()).count();
-    Contact { node, obstacle, friction: if free < dimension { 0.0 } else { contact.friction } }
+    Contact { node, obstacle, initial_gap, friction: if free < dimension { 0.0 } else { contact.friction } }
 }
 
 fn build_stage(
@@ -281,7 +319,7 @@ fn build_stage(
     analysis: &Analysis,
 ) -> StageLoad {
     let dimension = structure.dimension;
-    let largest = stage.forces.values().flatten().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let largest = stage.forces.values().fold(0.0_f64, |largest, force| largest.max(norm(force)));
     let natural = if largest > 0.0 { force / largest } else { 1.0 };
     let load_scale = analysis.arc_length.load_scale.unwrap_or(natural);
     let mut pattern = vec![0.0; structure.freedoms()];

@@ -31,8 +31,7 @@ fn standing(structure: &Structure, contact: &Contact, state: &State, index: usiz
     let reaction = &state.reactions[index];
     let zero = ZERO * force_scale;
     if reaction.normal <= zero {
-        let position = contact.position(structure.dimension, &structure.reference, &state.displacement);
-        return if contact.obstacle.gap(&position) <= ZERO {
+        return if contact.gap(structure.dimension, &state.displacement) <= ZERO {
             Standing::Touching
         } else {
             Standing::Settled(Mode::Free)

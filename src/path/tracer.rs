@@ -3,7 +3,7 @@
 //! Between events the path keeps its contact mode and is followed by arc-length steps; where the mode ends, the
 //! directions are listed and one is taken. The step follows the turn of the path and the work of Newton's method.
 
-use super::advance::Work;
+use super::advance::{AT_END, Work};
 use super::decide::{self, Before, Choice, Decision, Rules};
 use super::increment::{Energy, Increment, Point, PointKind};
 use super::mode_system::Loading;
@@ -14,7 +14,7 @@ use super::scene::{End, Scene};
 use super::standing::{Standing, standings};
 use super::state::{Rate, State};
 use super::stepping::{Accepted, NO_ENERGY};
-use super::stop::StopReason;
+use super::stop::{Outcome, StopReason};
 use super::watch::Watch;
 use crate::cancel::CancelFlag;
 use crate::contact::{Mode, Reaction};
@@ -130,14 +130,17 @@ impl<'a> Path<'a> {
         }
     }
 
-    pub(super) fn rules(&self) -> Rules {
+    pub(super) fn rules(&self) -> Rules<'_> {
         let analysis = &self.scene.analysis;
         let loads = self.scene.stages[self.stage].pattern.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         let force_scale = if self.force_scale > 0.0 { self.force_scale } else { loads };
-        Rules { selection: analysis.selection, most_modes: analysis.max_modes, force_scale }
+        Rules { selection: analysis.selection, most_modes: analysis.max_modes, force_scale, cancel: &self.cancel }
     }
 
     fn end(&mut self, reason: StopReason) {
+        // A cancelled enumeration leaves its point without a direction.
+        let broken_off = self.cancel.is_cancelled() && reason.outcome() == Outcome::Stopped;
+        let reason = if broken_off { StopReason::Cancelled } else { reason };
         self.phase = Phase::Ended;
         self.report.stop_reason = reason;
         self.report.sentence = reason.sentence().to_owned();
@@ -267,19 +270,20 @@ impl<'a> Path<'a> {
         self.index += 1;
         self.counts.increments += 1;
         self.here.state = reached.corrected.state;
+        let at_bound = self.at_bound(&reached.rate);
         let arrival = self.classify(reached.event, &reached.rate);
+        let stage_ends = arrival.stage_ends || at_bound || self.count_ends_stage();
         let mut point = arrival.point;
         if let Some(reason) = arrival.stop {
             point.kind = PointKind::End;
             self.end(reason);
-        } else if arrival.stage_ends || self.count_ends_stage() {
+        } else if stage_ends {
             if point.kind == PointKind::Regular {
                 point.kind = PointKind::End;
             }
             let what = format!("stage \"{}\" ends", self.scene.stages[self.stage].name);
             point.event = Some(point.event.map_or(what.clone(), |event| format!("{event}; {what}")));
         }
-        let stage_ends = arrival.stage_ends || self.count_ends_stage();
         let row = self.emit(Emitted {
             before: &before,
             modes: &modes,
@@ -295,6 +299,19 @@ impl<'a> Path<'a> {
             self.next_stage();
         }
         row
+    }
+
+    /// Whether a load or displacement at which the stage ends is reached here, whatever else happens here; it is then
+    /// made exact.
+    fn at_bound(&mut self, rate: &Rate) -> bool {
+        let ends = &self.scene.stages[self.stage].ends;
+        let met = ends
+            .iter()
+            .find(|end| Watch::End(**end).value(self.loading(), &self.here.modes, &self.here.state, rate) <= AT_END);
+        if let Some(End::Load { bound, .. }) = met {
+            self.here.state.load = *bound;
+        }
+        met.is_some()
     }
 
     fn count_ends_stage(&self) -> bool {

@@ -56,8 +56,7 @@ impl Watch {
         match self {
             Self::Gap(contact) => {
                 let contact = &loading.contacts[contact];
-                let position = contact.position(structure.dimension, &structure.reference, &state.displacement);
-                contact.obstacle.gap(&position)
+                contact.gap(structure.dimension, &state.displacement)
             }
             Self::Normal(contact) => state.reactions[contact].normal,
             Self::Cone { contact, side } => {

@@ -122,8 +122,7 @@ impl Problem for IncrementProgram<'_> {
         let mut pair = 0;
         for entry in &self.reach {
             let contact = &self.loading.contacts[entry.contact];
-            let position = contact.position(structure.dimension, &structure.reference, &state.displacement);
-            first[pair] = contact.obstacle.gap(&position) / self.step;
+            first[pair] = contact.gap(structure.dimension, &state.displacement) / self.step;
             second[pair] = x[entry.first];
             pair += 1;
             if entry.friction > 0.0 {

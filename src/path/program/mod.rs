@@ -78,8 +78,7 @@ impl<'a> IncrementProgram<'a> {
         let mut next = structure.unknowns() + 1;
         let mut reach = Vec::new();
         for (contact, data) in loading.contacts.iter().enumerate() {
-            let position = data.position(structure.dimension, &structure.reference, &base.displacement);
-            if data.obstacle.gap(&position) > REACH * step {
+            if data.gap(structure.dimension, &base.displacement) > REACH * step {
                 continue;
             }
             let traction = base.reactions[contact].tangential[0] / force;
