@@ -107,3 +107,51 @@ fn an_unsupported_mechanism_is_bad_input() {
     assert!(errors.0[0].pointer.starts_with("/model/nodes/"), "{errors}");
     assert!(errors.0[0].detail.contains("mechanism"), "{errors}");
 }
+
+/// Prestress that nothing balances is not a state of rest.
+#[test]
+fn unbalanced_prestress_is_bad_input() {
+    let model = json!({"model": {
+        "dimension": 2, "nodes": {"p": [0, 0], "q": [1, 0]}, "supports": {"p": ["x", "y"]},
+        "elements": [
+            {"kind": "bar", "nodes": ["p", "q"], "axial_stiffness": 1, "prestress": 0.1},
+            {"kind": "spring", "nodes": ["q"], "stiffness": [[1, 0], [0, 1]]}
+        ],
+        "stages": [{"name": "push", "forces": {"q": [0, 1]}, "until": {"load_above": 1}}]
+    }});
+    let errors = Scene::new(&request(&model.to_string())).expect_err("out of balance");
+    assert_eq!(errors.0[0].pointer, "/model/nodes/q");
+    assert!(errors.0[0].detail.contains("prestress"), "{errors}");
+}
+
+/// Where the modes examined hold none in which the load rises, the limit is the reason, not a guess.
+#[test]
+fn a_limit_on_modes_is_told() {
+    let mut model = row(3);
+    model["analysis"] = json!({"max_modes": 2});
+    let (increments, report) = trace(&request(&model.to_string()));
+    assert_eq!(report.stop_reason, StopReason::ModeLimit);
+    assert_eq!(increments.len(), 1);
+    assert!(increments[0].point.unexplored_modes > 0);
+}
+
+/// A flag raised inside a long enumeration ends it.
+#[test]
+fn cancelling_ends_an_enumeration() {
+    let mut model = row(12);
+    model["analysis"] = json!({"max_modes": 10_000_000});
+    let request = request(&model.to_string());
+    let scene = Scene::new(&request).expect("a scene");
+    let cancel = CancelFlag::default();
+    let raised = cancel.clone();
+    let timer = std::thread::spawn(move || {
+        std::thread::sleep(std::time::Duration::from_millis(100));
+        raised.cancel();
+    });
+    let began = std::time::Instant::now();
+    let mut path = Path::new(&scene, cancel);
+    path.by_ref().for_each(drop);
+    assert!(began.elapsed().as_secs() < 10);
+    assert_eq!(path.report().map(|report| report.stop_reason), Some(StopReason::Cancelled));
+    timer.join().expect("the timer ends");
+}
