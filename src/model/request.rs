@@ -242,7 +242,7 @@ pub struct ArcLength {
     pub initial: f64,
     /// Absent: 1e-9, or the smallest of the other two if that is less.
     pub min: f64,
-    /// Absent: 0.1, or the largest of the other two if that is more.
+    /// Absent: 0.5, or the largest of the other two if that is more.
     pub max: f64,
     /// Length; computed from the scene when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -254,7 +254,7 @@ pub struct ArcLength {
 
 impl Default for ArcLength {
     fn default() -> Self {
-        Self { initial: 0.02, min: 1e-9, max: 0.1, displacement_scale: None, load_scale: None }
+        Self { initial: 0.02, min: 1e-9, max: 0.5, displacement_scale: None, load_scale: None }
     }
 }
 

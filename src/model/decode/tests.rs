@@ -149,11 +149,11 @@ fn absent_arc_lengths_follow_the_given_ones() {
         let arc_length = ArcLength::with_defaults(initial, min, max);
         (arc_length.initial, arc_length.min, arc_length.max)
     };
-    assert_eq!(bounds(None, None, None), (0.02, 1e-9, 0.1));
+    assert_eq!(bounds(None, None, None), (0.02, 1e-9, 0.5));
     assert_eq!(bounds(None, None, Some(0.01)), (0.01, 1e-9, 0.01));
     assert_eq!(bounds(None, Some(0.5), None), (0.5, 0.5, 0.5));
     assert_eq!(bounds(Some(3.0), None, None), (3.0, 1e-9, 3.0));
-    assert_eq!(bounds(Some(1e-12), None, None), (1e-12, 1e-12, 0.1));
+    assert_eq!(bounds(Some(1e-12), None, None), (1e-12, 1e-12, 0.5));
     assert_eq!(bounds(Some(1.0), Some(2.0), Some(0.5)), (1.0, 2.0, 0.5));
 }
 
