@@ -23,6 +23,8 @@ pub(super) struct Arrival {
     pub taken: Option<usize>,
     pub stop: Option<StopReason>,
     pub stage_ends: bool,
+    /// The program was asked which way to go on and confirmed none of the directions.
+    pub unconfirmed: bool,
 }
 
 impl Path<'_> {
@@ -61,7 +63,7 @@ impl Path<'_> {
             Point { kind, bifurcation: false, event, better_direction: false, unexplored_modes: 0, degenerate: false };
         let settled = standings.iter().all(|standing| matches!(standing, Standing::Settled(_)));
         if settled {
-            return Arrival { point, options: Vec::new(), taken: None, stop: None, stage_ends };
+            return Arrival { point, options: Vec::new(), taken: None, stop: None, stage_ends, unconfirmed: false };
         }
         let rules = self.rules();
         let before = Before::Incoming(incoming);
@@ -76,7 +78,7 @@ impl Path<'_> {
             point.better_direction =
                 options.iter().any(|option| !option.retrace && option.dissipation > kept + tolerance);
         }
-        Arrival { point, options, taken, stop: None, stage_ends }
+        Arrival { point, options, taken, stop: None, stage_ends, unconfirmed: false }
     }
 
     /// A contact has reached the end of its mode: list the directions and take one.
@@ -92,9 +94,12 @@ impl Path<'_> {
         let before = Before::Incoming(incoming);
         let rules = self.rules();
         let mut decision = decide::decide(self.loading(), &self.here.state, &standings, before, rules);
+        // Where the program confirms no direction, the listed ones decide, and the increment says so.
+        let mut confirmed_one = true;
         if self.scene.analysis.method == Method::Mpec && decision.taken.is_some() {
             let confirmed = self.confirmed_by_program(&decision.options);
             let best = decide::preferred(&decision.options, incoming, self.rules(), |index| confirmed[index]);
+            confirmed_one = best.is_some();
             decision.taken = best.or(decision.taken);
         }
         let old_modes = self.here.modes.clone();
@@ -120,7 +125,14 @@ impl Path<'_> {
             unexplored_modes: decision.unexplored,
             degenerate: decision.degenerate,
         };
-        Arrival { point, options: decision.options, taken: decision.taken, stop, stage_ends: false }
+        Arrival {
+            point,
+            options: decision.options,
+            taken: decision.taken,
+            stop,
+            stage_ends: false,
+            unconfirmed: !confirmed_one,
+        }
     }
 
     /// Whether the path has left this very state in these modes before; remembers it if not.

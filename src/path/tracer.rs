@@ -293,7 +293,7 @@ impl<'a> Path<'a> {
             taken: arrival.taken,
             residual: reached.corrected.residual,
             error_estimate: reached.error_estimate,
-            mode_named: accepted.mode_named,
+            mode_named: accepted.mode_named.map(|named| named && !arrival.unconfirmed),
         });
         if matches!(self.phase, Phase::Running) && stage_ends {
             self.next_stage();
