@@ -108,6 +108,26 @@ pub enum Strain {
 pub enum Obstacle {
     /// A half-space; `normal` points into the free side and need not have unit length.
     Plane { point: Vec<f64>, normal: Vec<f64> },
+    /// A circle in 2D, a sphere in 3D.
+    Ball {
+        center: Vec<f64>,
+        /// Length, positive.
+        radius: f64,
+        #[serde(default)]
+        side: Side,
+    },
+}
+
+/// On which side of a ball the nodes are free.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// Nodes stay out of the ball.
+    #[default]
+    Outside,
+    /// Nodes stay in the ball.
+    Inside,
 }
 
 /// One node against one obstacle.
@@ -130,6 +150,13 @@ pub struct Stage {
     /// Node name to force; multiplied by the load factor.
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     pub forces: IndexMap<String, Vec<f64>>,
+    /// Node name to prescribed displacement of its supported components (length; zero on free ones); multiplied by the
+    /// load factor.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub displacements: IndexMap<String, Vec<f64>>,
+    /// Obstacle name to translation (length); multiplied by the load factor.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub obstacle_motion: IndexMap<String, Vec<f64>>,
     /// Where the stage ends; absent: it goes on to `max_increments`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<Until>,
@@ -183,6 +210,20 @@ pub struct Analysis {
     pub max_increments: u64,
     /// Contact modes that may be tried at one point when its directions are listed; what lies past it is reported.
     pub max_modes: u64,
+    /// Follow the directions not taken by jobs of their own; absent: none is followed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub explore: Option<Explore>,
+}
+
+/// How far the directions not taken are followed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Explore {
+    /// Generations of jobs: 1 follows the alternatives of this job's path only. 1 or more.
+    pub depth: u64,
+    /// Jobs queued in all, over every generation; 1 or more.
+    pub max_jobs: u64,
 }
 
 impl Default for Analysis {
@@ -194,6 +235,7 @@ impl Default for Analysis {
             arc_length: ArcLength::default(),
             max_increments: 1000,
             max_modes: 65_536,
+            explore: None,
         }
     }
 }
@@ -207,6 +249,8 @@ pub enum Method {
     Auto,
     /// Every increment by the MPEC of Kanno and Martins.
     Mpec,
+    /// The rival, for comparison: penalty contact and regularised friction under a conventional arc-length method.
+    Regularised,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -216,6 +260,9 @@ pub enum Selection {
     /// The direction of largest dissipation per arc length; ties go to the straightest.
     #[default]
     MaxDissipation,
+    /// The direction along which the potential energy of structure and loads falls fastest per arc length; ties go to
+    /// the straightest.
+    MinPotentialEnergy,
     /// The direction whose displacement rate makes the smallest angle with the incoming one.
     Straightest,
 }

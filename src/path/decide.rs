@@ -203,7 +203,7 @@ fn is_preferred(first: &Choice, second: &Choice, previous: &Rate, rules: Rules<'
     };
     match rules.selection {
         Selection::Straightest => cosine(first) > cosine(second),
-        Selection::MaxDissipation => {
+        Selection::MaxDissipation | Selection::MinPotentialEnergy => {
             let difference = first.dissipation - second.dissipation;
             if difference.abs() > TIE * rules.force_scale {
                 difference > 0.0

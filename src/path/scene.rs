@@ -293,6 +293,7 @@ fn build_contact(
 ) -> Contact {
     let dimension = model.dimension;
     let (obstacle, initial_gap) = match &model.obstacles[&contact.obstacle] {
+        request::Obstacle::Ball { .. } => (Obstacle::Plane { normal: [0.0; 3] }, f64::INFINITY),
         request::Obstacle::Plane { point, normal } => {
             let largest = normal.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
             let size = norm(&normal.iter().map(|value| value / largest).collect::<Vec<f64>>()) * largest;

@@ -52,7 +52,7 @@ impl Path<'_> {
             let Some(rate) = self.here.rate.clone() else { return Err(StopReason::NoDirection) };
             let named_as_kept = match self.scene.analysis.method {
                 Method::Mpec if !self.scene.contacts.is_empty() => Some(self.program_keeps_mode(&rate, step)),
-                Method::Mpec | Method::Auto => None,
+                Method::Mpec | Method::Auto | Method::Regularised => None,
             };
             let start = Start {
                 loading: self.loading(),

@@ -24,6 +24,7 @@ pub(super) fn obstacles(scope: &Scope, mistakes: &mut Mistakes) {
                     mistakes.add(&at, || "the normal is zero; a vector into the free side is expected");
                 }
             }
+            Obstacle::Ball { .. } => mistakes.add(&at, || "balls are not available in this version"),
         }
     }
 }
@@ -87,7 +88,7 @@ fn obstacle<'a>(scope: &Scope<'a>, name: &str, at: &Place, mistakes: &mut Mistak
 }
 
 fn gap(scope: &Scope, contact: usize, node: usize, obstacle: &Obstacle) -> Option<Gap> {
-    let Obstacle::Plane { point, normal } = obstacle;
+    let Obstacle::Plane { point, normal } = obstacle else { return None };
     let dimension = scope.model.dimension;
     let well_formed = numbers::well_formed(point, dimension) && numbers::well_formed(normal, dimension);
     if !well_formed || largest(normal) == 0.0 {

@@ -48,6 +48,7 @@ pub(super) fn analysis(input: &Input, mistakes: &mut Mistakes) -> Option<Analysi
         arc_length: arc_length?,
         max_increments: max_increments?,
         max_modes: max_modes?,
+        explore: None,
     })
 }
 

@@ -168,7 +168,13 @@ fn stage(input: &Input, mistakes: &mut Mistakes) -> Option<Stage> {
     let forces =
         object.with_default("forces", Default::default(), mistakes, |input, mistakes| input.map(mistakes, numbers));
     let until = object.optional("until", mistakes, until);
-    Some(Stage { name: name?, forces: forces?, until: until? })
+    Some(Stage {
+        name: name?,
+        forces: forces?,
+        displacements: Default::default(),
+        obstacle_motion: Default::default(),
+        until: until?,
+    })
 }
 
 fn until(input: &Input, mistakes: &mut Mistakes) -> Option<Until> {

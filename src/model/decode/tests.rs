@@ -78,7 +78,13 @@ fn until() -> impl Strategy<Value = Until> {
 }
 
 fn stage() -> impl Strategy<Value = Stage> {
-    (name(), map(numbers()), of(until())).prop_map(|(name, forces, until)| Stage { name, forces, until })
+    (name(), map(numbers()), of(until())).prop_map(|(name, forces, until)| Stage {
+        name,
+        forces,
+        displacements: Default::default(),
+        obstacle_motion: Default::default(),
+        until,
+    })
 }
 
 fn model() -> impl Strategy<Value = Model> {
@@ -117,6 +123,7 @@ fn analysis() -> impl Strategy<Value = Analysis> {
             arc_length,
             max_increments,
             max_modes,
+            explore: None,
         },
     )
 }
