@@ -29,10 +29,16 @@ fn in_units(mut request: JobRequest, length: f64, force: f64) -> JobRequest {
                 scale(point, length);
                 scale(normal, 1.0 / length);
             }
+            Obstacle::Ball { center, radius, .. } => {
+                scale(center, length);
+                *radius *= length;
+            }
         }
     }
     for stage in &mut request.model.stages {
         stage.forces.values_mut().for_each(|values| scale(values, force));
+        stage.displacements.values_mut().for_each(|values| scale(values, length));
+        stage.obstacle_motion.values_mut().for_each(|values| scale(values, length));
         if let Some(until) = &mut stage.until
             && let Some(bound) = &mut until.displacement
         {
@@ -136,10 +142,13 @@ fn turned(mut request: JobRequest, angle: f64, shift: f64) -> JobRequest {
                 *point = place(point);
                 *normal = turn(normal);
             }
+            Obstacle::Ball { center, .. } => *center = place(center),
         }
     }
     for stage in &mut request.model.stages {
-        stage.forces.values_mut().for_each(|force| *force = turn(force));
+        for pattern in [&mut stage.forces, &mut stage.displacements, &mut stage.obstacle_motion] {
+            pattern.values_mut().for_each(|vector| *vector = turn(vector));
+        }
     }
     request
 }
