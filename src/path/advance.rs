@@ -1,6 +1,9 @@
 //! One step along the current mode, ended early by the first event.
 
-use super::mode_system::{Corrected, Failure, Loading, ModeSystem, Place};
+use super::drift::Pointed;
+use super::loading::Loading;
+use super::mode_system::ModeSystem;
+use super::newton::{Corrected, Failure, Place};
 use super::root::find_root;
 use super::scene::End;
 use super::state::{Rate, State};
@@ -15,6 +18,8 @@ pub struct Start<'a> {
     /// The direction in `modes`.
     pub rate: &'a Rate,
     pub modes: &'a [Mode],
+    /// Error of the path so far, where it has one.
+    pub drift: Option<&'a Rate>,
     pub force_scale: f64,
 }
 
@@ -27,6 +32,8 @@ pub struct Reached {
     pub step: f64,
     /// Distance to the path (dimensionless).
     pub error_estimate: f64,
+    /// Error of the path up to here, where it has one.
+    pub drift: Option<Rate>,
     /// What ended the step early.
     pub event: Option<Watch>,
 }
@@ -64,21 +71,33 @@ impl Start<'_> {
     pub fn reach(&self, step: f64, work: &mut Work) -> Result<Reached, Refused> {
         let system = ModeSystem::new(self.loading, self.modes, self.state);
         let guess = self.state.advanced(self.rate, step);
-        self.settle(&system, guess, Place::ArcLength { from: self.state, step }, work)
+        self.settle(system, guess, Place::ArcLength { from: self.state, step }, work)
     }
 
     fn settle(
         &self,
-        system: &ModeSystem<'_>,
+        mut system: ModeSystem<'_>,
         guess: State,
         place: Place<'_>,
         work: &mut Work,
     ) -> Result<Reached, Refused> {
-        let corrected = system.correct(guess, place, self.force_scale).map_err(Refused::Newton)?;
+        let mut corrected = system.correct(guess, place, self.force_scale).map_err(Refused::Newton)?;
         work.newton_iterations += corrected.iterations;
         work.factorisations += corrected.iterations + 1;
-        let (rate, error_estimate) =
-            system.tangent_and_error(&corrected, self.rate).ok_or(Refused::Newton(Failure::Singular))?;
+        let singular = Refused::Newton(Failure::Singular);
+        let (mut rate, mut error_estimate) = system.tangent_and_error(&corrected, self.rate).ok_or(singular)?;
+        if system.has_tracks() {
+            // Once more, now that the turn of the slips at the end is known.
+            system.set_turns(self.rate, Some((&corrected, &rate)));
+            let again = system.correct_from(corrected.iterate(), place, self.force_scale).map_err(Refused::Newton)?;
+            work.newton_iterations += again.iterations;
+            work.factorisations += again.iterations + 1;
+            // How hard the increment is shows in the first solve.
+            let hardness = corrected.iterations_to_small;
+            corrected = again;
+            corrected.iterations_to_small = hardness;
+            (rate, error_estimate) = system.tangent_and_error(&corrected, self.rate).ok_or(singular)?;
+        }
         let step = corrected.state.distance(self.state);
         // The sphere around the start meets the path behind, too, and may meet other branches: the chord has to go the
         // way of both directions.
@@ -89,7 +108,7 @@ impl Start<'_> {
         if turn > MOST_TURN {
             return Err(Refused::Turned(turn));
         }
-        Ok(Reached { corrected, rate, step, error_estimate, event: None })
+        Ok(Reached { corrected, rate, step, error_estimate, drift: None, event: None })
     }
 
     /// A step of an arc length, or to the first event before.
@@ -133,7 +152,28 @@ impl Start<'_> {
             reached = self.hold_exactly(end, reached, work)?;
         }
         reached.event = event;
+        reached.drift = self.drift_at(&reached, work);
+        reached.error_estimate += reached.drift.as_ref().map_or(0.0, Rate::size);
         Ok(reached)
+    }
+
+    /// The path's error at a point reached, where it has one.
+    fn drift_at(&self, reached: &Reached, work: &mut Work) -> Option<Rate> {
+        let mut system = ModeSystem::new(self.loading, self.modes, self.state);
+        if self.drift.is_none() && !system.has_tracks() {
+            return None;
+        }
+        let end = Pointed { corrected: &reached.corrected, rate: &reached.rate };
+        let before = self.drift;
+        let drift = if system.has_tracks() {
+            system.set_turns(self.rate, Some((&reached.corrected, &reached.rate)));
+            let middle = self.reach(0.5 * reached.step, work).ok()?;
+            system.drift(self.rate, before, Pointed { corrected: &middle.corrected, rate: &middle.rate }, end)
+        } else {
+            system.drift(self.rate, before, end, end)
+        };
+        work.factorisations += 1;
+        drift.or_else(|| before.cloned())
     }
 
     fn value(&self, watch: Watch, state: &State, rate: &Rate) -> f64 {
@@ -231,7 +271,7 @@ impl Start<'_> {
             End::LimitPoints(_) | End::ContactChanges(_) | End::Increments(_) => return Ok(reached),
         };
         let system = ModeSystem::new(self.loading, self.modes, self.state);
-        let mut exact = self.settle(&system, reached.corrected.state, place, work)?;
+        let mut exact = self.settle(system, reached.corrected.state, place, work)?;
         match end {
             End::Load { bound, .. } => exact.corrected.state.load = bound,
             End::Displacement { freedom, bound, .. } => exact.corrected.state.displacement[freedom] = bound,

@@ -8,7 +8,7 @@ use super::state::Rate;
 use super::stop::StopReason;
 use super::tracer::{Path, Visited};
 use super::watch::Watch;
-use crate::contact::Reaction;
+use crate::contact::{Reaction, all_continue};
 use crate::model::request::Method;
 
 /// States closer than this are one.
@@ -140,14 +140,14 @@ impl Path<'_> {
         let here = &self.here;
         let known = self.visited.iter().any(|visited| {
             visited.stage == self.stage
-                && visited.modes == here.modes
+                && all_continue(&visited.modes, &here.modes)
                 && visited.state.distance(&here.state) < SAME_STATE
-                && visited.state.reactions.iter().zip(&here.state.reactions).all(|(a, b)| {
-                    let tolerance = SAME_STATE * self.force_scale;
-                    (a.normal - b.normal).abs() < tolerance
-                        && (a.tangential[0] - b.tangential[0]).abs() < tolerance
-                        && (a.tangential[1] - b.tangential[1]).abs() < tolerance
-                })
+                && visited
+                    .state
+                    .reactions
+                    .iter()
+                    .zip(&here.state.reactions)
+                    .all(|(a, b)| a.difference(b) < SAME_STATE * self.force_scale)
         });
         let (state, modes) = (here.state.clone(), here.modes.clone());
         self.visited.push(Visited { stage: self.stage, state, modes });

@@ -5,11 +5,13 @@
 //! The inequalities are those listed in `directions`.
 
 use super::directions::{Candidate, Found, RANK, WEAK, is_mechanism, merge};
-use super::mode_system::{Loading, ModeSystem};
+use super::loading::Loading;
+use super::mode_system::ModeSystem;
 use super::standing::Standing;
 use super::state::{Rate, State};
 use crate::cancel::CancelFlag;
-use crate::contact::{Mode, Reaction};
+use crate::contact::vector::{Vector, add, dot, scaled};
+use crate::contact::{Frame, Mode, Reaction};
 use crate::linear_algebra::{Factorisation, null_space};
 use nalgebra::{DMatrix, DVector};
 
@@ -25,12 +27,15 @@ struct Changeable {
     contact: usize,
     standing: Standing,
     friction: f64,
+    frame: Frame,
+    /// The tangent along which the velocity is counted: the direction of slip on the cone, else the frame's first.
+    axis: Vector,
     normal_column: Option<usize>,
     tangential_column: Option<usize>,
     normal_rate: DVector<f64>,
     tangential_rate: DVector<f64>,
-    /// Size of the pressing reaction: what a unit of slip dissipates is `μ` times this.
-    normal: f64,
+    /// The present reaction: what a unit of slip dissipates is `μ r_n`.
+    reaction: Reaction,
 }
 
 /// The rate equations condensed on the changeable contacts: column `j` is the full rate for unit `v_j`, the last one
@@ -59,47 +64,72 @@ impl<'a> Condensed<'a> {
                 velocities.push((contact, velocity));
                 Some(velocities.len() - 1)
             };
+            let frame = loading.frame(contact, state);
+            let axis = match standing {
+                Standing::OnCone { direction } => *direction,
+                Standing::Settled(_) | Standing::Touching => frame.tangents[0],
+            };
             let (normal_column, tangential_column) = match standing {
                 Standing::Settled(_) => continue,
                 Standing::OnCone { .. } => (None, place(Velocity::Tangential)),
-                Standing::Touching if friction > 0.0 => (place(Velocity::Normal), place(Velocity::Tangential)),
+                Standing::Touching if loading.contacts[contact].tangents() > 0 => {
+                    (place(Velocity::Normal), place(Velocity::Tangential))
+                }
                 Standing::Touching => (place(Velocity::Normal), None),
             };
             changeable.push(Changeable {
                 contact,
                 standing: *standing,
                 friction,
+                frame,
+                axis,
                 normal_column,
                 tangential_column,
                 normal_rate: DVector::zeros(0),
                 tangential_rate: DVector::zeros(0),
-                normal: state.reactions[contact].normal,
+                reaction: state.reactions[contact],
             });
         }
         let mut columns = Vec::with_capacity(velocities.len() + 1);
         for (contact, velocity) in velocities {
             let mut values = DVector::zeros(system.size());
-            let offset = match velocity {
-                Velocity::Normal => 0,
-                Velocity::Tangential => 1,
-            };
-            values[system.row_of(contact) + offset] = 1.0;
+            let row = system.row_of(contact);
+            match velocity {
+                Velocity::Normal => values[row] = 1.0,
+                Velocity::Tangential => {
+                    let Some(entry) = changeable.iter().find(|entry: &&Changeable| entry.contact == contact) else {
+                        continue;
+                    };
+                    for (k, tangent) in entry.frame.tangents.iter().enumerate() {
+                        if k < loading.contacts[contact].tangents() {
+                            values[row + 1 + k] = dot(tangent, &entry.axis);
+                        }
+                    }
+                }
+            }
             if !factorisation.solve(&mut values) {
                 return None;
             }
-            columns.push(system.rate_from(&values));
+            columns.push(system.rate_from(state, &values));
         }
         let mut values = DVector::zeros(system.size());
         values[system.size() - 1] = 1.0;
         if !factorisation.solve(&mut values) {
             return None;
         }
-        columns.push(system.rate_from(&values));
+        columns.push(system.rate_from(state, &values));
         for entry in &mut changeable {
             let reaction = |column: &Rate| column.reactions[entry.contact];
             entry.normal_rate = DVector::from_iterator(columns.len(), columns.iter().map(|c| reaction(c).normal));
-            entry.tangential_rate =
-                DVector::from_iterator(columns.len(), columns.iter().map(|c| reaction(c).tangential[0]));
+            entry.tangential_rate = DVector::from_iterator(
+                columns.len(),
+                columns.iter().map(|c| dot(&reaction(c).tangential, &entry.axis)),
+            );
+            // The columns hold the rate of the whole force; the reaction's own parts turn with the place on the obstacle.
+            if let (Some(column), true) = (entry.tangential_column, entry.frame.curvature != 0.0) {
+                entry.normal_rate[column] += entry.frame.curvature * dot(&entry.reaction.tangential, &entry.axis);
+                entry.tangential_rate[column] -= entry.frame.curvature * entry.reaction.normal;
+            }
         }
         Some(Self { loading, columns, changeable })
     }
@@ -109,13 +139,13 @@ impl<'a> Condensed<'a> {
         match entry.standing {
             Standing::Settled(mode) => vec![mode],
             Standing::OnCone { direction } => vec![Mode::Stick, Mode::Slip { direction }],
-            Standing::Touching if entry.friction > 0.0 => vec![
+            Standing::Touching if entry.tangential_column.is_some() => vec![
                 Mode::Stick,
-                Mode::Slip { direction: [1.0, 0.0] },
-                Mode::Slip { direction: [-1.0, 0.0] },
+                Mode::Slip { direction: entry.axis },
+                Mode::Slip { direction: scaled(&entry.axis, -1.0) },
                 Mode::Free,
             ],
-            Standing::Touching => vec![Mode::Slip { direction: [0.0; 2] }, Mode::Free],
+            Standing::Touching => vec![Mode::Slip { direction: [0.0; 3] }, Mode::Free],
         }
     }
 
@@ -155,7 +185,7 @@ impl<'a> Condensed<'a> {
         let columns = self.columns.len();
         let mut equations = DMatrix::zeros(columns - 1, columns);
         let mut next = 0;
-        let mut add = |form: DVector<f64>| {
+        let mut put = |form: DVector<f64>| {
             equations.set_row(next, &form.transpose());
             next += 1;
         };
@@ -163,22 +193,23 @@ impl<'a> Condensed<'a> {
         for (entry, mode) in self.changeable.iter().zip(chosen) {
             match mode {
                 Mode::Free => {
-                    add(entry.normal_rate.clone());
+                    put(entry.normal_rate.clone());
                     if entry.tangential_column.is_some() {
-                        add(entry.tangential_rate.clone());
+                        put(entry.tangential_rate.clone());
                     }
                 }
                 Mode::Stick => {
                     for column in [entry.normal_column, entry.tangential_column].into_iter().flatten() {
-                        add(unit(column));
+                        put(unit(column));
                     }
                 }
                 Mode::Slip { direction } => {
                     if let Some(column) = entry.normal_column {
-                        add(unit(column));
+                        put(unit(column));
                     }
                     if entry.tangential_column.is_some() {
-                        add(&entry.tangential_rate + &entry.normal_rate * (entry.friction * direction[0]));
+                        put(&entry.tangential_rate
+                            + &entry.normal_rate * (entry.friction * dot(direction, &entry.axis)));
                     }
                 }
             }
@@ -211,8 +242,10 @@ impl<'a> Condensed<'a> {
                     Mode::Free => rate.reactions[entry.contact] = Reaction::default(),
                     Mode::Stick => {}
                     Mode::Slip { direction } => {
-                        let drag = -entry.friction * rate.reactions[entry.contact].normal;
-                        rate.reactions[entry.contact].tangential = [drag * direction[0], drag * direction[1]];
+                        // Exactly on the cone along the direction; what is across it turns the direction.
+                        let reaction = &mut rate.reactions[entry.contact];
+                        let drag = -entry.friction * reaction.normal - dot(&reaction.tangential, direction);
+                        reaction.tangential = add(&reaction.tangential, drag, direction);
                     }
                 }
             }
@@ -230,11 +263,10 @@ impl<'a> Condensed<'a> {
             rate.displacement.iter_mut().zip(&column.displacement).for_each(|(sum, value)| *sum += weight * value);
             rate.load += weight * column.load;
             for (sum, value) in rate.reactions.iter_mut().zip(&column.reactions) {
-                sum.normal += weight * value.normal;
-                sum.tangential[0] += weight * value.tangential[0];
-                sum.tangential[1] += weight * value.tangential[1];
+                sum.add(*weight, value);
             }
         }
+        self.take_reactions_apart(&mut rate);
         let size = rate.size();
         if size > WEAK * rate.largest_reaction() {
             rate.scale(1.0 / size);
@@ -242,6 +274,20 @@ impl<'a> Condensed<'a> {
         } else {
             rate.scale(0.0);
             (rate, weights.clone())
+        }
+    }
+
+    /// On curved obstacles: from the rate of the whole force to the rates of normal and tangential reaction.
+    fn take_reactions_apart(&self, rate: &mut Rate) {
+        for entry in self.changeable.iter().filter(|entry| entry.frame.curvature != 0.0) {
+            let motion = self.loading.relative_rate(entry.contact, rate);
+            let curvature = entry.frame.curvature;
+            let slid = add(&motion, -dot(&motion, &entry.frame.normal), &entry.frame.normal);
+            let across = curvature * dot(&entry.reaction.tangential, &slid);
+            let reaction = &mut rate.reactions[entry.contact];
+            reaction.normal += across;
+            reaction.tangential = add(&reaction.tangential, -curvature * entry.reaction.normal, &slid);
+            reaction.tangential = add(&reaction.tangential, -across, &entry.frame.normal);
         }
     }
 
@@ -264,16 +310,14 @@ impl<'a> Condensed<'a> {
             let feasible = match mode {
                 Mode::Free => holds(velocity(entry.normal_column), WEAK),
                 Mode::Stick => match entry.standing {
-                    Standing::OnCone { direction } => {
-                        holds(entry.friction * normal_rate + direction[0] * tangential_rate, force)
-                    }
+                    Standing::OnCone { .. } => holds(entry.friction * normal_rate + tangential_rate, force),
                     Standing::Settled(_) | Standing::Touching => {
                         holds(entry.friction * normal_rate - tangential_rate.abs(), force)
                     }
                 },
                 Mode::Slip { direction } => {
-                    let along = direction[0] * velocity(entry.tangential_column);
-                    let sliding = entry.friction == 0.0 || holds(along, WEAK);
+                    let along = dot(direction, &entry.axis) * velocity(entry.tangential_column);
+                    let sliding = entry.tangential_column.is_none() || holds(along, WEAK);
                     let pressed = !touching || holds(normal_rate, force);
                     sliding && pressed
                 }
@@ -289,9 +333,7 @@ impl<'a> Condensed<'a> {
         self.changeable
             .iter()
             .map(|entry| match (entry.standing, entry.tangential_column) {
-                (Standing::OnCone { direction }, Some(column)) => {
-                    entry.friction * entry.normal * direction[0] * weights[column]
-                }
+                (Standing::OnCone { .. }, Some(column)) => entry.friction * entry.reaction.normal * weights[column],
                 _ => 0.0,
             })
             .sum()

@@ -5,7 +5,9 @@
 //! | file | what it does |
 //! |---|---|
 //! | `scene`, `plan` | a request made dimensionless; what it needs and what is left out |
-//! | `state`, `mode_system` | a point; the equations of one contact mode and Newton's method on them |
+//! | `state`, `loading` | a point; the structure under a pattern of forces, supports and obstacles that move |
+//! | `mode_system`, `newton` | the equations of one contact mode; Newton's method on them |
+//! | `track`, `drift` | slip in a plane: its rule of fourth order; the error that is left |
 //! | `watch`, `root`, `advance` | what ends a mode; one step, ended exactly at the first event |
 //! | `standing`, `directions`, `condensed`, `decide` | which contacts can change; every direction; which one is taken |
 //! | `program`, `naming` | the MPEC of an increment; where it names the mode |
@@ -17,11 +19,14 @@ mod arrival;
 mod condensed;
 mod decide;
 mod directions;
+mod drift;
 mod energy;
 pub mod increment;
+mod loading;
 mod mode_system;
 mod name_event;
 mod naming;
+mod newton;
 pub mod plan;
 mod program;
 mod record;
@@ -33,6 +38,7 @@ mod state;
 mod stepping;
 pub mod stop;
 pub mod tracer;
+mod track;
 mod watch;
 
 pub use increment::Increment;

@@ -23,7 +23,7 @@ pub(super) fn describe_change(scene: &Scene, old: &[Mode], new: Option<&[Mode]>,
             Status::Slip => "slip",
         };
         match after {
-            Some(after) if after == *before => {}
+            Some(after) if after.continues(*before) => {}
             Some(after) if word(after) == word(*before) => {
                 parts.push(format!("{node} on {obstacle}: slip turns round"));
             }

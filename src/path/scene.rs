@@ -2,21 +2,24 @@
 //!
 //! Lengths are divided by `displacement_scale` `ℓ`, forces by `force_scale` `φ`, each stage's load factor by its
 //! `load_scale` `σ`; a pattern `f` becomes `f σ/φ`. By default `ℓ` is the longest bar and `φ` the smallest axial
-//! stiffness; without bars, `φ` is the largest force of any stage and `ℓ` that force over the
-//! largest spring stiffness (Frobenius norm).
-//! `σ = φ / max |f|`. All follow the units of the input, so that a change of units changes nothing but round-off.
+//! stiffness; without bars, `φ` is the largest force of any stage, or the largest spring stiffness (Frobenius norm) times
+//! the largest prescribed motion if that is more, and `ℓ` that force over that stiffness.
+//! `σ` is the smaller of `φ / max |f|` and `ℓ / max |motion|`. All follow the units of the input, so that a change of units changes nothing but round-off.
 
+use super::loading::LoadPattern;
 use super::plan::{LeftOut, Plan};
-use crate::contact::Contact;
 use crate::contact::obstacle::Obstacle;
+use crate::contact::vector::{Vector, size};
+use crate::contact::{Contact, Sliding};
 use crate::linear_algebra::{Factorisation, null_space};
 use crate::model::limits::PENETRATION_TOLERANCE;
-use crate::model::request::{self, Analysis, JobRequest, Model};
+use crate::model::request::{self, Analysis, JobRequest, Model, Side};
 use crate::model::{InputError, InputErrors};
 use crate::structure::Structure;
 use crate::structure::bar::Bar;
 use crate::structure::element::Element;
 use crate::structure::spring::Spring;
+use indexmap::IndexMap;
 use nalgebra::DMatrix;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -37,7 +40,7 @@ pub struct Scene {
 #[derive(Debug, Clone)]
 pub(super) struct StageLoad {
     pub name: Arc<str>,
-    pub pattern: Vec<f64>,
+    pub pattern: LoadPattern,
     pub load_scale: f64,
     pub ends: Vec<End>,
 }
@@ -91,11 +94,9 @@ impl Scene {
             contact_names.push((Arc::from(contact.node.as_str()), Arc::from(contact.obstacle.as_str())));
         }
         left_out.extend(plan_what_is_left_out(model, &contacts, &structure));
-        let stages: Vec<StageLoad> = model
-            .stages
-            .iter()
-            .map(|stage| build_stage(stage, &numbers, &structure, length, force, &request.analysis))
-            .collect();
+        let scaled =
+            Scaled { model, analysis: &request.analysis, numbers: &numbers, structure: &structure, length, force };
+        let stages: Vec<StageLoad> = model.stages.iter().map(|stage| build_stage(stage, &scaled)).collect();
         let plan = Plan {
             unknowns: structure.unknowns() as u64,
             contacts: contacts.len() as u64,
@@ -148,12 +149,12 @@ impl Scene {
         structure.add_tangent(&still, &mut matrix);
         let stiffness = matrix.amax();
         for contact in &self.contacts {
-            if contact.gap(dimension, &still) > CLOSED {
+            let frame = contact.frame(&[0.0; 3]);
+            if frame.gap > CLOSED {
                 continue;
             }
-            let tangents = contact.obstacle.tangents(dimension);
-            let held = 1 + if contact.friction > 0.0 { dimension - 1 } else { 0 };
-            for vector in [contact.obstacle.normal(), tangents[0], tangents[1]].iter().take(held) {
+            let held = 1 + contact.tangents();
+            for vector in [frame.normal, frame.tangents[0], frame.tangents[1]].iter().take(held) {
                 for row in 0..dimension {
                     for column in 0..dimension {
                         let place = |component| structure.unknown_of[contact.node * dimension + component];
@@ -218,10 +219,14 @@ fn scales(model: &Model, analysis: &Analysis) -> (f64, f64) {
     }
     let loads = model.stages.iter().flat_map(|stage| stage.forces.values());
     let largest_load = loads.fold(0.0_f64, |largest, force| largest.max(norm(force)));
+    let motions =
+        model.stages.iter().flat_map(|stage| stage.displacements.values().chain(stage.obstacle_motion.values()));
+    let largest_motion = motions.fold(0.0_f64, |largest, motion| largest.max(norm(motion)));
     let (mut length, mut force) = if longest > 0.0 {
         (longest, softest)
-    } else if spring > 0.0 && largest_load > 0.0 {
-        (largest_load / spring, largest_load)
+    } else if spring > 0.0 && largest_load.max(spring * largest_motion) > 0.0 {
+        let force = largest_load.max(spring * largest_motion);
+        (force / spring, force)
     } else {
         (1.0, 1.0)
     };
@@ -292,43 +297,95 @@ fn build_contact(
     structure: &Structure,
 ) -> Contact {
     let dimension = model.dimension;
+    let place = &model.nodes[&contact.node];
+    // What is within the round-off of the coordinates is contact.
+    let snapped = |gap: f64, reach: f64| {
+        let closed = gap.abs() <= PENETRATION_TOLERANCE * length + 4.0 * f64::EPSILON * reach;
+        if closed { 0.0 } else { gap / length }
+    };
+    let reach = |values: &[f64]| place.iter().chain(values).fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let (obstacle, initial_gap) = match &model.obstacles[&contact.obstacle] {
-        request::Obstacle::Ball { .. } => (Obstacle::Plane { normal: [0.0; 3] }, f64::INFINITY),
+        request::Obstacle::Ball { center, radius, side } => {
+            let mut offset = [0.0; 3];
+            (0..dimension).for_each(|k| offset[k] = (place[k] - center[k]) / length);
+            let side = match side {
+                Side::Outside => 1.0,
+                Side::Inside => -1.0,
+            };
+            let gap = side * (size(&offset) * length - radius);
+            (Obstacle::Ball { offset, side }, snapped(gap, reach(center).max(*radius)))
+        }
         request::Obstacle::Plane { point, normal } => {
             let largest = normal.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
             let size = norm(&normal.iter().map(|value| value / largest).collect::<Vec<f64>>()) * largest;
             let mut unit = [0.0; 3];
             normal.iter().enumerate().for_each(|(k, value)| unit[k] = value / size);
-            let place = &model.nodes[&contact.node];
             let gap: f64 = (0..dimension).map(|k| (place[k] - point[k]) * unit[k]).sum();
-            // What is within the round-off of the coordinates is contact.
-            let reach = place.iter().chain(point).fold(0.0_f64, |largest, value| largest.max(value.abs()));
-            let closed = gap.abs() <= PENETRATION_TOLERANCE * length + 4.0 * f64::EPSILON * reach;
-            (Obstacle::Plane { normal: unit }, if closed { 0.0 } else { gap / length })
+            (Obstacle::Plane { normal: unit }, snapped(gap, reach(point)))
         }
     };
-    let free = (0..dimension).filter(|k| structure.unknown_of[node * dimension + k].is_some()).count();
-    Contact { node, obstacle, initial_gap, friction: if free < dimension { 0.0 } else { contact.friction } }
+    let sliding = sliding(structure, node);
+    let friction = if sliding.directions() == 0 { 0.0 } else { contact.friction };
+    Contact { node, obstacle, initial_gap, friction, sliding }
 }
 
-fn build_stage(
-    stage: &request::Stage,
-    numbers: &HashMap<&str, usize>,
-    structure: &Structure,
+/// In which directions a node can slide, by its supports.
+fn sliding(structure: &Structure, node: usize) -> Sliding {
+    let dimension = structure.dimension;
+    let held: Vec<usize> = (0..dimension).filter(|k| structure.unknown_of[node * dimension + k].is_none()).collect();
+    match (dimension, held.as_slice()) {
+        (2, []) => Sliding::Line { across: [0.0, 0.0, 1.0] },
+        (3, []) => Sliding::Plane,
+        (3, [component]) => {
+            let mut across = [0.0; 3];
+            across[*component] = 1.0;
+            Sliding::Line { across }
+        }
+        _ => Sliding::None,
+    }
+}
+
+/// The model made dimensionless, as far as its stages need it.
+struct Scaled<'a> {
+    model: &'a Model,
+    analysis: &'a Analysis,
+    numbers: &'a HashMap<&'a str, usize>,
+    structure: &'a Structure,
     length: f64,
     force: f64,
-    analysis: &Analysis,
-) -> StageLoad {
+}
+
+fn build_stage(stage: &request::Stage, scaled: &Scaled<'_>) -> StageLoad {
+    let &Scaled { model, analysis, numbers, structure, length, force } = scaled;
     let dimension = structure.dimension;
-    let largest = stage.forces.values().fold(0.0_f64, |largest, force| largest.max(norm(force)));
-    let natural = if largest > 0.0 { force / largest } else { 1.0 };
+    let largest = |vectors: &IndexMap<String, Vec<f64>>| vectors.values().map(|v| norm(v)).fold(0.0_f64, f64::max);
+    let by_force = force / largest(&stage.forces);
+    let by_motion = length / largest(&stage.displacements).max(largest(&stage.obstacle_motion));
+    let natural = by_force.min(by_motion);
+    let natural = if natural.is_finite() { natural } else { 1.0 };
     let load_scale = analysis.arc_length.load_scale.unwrap_or(natural);
-    let mut pattern = vec![0.0; structure.freedoms()];
-    for (name, values) in &stage.forces {
-        for (component, value) in values.iter().enumerate() {
-            pattern[numbers[name.as_str()] * dimension + component] = value * load_scale / force;
+    let over_freedoms = |vectors: &IndexMap<String, Vec<f64>>, unit: f64| {
+        let mut values = vec![0.0; structure.freedoms()];
+        for (name, vector) in vectors {
+            for (component, value) in vector.iter().enumerate() {
+                values[numbers[name.as_str()] * dimension + component] = value * load_scale / unit;
+            }
         }
-    }
+        values
+    };
+    let shift = |contact: &request::Contact| {
+        let mut shift: Vector = [0.0; 3];
+        if let Some(motion) = stage.obstacle_motion.get(&contact.obstacle) {
+            motion.iter().enumerate().for_each(|(k, value)| shift[k] = value * load_scale / length);
+        }
+        shift
+    };
+    let supports_move = model.stages.iter().any(|stage| largest(&stage.displacements) > 0.0);
+    let pattern = LoadPattern {
+        forces: over_freedoms(&stage.forces, force),
+        supports: if supports_move { over_freedoms(&stage.displacements, length) } else { Vec::new() },
+        shifts: model.contacts.iter().map(shift).collect(),
+    };
     let mut ends = Vec::new();
     if let Some(until) = &stage.until {
         let load = |bound: f64, sign: f64| End::Load { bound: bound / load_scale, sign };

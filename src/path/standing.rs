@@ -1,8 +1,10 @@
 //! Which contacts could change at a point, and between what.
 
+use super::loading::Loading;
 use super::state::State;
-use crate::contact::{Contact, Mode, Tangential};
-use crate::structure::Structure;
+use super::track::direction_of;
+use crate::contact::vector::{Vector, dot, scaled};
+use crate::contact::{Mode, Sliding};
 
 /// How a contact stands at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -10,7 +12,7 @@ pub enum Standing {
     /// Strictly inside its mode: that mode is the only one near by.
     Settled(Mode),
     /// Pressed, with the traction on the cone: it sticks, or slips along `direction`.
-    OnCone { direction: Tangential },
+    OnCone { direction: Vector },
     /// At zero gap with zero reaction: anything may follow.
     Touching,
 }
@@ -19,30 +21,28 @@ pub enum Standing {
 pub const ZERO: f64 = 1e-10;
 
 /// Standing of every contact.
-pub fn standings(structure: &Structure, contacts: &[Contact], state: &State, force_scale: f64) -> Vec<Standing> {
-    contacts
-        .iter()
-        .enumerate()
-        .map(|(index, contact)| standing(structure, contact, state, index, force_scale))
-        .collect()
+pub fn standings(loading: Loading<'_>, state: &State, force_scale: f64) -> Vec<Standing> {
+    (0..loading.contacts.len()).map(|contact| standing(loading, state, contact, force_scale)).collect()
 }
 
-fn standing(structure: &Structure, contact: &Contact, state: &State, index: usize, force_scale: f64) -> Standing {
-    let reaction = &state.reactions[index];
+fn standing(loading: Loading<'_>, state: &State, index: usize, force_scale: f64) -> Standing {
+    let (contact, reaction) = (&loading.contacts[index], &state.reactions[index]);
     let zero = ZERO * force_scale;
     if reaction.normal <= zero {
-        return if contact.gap(structure.dimension, &state.displacement) <= ZERO {
-            Standing::Touching
-        } else {
-            Standing::Settled(Mode::Free)
-        };
+        return if loading.gap(index, state) <= ZERO { Standing::Touching } else { Standing::Settled(Mode::Free) };
     }
-    if contact.friction == 0.0 {
-        return Standing::Settled(Mode::Slip { direction: [0.0; 2] });
+    if contact.tangents() == 0 {
+        return Standing::Settled(Mode::Slip { direction: [0.0; 3] });
     }
-    let size = reaction.tangential_size();
-    if contact.friction * reaction.normal - size > zero {
+    if contact.friction * reaction.normal - reaction.tangential_size() > zero {
         return Standing::Settled(Mode::Stick);
     }
-    Standing::OnCone { direction: [-reaction.tangential[0] / size, -reaction.tangential[1] / size] }
+    let direction = match contact.sliding {
+        Sliding::Plane => direction_of(&reaction.tangential, &[0.0; 3]),
+        Sliding::None | Sliding::Line { .. } => {
+            let tangent = loading.frame(index, state).tangents[0];
+            scaled(&tangent, if dot(&tangent, &reaction.tangential) > 0.0 { -1.0 } else { 1.0 })
+        }
+    };
+    Standing::OnCone { direction }
 }

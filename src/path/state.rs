@@ -2,9 +2,10 @@
 
 use crate::contact::Reaction;
 use crate::structure::Structure;
+use serde::{Deserialize, Serialize};
 
 /// Displacements over all degrees of freedom, load factor, reactions (one a contact).
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
     pub displacement: Vec<f64>,
     pub load: f64,
@@ -12,7 +13,7 @@ pub struct State {
 }
 
 /// Derivatives of a [`State`] by arc length; `‖(u̇, ṡ)‖ = 1`.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Rate {
     pub displacement: Vec<f64>,
     pub load: f64,
@@ -36,9 +37,7 @@ impl State {
         }
         state.load += step * rate.load;
         for (reaction, rate) in state.reactions.iter_mut().zip(&rate.reactions) {
-            reaction.normal += step * rate.normal;
-            reaction.tangential[0] += step * rate.tangential[0];
-            reaction.tangential[1] += step * rate.tangential[1];
+            reaction.add(step, rate);
         }
         state
     }
@@ -82,8 +81,7 @@ impl Rate {
         self.load *= factor;
         for reaction in &mut self.reactions {
             reaction.normal *= factor;
-            reaction.tangential[0] *= factor;
-            reaction.tangential[1] *= factor;
+            reaction.tangential.iter_mut().for_each(|value| *value *= factor);
         }
     }
 
@@ -96,9 +94,4 @@ impl Rate {
 /// `a·b`
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// `a·b` of the first `dimension` components of a node's vector and a direction.
-pub fn along(node_values: &[f64], direction: &[f64; 3]) -> f64 {
-    node_values.iter().zip(direction).map(|(a, b)| a * b).sum()
 }

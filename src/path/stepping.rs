@@ -59,6 +59,7 @@ impl Path<'_> {
                 state: &self.here.state,
                 rate: &rate,
                 modes: &self.here.modes,
+                drift: self.here.drift.as_ref(),
                 force_scale: self.force_scale,
             };
             let mut work = self.work;

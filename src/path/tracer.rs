@@ -6,7 +6,7 @@
 use super::advance::{AT_END, Work};
 use super::decide::{self, Before, Choice, Decision, Rules};
 use super::increment::{Energy, Increment, Point, PointKind};
-use super::mode_system::Loading;
+use super::loading::{LoadPattern, Loading};
 use super::name_event::describe_start;
 use super::record::{self, Row};
 use super::report::Report;
@@ -27,7 +27,7 @@ pub struct Path<'a> {
     began: Instant,
     phase: Phase,
     pub(super) stage: usize,
-    held: Vec<f64>,
+    held: LoadPattern,
     pub(super) here: Here,
     /// Arc length that the next step tries.
     pub(super) step: f64,
@@ -52,6 +52,8 @@ pub(super) struct Here {
     /// Direction in `modes`; `None` before the stage's first decision.
     pub rate: Option<Rate>,
     pub load_sign: f64,
+    /// Error of the path up to here, where it has one.
+    pub drift: Option<Rate>,
 }
 
 pub(super) struct Visited {
@@ -82,12 +84,13 @@ impl<'a> Path<'a> {
             began: Instant::now(),
             phase: Phase::NotStarted,
             stage: 0,
-            held: vec![0.0; scene.structure.freedoms()],
+            held: scene.stages[0].pattern.zeroed(),
             here: Here {
                 state: state.clone(),
                 modes: vec![Mode::Free; scene.contacts.len()],
                 rate: None,
                 load_sign: 0.0,
+                drift: None,
             },
             step,
             index: 0,
@@ -132,8 +135,8 @@ impl<'a> Path<'a> {
 
     pub(super) fn rules(&self) -> Rules<'_> {
         let analysis = &self.scene.analysis;
-        let loads = self.scene.stages[self.stage].pattern.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-        let force_scale = if self.force_scale > 0.0 { self.force_scale } else { loads };
+        let loads = self.scene.stages[self.stage].pattern.forces.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        let force_scale = if self.force_scale > 0.0 { self.force_scale } else { loads.max(f64::MIN_POSITIVE) };
         Rules { selection: analysis.selection, most_modes: analysis.max_modes, force_scale, cancel: &self.cancel }
     }
 
@@ -153,7 +156,7 @@ impl<'a> Path<'a> {
 
     pub(super) fn standings(&self, state: &State) -> Vec<Standing> {
         let scale = self.rules().force_scale;
-        standings(&self.scene.structure, &self.scene.contacts, state, scale)
+        standings(self.loading(), state, scale)
     }
 
     /// Decides how the stage begins and takes its first direction.
@@ -246,9 +249,7 @@ impl<'a> Path<'a> {
             self.end(StopReason::StagesCompleted);
             return false;
         }
-        for (held, pattern) in self.held.iter_mut().zip(&self.scene.stages[self.stage].pattern) {
-            *held += self.here.state.load * pattern;
-        }
+        self.held.add(self.here.state.load, &self.scene.stages[self.stage].pattern);
         self.stage += 1;
         self.here.state.load = 0.0;
         self.here.rate = None;
@@ -270,6 +271,8 @@ impl<'a> Path<'a> {
         self.index += 1;
         self.counts.increments += 1;
         self.here.state = reached.corrected.state;
+        self.here.modes = reached.corrected.modes;
+        self.here.drift = reached.drift;
         let at_bound = self.at_bound(&reached.rate);
         let arrival = self.classify(reached.event, &reached.rate);
         let stage_ends = arrival.stage_ends || at_bound || self.count_ends_stage();
@@ -336,6 +339,7 @@ impl<'a> Path<'a> {
             &Row {
                 index: self.index,
                 stage: self.stage,
+                loading: self.loading(),
                 state: &self.here.state,
                 before: emitted.before,
                 modes: emitted.modes,
