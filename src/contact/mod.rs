@@ -9,6 +9,7 @@
 
 mod frame;
 pub mod obstacle;
+pub mod share;
 pub mod vector;
 
 pub use frame::{Frame, Sliding, tangents_in_space};

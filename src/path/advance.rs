@@ -144,8 +144,9 @@ impl Start<'_> {
                 .map(|end| Watch::End(*end))
                 .find(|watch| self.value(*watch, &reached.corrected.state, &reached.rate) <= AT_END);
         }
-        if let Some(Watch::LoadRate { .. }) = event {
-            // Where a contact reaches the end of its mode at the limit point itself, the change is what matters.
+        if matches!(event, None | Some(Watch::LoadRate { .. })) {
+            // A contact may reach the end of its mode just where the step ends, or at the limit point itself: the change
+            // is what matters.
             event = self.coinciding(&watches, &reached).or(event);
         }
         if let Some(Watch::End(end)) = event {

@@ -24,7 +24,7 @@ pub(super) fn obstacles(scope: &Scope, mistakes: &mut Mistakes) {
                     mistakes.add(&at, || "the normal is zero; a vector into the free side is expected");
                 }
             }
-            Obstacle::Ball { .. } => mistakes.add(&at, || "balls are not available in this version"),
+            Obstacle::Ball { .. } => {}
         }
     }
 }
@@ -71,10 +71,6 @@ fn friction(scope: &Scope, contact: &Contact, at: &Place, mistakes: &mut Mistake
     }
     if friction < 0.0 {
         mistakes.add(at, || format!("found {friction:?}; a coefficient of 0 or more is expected"));
-    } else if friction > 0.0 && scope.model.dimension == 3 {
-        mistakes.add(at, || {
-            format!("found {friction:?}; friction in 3 dimensions is not available in this version, 0 would do")
-        });
     }
 }
 
