@@ -85,7 +85,7 @@ pub fn least_reactions(cones: &[Cone], force: &Vector) -> Option<Vec<Vector>> {
             return Some(cones.iter().map(|cone| cone.project(&y).0).collect());
         }
         // The derivative is symmetric and semidefinite; a small part of the identity makes it regular.
-        let mut matrix = nalgebra::Matrix3::identity() * 1e-12;
+        let mut matrix = nalgebra::Matrix3::identity() * 1e-15;
         for cone in cones {
             let (_, derivative) = cone.project(&y);
             for column in 0..3 {

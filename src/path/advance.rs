@@ -89,7 +89,8 @@ impl Start<'_> {
         if system.has_tracks() {
             // Once more, now that the turn of the slips at the end is known.
             system.set_turns(self.rate, Some((&corrected, &rate)));
-            let again = system.correct_from(corrected.iterate(), place, self.force_scale).map_err(Refused::Newton)?;
+            let again =
+                system.correct_from(system.iterate_of(&corrected), place, self.force_scale).map_err(Refused::Newton)?;
             work.newton_iterations += again.iterations;
             work.factorisations += again.iterations + 1;
             // How hard the increment is shows in the first solve.

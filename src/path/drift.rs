@@ -29,7 +29,7 @@ pub struct Pointed<'a> {
 impl ModeSystem<'_> {
     /// The drift at the end of an increment, from that at its start (`None`: none yet) and the point half way.
     pub fn drift(&self, start: &Rate, before: Option<&Rate>, middle: Pointed<'_>, end: Pointed<'_>) -> Option<Rate> {
-        let iterate = end.corrected.iterate();
+        let iterate = self.iterate_of(end.corrected);
         let mut matrix = self.assemble(&iterate, Kind::Increment);
         self.border(&mut matrix, end.rate);
         let mut values = DVector::zeros(self.size);
@@ -37,8 +37,8 @@ impl ModeSystem<'_> {
             let moved = before.map_or([0.0; 3], |before| self.loading.relative_rate(contact, before));
             let row = self.row_of(contact);
             match role {
-                Role::Free | Role::Frictionless | Role::Line { .. } => {}
-                Role::Stick => {
+                Role::Free | Role::Frictionless | Role::Line { .. } | Role::HeldBy => {}
+                Role::Stick | Role::Held => {
                     let frame = self.loading.frame(contact, self.anchor);
                     for (k, tangent) in
                         frame.tangents.iter().enumerate().take(self.loading.contacts[contact].tangents())

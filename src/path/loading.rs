@@ -1,5 +1,6 @@
 //! The structure under a load pattern, with what earlier stages hold.
 
+use super::corner::Corner;
 use super::state::{Rate, State};
 use crate::contact::vector::{Vector, add};
 use crate::contact::{Contact, Frame};
@@ -45,6 +46,8 @@ impl LoadPattern {
 pub struct Loading<'a> {
     pub structure: &'a Structure,
     pub contacts: &'a [Contact],
+    /// Nodes with several contacts.
+    pub corners: &'a [Corner],
     /// Multiplied by the load factor.
     pub pattern: &'a LoadPattern,
     /// Held by earlier stages.

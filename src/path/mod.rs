@@ -7,6 +7,7 @@
 //! | `scene`, `plan` | a request made dimensionless; what it needs and what is left out |
 //! | `state`, `loading` | a point; the structure under a pattern of forces, supports and obstacles that move |
 //! | `mode_system`, `newton` | the equations of one contact mode; Newton's method on them |
+//! | `corner` | nodes that several obstacles hold at once |
 //! | `track`, `drift` | slip in a plane: its rule of fourth order; the error that is left |
 //! | `watch`, `root`, `advance` | what ends a mode; one step, ended exactly at the first event |
 //! | `standing`, `directions`, `condensed`, `decide` | which contacts can change; every direction; which one is taken |
@@ -17,6 +18,7 @@
 mod advance;
 mod arrival;
 mod condensed;
+mod corner;
 mod decide;
 mod directions;
 mod drift;

@@ -13,6 +13,7 @@
 //! square, and regular at smooth limit points because `c` borders it
 //! (E. Riks, Int. J. Solids Struct. 15 (1979) 529, doi:10.1016/0020-7683(79)90081-7).
 
+use super::corner::{self, total_force};
 use super::loading::Loading;
 use super::newton::{Corrected, Place};
 use super::state::{Rate, State};
@@ -38,6 +39,10 @@ pub(super) enum Role {
         turn: Turn,
     },
     Stick,
+    /// Holds its node together with other contacts, and has the whole force in its unknowns.
+    Held,
+    /// Holds its node together with one that is `Held`; adds nothing.
+    HeldBy,
 }
 
 /// Which equation the track of a slip in a plane has.
@@ -75,7 +80,14 @@ impl<'a> ModeSystem<'a> {
         let mut first_of = Vec::with_capacity(modes.len());
         let mut roles = Vec::with_capacity(modes.len());
         for (index, (mode, contact)) in modes.iter().zip(loading.contacts).enumerate() {
+            let held = loading.corners.iter().find_map(|corner| {
+                let mut holding = corner.holding(modes);
+                let first = holding.next()?;
+                (first == index || holding.any(|other| other == index)).then_some(first == index)
+            });
             let role = match mode {
+                Mode::Stick if held == Some(true) => Role::Held,
+                Mode::Stick if held == Some(false) => Role::HeldBy,
                 Mode::Free => Role::Free,
                 Mode::Stick => Role::Stick,
                 Mode::Slip { .. } if contact.tangents() == 0 => Role::Frictionless,
@@ -90,7 +102,8 @@ impl<'a> ModeSystem<'a> {
             };
             first_of.push(next);
             next += match role {
-                Role::Free => 0,
+                Role::Free | Role::HeldBy => 0,
+                Role::Held => loading.structure.dimension,
                 Role::Frictionless | Role::Line { .. } => 1,
                 Role::Plane { .. } => 2,
                 Role::Stick => 1 + contact.tangents(),
@@ -134,8 +147,19 @@ impl<'a> ModeSystem<'a> {
         self.first_of[contact] - 1
     }
 
-    /// A state with the directions of slip that the modes give.
-    pub(super) fn iterate(&self, state: State) -> Iterate {
+    /// A state with the directions of slip that the modes give; where contacts hold a node together, the first of them
+    /// has the whole force.
+    pub(super) fn iterate(&self, mut state: State) -> Iterate {
+        for corner in self.loading.corners {
+            let mut holding = corner.holding(self.modes);
+            if let Some(first) = holding.next() {
+                let force = total_force(self.loading, corner.holding(self.modes), &state);
+                let normal = self.loading.frame(first, &state).normal;
+                let along = dot(&force, &normal);
+                state.reactions[first] = Reaction { normal: along, tangential: add(&force, -along, &normal) };
+                holding.for_each(|other| state.reactions[other] = Reaction::default());
+            }
+        }
         let directions = if self.has_tracks() {
             let of = |(index, role): (usize, &Role)| match role {
                 Role::Plane { start, .. } => start.carried_to(&self.loading.frame(index, &state).normal),
@@ -146,6 +170,16 @@ impl<'a> ModeSystem<'a> {
             Vec::new()
         };
         Iterate { state, directions }
+    }
+
+    /// A converged point.
+    pub(super) fn iterate_of(&self, corrected: &Corrected) -> Iterate {
+        Iterate { directions: corrected.directions.clone(), ..self.iterate(corrected.state.clone()) }
+    }
+
+    /// Where several contacts hold a node together, their reactions become those of least norm.
+    pub(super) fn share(&self, state: &mut State) {
+        corner::share(self.loading, self.loading.corners, self.modes, state);
     }
 
     /// All rows but the last of the rate equations at a state, which is left zero for the bordering equation.
@@ -174,8 +208,8 @@ impl<'a> ModeSystem<'a> {
         }
         for (contact, role) in self.roles.iter().enumerate() {
             match role {
-                Role::Free => {}
-                Role::Stick => self.add_stick(contact, &mut matrix),
+                Role::Free | Role::HeldBy => {}
+                Role::Stick | Role::Held => self.add_stick(contact, &mut matrix),
                 Role::Frictionless | Role::Line { .. } | Role::Plane { .. } => {
                     self.add_slip(contact, iterate, kind, &mut matrix);
                 }
@@ -214,9 +248,18 @@ impl<'a> ModeSystem<'a> {
         let (row, column) = (self.row_of(contact), self.column_of(contact));
         self.put_force(contact, column, &frame.normal, matrix);
         self.put_motion(contact, row, &frame.normal, matrix);
-        for (k, tangent) in frame.tangents.iter().enumerate().take(self.loading.contacts[contact].tangents()) {
+        for (k, tangent) in frame.tangents.iter().enumerate().take(self.held_tangents(contact)) {
             self.put_force(contact, column + 1 + k, tangent, matrix);
             self.put_motion(contact, row + 1 + k, tangent, matrix);
+        }
+    }
+
+    /// Number of tangents along which a sticking contact holds its node.
+    pub(super) fn held_tangents(&self, contact: usize) -> usize {
+        match self.roles[contact] {
+            Role::Held => self.loading.structure.dimension - 1,
+            Role::Stick => self.loading.contacts[contact].tangents(),
+            Role::Free | Role::Frictionless | Role::Line { .. } | Role::Plane { .. } | Role::HeldBy => 0,
         }
     }
 
@@ -278,7 +321,7 @@ impl<'a> ModeSystem<'a> {
         match self.roles[contact] {
             Role::Line { sign } => scaled(&frame.tangents[0], sign),
             Role::Plane { .. } => iterate.directions[contact],
-            Role::Free | Role::Frictionless | Role::Stick => [0.0; 3],
+            Role::Free | Role::Frictionless | Role::Stick | Role::Held | Role::HeldBy => [0.0; 3],
         }
     }
 
@@ -287,7 +330,7 @@ impl<'a> ModeSystem<'a> {
         match self.roles[contact] {
             Role::Line { sign } => scaled(&frame.tangent_change(motion), sign),
             Role::Plane { .. } => scaled(&frame.normal, -dot(&frame.normal_change(motion), direction)),
-            Role::Free | Role::Frictionless | Role::Stick => [0.0; 3],
+            Role::Free | Role::Frictionless | Role::Stick | Role::Held | Role::HeldBy => [0.0; 3],
         }
     }
 
@@ -327,9 +370,8 @@ impl<'a> ModeSystem<'a> {
             }
             let row = self.row_of(contact);
             match role {
-                Role::Free => {}
-                // A sticking node is put in its place exactly: see `consistent`.
-                Role::Stick => {}
+                // A sticking node is put in its place exactly: see `place_exactly`.
+                Role::Free | Role::Stick | Role::Held | Role::HeldBy => {}
                 Role::Frictionless | Role::Line { .. } => values[row] = frame.gap,
                 Role::Plane { start, turn } => {
                     values[row] = frame.gap;
@@ -404,10 +446,10 @@ impl<'a> ModeSystem<'a> {
         for (contact, role) in self.roles.iter().enumerate() {
             let column = self.column_of(contact);
             rate.reactions[contact] = match role {
-                Role::Free => continue,
-                Role::Stick => {
+                Role::Free | Role::HeldBy => continue,
+                Role::Stick | Role::Held => {
                     let frame = self.loading.frame(contact, self.anchor);
-                    let tangents = frame.tangents.iter().take(self.loading.contacts[contact].tangents());
+                    let tangents = frame.tangents.iter().take(self.held_tangents(contact));
                     let tangential = tangents
                         .enumerate()
                         .fold([0.0; 3], |sum, (k, tangent)| add(&sum, values[column + 1 + k], tangent));
@@ -459,7 +501,7 @@ impl<'a> ModeSystem<'a> {
         self.loading.place_supports(state);
         let structure = self.loading.structure;
         for (contact, role) in self.roles.iter().enumerate() {
-            if !matches!(role, Role::Stick) || !self.holds_node(contact) {
+            if !matches!(role, Role::Stick | Role::Held) || !self.holds_node(contact) {
                 continue;
             }
             let shift = scaled(&self.loading.pattern.shifts[contact], state.load - self.anchor.load);
@@ -478,7 +520,7 @@ impl<'a> ModeSystem<'a> {
         let structure = self.loading.structure;
         let first = self.loading.contacts[contact].node * structure.dimension;
         let free = (first..first + structure.dimension).filter(|freedom| structure.unknown_of[*freedom].is_some());
-        1 + self.loading.contacts[contact].tangents() >= free.count()
+        1 + self.held_tangents(contact) >= free.count()
     }
 
     /// Makes complementarity exact: no reaction on a free contact, no motion of a sticking node, friction of a slipping
@@ -488,7 +530,7 @@ impl<'a> ModeSystem<'a> {
         for (contact, role) in self.roles.iter().enumerate() {
             match role {
                 Role::Free => iterate.state.reactions[contact] = Reaction::default(),
-                Role::Stick => {}
+                Role::Stick | Role::Held | Role::HeldBy => {}
                 Role::Frictionless => iterate.state.reactions[contact].tangential = [0.0; 3],
                 Role::Line { .. } | Role::Plane { .. } => {
                     let frame = self.loading.frame(contact, &iterate.state);
@@ -507,7 +549,7 @@ impl<'a> ModeSystem<'a> {
                 let frame = self.loading.frame(contact, &iterate.state);
                 Mode::Slip { direction: self.direction(contact, &frame, iterate) }
             }
-            Role::Free | Role::Frictionless | Role::Stick => *mode,
+            Role::Free | Role::Frictionless | Role::Stick | Role::Held | Role::HeldBy => *mode,
         };
         self.modes.iter().enumerate().map(at).collect()
     }
@@ -515,7 +557,7 @@ impl<'a> ModeSystem<'a> {
     /// The path's direction in this mode at its anchor or at a converged point: the null vector of the rate equations, of
     /// unit arc length, on the side of `towards`. `None` where the equations have no such vector or more than one.
     pub fn tangent(&self, corrected: &Corrected, towards: &Rate) -> Option<Rate> {
-        let iterate = corrected.iterate();
+        let iterate = self.iterate_of(corrected);
         self.tangent_by(&self.bordered(&iterate, towards)?, &iterate)
     }
 

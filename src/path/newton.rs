@@ -33,13 +33,7 @@ pub struct Corrected {
     left_over: DVector<f64>,
     /// Largest force in the structure, its loads and its contacts.
     pub force_scale: f64,
-    directions: Vec<Vector>,
-}
-
-impl Corrected {
-    pub(super) fn iterate(&self) -> Iterate {
-        Iterate { state: self.state.clone(), directions: self.directions.clone() }
-    }
+    pub(super) directions: Vec<Vector>,
 }
 
 /// Why no point was found.
@@ -119,7 +113,7 @@ impl ModeSystem<'_> {
             iterate = self.corrected_by(&iterate, &values);
             iterations += 1;
         }
-        let Some((_, iterate, figures)) = best else { return Err(Failure::NotConverged) };
+        let Some((_, mut iterate, figures)) = best else { return Err(Failure::NotConverged) };
         let wrong_side = match place {
             Place::ArcLength { from, step } => iterate.state.distance(from) < 0.5 * step,
             Place::Load(_) | Place::Displacement { .. } => false,
@@ -127,6 +121,7 @@ impl ModeSystem<'_> {
         if wrong_side {
             return Err(Failure::NotConverged);
         }
+        self.share(&mut iterate.state);
         Ok(Corrected {
             modes: self.modes_at(&iterate),
             state: iterate.state,
@@ -142,7 +137,7 @@ impl ModeSystem<'_> {
     /// The path's direction at a converged point, and an estimate of the point's error: the size of one more Newton
     /// correction across the path.
     pub fn tangent_and_error(&self, corrected: &Corrected, towards: &Rate) -> Option<(Rate, f64)> {
-        let iterate = corrected.iterate();
+        let iterate = self.iterate_of(corrected);
         let factorisation = self.bordered(&iterate, towards)?;
         let rate = self.tangent_by(&factorisation, &iterate)?;
         let mut values = corrected.left_over.clone();

@@ -105,9 +105,13 @@ fn contact_rows(scene: &Scene, row: &Row<'_>) -> (Vec<ContactState>, f64) {
     let (length, force) = (plan.displacement_scale, plan.force_scale);
     let dimension = scene.structure.dimension;
     let mut violation = 0.0_f64;
-    let mut rows = Vec::with_capacity(scene.contacts.len());
+    let mut rows = Vec::with_capacity(scene.reported.len());
     let loading = row.loading;
-    for (index, contact) in scene.contacts.iter().enumerate() {
+    let members = |contact: usize| scene.reported.iter().filter(|one| one.contact == contact).count();
+    let coincident = scene.reported.len() > scene.contacts.len();
+    for one in &scene.reported {
+        let index = one.contact;
+        let contact = &scene.contacts[index];
         let frame = loading.frame(index, row.state);
         let gap = frame.gap;
         let moved = add(&loading.relative(index, row.state), -1.0, &loading.relative(index, row.before));
@@ -121,18 +125,27 @@ fn contact_rows(scene: &Scene, row: &Row<'_>) -> (Vec<ContactState>, f64) {
         let normal = reaction.normal * scaled;
         violation = violation.max(-gap).max(-normal).max(gap.min(normal).abs());
         violation = violation.max(reaction.tangential_size() * scaled - contact.friction * normal);
-        let (node, obstacle) = &scene.contact_names[index];
         let pairs = 0..dimension - 1;
         let closed = row.modes[index].is_active();
+        let traction = |k: usize| dot(&reaction.tangential, &tangents[k]) * one.tangential_share * force;
         rows.push(ContactState {
-            node: Arc::clone(node),
-            obstacle: Arc::clone(obstacle),
+            node: Arc::clone(&one.node),
+            obstacle: Arc::clone(&one.obstacle),
             status: status(row.modes[index]),
             gap: gap * length,
-            normal_reaction: reaction.normal * force,
-            tangential_reaction: pairs.clone().map(|k| dot(&reaction.tangential, &tangents[k]) * force).collect(),
+            normal_reaction: reaction.normal * one.normal_share * force,
+            tangential_reaction: pairs.clone().map(traction).collect(),
             slip: pairs.map(|k| if closed { dot(&moved, &tangents[k]) * length } else { 0.0 }).collect(),
+            indeterminate: closed && ((coincident && members(index) > 1) || held_by_too_many(scene, row.modes, index)),
         });
     }
     (rows, violation)
+}
+
+/// Whether a contact holds its node together with others whose reactions equilibrium does not tell apart.
+fn held_by_too_many(scene: &Scene, modes: &[Mode], contact: usize) -> bool {
+    scene.corners.iter().filter(|corner| corner.contacts.contains(&contact)).any(|corner| {
+        let parts: usize = corner.holding(modes).map(|one| 1 + scene.contacts[one].tangents()).sum();
+        parts > scene.structure.dimension && corner.holding(modes).any(|one| one == contact)
+    })
 }

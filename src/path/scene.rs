@@ -6,6 +6,7 @@
 //! the largest prescribed motion if that is more, and `ℓ` that force over that stiffness.
 //! `σ` is the smaller of `φ / max |f|` and `ℓ / max |motion|`. All follow the units of the input, so that a change of units changes nothing but round-off.
 
+use super::corner::Corner;
 use super::loading::LoadPattern;
 use super::plan::{LeftOut, Plan};
 use crate::contact::obstacle::Obstacle;
@@ -28,12 +29,30 @@ use std::sync::Arc;
 #[derive(Debug, Clone)]
 pub struct Scene {
     pub(super) structure: Structure,
+    /// Contacts that are solved for; coincident ones of a node are one of them.
     pub(super) contacts: Vec<Contact>,
+    /// Names of their nodes and obstacles.
     pub(super) contact_names: Vec<(Arc<str>, Arc<str>)>,
+    /// The contacts of the request, in its order.
+    pub(super) reported: Vec<Reported>,
+    /// Nodes with several contacts.
+    pub(super) corners: Vec<Corner>,
     pub(super) node_names: Vec<Arc<str>>,
     pub(super) stages: Vec<StageLoad>,
     pub(super) analysis: Analysis,
     plan: Plan,
+}
+
+/// A contact of the request and its part of the one that is solved for.
+#[derive(Debug, Clone)]
+pub(super) struct Reported {
+    pub node: Arc<str>,
+    pub obstacle: Arc<str>,
+    /// Which of the scene's contacts.
+    pub contact: usize,
+    /// Shares of the reaction's parts; 1 but for coincident contacts.
+    pub normal_share: f64,
+    pub tangential_share: f64,
 }
 
 /// A stage's load pattern over all degrees of freedom and its ends, dimensionless.
@@ -79,27 +98,24 @@ impl Scene {
             model.nodes.keys().enumerate().map(|(number, name)| (name.as_str(), number)).collect();
         let structure = build_structure(model, &numbers, length, force);
         let mut left_out = Vec::new();
-        let mut contacts = Vec::new();
-        let mut contact_names = Vec::new();
-        for contact in &model.contacts {
-            let node = numbers[contact.node.as_str()];
-            let built = build_contact(model, contact, node, length, &structure);
-            if built.friction == 0.0 && contact.friction > 0.0 {
-                left_out.push(LeftOut {
-                    what: format!("friction of {} on {}", contact.node, contact.obstacle),
-                    why: "the node's supports leave it no motion along the obstacle".to_owned(),
-                });
-            }
-            contacts.push(built);
-            contact_names.push((Arc::from(contact.node.as_str()), Arc::from(contact.obstacle.as_str())));
-        }
+        let Contacts { contacts, contact_names, reported, corners } =
+            build_contacts(model, &numbers, length, &structure, &mut left_out);
         left_out.extend(plan_what_is_left_out(model, &contacts, &structure));
-        let scaled =
-            Scaled { model, analysis: &request.analysis, numbers: &numbers, structure: &structure, length, force };
+        let first_contacts: Vec<usize> =
+            (0..contacts.len()).filter_map(|contact| reported.iter().position(|one| one.contact == contact)).collect();
+        let scaled = Scaled {
+            model,
+            analysis: &request.analysis,
+            numbers: &numbers,
+            structure: &structure,
+            first_contacts: &first_contacts,
+            length,
+            force,
+        };
         let stages: Vec<StageLoad> = model.stages.iter().map(|stage| build_stage(stage, &scaled)).collect();
         let plan = Plan {
             unknowns: structure.unknowns() as u64,
-            contacts: contacts.len() as u64,
+            contacts: reported.len() as u64,
             stages: stages.len() as u64,
             displacement_scale: length,
             force_scale: force,
@@ -108,7 +124,7 @@ impl Scene {
         };
         let node_names = model.nodes.keys().map(|name| Arc::from(name.as_str())).collect();
         let analysis = request.analysis.clone();
-        let scene = Self { structure, contacts, contact_names, node_names, stages, analysis, plan };
+        let scene = Self { structure, contacts, contact_names, reported, corners, node_names, stages, analysis, plan };
         scene.refuse_mechanism()?;
         scene.refuse_imbalance()?;
         Ok(scene)
@@ -289,6 +305,91 @@ fn build_structure(model: &Model, numbers: &HashMap<&str, usize>, length: f64, f
     Structure::new(dimension, reference, &supported, elements)
 }
 
+/// The contacts that are solved for, and those of the request.
+struct Contacts {
+    contacts: Vec<Contact>,
+    contact_names: Vec<(Arc<str>, Arc<str>)>,
+    reported: Vec<Reported>,
+    corners: Vec<Corner>,
+}
+
+/// Planes whose normals and gaps (dimensionless) differ by less than this are one.
+const COINCIDENT: f64 = 1e-13;
+
+fn build_contacts(
+    model: &Model,
+    numbers: &HashMap<&str, usize>,
+    length: f64,
+    structure: &Structure,
+    left_out: &mut Vec<LeftOut>,
+) -> Contacts {
+    let mut contacts: Vec<Contact> = Vec::new();
+    let mut contact_names: Vec<(Arc<str>, Arc<str>)> = Vec::new();
+    let mut reported: Vec<Reported> = Vec::new();
+    // Which contacts of the request each one stands for.
+    let mut members: Vec<Vec<usize>> = Vec::new();
+    let mut of_node: HashMap<usize, Vec<usize>> = HashMap::new();
+    for (index, contact) in model.contacts.iter().enumerate() {
+        let built = build_contact(model, contact, numbers[contact.node.as_str()], length, structure);
+        if built.friction == 0.0 && contact.friction > 0.0 {
+            left_out.push(LeftOut {
+                what: format!("friction of {} on {}", contact.node, contact.obstacle),
+                why: "the node's supports leave it no motion along the obstacle".to_owned(),
+            });
+        }
+        let (node, obstacle) = (Arc::from(contact.node.as_str()), Arc::from(contact.obstacle.as_str()));
+        let moves_with = |other: &request::Contact| {
+            let motion = |stage: &request::Stage, name: &str| stage.obstacle_motion.get(name).cloned();
+            model.stages.iter().all(|stage| motion(stage, &contact.obstacle) == motion(stage, &other.obstacle))
+        };
+        let neighbours = of_node.entry(built.node).or_default();
+        let twin = neighbours
+            .iter()
+            .copied()
+            .find(|other| coincide(&contacts[*other], &built) && moves_with(&model.contacts[members[*other][0]]));
+        let place = twin.unwrap_or(contacts.len());
+        if twin.is_none() {
+            neighbours.push(place);
+            contacts.push(built);
+            contact_names.push((Arc::clone(&node), Arc::clone(&obstacle)));
+            members.push(Vec::new());
+        }
+        members[place].push(index);
+        reported.push(Reported { node, obstacle, contact: place, normal_share: 1.0, tangential_share: 1.0 });
+    }
+    for (contact, members) in contacts.iter_mut().zip(&members).filter(|(_, members)| members.len() > 1) {
+        // Pressed equally, which is least; each carries of the traction what its friction bears.
+        let number = members.len() as f64;
+        let total: f64 = members.iter().map(|member| model.contacts[*member].friction).sum();
+        for member in members {
+            let part = if total > 0.0 { model.contacts[*member].friction / total } else { 1.0 / number };
+            (reported[*member].normal_share, reported[*member].tangential_share) = (1.0 / number, part);
+        }
+        if contact.sliding.directions() > 0 {
+            contact.friction = total / number;
+        }
+    }
+    // In the order of the contacts, so that the numbering does not depend on a hash.
+    let corners = contacts
+        .iter()
+        .enumerate()
+        .filter_map(|(index, contact)| of_node.get(&contact.node).filter(|all| all.len() > 1 && all[0] == index))
+        .map(|contacts| Corner { contacts: contacts.clone() })
+        .collect();
+    Contacts { contacts, contact_names, reported, corners }
+}
+
+/// Whether two contacts are one: the same node before the same surface.
+fn coincide(first: &Contact, second: &Contact) -> bool {
+    let near = |a: &Vector, b: &Vector| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= COINCIDENT);
+    let surfaces = match (&first.obstacle, &second.obstacle) {
+        (Obstacle::Plane { normal: a }, Obstacle::Plane { normal: b }) => near(a, b),
+        (Obstacle::Ball { offset: a, side: x }, Obstacle::Ball { offset: b, side: y }) => near(a, b) && x == y,
+        (Obstacle::Plane { .. }, Obstacle::Ball { .. }) | (Obstacle::Ball { .. }, Obstacle::Plane { .. }) => false,
+    };
+    first.node == second.node && surfaces && (first.initial_gap - second.initial_gap).abs() <= COINCIDENT
+}
+
 fn build_contact(
     model: &Model,
     contact: &request::Contact,
@@ -351,12 +452,14 @@ struct Scaled<'a> {
     analysis: &'a Analysis,
     numbers: &'a HashMap<&'a str, usize>,
     structure: &'a Structure,
+    /// The request's contact of each contact that is solved for.
+    first_contacts: &'a [usize],
     length: f64,
     force: f64,
 }
 
 fn build_stage(stage: &request::Stage, scaled: &Scaled<'_>) -> StageLoad {
-    let &Scaled { model, analysis, numbers, structure, length, force } = scaled;
+    let &Scaled { model, analysis, numbers, structure, first_contacts, length, force } = scaled;
     let dimension = structure.dimension;
     let largest = |vectors: &IndexMap<String, Vec<f64>>| vectors.values().map(|v| norm(v)).fold(0.0_f64, f64::max);
     let by_force = force / largest(&stage.forces);
@@ -384,7 +487,7 @@ fn build_stage(stage: &request::Stage, scaled: &Scaled<'_>) -> StageLoad {
     let pattern = LoadPattern {
         forces: over_freedoms(&stage.forces, force),
         supports: if supports_move { over_freedoms(&stage.displacements, length) } else { Vec::new() },
-        shifts: model.contacts.iter().map(shift).collect(),
+        shifts: first_contacts.iter().map(|contact| shift(&model.contacts[*contact])).collect(),
     };
     let mut ends = Vec::new();
     if let Some(until) = &stage.until {

@@ -128,6 +128,7 @@ impl<'a> Path<'a> {
         Loading {
             structure: &self.scene.structure,
             contacts: &self.scene.contacts,
+            corners: &self.scene.corners,
             pattern: &self.scene.stages[self.stage].pattern,
             held: &self.held,
         }

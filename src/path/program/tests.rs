@@ -15,6 +15,7 @@ fn kkt_holds(name: &str, forward: impl Fn(&Scene) -> Rate) {
     let loading = Loading {
         structure: &scene.structure,
         contacts: &scene.contacts,
+        corners: &scene.corners,
         pattern: &scene.stages[0].pattern,
         held: &held,
     };
