@@ -6,8 +6,9 @@
 
 use super::directions::{Candidate, Found, RANK, WEAK, is_mechanism, merge};
 use super::mode_system::{Loading, ModeSystem};
+use super::rates::{self, Choice, Entity, RateProblem, Ray, Signed};
 use super::standing::Standing;
-use super::state::{Rate, State};
+use super::state::{Rate, State, along};
 use crate::cancel::CancelFlag;
 use crate::contact::{Mode, Reaction};
 use crate::linear_algebra::{Factorisation, null_space};
@@ -104,7 +105,7 @@ impl<'a> Condensed<'a> {
         Some(Self { loading, columns, changeable })
     }
 
-    /// Options of one contact, holding first: where the number examined is bounded, the held structure is among them.
+    /// Options of one contact, holding first.
     fn options(&self, entry: &Changeable) -> Vec<Mode> {
         match entry.standing {
             Standing::Settled(mode) => vec![mode],
@@ -119,106 +120,100 @@ impl<'a> Condensed<'a> {
         }
     }
 
-    /// Examines the contact modes one after another, at most so many.
+    /// The rate problem of these contacts, with options in the order of [`Self::options`].
+    fn problem(&self) -> RateProblem {
+        let mut forms = Forms { columns: self.columns.len(), rows: Vec::new(), is_force: Vec::new() };
+        let entities = self.changeable.iter().map(|entry| forms.add_contact(entry)).collect();
+        let freedoms = self.columns[0].displacement.len();
+        let motion = DMatrix::from_fn(freedoms + 1, self.columns.len(), |row, column| {
+            if row < freedoms { self.columns[column].displacement[row] } else { self.columns[column].load }
+        });
+        let contacts = self.columns[0].reactions.len();
+        let reactions = DMatrix::from_fn(3 * contacts, self.columns.len(), |row, column| {
+            let reaction = self.columns[column].reactions[row / 3];
+            [reaction.normal, reaction.tangential[0], reaction.tangential[1]][row % 3]
+        });
+        RateProblem {
+            forms: DMatrix::from_fn(forms.rows.len(), self.columns.len(), |row, column| forms.rows[row][column]),
+            is_force: forms.is_force,
+            entities,
+            motion,
+            reactions,
+        }
+    }
+
+    /// Lists the directions, by branch and bound over the contacts' options.
     pub(super) fn enumerate(
         &self,
         held: &[Mode],
         state: &State,
+        incoming: Option<&Rate>,
         most_modes: u64,
         cancel: &CancelFlag,
         found: &mut Found,
     ) {
-        let options: Vec<Vec<Mode>> = self.changeable.iter().map(|entry| self.options(entry)).collect();
-        let total = options.iter().try_fold(1u64, |total, option| total.checked_mul(option.len() as u64));
-        let examined = total.unwrap_or(u64::MAX).min(most_modes);
-        found.unexplored = total.unwrap_or(u64::MAX) - examined;
-        for number in 0..examined {
-            if cancel.is_cancelled() {
-                found.unexplored += examined - number;
-                return;
-            }
-            let mut rest = number;
-            let chosen: Vec<Mode> = options
-                .iter()
-                .map(|option| {
-                    let mode = option[(rest % option.len() as u64) as usize];
-                    rest /= option.len() as u64;
-                    mode
-                })
-                .collect();
-            self.examine(&chosen, held, state, found);
+        let problem = self.problem();
+        let mut first = vec![vec![0; self.changeable.len()]];
+        if let Some(rate) = incoming {
+            first.extend(rates::near(&problem, &self.weights_of(rate)));
         }
-    }
-
-    /// The directions of one mode.
-    fn examine(&self, chosen: &[Mode], held: &[Mode], state: &State, found: &mut Found) {
-        let columns = self.columns.len();
-        let mut equations = DMatrix::zeros(columns - 1, columns);
-        let mut next = 0;
-        let mut add = |form: DVector<f64>| {
-            equations.set_row(next, &form.transpose());
-            next += 1;
-        };
-        let unit = |column: usize| DVector::from_fn(columns, |row, _| f64::from(u8::from(row == column)));
-        for (entry, mode) in self.changeable.iter().zip(chosen) {
-            match mode {
-                Mode::Free => {
-                    add(entry.normal_rate.clone());
-                    if entry.tangential_column.is_some() {
-                        add(entry.tangential_rate.clone());
-                    }
-                }
-                Mode::Stick => {
-                    for column in [entry.normal_column, entry.tangential_column].into_iter().flatten() {
-                        add(unit(column));
-                    }
-                }
-                Mode::Slip { direction } => {
-                    if let Some(column) = entry.normal_column {
-                        add(unit(column));
-                    }
-                    if entry.tangential_column.is_some() {
-                        add(&entry.tangential_rate + &entry.normal_rate * (entry.friction * direction[0]));
-                    }
-                }
-            }
-        }
-        let Some(basis) = null_space(&equations, RANK) else {
-            found.degenerate = true;
-            return;
-        };
-        if basis.ncols() > 1 {
-            found.degenerate = true;
+        let findings = rates::explore(&problem, &first, most_modes, cancel);
+        found.unexplored = findings.unexplored;
+        found.degenerate |= findings.degenerate;
+        for basis in &findings.planes {
             found.mechanism |= basis.column_iter().any(|column| {
                 let (rate, _) = self.combine(&column.into_owned());
                 is_mechanism(self.loading, state, &rate)
             });
-            return;
         }
-        for sense in [1.0, -1.0] {
-            let weights: DVector<f64> = basis.column(0) * sense;
-            let (mut rate, weights) = self.combine(&weights);
-            if rate.size() < 0.5 {
-                // Reactions that change with nothing else: redundant contacts.
-                found.degenerate = true;
-                return;
+        for ray in &findings.rays {
+            self.add(ray, held, found);
+        }
+    }
+
+    /// The weights that come nearest to a rate: its velocities, and what it has along `z₀`.
+    fn weights_of(&self, rate: &Rate) -> DVector<f64> {
+        let dimension = self.loading.structure.dimension;
+        let last = self.columns.len() - 1;
+        let mut weights = DVector::zeros(last + 1);
+        for entry in &self.changeable {
+            let contact = &self.loading.contacts[entry.contact];
+            let node = &rate.displacement[contact.node * dimension..(contact.node + 1) * dimension];
+            if let Some(column) = entry.normal_column {
+                weights[column] = along(node, &contact.obstacle.normal());
             }
-            let Some(weak) = self.feasible(chosen, &weights, rate.largest_reaction()) else { continue };
-            let mut modes = held.to_vec();
-            for (entry, mode) in self.changeable.iter().zip(chosen) {
-                modes[entry.contact] = *mode;
-                match mode {
-                    Mode::Free => rate.reactions[entry.contact] = Reaction::default(),
-                    Mode::Stick => {}
-                    Mode::Slip { direction } => {
-                        let drag = -entry.friction * rate.reactions[entry.contact].normal;
-                        rate.reactions[entry.contact].tangential = [drag * direction[0], drag * direction[1]];
-                    }
+            if let Some(column) = entry.tangential_column {
+                weights[column] = along(node, &contact.obstacle.tangents(dimension)[0]);
+            }
+        }
+        let mut rest = rate.clone();
+        for (column, weight) in self.columns.iter().zip(weights.iter()).take(last) {
+            rest.displacement.iter_mut().zip(&column.displacement).for_each(|(sum, value)| *sum -= weight * value);
+            rest.load -= weight * column.load;
+        }
+        let own = &self.columns[last];
+        weights[last] = own.product(&rest) / own.product(own);
+        weights
+    }
+
+    /// Adds a ray as a candidate direction.
+    fn add(&self, ray: &Ray, held: &[Mode], found: &mut Found) {
+        let (mut rate, weights) = self.combine(&ray.weights);
+        let mut modes = held.to_vec();
+        for (entry, &choice) in self.changeable.iter().zip(&ray.chosen) {
+            let mode = self.options(entry)[choice];
+            modes[entry.contact] = mode;
+            match mode {
+                Mode::Free => rate.reactions[entry.contact] = Reaction::default(),
+                Mode::Stick => {}
+                Mode::Slip { direction } => {
+                    let drag = -entry.friction * rate.reactions[entry.contact].normal;
+                    rate.reactions[entry.contact].tangential = [drag * direction[0], drag * direction[1]];
                 }
             }
-            let dissipation = self.dissipation(&weights);
-            merge(found, Candidate { rate, labels: vec![modes], weak, dissipation });
         }
+        let dissipation = self.dissipation(&weights);
+        merge(found, Candidate { rate, labels: vec![modes], weak: ray.weak, dissipation });
     }
 
     /// The rate of unit arc length for weights of the columns, and the weights that give it; of no size where the
@@ -245,46 +240,6 @@ impl<'a> Condensed<'a> {
         }
     }
 
-    /// Whether the inequalities hold; `Some(true)` where one of them holds with equality.
-    fn feasible(&self, chosen: &[Mode], weights: &DVector<f64>, reaction_size: f64) -> Option<bool> {
-        if !weights.iter().all(|weight| weight.is_finite()) {
-            return None;
-        }
-        let force = WEAK * reaction_size.max(f64::MIN_POSITIVE);
-        let mut weak = false;
-        let mut holds = |value: f64, tolerance: f64| {
-            weak |= value.abs() <= tolerance;
-            value >= -tolerance
-        };
-        for (entry, mode) in self.changeable.iter().zip(chosen) {
-            let normal_rate = entry.normal_rate.dot(weights);
-            let tangential_rate = entry.tangential_rate.dot(weights);
-            let velocity = |column: Option<usize>| column.map_or(0.0, |column| weights[column]);
-            let touching = entry.standing == Standing::Touching;
-            let feasible = match mode {
-                Mode::Free => holds(velocity(entry.normal_column), WEAK),
-                Mode::Stick => match entry.standing {
-                    Standing::OnCone { direction } => {
-                        holds(entry.friction * normal_rate + direction[0] * tangential_rate, force)
-                    }
-                    Standing::Settled(_) | Standing::Touching => {
-                        holds(entry.friction * normal_rate - tangential_rate.abs(), force)
-                    }
-                },
-                Mode::Slip { direction } => {
-                    let along = direction[0] * velocity(entry.tangential_column);
-                    let sliding = entry.friction == 0.0 || holds(along, WEAK);
-                    let pressed = !touching || holds(normal_rate, force);
-                    sliding && pressed
-                }
-            };
-            if !feasible {
-                return None;
-            }
-        }
-        Some(weak)
-    }
-
     fn dissipation(&self, weights: &DVector<f64>) -> f64 {
         self.changeable
             .iter()
@@ -295,6 +250,72 @@ impl<'a> Condensed<'a> {
                 _ => 0.0,
             })
             .sum()
+    }
+}
+
+/// Linear forms of the rate problem as they are made.
+struct Forms {
+    columns: usize,
+    rows: Vec<DVector<f64>>,
+    is_force: Vec<bool>,
+}
+
+impl Forms {
+    fn velocity(&mut self, column: usize, sign: f64) -> usize {
+        self.rows.push(DVector::from_fn(self.columns, |row, _| if row == column { sign } else { 0.0 }));
+        self.is_force.push(false);
+        self.rows.len() - 1
+    }
+
+    fn force(&mut self, rate: DVector<f64>) -> usize {
+        self.rows.push(rate);
+        self.is_force.push(true);
+        self.rows.len() - 1
+    }
+
+    /// The options of one contact as equations and inequalities on the weights.
+    fn add_contact(&mut self, entry: &Changeable) -> Entity {
+        let both = |form: usize| [Signed::plus(form), Signed::minus(form)];
+        match (entry.standing, entry.normal_column, entry.tangential_column) {
+            (Standing::Settled(_), _, _) | (_, None, None) => Entity { options: vec![Choice::default()] },
+            (Standing::OnCone { direction }, _, Some(column)) => {
+                let along = self.velocity(column, direction[0]);
+                let slack = self.force(&entry.normal_rate * entry.friction + &entry.tangential_rate * direction[0]);
+                Entity::complementary(slack, along)
+            }
+            (_, Some(column), None) => {
+                let gap = self.velocity(column, 1.0);
+                let pressing = self.force(entry.normal_rate.clone());
+                Entity::complementary(pressing, gap)
+            }
+            (_, normal, Some(tangential)) => {
+                let gap = self.velocity(normal.unwrap_or(tangential), 1.0);
+                let along = self.velocity(tangential, 1.0);
+                let pressing = self.force(entry.normal_rate.clone());
+                let traction = self.force(entry.tangential_rate.clone());
+                let forward = self.force(&entry.normal_rate * entry.friction + &entry.tangential_rate);
+                let backward = self.force(&entry.normal_rate * entry.friction - &entry.tangential_rate);
+                let stick = Choice {
+                    zero: vec![gap, along],
+                    nonnegative: vec![Signed::plus(forward), Signed::plus(backward)],
+                    implied: vec![Signed::plus(pressing)],
+                };
+                let slip = |along: Signed, cone: usize, other: usize| Choice {
+                    zero: vec![gap, cone],
+                    nonnegative: vec![along, Signed::plus(pressing)],
+                    implied: vec![Signed::plus(other)],
+                };
+                let free = Choice {
+                    zero: vec![pressing, traction],
+                    nonnegative: vec![Signed::plus(gap)],
+                    implied: [both(forward), both(backward)].concat(),
+                };
+                let slips =
+                    [slip(Signed::plus(along), forward, backward), slip(Signed::minus(along), backward, forward)];
+                let [forward, backward] = slips;
+                Entity { options: vec![stick, forward, backward, free] }
+            }
+        }
     }
 }
 

@@ -86,7 +86,7 @@ pub fn directions(
         found.mechanism = resists_nothing(&system, loading, state);
         return found;
     };
-    condensed.enumerate(&held, state, most_modes, cancel, &mut found);
+    condensed.enumerate(&held, state, incoming, most_modes, cancel, &mut found);
     found
 }
 

@@ -24,6 +24,7 @@ mod name_event;
 mod naming;
 pub mod plan;
 mod program;
+mod rates;
 mod record;
 pub mod report;
 mod root;
