@@ -5,6 +5,7 @@
 pub mod bad_documents;
 #[cfg(feature = "server")]
 pub mod faulty_store;
+pub mod generated;
 pub mod paths;
 #[cfg(feature = "server")]
 pub mod server;
