@@ -43,7 +43,7 @@ impl Path<'_> {
                 let what = if sign > 0.0 { "load maximum" } else { "load minimum" };
                 self.look_around(incoming, PointKind::SmoothLimit, Some(what.to_owned()), Some(-sign), false)
             }
-            Some(Watch::Gap(_) | Watch::Normal(_) | Watch::Cone { .. } | Watch::Sliding(_)) => {
+            Some(Watch::Gap(_) | Watch::Normal(_) | Watch::Cone { .. } | Watch::Sliding(_) | Watch::Facet { .. }) => {
                 self.contact_change(incoming)
             }
         }

@@ -75,7 +75,7 @@ pub fn directions(
         .zip(loading.contacts)
         .map(|(standing, contact)| match standing {
             Standing::Settled(mode) => *mode,
-            Standing::OnCone { .. } => Mode::Stick,
+            Standing::OnCone { .. } | Standing::Cornered { .. } => Mode::Stick,
             Standing::Touching if contact.tangents() > 0 => Mode::Stick,
             Standing::Touching => Mode::Slip { direction: [0.0; 3] },
         })
@@ -87,7 +87,7 @@ pub fn directions(
         found.mechanism = resists_nothing(&system, loading, state);
         return found;
     };
-    condensed.enumerate(&held, state, most_modes, cancel, &mut found);
+    condensed.enumerate(&held, state, incoming, most_modes, cancel, &mut found);
     found
 }
 

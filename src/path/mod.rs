@@ -17,6 +17,7 @@
 
 mod advance;
 mod arrival;
+mod changeable;
 mod condensed;
 mod corner;
 mod decide;
@@ -31,6 +32,7 @@ mod naming;
 mod newton;
 pub mod plan;
 mod program;
+mod rates;
 mod record;
 pub mod report;
 mod root;

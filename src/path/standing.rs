@@ -1,9 +1,10 @@
 //! Which contacts could change at a point, and between what.
 
+use super::corner;
 use super::loading::Loading;
 use super::state::State;
 use super::track::direction_of;
-use crate::contact::vector::{Vector, dot, scaled};
+use crate::contact::vector::{Vector, dot, scaled, size};
 use crate::contact::{Mode, Sliding};
 
 /// How a contact stands at a point.
@@ -15,6 +16,13 @@ pub enum Standing {
     OnCone { direction: Vector },
     /// At zero gap with zero reaction: anything may follow.
     Touching,
+    /// One of several closed contacts of a node whose force lies on a bound of the sum of their cones, or is zero: the
+    /// node may slide along one of them or leave.
+    Cornered {
+        /// Which of the two bounds.
+        facets: [bool; 2],
+        unloaded: bool,
+    },
 }
 
 /// A gap (dimensionless) or a reaction (over the force scale) of this size is zero.
@@ -22,7 +30,32 @@ pub const ZERO: f64 = 1e-10;
 
 /// Standing of every contact.
 pub fn standings(loading: Loading<'_>, state: &State, force_scale: f64) -> Vec<Standing> {
-    (0..loading.contacts.len()).map(|contact| standing(loading, state, contact, force_scale)).collect()
+    let mut standings: Vec<Standing> =
+        (0..loading.contacts.len()).map(|contact| standing(loading, state, contact, force_scale)).collect();
+    if loading.structure.dimension == 2 {
+        for corner in loading.corners {
+            let closed: Vec<usize> =
+                corner.contacts.iter().copied().filter(|contact| loading.gap(*contact, state) <= ZERO).collect();
+            if closed.len() > 1 {
+                let together = standing_of_corner(loading, state, &closed, force_scale);
+                closed.iter().for_each(|contact| standings[*contact] = together);
+            }
+        }
+    }
+    standings
+}
+
+fn standing_of_corner(loading: Loading<'_>, state: &State, closed: &[usize], force_scale: f64) -> Standing {
+    let force = corner::total_force(loading, closed.iter().copied(), state);
+    let zero = ZERO * force_scale;
+    let unloaded = size(&force) <= zero;
+    let inward = corner::sector(loading, closed, state).inward;
+    let facets = inward.map_or([false; 2], |inward| inward.map(|inward| dot(&inward, &force) <= zero));
+    if unloaded || facets != [false; 2] {
+        Standing::Cornered { facets, unloaded }
+    } else {
+        Standing::Settled(Mode::Stick)
+    }
 }
 
 fn standing(loading: Loading<'_>, state: &State, index: usize, force_scale: f64) -> Standing {

@@ -4,6 +4,7 @@
 //! directions are listed and one is taken. The step follows the turn of the path and the work of Newton's method.
 
 use super::advance::{AT_END, Work};
+use super::corner::total_force;
 use super::decide::{self, Before, Choice, Decision, Rules};
 use super::increment::{Energy, Increment, Point, PointKind};
 use super::loading::{LoadPattern, Loading};
@@ -17,6 +18,7 @@ use super::stepping::{Accepted, NO_ENERGY};
 use super::stop::{Outcome, StopReason};
 use super::watch::Watch;
 use crate::cancel::CancelFlag;
+use crate::contact::vector::{add, dot};
 use crate::contact::{Mode, Reaction};
 use std::time::Instant;
 
@@ -174,6 +176,21 @@ impl<'a> Path<'a> {
         self.here.modes.clone_from(&choice.modes);
         self.here.load_sign = choice.load_sign;
         self.here.rate = Some(choice.rate.clone());
+        // A node that leaves a corner along one of its obstacles takes the whole force there.
+        let (loading, state) = (self.loading(), &self.here.state);
+        let mut moved: Vec<(usize, Reaction)> = Vec::new();
+        for corner in loading.corners {
+            let mut active = corner.contacts.iter().copied().filter(|contact| choice.modes[*contact].is_active());
+            if let (Some(only), None) = (active.next(), active.next()) {
+                let force = total_force(loading, corner.contacts.iter().copied(), state);
+                let normal = loading.frame(only, state).normal;
+                let along = dot(&force, &normal);
+                moved.push((only, Reaction { normal: along, tangential: add(&force, -along, &normal) }));
+            }
+        }
+        for (contact, reaction) in moved {
+            self.here.state.reactions[contact] = reaction;
+        }
         for (reaction, mode) in self.here.state.reactions.iter_mut().zip(&choice.modes) {
             if *mode == Mode::Free {
                 *reaction = Reaction::default();

@@ -7,6 +7,7 @@
 //! Between two points each quantity is also followed by its cubic Hermite interpolant, so that a dip inside the step
 //! is seen.
 
+use super::corner;
 use super::loading::Loading;
 use super::scene::End;
 use super::state::{Rate, State};
@@ -25,6 +26,11 @@ pub enum Watch {
         side: f64,
     },
     Sliding(usize),
+    /// The force on a node that several contacts hold, off a bound of the sum of their cones.
+    Facet {
+        corner: usize,
+        side: usize,
+    },
     LoadRate {
         sign: f64,
     },
@@ -34,8 +40,17 @@ pub enum Watch {
 /// Everything that ends a mode.
 pub fn of_mode(loading: Loading<'_>, modes: &[Mode]) -> Vec<Watch> {
     let mut watches = Vec::new();
+    let mut together = Vec::new();
+    for (corner, data) in loading.corners.iter().enumerate() {
+        let before = together.len();
+        together.extend(data.holding(modes));
+        if together.len() > before {
+            watches.extend([0, 1].map(|side| Watch::Facet { corner, side }));
+        }
+    }
     for (contact, mode) in modes.iter().enumerate() {
         match mode {
+            Mode::Stick if together.contains(&contact) => {}
             Mode::Free => watches.push(Watch::Gap(contact)),
             Mode::Stick if loading.contacts[contact].sliding == Sliding::Plane => {
                 watches.push(Watch::Cone { contact, side: 0.0 });
@@ -56,7 +71,7 @@ impl Watch {
     /// Whether a contact's mode ends where the quantity is zero.
     pub fn is_of_contact(self) -> bool {
         match self {
-            Self::Gap(_) | Self::Normal(_) | Self::Cone { .. } | Self::Sliding(_) => true,
+            Self::Gap(_) | Self::Normal(_) | Self::Cone { .. } | Self::Sliding(_) | Self::Facet { .. } => true,
             Self::LoadRate { .. } | Self::End(_) => false,
         }
     }
@@ -77,6 +92,12 @@ impl Watch {
             }
             Self::Sliding(contact) => {
                 dot(&direction(loading, modes, contact, state), &loading.relative_rate(contact, rate))
+            }
+            Self::Facet { corner, side } => {
+                let holding: Vec<usize> = loading.corners[corner].holding(modes).collect();
+                // No bound: the node is jammed.
+                let Some(inward) = corner::sector(loading, &holding, state).inward else { return f64::INFINITY };
+                dot(&inward[side], &corner::total_force(loading, holding.into_iter(), state))
             }
             Self::LoadRate { sign } => sign * rate.load,
             Self::End(End::Load { bound, sign }) => sign * (bound - state.load),
@@ -101,7 +122,7 @@ impl Watch {
                 };
                 Some(loading.contacts[contact].friction * change.normal + traction)
             }
-            Self::Sliding(_) | Self::LoadRate { .. } => None,
+            Self::Sliding(_) | Self::LoadRate { .. } | Self::Facet { .. } => None,
             Self::End(End::Load { sign, .. }) => Some(-sign * rate.load),
             Self::End(End::Displacement { freedom, sign, .. }) => Some(-sign * rate.displacement[freedom]),
             Self::End(End::LimitPoints(_) | End::ContactChanges(_) | End::Increments(_)) => None,
@@ -118,14 +139,14 @@ impl Watch {
                 Some(dot(&scaled(&directions, 0.5), &chord))
             }
             Self::LoadRate { sign } => Some(sign * (end.load - start.load)),
-            Self::Gap(_) | Self::Normal(_) | Self::Cone { .. } | Self::End(_) => None,
+            Self::Gap(_) | Self::Normal(_) | Self::Cone { .. } | Self::Facet { .. } | Self::End(_) => None,
         }
     }
 
     /// The size against which the quantity is zero.
     pub fn scale(self, force_scale: f64) -> f64 {
         match self {
-            Self::Normal(_) | Self::Cone { .. } => force_scale,
+            Self::Normal(_) | Self::Cone { .. } | Self::Facet { .. } => force_scale,
             Self::Gap(_) | Self::Sliding(_) | Self::LoadRate { .. } | Self::End(_) => 1.0,
         }
     }
