@@ -1,6 +1,6 @@
 //! Contacts: who they join, and the gaps at the start.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::Scope;
 use super::numbers::{self, dot};
@@ -22,18 +22,23 @@ struct Gap<'a> {
 
 pub(super) fn contacts(scope: &Scope, mistakes: &mut Mistakes) {
     let at = scope.at.member("contacts");
+    let mut seen = HashSet::new();
     let mut gaps: HashMap<usize, Vec<Gap>> = HashMap::new();
     for (index, contact) in scope.model.contacts.iter().enumerate() {
         let at = at.index(index);
         friction(contact, &at.member("friction"), mistakes);
         let node = scope.node(&contact.node, &at.member("node"), mistakes);
         let obstacle = scope.obstacle(&contact.obstacle, &at.member("obstacle"), mistakes);
-        let (Some(node), Some((_, obstacle))) = (node, obstacle) else { continue };
+        let (Some(node), Some((number, obstacle))) = (node, obstacle) else { continue };
         let Some(facing) = facing(scope, node, obstacle) else { continue };
         if !useful(scope, contact, node, obstacle, &facing, &at, mistakes) {
             continue;
         }
         start(contact, obstacle, &facing, &at, mistakes);
+        // A second contact with one obstacle leaves no less room than the first.
+        if !seen.insert((node, number)) {
+            continue;
+        }
         if let (Obstacle::Plane { .. }, Some(normal)) = (obstacle, facing.normal) {
             let gap = Gap { obstacle: &contact.obstacle, gap: facing.gap, normal, tolerance: facing.tolerance };
             let others = gaps.entry(node).or_default();
