@@ -74,7 +74,7 @@ fn a_node_climbs_out_of_a_bowl() {
                 }
             }
             let begins = increments.iter().any(|i| &*i.stage == "push" && (i.load_factor - friction).abs() < 1e-12);
-            assert!(begins, "slip begins at the load {friction}");
+            assert!(begins || friction == 0.0, "slip begins at the load {friction}");
         }
     }
 }
