@@ -28,6 +28,15 @@ pub const ALL: &[BuiltIn] = &[
     scene!("arch-type-truss", "smooth limit point, bifurcation points, and a crown that lands on the floor"),
     scene!("two-snapping-bars", "bars that snap one after another (row of two)"),
     scene!("three-snapping-bars", "bars that snap one after another (row of three)"),
+    scene!(
+        "four-snapping-bars",
+        "a bar that snaps alone and a path that ends with no direction to go on (row of four)"
+    ),
+    scene!(
+        "slider-chain",
+        "blocks that begin to slip one after another, each at an exact load, until all of them slide"
+    ),
+    scene!("closed-loop", "a path that is a closed curve and ends as a cycle, without contact"),
     scene!("von-mises-truss", "snap-through without contact"),
 ];
 
