@@ -74,7 +74,8 @@ fn a_rising_floor_is_a_sinking_pin() {
         close(b.displacements["pin"][1], -0.4, 0.0, "the pin is where it is told to be");
         close(a.contacts[0].normal_reaction, b.contacts[0].normal_reaction, 1e-10, "normal reaction");
         close(a.contacts[0].tangential_reaction[0], b.contacts[0].tangential_reaction[0], 1e-10, "traction");
-        close(a.energy.dissipated, b.energy.dissipated, 1e-8, "dissipation");
+        // Both are integrals over points of their own.
+        close(a.energy.dissipated, b.energy.dissipated, 1e-6, "dissipation");
     }
     let limits = |increments: &[Increment]| -> Vec<f64> {
         let limits = increments.iter().filter(|i| i.point.kind == PointKind::SmoothLimit && &*i.stage == "push");

@@ -4,6 +4,7 @@ mod common;
 
 use arcslip::model::JobRequest;
 use arcslip::model::request::Method;
+use arcslip::path::increment::PointKind;
 use arcslip::path::{Increment, Scene, StopReason};
 use common::paths::{Traced, judged};
 use common::random::random_scene;
@@ -63,13 +64,23 @@ fn difference(auto: &[Increment], mpec: &[Increment]) -> Option<String> {
     })
 }
 
-fn judge_share(share: u64) -> (Vec<String>, u64) {
-    let (mut faulty, mut degenerate) = (Vec::new(), 0);
+/// What a share of the scenes showed.
+#[derive(Default)]
+struct Seen {
+    faulty: Vec<String>,
+    degenerate: u64,
+    contact_changes: usize,
+    smooth_limits: usize,
+    bifurcations: usize,
+}
+
+fn judge_share(share: u64) -> Seen {
+    let mut seen = Seen::default();
     for seed in (0..SCENES).filter(|seed| seed % THREADS == share) {
         let request = random_scene(seed);
         // Scenes of more than this version takes are faults like any other, told with their reason.
         if let Err(errors) = Scene::new(&request) {
-            faulty.push(format!("{seed}: refused: {}", errors.0[0]));
+            seen.faulty.push(format!("{seed}: refused: {}", errors.0[0]));
             continue;
         }
         let auto = by(&request, Method::Auto);
@@ -77,27 +88,40 @@ fn judge_share(share: u64) -> (Vec<String>, u64) {
         let mpec = by(&request, Method::Mpec);
         found.extend(faults(&mpec).into_iter().map(|fault| format!("mpec: {fault}")));
         found.extend(difference(&auto.increments, &mpec.increments));
-        degenerate += u64::from(auto.increments.iter().any(|increment| increment.point.degenerate));
+        seen.degenerate += u64::from(auto.increments.iter().any(|increment| increment.point.degenerate));
+        let count = |kind: PointKind| auto.increments.iter().filter(|increment| increment.point.kind == kind).count();
+        seen.contact_changes += count(PointKind::ContactChange) + count(PointKind::NonsmoothLimit);
+        seen.smooth_limits += count(PointKind::SmoothLimit);
+        seen.bifurcations += auto.increments.iter().filter(|increment| increment.point.bifurcation).count();
         if let Some(first) = found.first() {
-            faulty.push(format!("{seed}: {} faults, the first: {first}", found.len()));
+            seen.faulty.push(format!("{seed}: {} faults, the first: {first}", found.len()));
         }
     }
-    (faulty, degenerate)
+    seen
 }
 
 #[test]
 fn every_path_keeps_the_laws() {
     let shares: Vec<_> = (0..THREADS).map(|share| std::thread::spawn(move || judge_share(share))).collect();
-    let (mut faulty, mut degenerate) = (Vec::new(), 0);
+    let mut all = Seen::default();
     for share in shares {
-        let (found, count) = share.join().expect("no panic in a scene");
-        faulty.extend(found);
-        degenerate += count;
+        let seen = share.join().expect("no panic in a scene");
+        all.faulty.extend(seen.faulty);
+        all.degenerate += seen.degenerate;
+        all.contact_changes += seen.contact_changes;
+        all.smooth_limits += seen.smooth_limits;
+        all.bifurcations += seen.bifurcations;
     }
-    faulty.sort_by_key(|fault| fault.split(':').next().and_then(|seed| seed.parse::<u64>().ok()));
-    println!("{degenerate} of {SCENES} scenes report a degenerate point");
+    all.faulty.sort_by_key(|fault| fault.split(':').next().and_then(|seed| seed.parse::<u64>().ok()));
+    let Seen { faulty, degenerate, contact_changes, smooth_limits, bifurcations } = all;
+    println!(
+        "{contact_changes} contact changes, {smooth_limits} smooth limits, {bifurcations} bifurcation points; \
+         {degenerate} scenes of {SCENES} report a degenerate point"
+    );
     assert!(faulty.is_empty(), "{} of {SCENES} scenes:\n{}", faulty.len(), faulty.join("\n"));
     assert!(degenerate <= SCENES / 20, "{degenerate} scenes report a degenerate point");
+    // The scenes are not idle.
+    assert!(contact_changes >= 100 && smooth_limits >= 20 && bifurcations >= 50);
 }
 
 /// The same seed, the same scene; another seed, another.

@@ -20,10 +20,11 @@ fn assert_states(traced: &Traced, what: &str) {
     }
 }
 
-/// An error estimate is right within a factor 5, where the error is more than round-off.
-fn assert_estimate(estimate: f64, error: f64, what: &str) {
+/// An error estimate is right within a factor, where the error is more than round-off.
+fn assert_estimate(estimate: f64, error: f64, factor: f64, what: &str) {
     if error > 100.0 * ROUND_OFF {
-        assert!(estimate >= error / 5.0 && estimate <= error * 5.0, "{what}: estimated {estimate:e}, true {error:e}");
+        let right = estimate >= error / factor && estimate <= error * factor;
+        assert!(right, "{what}: estimated {estimate:e}, true {error:e}, factor {factor}");
     }
 }
 
@@ -64,7 +65,7 @@ fn curving_slip_against_the_tractrix() {
             largest = largest.max(error);
             if increment.index > 5 {
                 let distance = exact.distance(at[0], at[1]) / traced.plan.displacement_scale;
-                assert_estimate(increment.diagnostics.error_estimate, distance, &what);
+                assert_estimate(increment.diagnostics.error_estimate, distance, 5.0, &what);
             }
         }
         let end = place(&request, traced.increments.last().expect("an end"), "tip");
@@ -116,7 +117,9 @@ fn a_floor_that_turns_drags_its_block_around() {
             close(u[0].hypot(u[1]), radius, 1e-12, "on the cone");
             if count > 5 {
                 let what = format!("step {step}, increment {}", increment.index);
-                assert_estimate(increment.diagnostics.error_estimate, error, &what);
+                // The drag pulls errors together again (to a quarter of their sum here), which a sum of the
+                // steps' errors does not see.
+                assert_estimate(increment.diagnostics.error_estimate, error, 10.0, &what);
             }
             most = most.max(error);
         }

@@ -32,7 +32,7 @@ fn a_groove() {
             for increment in &increments {
                 let what = format!("friction {friction}, increment {}", increment.index);
                 let u = &increment.displacements["node"];
-                if &*increment.stage == "press" || increment.load_factor <= leaves * (1.0 + 1e-12) {
+                if &*increment.stage == "press" || increment.load_factor <= leaves + 1e-9 {
                     close(u[0].hypot(u[1]), 0.0, 1e-12, &what);
                 } else {
                     close(u[0], u[1], 1e-12, &what);

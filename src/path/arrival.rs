@@ -12,7 +12,7 @@ use crate::contact::{Reaction, all_continue};
 use crate::model::request::Method;
 
 /// States closer than this are one.
-const SAME_STATE: f64 = 1e-9;
+pub(super) const SAME_STATE: f64 = 1e-9;
 /// A reaction this small against the largest force so far is what the location of its zero left over.
 const ROUND_OFF: f64 = 1e-14;
 

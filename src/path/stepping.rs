@@ -1,9 +1,11 @@
 //! Choosing the step: by the path's turn, by Newton's work and by the energy balance of the increment.
 
-use super::advance::{Reached, Refused, Start};
+use super::advance::{Reached, Refused, Start, Work};
+use super::arrival::SAME_STATE;
 use super::decide::{self, Before};
 use super::energy;
-use super::state::Rate;
+use super::root::find_root;
+use super::state::{Rate, State};
 use super::stop::StopReason;
 use super::tracer::Path;
 use crate::model::request::Method;
@@ -31,6 +33,8 @@ pub(super) struct Accepted {
     pub strain: f64,
     /// Whether the increment's program named the mode; `None` where it was not asked.
     pub mode_named: Option<bool>,
+    /// The point is the one where the stage began.
+    pub returned: bool,
 }
 
 /// The next smaller of eight values an octave: what the factor is computed from is a difference of nearly equal
@@ -65,10 +69,13 @@ impl Path<'_> {
             let mut work = self.work;
             let ends = &self.scene.stages[self.stage].ends;
             let outcome = start.advance(step, ends, self.here.load_sign, &mut work);
+            let back = outcome.as_ref().ok().and_then(|reached| self.way_back(&start, reached, &mut work));
             self.work = work;
             match outcome {
                 Ok(reached) => {
-                    let mut accepted = self.balance(&rate, reached);
+                    let returned = back.is_some();
+                    let mut accepted = self.balance(&rate, back.unwrap_or(reached));
+                    accepted.returned = returned;
                     // Where the mode ends inside the step, the program names the next one, from there.
                     accepted.mode_named = named_as_kept.map(|kept| kept || accepted.reached.event.is_some());
                     let factor = self.next_step_factor(&rate, &accepted, step);
@@ -104,6 +111,34 @@ impl Path<'_> {
         }
     }
 
+    /// The point at which the stage began, where a step without event passes it again in the same sense.
+    fn way_back(&self, start: &Start<'_>, reached: &Reached, work: &mut Work) -> Option<Reached> {
+        let (origin, sense) = self.begun.as_ref()?;
+        // How far a state lies past the origin.
+        let past = |state: &State| {
+            let chord = state.displacement.iter().zip(&origin.displacement).zip(&sense.displacement);
+            chord.map(|((to, from), rate)| (to - from) * rate).sum::<f64>() + (state.load - origin.load) * sense.load
+        };
+        let (first, last) = (past(start.state), past(&reached.corrected.state));
+        let near = start.state.distance(origin).min(reached.corrected.state.distance(origin)) <= reached.step;
+        let passes = reached.event.is_none() && near && first < -SAME_STATE && last >= 0.0;
+        if !passes || reached.rate.product(sense) <= 0.0 {
+            return None;
+        }
+        let at = |place: f64| start.reach(place, work).ok().map(|near| -past(&near.corrected.state));
+        let place = find_root(at, (0.0, -first), (reached.step, -last), 1e-14)?;
+        let back = start.reach(place, work).ok()?;
+        let same = back.corrected.state.distance(origin) < SAME_STATE
+            && back
+                .corrected
+                .state
+                .reactions
+                .iter()
+                .zip(&origin.reactions)
+                .all(|(a, b)| a.difference(b) < SAME_STATE * self.force_scale);
+        same.then_some(back)
+    }
+
     /// Why steps became too short.
     fn reason_of_underflow(&self) -> StopReason {
         let stretch = self.scene.structure.smallest_stretch(&self.here.state.displacement);
@@ -116,7 +151,7 @@ impl Path<'_> {
         let end = (&reached.corrected.state, &reached.rate);
         let (work, dissipation) = energy::work_and_dissipation(self.loading(), &self.here.modes, start, end);
         let strain = self.scene.structure.strain_energy(&reached.corrected.state.displacement) - self.initial_strain;
-        Accepted { reached, work, dissipation, strain, mode_named: None }
+        Accepted { reached, work, dissipation, strain, mode_named: None, returned: false }
     }
 
     /// How the next step should compare with this one: by the path's turn, Newton's work and the energy balance.

@@ -45,6 +45,8 @@ pub struct Path<'a> {
     report: Report,
     /// States at which a direction was taken, for telling a cycle.
     pub(super) visited: Vec<Visited>,
+    /// Where the stage began and the direction it took.
+    pub(super) begun: Option<(State, Rate)>,
 }
 
 /// The present point and how the path goes on.
@@ -117,6 +119,7 @@ impl<'a> Path<'a> {
                 mpec_solves: 0,
             },
             visited: Vec::new(),
+            begun: None,
             scene,
         }
     }
@@ -167,6 +170,7 @@ impl<'a> Path<'a> {
         let standings = self.standings(&self.here.state);
         let decision = decide::decide(self.loading(), &self.here.state, &standings, Before::StageStart, self.rules());
         self.take(&decision);
+        self.begun = self.here.rate.clone().map(|rate| (self.here.state.clone(), rate));
         self.step = self.step.min(self.scene.analysis.arc_length.initial);
         decision
     }
@@ -292,7 +296,10 @@ impl<'a> Path<'a> {
         self.here.modes = reached.corrected.modes;
         self.here.drift = reached.drift;
         let at_bound = self.at_bound(&reached.rate);
-        let arrival = self.classify(reached.event, &reached.rate);
+        let mut arrival = self.classify(reached.event, &reached.rate);
+        if accepted.returned {
+            arrival.stop = Some(StopReason::Cycle);
+        }
         let stage_ends = arrival.stage_ends || at_bound || self.count_ends_stage();
         let mut point = arrival.point;
         if let Some(reason) = arrival.stop {

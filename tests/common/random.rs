@@ -61,14 +61,16 @@ pub fn random_scene(seed: u64) -> JobRequest {
         let name = format!("tip{tip}");
         let mut place = numbers.vector(dimension, 0.2);
         place[0] += 2.0 * tip as f64;
-        let gap = if numbers.chance(0.5) { 0.0 } else { numbers.between(0.02, 0.2) };
+        // On one slanting bar a tip snaps over its floor; on as many as there are dimensions it is held without one.
+        let bars = if numbers.chance(0.6) { 1 } else { dimension };
+        let gap = if bars == 1 || numbers.chance(0.5) { 0.0 } else { numbers.between(0.02, 0.2) };
         place[up] = gap - (0..up).map(|k| place[k] * normal[k]).sum::<f64>();
-        for pin in 0..dimension {
+        for pin in 0..bars {
             let pin_name = format!("pin{tip}{pin}");
             // Apart from one another, so that the bars span the space.
             let mut pin_place: Vec<f64> = place.iter().map(|x| x + numbers.between(-0.2, 0.2)).collect();
             pin_place[up] = place[up] + numbers.between(0.5, 1.2);
-            let angle = 0.4 + 2.2 * pin as f64;
+            let angle = 0.4 + 2.2 * pin as f64 + if bars == 1 { numbers.between(0.0, 6.0) } else { 0.0 };
             pin_place[0] += numbers.between(0.8, 1.4) * angle.cos();
             if dimension == 3 {
                 pin_place[1] += numbers.between(0.8, 1.4) * angle.sin();
@@ -82,7 +84,9 @@ pub fn random_scene(seed: u64) -> JobRequest {
             let ends = [format!("tip{}", tip - 1), name.clone()];
             elements.push(json!({"kind": "bar", "nodes": ends, "axial_stiffness": numbers.between(0.2, 1.0)}));
         }
-        contacts.push(json!({"node": name.clone(), "obstacle": "floor", "friction": numbers.friction()}));
+        // In space one bar and a smooth floor would leave a motion free.
+        let friction = if bars == 1 { numbers.between(0.05, 2.0) } else { numbers.friction() };
+        contacts.push(json!({"node": name.clone(), "obstacle": "floor", "friction": friction}));
         if numbers.chance(0.4) {
             let inside = numbers.chance(0.3);
             let (radius, room) = (numbers.between(0.3, 1.5), numbers.between(0.0, 0.15));
@@ -105,7 +109,9 @@ pub fn random_scene(seed: u64) -> JobRequest {
         let mut down = vec![0.0; dimension];
         down[up] = -numbers.between(0.01, 0.2);
         press.insert(format!("tip{tip}"), json!(down));
-        push.insert(format!("tip{tip}"), json!(numbers.vector(dimension, 1.0)));
+        let mut force = numbers.vector(dimension, 1.0);
+        force[up] = 0.5 * force[up] - 0.2;
+        push.insert(format!("tip{tip}"), json!(force));
     }
     let mut last = json!({"name": "push", "forces": push});
     if numbers.chance(0.15) {
@@ -124,6 +130,6 @@ pub fn random_scene(seed: u64) -> JobRequest {
             "name": format!("random scene {seed}"), "dimension": dimension, "nodes": nodes, "supports": supports,
             "elements": elements, "obstacles": obstacles, "contacts": contacts, "stages": stages
         },
-        "analysis": {"arc_length": {"initial": 0.05, "min": 1e-9, "max": 0.2}, "max_increments": 25}
+        "analysis": {"arc_length": {"initial": 0.05, "min": 1e-9, "max": 0.2}, "max_increments": 40}
     }))
 }
