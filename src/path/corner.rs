@@ -36,6 +36,22 @@ impl Corner {
     }
 }
 
+/// Whether two lists of modes continue each other. Where two contacts press a node in 2D it is held, whatever is said of
+/// the slip that none of them can have.
+pub fn agree(loading: Loading<'_>, first: &[Mode], second: &[Mode]) -> bool {
+    let held = |modes: &[Mode], corner: &Corner| {
+        let active = corner.contacts.iter().filter(|contact| modes[**contact].is_active()).count();
+        loading.structure.dimension == 2 && active >= 2
+    };
+    let free_of_corners = |contact: &usize| {
+        !loading
+            .corners
+            .iter()
+            .any(|corner| corner.contacts.contains(contact) && held(first, corner) && held(second, corner))
+    };
+    (0..first.len()).filter(free_of_corners).all(|contact| first[contact].continues(second[contact]))
+}
+
 /// The whole force of an obstacle on its node.
 pub fn force(frame: &Frame, reaction: &Reaction) -> Vector {
     add(&reaction.tangential, reaction.normal, &frame.normal)
