@@ -152,7 +152,9 @@ pub fn decide(
     let (options, found) = list(loading, state, standings, before, rules);
     let odd = options.len() % 2 == 1;
     let mut open: Vec<usize> = (0..options.len()).filter(|&index| !options[index].retrace).collect();
-    let pushed = Rate { displacement: loading.pattern.forces.clone(), load: 0.0, reactions: Vec::new() };
+    let mut push = loading.pattern.forces.clone();
+    push.iter_mut().zip(&loading.pattern.supports).for_each(|(sum, value)| *sum += value);
+    let pushed = Rate { displacement: push, load: 0.0, reactions: Vec::new() };
     let previous = match before {
         Before::Incoming(rate) => rate,
         Before::StageStart => {

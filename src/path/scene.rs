@@ -127,7 +127,41 @@ impl Scene {
         let scene = Self { structure, contacts, contact_names, reported, corners, node_names, stages, analysis, plan };
         scene.refuse_mechanism()?;
         scene.refuse_imbalance()?;
+        scene.refuse_dragged_supports(model)?;
         Ok(scene)
+    }
+
+    /// Refuses friction between a supported component and an obstacle that are driven against each other: the support
+    /// would bear a traction that is no unknown of the path.
+    fn refuse_dragged_supports(&self, model: &Model) -> Result<(), InputErrors> {
+        let structure = &self.structure;
+        let dimension = structure.dimension;
+        for (index, one) in self.reported.iter().enumerate() {
+            let contact = &self.contacts[one.contact];
+            let driven = |component: usize| {
+                let freedom = contact.node * dimension + component;
+                let moves = |stage: &StageLoad| {
+                    let support = stage.pattern.supports.get(freedom).copied().unwrap_or(0.0);
+                    support != stage.pattern.shifts[one.contact][component]
+                };
+                let normal = contact.frame(&[0.0; 3]).normal;
+                structure.unknown_of[freedom].is_none()
+                    && normal[component].abs() < 1.0
+                    && self.stages.iter().any(moves)
+            };
+            if model.contacts[index].friction > 0.0 && (0..dimension).any(driven) {
+                return Err(InputErrors(vec![InputError::new(
+                    format!("/model/contacts/{index}/friction"),
+                    format!(
+                        "\"{}\" is supported in a component in which it and \"{}\" are driven against each other; friction \
+                         on such a support is not available: leave the component free and hold it by a spring, or give \
+                         friction 0",
+                        one.node, one.obstacle
+                    ),
+                )]));
+            }
+        }
+        Ok(())
     }
 
     /// Refuses prestress and rest lengths that do not balance in the undeformed structure: a path starts at rest.
