@@ -10,6 +10,7 @@
 pub mod obstacle;
 
 use obstacle::Obstacle;
+use serde::{Deserialize, Serialize};
 
 /// Components along the obstacle's tangents; the second is 0 in 2D.
 pub type Tangential = [f64; 2];
@@ -26,7 +27,7 @@ pub struct Contact {
 }
 
 /// What a contact does along a stretch of the path.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Mode {
     /// Apart: no reaction.
     Free,
@@ -43,7 +44,7 @@ impl Mode {
 }
 
 /// The force of the obstacle on the node.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Reaction {
     pub normal: f64,
     pub tangential: Tangential,

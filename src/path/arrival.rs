@@ -10,6 +10,7 @@ use super::tracer::{Path, Visited};
 use super::watch::Watch;
 use crate::contact::Reaction;
 use crate::model::request::Method;
+use std::sync::Arc;
 
 /// States closer than this are one.
 const SAME_STATE: f64 = 1e-9;
@@ -150,7 +151,7 @@ impl Path<'_> {
                 })
         });
         let (state, modes) = (here.state.clone(), here.modes.clone());
-        self.visited.push(Visited { stage: self.stage, state, modes });
+        self.visited.push(Arc::new(Visited { stage: self.stage, state, modes }));
         known
     }
 }

@@ -2,9 +2,10 @@
 
 use crate::contact::Reaction;
 use crate::structure::Structure;
+use serde::{Deserialize, Serialize};
 
 /// Displacements over all degrees of freedom, load factor, reactions (one a contact).
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
     pub displacement: Vec<f64>,
     pub load: f64,
@@ -12,7 +13,7 @@ pub struct State {
 }
 
 /// Derivatives of a [`State`] by arc length; `‖(u̇, ṡ)‖ = 1`.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Rate {
     pub displacement: Vec<f64>,
     pub load: f64,
