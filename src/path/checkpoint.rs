@@ -218,9 +218,9 @@ impl<'a> Path<'a> {
         }
     }
 
-    /// Whether directions are listed at the present point, so that a checkpoint of it can be followed.
-    pub fn lists_directions(&self) -> bool {
-        self.listed.is_some()
+    /// How many directions are listed at the present point; 0 where there is one way on.
+    pub fn listed_directions(&self) -> usize {
+        self.listed.as_ref().map_or(0, |listed| listed.options.len())
     }
 
     /// Takes a path up where it was put down; its increments are the same, bit for bit, as if it had not been.
@@ -288,22 +288,14 @@ impl<'a> Path<'a> {
         cancel: CancelFlag,
     ) -> Result<Self, CheckpointError> {
         let mut path = Self::resume(scene, checkpoint, cancel)?;
+        let counts = path.counts_along(direction)?;
         let listed = path.listed.take().ok_or(CheckpointError::NothingListed)?;
-        let options = listed.options.len();
-        let choice = listed
-            .options
-            .get(direction)
-            .ok_or(CheckpointError::NoSuchDirection { found: direction, listed: options })?;
-        if choice.mechanism {
-            return Err(CheckpointError::Mechanism { direction });
+        if listed.taken != Some(direction)
+            && let Some(choice) = listed.options.get(direction)
+        {
+            path.turn(choice);
         }
-        if listed.taken != Some(direction) {
-            path.turn(choice, &listed);
-        }
-        if path.count_ends_stage() || path.stage_over && path.goes_past_end(choice) {
-            let stage = path.scene.stages[path.stage].name.to_string();
-            return Err(CheckpointError::StageEnds { stage, direction });
-        }
+        path.counts = counts;
         path.phase = Phase::NotStarted;
         path.stage_over = false;
         path.index = 0;
@@ -314,18 +306,43 @@ impl<'a> Path<'a> {
         Ok(path)
     }
 
-    /// Leaves the present point along another direction than the one taken there.
-    fn turn(&mut self, choice: &Choice, listed: &Listed) {
-        self.go(choice);
-        if let Some(arriving) = &listed.arriving {
-            // What this point counts as depends on how the path leaves it.
-            let changed =
-                arriving.counts.contact_changes < self.counts.contact_changes || arriving.modes != choice.modes;
-            let turned = arriving.load_sign * choice.load_sign < 0.0;
-            self.counts = arriving.counts;
-            self.counts.contact_changes += u64::from(changed);
-            self.counts.limit_points += u64::from(turned);
+    /// Whether a path goes along this one of the directions listed at the present point.
+    pub fn can_be_followed(&self, direction: usize) -> bool {
+        self.counts_along(direction).is_ok()
+    }
+
+    /// The stage's counts at the present point if the path leaves it along that direction, or why it cannot.
+    fn counts_along(&self, direction: usize) -> Result<StageCounts, CheckpointError> {
+        let listed = self.listed.as_ref().ok_or(CheckpointError::NothingListed)?;
+        let options = listed.options.len();
+        let choice = listed
+            .options
+            .get(direction)
+            .ok_or(CheckpointError::NoSuchDirection { found: direction, listed: options })?;
+        if choice.mechanism {
+            return Err(CheckpointError::Mechanism { direction });
         }
+        let mut counts = self.counts;
+        if listed.taken != Some(direction)
+            && let Some(arriving) = &listed.arriving
+        {
+            // What this point counts as depends on how the path leaves it.
+            let changed = arriving.counts.contact_changes < counts.contact_changes || arriving.modes != choice.modes;
+            let turned = arriving.load_sign * choice.load_sign < 0.0;
+            counts = arriving.counts;
+            counts.contact_changes += u64::from(changed);
+            counts.limit_points += u64::from(turned);
+        }
+        if self.counts_end_stage(&counts) || self.stage_over && self.goes_past_end(choice) {
+            let stage = self.scene.stages[self.stage].name.to_string();
+            return Err(CheckpointError::StageEnds { stage, direction });
+        }
+        Ok(counts)
+    }
+
+    /// Leaves the present point along another direction than the one taken there.
+    fn turn(&mut self, choice: &Choice) {
+        self.go(choice);
         let (state, modes) = (self.here.state.clone(), choice.modes.clone());
         let visited = Visited { stage: self.stage, state, modes };
         if !self.visited.iter().any(|known| **known == visited) {

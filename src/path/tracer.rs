@@ -289,7 +289,7 @@ impl<'a> Path<'a> {
         let arriving = Arriving { modes: modes.clone(), load_sign: self.here.load_sign, counts: self.counts };
         let at_bound = self.at_bound(&reached.rate);
         let arrival = self.classify(reached.event, &reached.rate);
-        let stage_ends = arrival.stage_ends || at_bound || self.count_ends_stage();
+        let stage_ends = arrival.stage_ends || at_bound || self.counts_end_stage(&self.counts);
         let mut point = arrival.point;
         if let Some(reason) = arrival.stop {
             point.kind = PointKind::End;
@@ -330,11 +330,11 @@ impl<'a> Path<'a> {
         met.is_some()
     }
 
-    pub(super) fn count_ends_stage(&self) -> bool {
+    pub(super) fn counts_end_stage(&self, counts: &StageCounts) -> bool {
         self.scene.stages[self.stage].ends.iter().any(|end| match end {
-            End::LimitPoints(count) => self.counts.limit_points >= *count,
-            End::ContactChanges(count) => self.counts.contact_changes >= *count,
-            End::Increments(count) => self.counts.increments >= *count,
+            End::LimitPoints(count) => counts.limit_points >= *count,
+            End::ContactChanges(count) => counts.contact_changes >= *count,
+            End::Increments(count) => counts.increments >= *count,
             End::Load { .. } | End::Displacement { .. } => false,
         })
     }

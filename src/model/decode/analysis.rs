@@ -2,17 +2,15 @@
 
 use super::reader::{Choices, Fields, Input, count, number};
 use crate::model::mistakes::Mistakes;
-use crate::model::request::{Analysis, ArcLength, Events, Method, Selection};
+use crate::model::request::{Analysis, ArcLength, Events, Explore, Method, Selection};
 
 const ANALYSIS: Fields = Fields {
     what: "an analysis",
-    known: &["method", "selection", "events", "arc_length", "max_increments", "max_modes"],
-    later: &[
-        ("explore", "leave it out: one path is traced, and other directions are listed at its points"),
-        ("record", "leave it out: everything is recorded"),
-        ("keep_all", "leave it out: every increment is kept"),
-    ],
+    known: &["method", "selection", "events", "arc_length", "max_increments", "max_modes", "explore"],
+    later: &[("record", "leave it out: everything is recorded"), ("keep_all", "leave it out: every increment is kept")],
 };
+
+const EXPLORE: Fields = Fields { what: "an exploration", known: &["depth", "max_jobs"], later: &[] };
 
 const ARC_LENGTH: Fields =
     Fields { what: "an arc length", known: &["initial", "min", "max", "displacement_scale", "load_scale"], later: &[] };
@@ -41,6 +39,7 @@ pub(super) fn analysis(input: &Input, mistakes: &mut Mistakes) -> Option<Analysi
     let arc_length = object.with_default("arc_length", default.arc_length, mistakes, arc_length);
     let max_increments = object.with_default("max_increments", default.max_increments, mistakes, count);
     let max_modes = object.with_default("max_modes", default.max_modes, mistakes, count);
+    let explore = object.optional("explore", mistakes, explore);
     Some(Analysis {
         method: method?,
         selection: selection?,
@@ -48,8 +47,15 @@ pub(super) fn analysis(input: &Input, mistakes: &mut Mistakes) -> Option<Analysi
         arc_length: arc_length?,
         max_increments: max_increments?,
         max_modes: max_modes?,
-        explore: None,
+        explore: explore?,
     })
+}
+
+fn explore(input: &Input, mistakes: &mut Mistakes) -> Option<Explore> {
+    let object = input.object(&EXPLORE, mistakes)?;
+    let depth = object.required("depth", mistakes, count);
+    let max_jobs = object.required("max_jobs", mistakes, count);
+    Some(Explore { depth: depth?, max_jobs: max_jobs? })
 }
 
 fn arc_length(input: &Input, mistakes: &mut Mistakes) -> Option<ArcLength> {

@@ -91,7 +91,9 @@ pub fn not_available() -> Vec<BadDocument> {
     vec![
         at("method regularised", "/analysis/method", json!("regularised"), later),
         at("selection by energy", "/analysis/selection", json!("min_potential_energy"), later),
-        at("explore", "/analysis/explore", json!(true), later),
+        at("explore", "/analysis/explore", json!(true), "an object"),
+        at("explore without jobs", "/analysis/explore", json!({"depth": 1}), "`max_jobs` is missing"),
+        at("explore to no depth", "/analysis/explore/depth", json!(0), "1 or more"),
         at("record", "/analysis/record", json!([]), later),
         at("keep all", "/analysis/keep_all", json!(true), later),
         elsewhere("ball", &[("/model/obstacles/floor", ball)], "/model/obstacles/floor/kind", later),
