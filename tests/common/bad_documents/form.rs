@@ -81,6 +81,14 @@ pub fn wrong_form() -> Vec<BadDocument> {
         at("negative count", "/analysis/max_increments", json!(-1), "found the number `-1`; a whole number"),
         at("boolean friction", "/model/contacts/0/friction", json!(true), "found the boolean `true`; a number"),
         at("friction null", "/model/contacts/0/friction", json!(null), "found null; a number"),
+        at("explore as a boolean", "/analysis/explore", json!(true), "an exploration, an object,"),
+        at("explore without jobs", "/analysis/explore", json!({"depth": 1}), "`max_jobs` is missing"),
+        elsewhere(
+            "explore to no depth",
+            &[("/analysis/explore", json!({"depth": 0, "max_jobs": 1}))],
+            "/analysis/explore/depth",
+            "1 or more",
+        ),
         at("analysis as a string", "/analysis", json!("mpec"), "an analysis, an object, is expected"),
     ]
 }
@@ -91,9 +99,6 @@ pub fn not_available() -> Vec<BadDocument> {
     vec![
         at("method regularised", "/analysis/method", json!("regularised"), later),
         at("selection by energy", "/analysis/selection", json!("min_potential_energy"), later),
-        at("explore", "/analysis/explore", json!(true), "an object"),
-        at("explore without jobs", "/analysis/explore", json!({"depth": 1}), "`max_jobs` is missing"),
-        at("explore to no depth", "/analysis/explore/depth", json!(0), "1 or more"),
         at("record", "/analysis/record", json!([]), later),
         at("keep all", "/analysis/keep_all", json!(true), later),
         elsewhere("ball", &[("/model/obstacles/floor", ball)], "/model/obstacles/floor/kind", later),
