@@ -50,7 +50,7 @@ pub(super) async fn append(
         let mut insert =
             QueryBuilder::<Sqlite>::new("INSERT INTO branches (job, increment_index, body, trail, alternatives) ");
         insert.push_values(branches, |mut row, (index, branch)| {
-            let alternatives = (!branch.alternatives.is_empty()).then(|| Json(branch.alternatives.as_slice()));
+            let alternatives = (!branch.alternatives.is_empty()).then_some(Json(branch.alternatives.as_slice()));
             row.push_bind(lease.job).push_bind(signed(index)).push_bind(branch.body.as_str());
             row.push_bind(branch.trail.as_deref()).push_bind(alternatives);
         });
