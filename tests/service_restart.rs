@@ -125,6 +125,7 @@ async fn queue(store: &dyn store::Store, max_attempts: u32) -> uuid::Uuid {
         max_attempts,
         priority: 0,
         idempotency_key: None,
+        explore: None,
     };
     match store.submit(job).await.expect("queued") {
         Submitted::Created(job) => job.id,
@@ -133,5 +134,5 @@ async fn queue(store: &dyn store::Store, max_attempts: u32) -> uuid::Uuid {
 }
 
 fn line(index: u64, body: &str) -> Line {
-    Line { index, body: body.to_owned() }
+    Line { index, body: body.to_owned(), branch: None }
 }

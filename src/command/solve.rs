@@ -44,12 +44,15 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let request = arguments.model.read()?;
     // Checked before the file is opened, so that a mistake does not cost an earlier result.
     PathSolver.plan(&request).map_err(input::refused)?;
+    if request.analysis.explore.is_some() {
+        eprintln!("explore: the directions not taken are followed by `arcslip serve` only; this traces one path");
+    }
     let mut picture = Picture::planned(arguments, &request.model)?;
     let mut writer = Writer::open(arguments)?;
     let progress = progress_bar(request.analysis.max_increments, arguments.out.is_some());
     let mut unwritten = None;
     let report = PathSolver
-        .solve(&request, CancelFlag::default(), &mut |increment| {
+        .solve(&request, None, CancelFlag::default(), &mut |increment, _| {
             progress.set_position(increment.index + 1);
             match writer.write(&increment) {
                 Ok(()) => {

@@ -7,7 +7,7 @@ use super::{Service, document};
 use crate::jobs::JobsError;
 use crate::model::JobRequest;
 use crate::path::Plan;
-use crate::store::{ListFilter, Status};
+use crate::store::{JobRecord, ListFilter, Status};
 use axum::Json;
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
@@ -56,6 +56,11 @@ pub async fn submit(
         return Ok(Json(service.jobs.validate(request).await?).into_response());
     }
     let job = service.jobs.submit(request, idempotency_key(&headers)?).await?;
+    accepted(job)
+}
+
+/// The answer to a job that has been queued.
+pub(super) fn accepted(job: JobRecord) -> Result<Response, Problem> {
     let location = address(job.id);
     Ok((StatusCode::ACCEPTED, [(header::LOCATION, location)], Json(Job::try_from(job)?)).into_response())
 }
@@ -66,6 +71,8 @@ pub async fn submit(
 pub struct ListParameters {
     /// Only jobs with this status.
     status: Option<Status>,
+    /// Only jobs that follow a direction of this one.
+    parent: Option<Uuid>,
     /// `next_cursor` of the page before.
     cursor: Option<Uuid>,
     #[param(minimum = 1, maximum = 200, default = 50)]
@@ -91,7 +98,8 @@ pub async fn list(
 ) -> Result<Json<JobList>, Problem> {
     let limit = bounded("limit", parameters.limit, LIST_DEFAULT, LIST_LARGEST)?;
     // One more than asked for tells whether there is a next page.
-    let filter = ListFilter { status: parameters.status, before: parameters.cursor, limit: limit + 1 };
+    let ListParameters { status, parent, cursor, .. } = parameters;
+    let filter = ListFilter { status, parent, before: cursor, limit: limit + 1 };
     let mut records = service.jobs.store().jobs(filter).await?;
     let more = records.len() > limit as usize;
     records.truncate(limit as usize);

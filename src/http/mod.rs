@@ -1,7 +1,7 @@
 //! The service's HTTP face; version 1 of the interface.
 //!
 //! [`problem`] is the one edge where errors become answers, [`extract`] and [`accept`] read requests, [`view`] holds
-//! what is answered; [`jobs`], [`increments`], [`stream`], [`csv`], [`scenes`], [`probes`] and [`pages`] are the calls,
+//! what is answered; [`jobs`], [`follow`], [`increments`], [`stream`], [`csv`], [`scenes`], [`probes`] and [`pages`] are the calls,
 //! [`document`] their OpenAPI description, [`request_id`] what names each request, [`server`] listening and going down in
 //! good order.
 //! Called by `command`; knows `jobs` and, for reading, `store`.
@@ -10,6 +10,7 @@ pub mod accept;
 pub mod csv;
 pub mod document;
 pub mod extract;
+pub mod follow;
 pub mod increments;
 pub mod jobs;
 pub mod pages;
@@ -50,6 +51,7 @@ fn api() -> OpenApiRouter<Service> {
         .routes(routes!(jobs::submit, jobs::list))
         .routes(routes!(jobs::get, jobs::delete))
         .routes(routes!(jobs::cancel))
+        .routes(routes!(follow::follow))
         .routes(routes!(increments::page))
         .routes(routes!(stream::stream))
         .routes(routes!(csv::path_csv))

@@ -24,6 +24,7 @@ pub enum Kind {
     InvalidJson,
     InvalidModel,
     InvalidParameter,
+    NotFollowable,
     KeyReused,
     NotFound,
     MethodNotAllowed,
@@ -37,10 +38,11 @@ pub enum Kind {
 }
 
 impl Kind {
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::InvalidJson,
         Self::InvalidModel,
         Self::InvalidParameter,
+        Self::NotFollowable,
         Self::KeyReused,
         Self::NotFound,
         Self::MethodNotAllowed,
@@ -62,6 +64,9 @@ impl Kind {
             }
             Self::InvalidParameter => {
                 ("/problems/invalid-parameter", StatusCode::BAD_REQUEST, "A parameter or header is not valid")
+            }
+            Self::NotFollowable => {
+                ("/problems/not-followable", StatusCode::UNPROCESSABLE_ENTITY, "There is no such direction to follow")
             }
             Self::KeyReused => (
                 "/problems/idempotency-key-reused",
@@ -163,6 +168,7 @@ impl From<JobsError> for Problem {
         match error {
             JobsError::NotJson(errors) => Self::input(Kind::InvalidJson, errors),
             JobsError::Input(errors) => Self::input(Kind::InvalidModel, errors),
+            JobsError::Follow(errors) => Self::input(Kind::NotFollowable, errors),
             JobsError::KeyReused => {
                 Self::new(Kind::KeyReused, "repeat the first request byte for byte, or send another Idempotency-Key")
             }

@@ -37,7 +37,41 @@ pub struct Job {
     pub started_at: Option<Timestamp>,
     #[schema(value_type = Option<String>, format = DateTime)]
     pub ended_at: Option<Timestamp>,
+    /// The direction of another job that this one follows; null for a job that starts at rest.
+    pub parent: Option<Parent>,
+    /// Jobs that follow a direction of this one; `GET /v1/jobs?parent=` lists them.
+    pub children: u64,
+    /// Of jobs whose analysis says `explore`, and of those queued for it.
+    pub explore: Option<Exploration>,
     pub links: Links,
+}
+
+/// What a job follows. The other job may have been deleted since; what it gave is kept with this one.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Parent {
+    pub job: Uuid,
+    pub increment: u64,
+    /// Place in the increment's `directions`.
+    pub direction: u64,
+}
+
+/// A job's part in following the directions that were not taken.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Exploration {
+    /// The job with which it began.
+    pub family: Uuid,
+    /// 0 for that job, 1 for those that follow its directions, and so on to `depth`.
+    pub generation: u64,
+    pub depth: u64,
+    pub max_jobs: u64,
+    /// The alternatives of this job have been looked at: it and those queued before it have ended.
+    pub done: bool,
+    /// Alternatives of this job that are not followed, because of `max_jobs` or, in the last generation, `depth`.
+    pub not_queued: u64,
+    /// Jobs queued in the whole family so far, the first not counted.
+    pub family_queued: u64,
+    /// Alternatives in the whole family that are not followed, so far.
+    pub family_not_queued: u64,
 }
 
 #[derive(Debug, Serialize, ToSchema)]
@@ -84,6 +118,22 @@ impl TryFrom<JobRecord> for Job {
             created_at: record.created_at,
             started_at: record.started_at,
             ended_at: record.ended_at,
+            parent: record.parent.map(|parent| Parent {
+                job: parent.job,
+                increment: parent.increment,
+                direction: parent.direction,
+            }),
+            children: record.children,
+            explore: record.membership.map(|member| Exploration {
+                family: member.family,
+                generation: member.generation,
+                depth: member.explore.depth,
+                max_jobs: member.explore.max_jobs,
+                done: member.explored,
+                not_queued: member.not_queued,
+                family_queued: member.family_queued,
+                family_not_queued: member.family_not_queued,
+            }),
             links: Links {
                 increments: format!("{itself}/increments"),
                 stream: format!("{itself}/stream"),

@@ -70,6 +70,8 @@ async fn sweep(jobs: Jobs, shutdown: CancellationToken) {
             Ok(count) => tracing::warn!(count, "jobs taken back from workers that were lost"),
             Err(error) => tracing::warn!(%error, "expired leases could not be looked for"),
         }
+        // Jobs that ended without their worker: cancelled in the queue, deleted, or stored just before a stop.
+        super::explore::queue(&jobs).await;
         tokio::select! {
             () = shutdown.cancelled() => return,
             () = tokio::time::sleep(jobs.settings.lease / 4) => {}

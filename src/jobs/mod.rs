@@ -2,12 +2,16 @@
 //!
 //! [`solver`] is the seam to the path tracer, [`submission`] what is done with a request before it is queued, [`solve`]
 //! one solve on a thread of its own, [`batch`] its increments on their way to the store, [`worker`] the loop around both,
-//! [`crew`] all workers of a process, [`demonstration`] the built-in scenes as jobs. Called by `http` and `command`;
-//! knows `store`, `path` and `model`.
+//! [`crew`] all workers of a process, [`demonstration`] the built-in scenes as jobs; [`follow`] jobs that follow a direction
+//! of another, [`branches`] the points they begin from, [`explore`] which of them are queued unasked. Called by `http` and
+//! `command`; knows `store`, `path` and `model`.
 
 pub mod batch;
+pub mod branches;
 pub mod crew;
 pub mod demonstration;
+pub mod explore;
+pub mod follow;
 pub mod running;
 pub mod settings;
 pub mod solve;
@@ -35,6 +39,8 @@ pub enum JobsError {
     Input(InputErrors),
     #[error("this idempotency key came before with another request")]
     KeyReused,
+    #[error("there is nothing to follow")]
+    Follow(InputErrors),
     #[error("no job {0}")]
     NoJob(Uuid),
     #[error(transparent)]
@@ -78,15 +84,9 @@ impl Jobs {
             max_attempts: self.settings.max_attempts,
             priority: 0,
             idempotency_key,
+            explore: prepared.explore,
         };
-        match self.store.submit(job).await? {
-            Submitted::Created(job) => {
-                tracing::info!(job = %job.id, "queued");
-                Ok(job)
-            }
-            Submitted::Repeated(job) => Ok(job),
-            Submitted::KeyReused => Err(JobsError::KeyReused),
-        }
+        queued(self.store.submit(job).await?)
     }
 
     pub async fn cancel(&self, id: Uuid) -> Result<JobRecord, JobsError> {
@@ -106,5 +106,16 @@ impl Jobs {
     async fn prepare(&self, request: Vec<u8>) -> Result<submission::Prepared, JobsError> {
         let solver = Arc::clone(&self.solver);
         tokio::task::spawn_blocking(move || submission::prepare(solver.as_ref(), request)).await?
+    }
+}
+
+fn queued(submitted: Submitted) -> Result<JobRecord, JobsError> {
+    match submitted {
+        Submitted::Created(job) => {
+            tracing::info!(job = %job.id, "queued");
+            Ok(job)
+        }
+        Submitted::Repeated(job) => Ok(job),
+        Submitted::KeyReused => Err(JobsError::KeyReused),
     }
 }

@@ -4,10 +4,13 @@
 //! ends here and becomes the text of this one job.
 
 use super::Solver;
+use super::branches::{self, Recorder};
+use super::explore::Alternatives;
+use super::solver::Accept;
 use crate::cancel::CancelFlag;
 use crate::model::{InputErrors, decode};
 use crate::output::json_line;
-use crate::path::{Increment, Report};
+use crate::path::Report;
 use crate::store::{Claim, Line};
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -16,8 +19,10 @@ use tokio::sync::{mpsc, oneshot};
 
 /// Increments between solver and store: enough to solve on while a batch is written.
 const IN_FLIGHT: usize = 512;
-/// Their bytes, roughly: an increment is hardly larger than its model, so large models get fewer places.
+/// Their bytes, roughly: an increment with its branch is hardly larger than [`OF_MODEL`] times its model, so large models
+/// get fewer places.
 const IN_FLIGHT_BYTES: usize = 32 << 20;
+const OF_MODEL: usize = 4;
 const FEWEST_IN_FLIGHT: usize = 8;
 /// Recursion over a model is shallow, but the main thread's stack is what the solver is tested with.
 const STACK_BYTES: usize = 8 << 20;
@@ -30,6 +35,8 @@ pub enum SolveEnd {
     Refused(InputErrors),
     Panicked(String),
     Unwritable(String),
+    /// Where the job begins cannot be read.
+    Unreadable(String),
     /// Without a report: nobody listened any more, or a defect.
     Silent,
 }
@@ -45,12 +52,12 @@ pub struct Solve {
 pub fn start(solver: Arc<dyn Solver>, claim: &Claim, cancel: CancelFlag) -> std::io::Result<Solve> {
     let (line_sender, lines) = mpsc::channel(places(claim.request.len()));
     let (end_sender, end) = oneshot::channel();
-    let (request, stored) = (claim.request.clone(), claim.last_index);
+    let claim_of_thread = claim.clone();
     let span = tracing::Span::current();
     std::thread::Builder::new().name(format!("solve-{}", claim.lease.job)).stack_size(STACK_BYTES).spawn(
         move || {
             let _entered = span.enter();
-            let ended = catch_unwind(AssertUnwindSafe(|| run(solver.as_ref(), &request, stored, cancel, &line_sender)))
+            let ended = catch_unwind(AssertUnwindSafe(|| run(solver.as_ref(), &claim_of_thread, cancel, &line_sender)))
                 .unwrap_or_else(|panic| SolveEnd::Panicked(panic_text(panic.as_ref())));
             // Nobody waits for the end when the runtime is going down.
             let _ = end_sender.send(ended);
@@ -60,27 +67,38 @@ pub fn start(solver: Arc<dyn Solver>, claim: &Claim, cancel: CancelFlag) -> std:
 }
 
 fn places(model_bytes: usize) -> usize {
-    (IN_FLIGHT_BYTES / model_bytes.max(1)).clamp(FEWEST_IN_FLIGHT, IN_FLIGHT)
+    (IN_FLIGHT_BYTES / OF_MODEL / model_bytes.max(1)).clamp(FEWEST_IN_FLIGHT, IN_FLIGHT)
 }
 
-fn run(
-    solver: &dyn Solver,
-    request: &str,
-    stored: Option<u64>,
-    cancel: CancelFlag,
-    lines: &mpsc::Sender<Line>,
-) -> SolveEnd {
-    let request = match decode::decode(request.as_bytes()) {
+fn run(solver: &dyn Solver, claim: &Claim, cancel: CancelFlag, lines: &mpsc::Sender<Line>) -> SolveEnd {
+    let mut request = match decode::decode(claim.request.as_bytes()) {
         Ok(request) => request,
         Err(errors) => return SolveEnd::Refused(errors),
     };
+    // A job that follows another has that one's request, but for this.
+    request.analysis.max_increments = claim.max_increments;
+    let beginning = match claim.origin.as_ref().map(|(parent, origin)| branches::beginning(parent, origin)).transpose()
+    {
+        Ok(beginning) => beginning,
+        Err(error) => return SolveEnd::Unreadable(error.to_string()),
+    };
+    let mut recorder = Recorder::default();
+    let mut alternatives = claim.explores.then(|| Alternatives::of(claim.origin.is_some()));
     let mut unwritable = None;
-    let mut accept = |increment: Increment| {
-        if stored.is_some_and(|stored| increment.index <= stored) {
-            return ControlFlow::Continue(());
-        }
-        match json_line(&increment) {
-            Ok(body) => match lines.blocking_send(Line { index: increment.index, body }) {
+    let accept: Accept<'_> = &mut |increment, junction| {
+        // What is stored already is looked at too: what comes after depends on it.
+        let stored = claim.last_index.is_some_and(|stored| increment.index <= stored);
+        let junction = junction();
+        let open = junction.as_ref().map_or(&[][..], |junction| &junction.open);
+        let followed = alternatives.as_mut().map_or_else(Vec::new, |alternatives| alternatives.at(&increment, open));
+        let branch = junction.map(|junction| recorder.branch(junction.checkpoint, followed)).transpose();
+        let line = branch.and_then(|branch| {
+            let body = if stored { String::new() } else { json_line(&increment)? };
+            Ok(Line { index: increment.index, body, branch })
+        });
+        match line {
+            Ok(_) if stored => ControlFlow::Continue(()),
+            Ok(line) => match lines.blocking_send(line) {
                 Ok(()) => ControlFlow::Continue(()),
                 Err(_) => ControlFlow::Break(()),
             },
@@ -90,7 +108,7 @@ fn run(
             }
         }
     };
-    let reported = solver.solve(&request, cancel, &mut accept);
+    let reported = solver.solve(&request, beginning, cancel, accept);
     match (unwritable, reported) {
         (Some(error), _) => SolveEnd::Unwritable(error),
         (None, Ok(Some(report))) => SolveEnd::Reported(report),

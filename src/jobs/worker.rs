@@ -36,7 +36,12 @@ pub async fn work(jobs: Jobs, name: String, shutdown: CancellationToken) {
 async fn run(jobs: &Jobs, claim: Claim, shutdown: &CancellationToken) {
     tracing::info!(stored = claim.last_index, "started");
     match trace(jobs, &claim, shutdown).await {
-        Ok(Finished::Ended(status)) => tracing::info!(status = status.name(), "ended"),
+        Ok(Finished::Ended(status)) => {
+            tracing::info!(status = status.name(), "ended");
+            if claim.explores {
+                super::explore::queue(jobs).await;
+            }
+        }
         Ok(Finished::Released) => tracing::info!("back in the queue"),
         Ok(Finished::Lost) => tracing::info!("deleted, or given to another worker"),
         // Nothing more can be said in the store now; the lease runs out and the job is tried again.
@@ -115,6 +120,9 @@ fn ending(end: SolveEnd) -> Ending {
         SolveEnd::Refused(errors) => Ending::failed(format!("the stored request is not accepted: {errors}")),
         SolveEnd::Panicked(text) => Ending::failed(format!("the solver panicked: {text}")),
         SolveEnd::Unwritable(error) => Ending::failed(format!("an increment cannot be written: {error}")),
+        SolveEnd::Unreadable(error) => {
+            Ending::failed(format!("the point that the job begins from cannot be read: {error}"))
+        }
         SolveEnd::Silent => Ending::failed("the solver ended without a report"),
     }
 }

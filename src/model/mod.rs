@@ -14,7 +14,7 @@ pub(crate) mod names;
 pub mod request;
 
 pub use error::{InputError, InputErrors};
-pub use request::{Analysis, JobRequest, Model};
+pub use request::{Analysis, FollowRequest, JobRequest, Model};
 
 /// Reads a job request from JSON text and checks it: what every edge (HTTP, command line) does with what comes in.
 ///

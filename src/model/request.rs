@@ -16,6 +16,20 @@ pub struct JobRequest {
     pub analysis: Analysis,
 }
 
+/// A direction of another job, to be followed by a new one with the same model and analysis; it explores nothing.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct FollowRequest {
+    /// Index of a stored increment that has `directions`.
+    pub increment: u64,
+    /// Place in its `directions`, from 0.
+    pub direction: u64,
+    /// Counted over the new job; absent: the other job's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_increments: Option<u64>,
+}
+
 /// A structure, its obstacles and its load history.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
@@ -215,14 +229,21 @@ pub struct Analysis {
     pub explore: Option<Explore>,
 }
 
-/// How far the directions not taken are followed.
+/// How far the directions not taken are followed: each by a job of its own, queued when this one has completed or stopped.
+///
+/// A direction is followed from the start and from every contact change and limit point at which it is listed, and
+/// between them where it first appears: on a stretch along which the same alternative exists at every increment (the same
+/// statuses of the contacts, the same sign of the load rate, all of them bifurcations or none), it is followed from the
+/// first. The way back and mechanisms are not followed. Jobs are queued in a fixed order, generation by generation, so
+/// that the same request gives the same jobs; what `max_jobs` leaves out is counted in the jobs' `explore`. The service
+/// alone does this; `arcslip solve` traces one path and says so.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Explore {
     /// Generations of jobs: 1 follows the alternatives of this job's path only. 1 or more.
     pub depth: u64,
-    /// Jobs queued in all, over every generation; 1 or more.
+    /// Jobs queued in all, over every generation, this one not counted; 1 or more.
     pub max_jobs: u64,
 }
 

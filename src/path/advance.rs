@@ -9,6 +9,7 @@ use super::scene::End;
 use super::state::{Rate, State};
 use super::watch::{self, Watch};
 use crate::contact::Mode;
+use serde::{Deserialize, Serialize};
 
 /// Where a step starts.
 #[derive(Clone, Copy)]
@@ -39,7 +40,7 @@ pub struct Reached {
 }
 
 /// Work done, whether it led to a point or not.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Work {
     pub factorisations: u64,
     pub newton_iterations: u64,

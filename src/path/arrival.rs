@@ -10,6 +10,7 @@ use super::tracer::{Path, Visited};
 use super::watch::Watch;
 use crate::contact::{Reaction, all_continue};
 use crate::model::request::Method;
+use std::sync::Arc;
 
 /// States closer than this are one.
 pub(super) const SAME_STATE: f64 = 1e-9;
@@ -150,7 +151,7 @@ impl Path<'_> {
                     .all(|(a, b)| a.difference(b) < SAME_STATE * self.force_scale)
         });
         let (state, modes) = (here.state.clone(), here.modes.clone());
-        self.visited.push(Visited { stage: self.stage, state, modes });
+        self.visited.push(Arc::new(Visited { stage: self.stage, state, modes }));
         known
     }
 }

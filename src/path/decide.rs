@@ -16,6 +16,7 @@ use super::watch;
 use crate::cancel::CancelFlag;
 use crate::contact::{Mode, Reaction};
 use crate::model::request::Selection;
+use serde::{Deserialize, Serialize};
 
 /// The directions at a point and the one that is taken.
 #[derive(Debug, Clone)]
@@ -30,7 +31,7 @@ pub struct Decision {
 }
 
 /// A direction that exists.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Choice {
     pub rate: Rate,
     pub modes: Vec<Mode>,

@@ -109,6 +109,9 @@ pub struct Direction {
     /// The way the path came from; never taken.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub retrace: bool,
+    /// A motion that no element resists: a path cannot go this way.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub mechanism: bool,
 }
 
 /// Totals from the start of the path.

@@ -14,10 +14,12 @@
 //! | `program`, `naming` | the MPEC of an increment; where it names the mode |
 //! | `energy`, `record`, `increment`, `report`, `stop` | balances, rows, totals, reasons |
 //! | `tracer`, `stepping`, `arrival` | the iterator; how far a step goes; what a point turned out to be |
+//! | `checkpoint` | a path put down at a point, to be taken up there again or followed in another direction |
 
 mod advance;
 mod arrival;
 mod changeable;
+pub mod checkpoint;
 mod condensed;
 mod corner;
 mod decide;
@@ -45,6 +47,7 @@ pub mod tracer;
 mod track;
 mod watch;
 
+pub use checkpoint::{Checkpoint, CheckpointError};
 pub use increment::Increment;
 pub use plan::Plan;
 pub use report::Report;

@@ -66,6 +66,7 @@ pub(super) fn increment(scene: &Scene, row: &Row<'_>) -> Increment {
             dissipation_rate: option.dissipation * energy_unit,
             taken: row.taken == Some(index),
             retrace: option.retrace,
+            mechanism: option.mechanism,
         };
         row.options.iter().enumerate().map(direction).collect()
     });

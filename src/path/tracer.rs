@@ -4,6 +4,7 @@
 //! directions are listed and one is taken. The step follows the turn of the path and the work of Newton's method.
 
 use super::advance::{AT_END, Work};
+use super::checkpoint::{Arriving, Followed, Listed};
 use super::corner::total_force;
 use super::decide::{self, Before, Choice, Decision, Rules};
 use super::increment::{Energy, Increment, Point, PointKind};
@@ -20,21 +21,27 @@ use super::watch::Watch;
 use crate::cancel::CancelFlag;
 use crate::contact::vector::{add, dot};
 use crate::contact::{Mode, Reaction};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// A path being traced.
 pub struct Path<'a> {
     pub(super) scene: &'a Scene,
     pub(super) cancel: CancelFlag,
-    began: Instant,
-    phase: Phase,
+    pub(super) began: Instant,
+    /// Solver time before this process took the path up.
+    pub(super) elapsed_before: f64,
+    pub(super) phase: Phase,
     pub(super) stage: usize,
-    held: LoadPattern,
+    /// The stage ended at the present point; the next one begins with the next increment.
+    pub(super) stage_over: bool,
+    pub(super) held: LoadPattern,
     pub(super) here: Here,
     /// Arc length that the next step tries.
     pub(super) step: f64,
     pub(super) index: u64,
-    arc_length: f64,
+    pub(super) arc_length: f64,
     pub(super) energy: Energy,
     /// Strain energy of the undeformed structure (prestress).
     pub(super) initial_strain: f64,
@@ -42,14 +49,19 @@ pub struct Path<'a> {
     pub(super) force_scale: f64,
     pub(super) counts: StageCounts,
     pub(super) work: Work,
-    report: Report,
+    pub(super) report: Report,
     /// States at which a direction was taken, for telling a cycle.
-    pub(super) visited: Vec<Visited>,
+    pub(super) visited: Vec<Arc<Visited>>,
     /// Where the stage began and the direction it took.
     pub(super) begun: Option<(State, Rate)>,
+    /// Directions listed with the present point.
+    pub(super) listed: Option<Listed>,
+    /// Where a path that follows another's direction begins.
+    pub(super) followed: Option<Followed>,
 }
 
 /// The present point and how the path goes on.
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Here {
     pub state: State,
     pub modes: Vec<Mode>,
@@ -60,20 +72,22 @@ pub(super) struct Here {
     pub drift: Option<Rate>,
 }
 
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Visited {
     pub stage: usize,
     pub state: State,
     pub modes: Vec<Mode>,
 }
 
-#[derive(Default)]
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(super) struct StageCounts {
     pub increments: u64,
     pub limit_points: u64,
     pub contact_changes: u64,
 }
 
-enum Phase {
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum Phase {
     NotStarted,
     Running,
     Ended,
@@ -86,8 +100,10 @@ impl<'a> Path<'a> {
         Self {
             cancel,
             began: Instant::now(),
+            elapsed_before: 0.0,
             phase: Phase::NotStarted,
             stage: 0,
+            stage_over: false,
             held: scene.stages[0].pattern.zeroed(),
             here: Here {
                 state: state.clone(),
@@ -105,21 +121,11 @@ impl<'a> Path<'a> {
             force_scale: 0.0,
             counts: StageCounts::default(),
             work: Work::default(),
-            report: Report {
-                stop_reason: StopReason::Cancelled,
-                sentence: String::new(),
-                increments: 0,
-                elapsed_s: 0.0,
-                largest_residual: 0.0,
-                largest_complementarity: 0.0,
-                largest_energy_error: 0.0,
-                factorisations: 0,
-                newton_iterations: 0,
-                qp_solves: 0,
-                mpec_solves: 0,
-            },
+            report: Report::begun(),
             visited: Vec::new(),
             begun: None,
+            listed: None,
+            followed: None,
             scene,
         }
     }
@@ -127,6 +133,10 @@ impl<'a> Path<'a> {
     /// Present when the path has ended, that is when `next` has returned `None`.
     pub fn report(&self) -> Option<Report> {
         matches!(self.phase, Phase::Ended).then(|| self.report.clone())
+    }
+
+    pub(super) fn elapsed_s(&self) -> f64 {
+        self.elapsed_before + self.began.elapsed().as_secs_f64()
     }
 
     pub(super) fn loading(&self) -> Loading<'_> {
@@ -153,7 +163,7 @@ impl<'a> Path<'a> {
         self.phase = Phase::Ended;
         self.report.stop_reason = reason;
         self.report.sentence = reason.sentence().to_owned();
-        self.report.elapsed_s = self.began.elapsed().as_secs_f64();
+        self.report.elapsed_s = self.elapsed_s();
         self.report.factorisations = self.work.factorisations;
         self.report.newton_iterations = self.work.newton_iterations;
         self.report.qp_solves = self.work.qp_solves;
@@ -176,7 +186,12 @@ impl<'a> Path<'a> {
     }
 
     pub(super) fn take(&mut self, decision: &Decision) {
-        let Some(choice) = decision.taken.map(|index| &decision.options[index]) else { return };
+        if let Some(index) = decision.taken {
+            self.go(&decision.options[index]);
+        }
+    }
+
+    pub(super) fn go(&mut self, choice: &Choice) {
         self.here.modes.clone_from(&choice.modes);
         self.here.load_sign = choice.load_sign;
         self.here.rate = Some(choice.rate.clone());
@@ -224,11 +239,12 @@ impl<'a> Path<'a> {
             modes: &modes,
             step: 0.0,
             point,
-            options: &decision.options,
+            options: decision.options,
             taken: decision.taken,
             residual: 0.0,
             error_estimate: 0.0,
             mode_named: None,
+            arriving: None,
         })
     }
 
@@ -295,12 +311,13 @@ impl<'a> Path<'a> {
         self.here.state = reached.corrected.state;
         self.here.modes = reached.corrected.modes;
         self.here.drift = reached.drift;
+        let arriving = Arriving { modes: self.here.modes.clone(), load_sign: self.here.load_sign, counts: self.counts };
         let at_bound = self.at_bound(&reached.rate);
         let mut arrival = self.classify(reached.event, &reached.rate);
         if accepted.returned {
             arrival.stop = Some(StopReason::Cycle);
         }
-        let stage_ends = arrival.stage_ends || at_bound || self.count_ends_stage();
+        let stage_ends = arrival.stage_ends || at_bound || self.counts_end_stage(&self.counts);
         let mut point = arrival.point;
         if let Some(reason) = arrival.stop {
             point.kind = PointKind::End;
@@ -317,15 +334,14 @@ impl<'a> Path<'a> {
             modes: &modes,
             step: reached.step,
             point,
-            options: &arrival.options,
+            options: arrival.options,
             taken: arrival.taken,
             residual: reached.corrected.residual,
             error_estimate: reached.error_estimate,
             mode_named: accepted.mode_named.map(|named| named && !arrival.unconfirmed),
+            arriving: Some(arriving),
         });
-        if matches!(self.phase, Phase::Running) && stage_ends {
-            self.next_stage();
-        }
+        self.stage_over = stage_ends && self.phase == Phase::Running;
         row
     }
 
@@ -342,16 +358,16 @@ impl<'a> Path<'a> {
         met.is_some()
     }
 
-    fn count_ends_stage(&self) -> bool {
+    pub(super) fn counts_end_stage(&self, counts: &StageCounts) -> bool {
         self.scene.stages[self.stage].ends.iter().any(|end| match end {
-            End::LimitPoints(count) => self.counts.limit_points >= *count,
-            End::ContactChanges(count) => self.counts.contact_changes >= *count,
-            End::Increments(count) => self.counts.increments >= *count,
+            End::LimitPoints(count) => counts.limit_points >= *count,
+            End::ContactChanges(count) => counts.contact_changes >= *count,
+            End::Increments(count) => counts.increments >= *count,
             End::Load { .. } | End::Displacement { .. } => false,
         })
     }
 
-    fn emit(&mut self, emitted: Emitted<'_>) -> Increment {
+    pub(super) fn emit(&mut self, emitted: Emitted<'_>) -> Increment {
         let energy = self.energy;
         for value in [energy.external_work, energy.strain, energy.dissipated] {
             self.largest_energy = self.largest_energy.max(value.abs());
@@ -370,20 +386,28 @@ impl<'a> Path<'a> {
                 modes: emitted.modes,
                 arc_length: self.arc_length,
                 step: emitted.step,
-                point: emitted.point,
-                options: emitted.options,
+                point: emitted.point.clone(),
+                options: &emitted.options,
                 taken: emitted.taken,
-                list_directions: decide::is_worth_listing(emitted.options),
+                list_directions: decide::is_worth_listing(&emitted.options),
                 energy,
                 residual: emitted.residual,
                 error_estimate: emitted.error_estimate,
                 energy_error,
                 force_scale: self.force_scale,
-                elapsed_s: self.began.elapsed().as_secs_f64(),
+                elapsed_s: self.elapsed_s(),
                 work: self.work,
                 mode_named: emitted.mode_named,
             },
         );
+        self.listed = row.directions.is_some().then_some(Listed {
+            options: emitted.options,
+            taken: emitted.taken,
+            arriving: emitted.arriving,
+            point: emitted.point,
+            residual: emitted.residual,
+            error_estimate: emitted.error_estimate,
+        });
         self.report.increments = self.index;
         self.report.largest_residual = self.report.largest_residual.max(row.diagnostics.residual);
         self.report.largest_complementarity = self.report.largest_complementarity.max(row.diagnostics.complementarity);
@@ -393,16 +417,18 @@ impl<'a> Path<'a> {
 }
 
 /// What [`Path::emit`] cannot see in the path itself.
-struct Emitted<'a> {
-    before: &'a State,
-    modes: &'a [Mode],
-    step: f64,
-    point: Point,
-    options: &'a [Choice],
-    taken: Option<usize>,
-    residual: f64,
-    error_estimate: f64,
-    mode_named: Option<bool>,
+pub(super) struct Emitted<'a> {
+    pub before: &'a State,
+    pub modes: &'a [Mode],
+    pub step: f64,
+    pub point: Point,
+    pub options: Vec<Choice>,
+    pub taken: Option<usize>,
+    pub residual: f64,
+    pub error_estimate: f64,
+    pub mode_named: Option<bool>,
+    /// `None` at a start.
+    pub arriving: Option<Arriving>,
 }
 
 impl Iterator for Path<'_> {
@@ -412,11 +438,17 @@ impl Iterator for Path<'_> {
         match self.phase {
             Phase::Ended => return None,
             Phase::NotStarted => {
-                let row = self.start_row();
-                self.report.elapsed_s = self.began.elapsed().as_secs_f64();
+                let row = match self.followed.take() {
+                    Some(followed) => self.followed_row(followed),
+                    None => self.start_row(),
+                };
+                self.report.elapsed_s = self.elapsed_s();
                 return Some(row);
             }
             Phase::Running => {}
+        }
+        if std::mem::take(&mut self.stage_over) && !self.next_stage() {
+            return None;
         }
         if self.cancel.is_cancelled() {
             self.end(StopReason::Cancelled);

@@ -17,7 +17,10 @@ use tokio::sync::watch;
 use uuid::Uuid;
 
 pub use error::StoreError;
-pub use record::{Claim, Ending, JobRecord, Lease, LeaseAnswer, Line, ListFilter, NewJob, Page, Status, Submitted};
+pub use record::{
+    Branch, Claim, Ending, JobRecord, Lease, LeaseAnswer, Line, ListFilter, Membership, NewFollower, NewJob, Origin,
+    Page, Parent, Status, Submitted,
+};
 
 pub type Result<T> = std::result::Result<T, StoreError>;
 
@@ -27,7 +30,22 @@ pub trait Store: Send + Sync + 'static {
     /// Stores a job as `queued`, or finds the one that came with the same idempotency key.
     async fn submit(&self, job: NewJob) -> Result<Submitted>;
 
+    /// Stores a job that follows another as `queued`, or finds the one that came with the same idempotency key.
+    /// `None`: the parent, or its branch at that increment, is not there.
+    async fn follow(&self, job: NewFollower) -> Result<Option<Submitted>>;
+
     async fn job(&self, id: Uuid) -> Result<Option<JobRecord>>;
+
+    /// A job's request, as posted.
+    async fn request(&self, id: Uuid) -> Result<Option<String>>;
+
+    /// The branch stored with an increment.
+    async fn branch(&self, id: Uuid, increment: u64) -> Result<Option<Origin>>;
+
+    /// Queues what explorations have found: families are taken job by job, in the order of queueing, and each job when it
+    /// and all before it have ended, so that the same jobs are queued in the same order however many work at once.
+    /// Answers how many were queued.
+    async fn explore(&self) -> Result<u64>;
 
     /// Newest first.
     async fn jobs(&self, filter: ListFilter) -> Result<Vec<JobRecord>>;

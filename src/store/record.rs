@@ -1,5 +1,6 @@
 //! What goes into a store and comes out of it; no engine shows through.
 
+use crate::model::request::Explore;
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
@@ -60,6 +61,60 @@ pub struct NewJob {
     pub max_attempts: u32,
     pub priority: i32,
     pub idempotency_key: Option<String>,
+    /// The job begins a family.
+    pub explore: Option<Explore>,
+}
+
+/// The direction of another job that a job follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Parent {
+    pub job: Uuid,
+    pub increment: u64,
+    pub direction: u64,
+}
+
+/// A job that follows another, to be queued; what is not here it has from its parent.
+#[derive(Debug, Clone)]
+pub struct NewFollower {
+    pub parent: Parent,
+    /// The parent's, if absent.
+    pub max_increments: Option<u64>,
+    pub idempotency_key: Option<String>,
+}
+
+/// What it takes to go on from an increment along another direction; opaque here.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Branch {
+    pub body: String,
+    /// One line: what is new since the branch before.
+    pub trail: Option<String>,
+    /// Directions that an exploration follows from here.
+    pub alternatives: Vec<u64>,
+}
+
+/// A branch as it is read back.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Origin {
+    pub body: String,
+    /// Lines: everything up to that point.
+    pub trail: String,
+}
+
+/// A job's place in an exploration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Membership {
+    /// The job with which the exploration began.
+    pub family: Uuid,
+    pub generation: u64,
+    pub explore: Explore,
+    /// Its alternatives have been looked at.
+    pub explored: bool,
+    /// Alternatives of this job for which there was no room.
+    pub not_queued: u64,
+    /// Jobs queued in the whole family so far, the first not counted.
+    pub family_queued: u64,
+    /// Alternatives in the whole family for which there was no room so far.
+    pub family_not_queued: u64,
 }
 
 #[derive(Debug, Clone)]
@@ -91,12 +146,18 @@ pub struct JobRecord {
     pub created_at: Timestamp,
     pub started_at: Option<Timestamp>,
     pub ended_at: Option<Timestamp>,
+    pub parent: Option<Parent>,
+    /// Jobs that follow this one.
+    pub children: u64,
+    pub membership: Option<Membership>,
 }
 
 /// Which jobs to list.
 #[derive(Debug, Clone, Copy)]
 pub struct ListFilter {
     pub status: Option<Status>,
+    /// Only jobs that follow this one.
+    pub parent: Option<Uuid>,
     /// Only jobs older than this one.
     pub before: Option<Uuid>,
     pub limit: u32,
@@ -109,11 +170,13 @@ pub struct Page {
     pub bytes: usize,
 }
 
-/// A stored increment: its index and its JSON text.
+/// An increment: its index and its JSON text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Line {
     pub index: u64,
     pub body: String,
+    /// Stored beside the increment, and not read back with it.
+    pub branch: Option<Branch>,
 }
 
 /// The right to write to a job: valid while the job still names this worker and this attempt.
@@ -129,8 +192,13 @@ pub struct Lease {
 pub struct Claim {
     pub lease: Lease,
     pub request: String,
+    pub max_increments: u64,
     /// Increments up to this index are stored already, from an earlier attempt.
     pub last_index: Option<u64>,
+    /// Where the job begins, if it follows another.
+    pub origin: Option<(Parent, Origin)>,
+    /// Its alternatives are to be followed by jobs of their own.
+    pub explores: bool,
 }
 
 /// What became of a write under a lease.

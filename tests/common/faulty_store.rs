@@ -1,7 +1,8 @@
 //! A store whose writes can be made to fail; everything else is the real one.
 
 use arcslip::store::{
-    Claim, Ending, JobRecord, Lease, LeaseAnswer, Line, ListFilter, NewJob, Page, Result, Store, StoreError, Submitted,
+    Claim, Ending, JobRecord, Lease, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, Origin, Page, Result, Store,
+    StoreError, Submitted,
 };
 use async_trait::async_trait;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -47,6 +48,23 @@ impl Store for FaultyStore {
     async fn submit(&self, job: NewJob) -> Result<Submitted> {
         self.room()?;
         self.inner.submit(job).await
+    }
+
+    async fn follow(&self, job: NewFollower) -> Result<Option<Submitted>> {
+        self.room()?;
+        self.inner.follow(job).await
+    }
+
+    async fn request(&self, id: Uuid) -> Result<Option<String>> {
+        self.inner.request(id).await
+    }
+
+    async fn branch(&self, id: Uuid, increment: u64) -> Result<Option<Origin>> {
+        self.inner.branch(id, increment).await
+    }
+
+    async fn explore(&self) -> Result<u64> {
+        self.inner.explore().await
     }
 
     async fn job(&self, id: Uuid) -> Result<Option<JobRecord>> {

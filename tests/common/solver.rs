@@ -2,10 +2,10 @@
 
 use arcslip::cancel::CancelFlag;
 use arcslip::jobs::Solver;
+use arcslip::jobs::solver::{Accept, Beginning};
 use arcslip::model::{InputErrors, JobRequest};
 use arcslip::path::increment::{ContactState, Diagnostics, Energy, Point, PointKind, Status};
 use arcslip::path::{Increment, Plan, Report, StopReason};
-use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
@@ -58,11 +58,16 @@ impl Solver for MadeUp {
         })
     }
 
+    fn check_beginning(&self, _request: &JobRequest, _beginning: Beginning) -> Result<(), InputErrors> {
+        Ok(())
+    }
+
     fn solve(
         &self,
         request: &JobRequest,
+        _beginning: Option<Beginning>,
         cancel: CancelFlag,
-        accept: &mut dyn FnMut(Increment) -> ControlFlow<()>,
+        accept: Accept<'_>,
     ) -> Result<Option<Report>, InputErrors> {
         let run = self.runs.fetch_add(1, Ordering::Relaxed) + 1;
         let mut stop_reason = StopReason::MaxIncrements;
@@ -75,7 +80,7 @@ impl Solver for MadeUp {
             }
             assert!(!(request.model.name.as_deref() == Some(PANICS) && index == 3), "a made-up defect");
             increments += 1;
-            if accept(increment(index, run)).is_break() {
+            if accept(increment(index, run), &|| None).is_break() {
                 return Ok(None);
             }
         }
@@ -112,6 +117,7 @@ fn increment(index: u64, run: u64) -> Increment {
             normal_reaction: along,
             tangential_reaction: vec![-0.3 * along],
             slip: vec![0.1],
+            indeterminate: false,
         }],
         point: Point {
             kind: if index == 0 { PointKind::Start } else { PointKind::Regular },

@@ -4,12 +4,13 @@
 //! derived code because that stops at the first mistake and does not say where it is.
 
 mod analysis;
+mod follow;
 mod model;
 mod reader;
 
 use super::json::Json;
 use super::mistakes::Mistakes;
-use super::{InputError, InputErrors, JobRequest};
+use super::{FollowRequest, InputError, InputErrors, JobRequest};
 use reader::{Fields, Input};
 
 const JOB_REQUEST: Fields = Fields { what: "a job request", known: &["model", "analysis"], later: &[] };
@@ -29,6 +30,20 @@ pub fn decode(text: &[u8]) -> Result<JobRequest, InputErrors> {
     mistakes.into_result()?;
     // A reader that returns nothing has noted why, so the error here is for a defect: a refusal, not a panic.
     request.ok_or_else(|| InputErrors(vec![InputError::new("", "the document could not be read as a job request")]))
+}
+
+/// Reads a request to follow a direction from JSON text, and checks it as far as it goes by itself.
+///
+/// # Errors
+/// As for [`decode`].
+pub fn follow(text: &[u8]) -> Result<FollowRequest, InputErrors> {
+    let document = Json::parse(text).map_err(|error| InputErrors(vec![error]))?;
+    let root = Input::root(&document);
+    let mut mistakes = Mistakes::default();
+    reader::note_duplicates(&root, &mut mistakes);
+    let request = follow::follow(&root, &mut mistakes);
+    mistakes.into_result()?;
+    request.ok_or_else(|| InputErrors(vec![InputError::new("", "the document could not be read as such a request")]))
 }
 
 fn job_request(input: &Input, mistakes: &mut Mistakes) -> Option<JobRequest> {

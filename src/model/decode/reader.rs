@@ -41,7 +41,7 @@ impl<'a> Input<'a> {
         Self { value, at: Place::ROOT }
     }
 
-    fn refuse<T>(&self, expected: &str, mistakes: &mut Mistakes) -> Option<T> {
+    pub fn refuse<T>(&self, expected: &str, mistakes: &mut Mistakes) -> Option<T> {
         mistakes.add(&self.at, || format!("found {}; {expected} is expected", self.value.describe()));
         None
     }

@@ -3,8 +3,8 @@
 //! Every statement of a worker is fenced by job, worker, attempt and `running`: a worker that comes back after its lease
 //! was given to another changes nothing.
 
-use super::rows::unsigned;
-use super::{SqliteStore, after, now};
+use super::rows::{self, unsigned};
+use super::{SqliteStore, after, followers, now};
 use crate::store::{Claim, Ending, Lease, LeaseAnswer, Result, StoreError};
 use sqlx::Row;
 use std::time::Duration;
@@ -15,7 +15,7 @@ pub(super) async fn claim(store: &SqliteStore, worker: &str, lease: Duration) ->
         "UPDATE jobs SET status = 'running', worker = ?1, lease_until = ?2, attempt = attempt + 1, \
          started_at = coalesce(started_at, ?3), updated_at = ?3 \
          WHERE id = (SELECT id FROM jobs WHERE status = 'queued' ORDER BY priority DESC, id LIMIT 1) \
-         RETURNING id, attempt, request, last_index",
+         RETURNING id, attempt, request, max_increments, last_index, parent, parent_increment, parent_direction, family",
     )
     .bind(worker)
     .bind(after(lease))
@@ -24,10 +24,17 @@ pub(super) async fn claim(store: &SqliteStore, worker: &str, lease: Duration) ->
     .await?;
     let Some(row) = row else { return Ok(None) };
     let job: Uuid = row.try_get("id")?;
+    let origin = match rows::parent(&row)? {
+        Some(parent) => Some((parent, followers::origin(store, job).await?)),
+        None => None,
+    };
     let claim = Claim {
         lease: Lease { job, worker: worker.to_owned(), attempt: row.try_get("attempt")? },
         request: row.try_get("request")?,
+        max_increments: unsigned(row.try_get("max_increments")?)?,
         last_index: row.try_get::<Option<i64>, _>("last_index")?.map(unsigned).transpose()?,
+        origin,
+        explores: row.try_get::<Option<Uuid>, _>("family")?.is_some(),
     };
     store.signals.job_changed(job);
     Ok(Some(claim))

@@ -3,12 +3,13 @@
 use super::rows::{signed, unsigned};
 use super::{SqliteStore, after, claims, now};
 use crate::store::{Lease, LeaseAnswer, Line, Page, Result};
+use sqlx::types::Json;
 use sqlx::{QueryBuilder, Row, Sqlite};
 use std::time::Duration;
 use tokio_stream::StreamExt;
 use uuid::Uuid;
 
-/// Rows of one INSERT: three values each, far below SQLite's bound of 32,766 parameters.
+/// Rows of one INSERT: at most five values each, far below SQLite's bound of 32,766 parameters.
 const ROWS_A_STATEMENT: usize = 500;
 
 pub(super) async fn append(
@@ -42,6 +43,18 @@ pub(super) async fn append(
             row.push_bind(lease.job).push_bind(signed(line.index)).push_bind(line.body.as_str());
         });
         insert.build().execute(&mut *transaction).await?;
+        let branches: Vec<_> = batch.iter().filter_map(|line| Some((line.index, line.branch.as_ref()?))).collect();
+        if branches.is_empty() {
+            continue;
+        }
+        let mut insert =
+            QueryBuilder::<Sqlite>::new("INSERT INTO branches (job, increment_index, body, trail, alternatives) ");
+        insert.push_values(branches, |mut row, (index, branch)| {
+            let alternatives = (!branch.alternatives.is_empty()).then_some(Json(branch.alternatives.as_slice()));
+            row.push_bind(lease.job).push_bind(signed(index)).push_bind(branch.body.as_str());
+            row.push_bind(branch.trail.as_deref()).push_bind(alternatives);
+        });
+        insert.build().execute(&mut *transaction).await?;
     }
     transaction.commit().await?;
     store.signals.job_changed(lease.job);
@@ -63,7 +76,7 @@ pub(super) async fn read(store: &SqliteStore, id: Uuid, after: Option<u64>, page
         let row = row?;
         let body: String = row.try_get("body")?;
         bytes += body.len();
-        lines.push(Line { index: unsigned(row.try_get("increment_index")?)?, body });
+        lines.push(Line { index: unsigned(row.try_get("increment_index")?)?, body, branch: None });
         if bytes >= page.bytes {
             break;
         }

@@ -2,19 +2,19 @@
 
 use super::rows::{self, job_columns, signed};
 use super::{SqliteStore, now};
-use crate::store::{JobRecord, ListFilter, NewJob, Result, Submitted};
-use sqlx::Row;
+use crate::store::{JobRecord, ListFilter, NewJob, Result, Status, Submitted};
+use sqlx::{Row, Sqlite, Transaction};
 use uuid::Uuid;
 
 pub(super) async fn submit(store: &SqliteStore, job: NewJob) -> Result<Submitted> {
     let mut transaction = store.writer.begin().await?;
-    let inserted = sqlx::query(concat!(
+    let id = Uuid::now_v7();
+    let inserted = sqlx::query(
         "INSERT INTO jobs (id, name, status, priority, request, idempotency_key, plan, max_increments, max_attempts, \
-         created_at, updated_at) VALUES (?1, ?2, 'queued', ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?9) \
-         ON CONFLICT (idempotency_key) DO NOTHING RETURNING ",
-        job_columns!()
-    ))
-    .bind(Uuid::now_v7())
+         created_at, updated_at, family) VALUES (?1, ?2, 'queued', ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?9, ?10) \
+         ON CONFLICT (idempotency_key) DO NOTHING",
+    )
+    .bind(id)
     .bind(&job.name)
     .bind(job.priority)
     .bind(&job.request)
@@ -23,10 +23,19 @@ pub(super) async fn submit(store: &SqliteStore, job: NewJob) -> Result<Submitted
     .bind(signed(job.max_increments))
     .bind(job.max_attempts)
     .bind(now())
-    .fetch_optional(&mut *transaction)
+    .bind(job.explore.map(|_| id))
+    .execute(&mut *transaction)
     .await?;
-    if let Some(row) = inserted {
-        let record = rows::job(&row)?;
+    if inserted.rows_affected() > 0 {
+        if let Some(explore) = job.explore {
+            sqlx::query("INSERT INTO families (id, depth, max_jobs) VALUES (?1, ?2, ?3)")
+                .bind(id)
+                .bind(signed(explore.depth))
+                .bind(signed(explore.max_jobs))
+                .execute(&mut *transaction)
+                .await?;
+        }
+        let record = record(&mut transaction, id).await?;
         transaction.commit().await?;
         store.signals.queue_changed();
         return Ok(Submitted::Created(record));
@@ -36,8 +45,19 @@ pub(super) async fn submit(store: &SqliteStore, job: NewJob) -> Result<Submitted
         .fetch_one(&mut *transaction)
         .await?;
     transaction.rollback().await?;
-    let same = row.try_get::<String, _>("request")? == job.request;
-    Ok(if same { Submitted::Repeated(rows::job(&row)?) } else { Submitted::KeyReused })
+    let record = rows::job(&row)?;
+    // A job that follows another has that one's request, and is another job.
+    let same = record.parent.is_none() && row.try_get::<String, _>("request")? == job.request;
+    Ok(if same { Submitted::Repeated(record) } else { Submitted::KeyReused })
+}
+
+/// A job that has just been stored.
+pub(super) async fn record(transaction: &mut Transaction<'_, Sqlite>, id: Uuid) -> Result<JobRecord> {
+    let row = sqlx::query(concat!("SELECT ", job_columns!(), " FROM jobs WHERE id = ?"))
+        .bind(id)
+        .fetch_one(&mut **transaction)
+        .await?;
+    rows::job(&row)
 }
 
 pub(super) async fn get(store: &SqliteStore, id: Uuid) -> Result<Option<JobRecord>> {
@@ -49,9 +69,19 @@ pub(super) async fn get(store: &SqliteStore, id: Uuid) -> Result<Option<JobRecor
 }
 
 pub(super) async fn list(store: &SqliteStore, filter: ListFilter) -> Result<Vec<JobRecord>> {
-    // Two statements, so that each can walk an index.
-    let query = match filter.status {
-        Some(status) => sqlx::query(concat!(
+    // One statement for each, so that it can walk an index.
+    let query = match (filter.parent, filter.status) {
+        (Some(parent), status) => sqlx::query(concat!(
+            "SELECT ",
+            job_columns!(),
+            " FROM jobs WHERE parent = ?3 AND (?4 IS NULL OR status = ?4) AND (?1 IS NULL OR id < ?1) \
+             ORDER BY id DESC LIMIT ?2"
+        ))
+        .bind(filter.before)
+        .bind(filter.limit)
+        .bind(parent)
+        .bind(status.map(Status::name)),
+        (None, Some(status)) => sqlx::query(concat!(
             "SELECT ",
             job_columns!(),
             " FROM jobs WHERE status = ?3 AND (?1 IS NULL OR id < ?1) ORDER BY id DESC LIMIT ?2"
@@ -59,7 +89,7 @@ pub(super) async fn list(store: &SqliteStore, filter: ListFilter) -> Result<Vec<
         .bind(filter.before)
         .bind(filter.limit)
         .bind(status.name()),
-        None => sqlx::query(concat!(
+        (None, None) => sqlx::query(concat!(
             "SELECT ",
             job_columns!(),
             " FROM jobs WHERE (?1 IS NULL OR id < ?1) ORDER BY id DESC LIMIT ?2"
@@ -87,7 +117,19 @@ pub(super) async fn request_cancel(store: &SqliteStore, id: Uuid) -> Result<Opti
 }
 
 pub(super) async fn delete(store: &SqliteStore, id: Uuid) -> Result<bool> {
-    let deleted = sqlx::query("DELETE FROM jobs WHERE id = ?").bind(id).execute(&store.writer).await?;
+    let mut transaction = store.writer.begin().await?;
+    let deleted: Option<Option<Uuid>> = sqlx::query_scalar("DELETE FROM jobs WHERE id = ? RETURNING family")
+        .bind(id)
+        .fetch_optional(&mut *transaction)
+        .await?;
+    if let Some(Some(family)) = deleted {
+        // The last of a family takes it along.
+        sqlx::query("DELETE FROM families WHERE id = ?1 AND NOT EXISTS (SELECT 1 FROM jobs WHERE family = ?1)")
+            .bind(family)
+            .execute(&mut *transaction)
+            .await?;
+    }
+    transaction.commit().await?;
     store.signals.job_changed(id);
-    Ok(deleted.rows_affected() > 0)
+    Ok(deleted.is_some())
 }

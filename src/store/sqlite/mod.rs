@@ -5,13 +5,16 @@
 //! client was told is stored survives a power loss.
 
 mod claims;
+mod families;
+mod followers;
 mod increments;
 mod jobs;
 mod rows;
 
 use super::signals::Signals;
 use super::{
-    Claim, Ending, JobRecord, Lease, LeaseAnswer, Line, ListFilter, NewJob, Page, Result, Store, StoreError, Submitted,
+    Claim, Ending, JobRecord, Lease, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, Origin, Page, Result, Store,
+    StoreError, Submitted,
 };
 use async_trait::async_trait;
 use jiff::Timestamp;
@@ -98,8 +101,24 @@ impl Store for SqliteStore {
         jobs::submit(self, job).await
     }
 
+    async fn follow(&self, job: NewFollower) -> Result<Option<Submitted>> {
+        followers::follow(self, job).await
+    }
+
     async fn job(&self, id: Uuid) -> Result<Option<JobRecord>> {
         jobs::get(self, id).await
+    }
+
+    async fn request(&self, id: Uuid) -> Result<Option<String>> {
+        followers::request(self, id).await
+    }
+
+    async fn branch(&self, id: Uuid, increment: u64) -> Result<Option<Origin>> {
+        followers::branch(self, id, increment).await
+    }
+
+    async fn explore(&self) -> Result<u64> {
+        families::explore(self).await
     }
 
     async fn jobs(&self, filter: ListFilter) -> Result<Vec<JobRecord>> {

@@ -1,6 +1,7 @@
 //! Rows to records, and numbers to what SQLite can hold.
 
-use crate::store::{JobRecord, Result, Status, StoreError};
+use crate::model::request::Explore;
+use crate::store::{JobRecord, Membership, Parent, Result, Status, StoreError};
 use jiff::Timestamp;
 use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
@@ -9,7 +10,13 @@ use sqlx::sqlite::SqliteRow;
 macro_rules! job_columns {
     () => {
         "id, name, status, plan, report, stop_reason, error, max_increments, last_index, attempt, max_attempts, \
-         cancel_requested, created_at, started_at, ended_at"
+         cancel_requested, created_at, started_at, ended_at, parent, parent_increment, parent_direction, \
+         (SELECT count(*) FROM jobs AS child WHERE child.parent = jobs.id) AS children, \
+         family, generation, explored, not_queued, \
+         (SELECT depth FROM families WHERE families.id = jobs.family) AS depth, \
+         (SELECT max_jobs FROM families WHERE families.id = jobs.family) AS max_jobs, \
+         (SELECT queued FROM families WHERE families.id = jobs.family) AS family_queued, \
+         (SELECT sum(not_queued) FROM jobs AS member WHERE member.family = jobs.family) AS family_not_queued"
     };
 }
 pub(super) use job_columns;
@@ -33,7 +40,31 @@ pub(super) fn job(row: &SqliteRow) -> Result<JobRecord> {
         created_at: time(row.try_get("created_at")?)?,
         started_at: row.try_get::<Option<i64>, _>("started_at")?.map(time).transpose()?,
         ended_at: row.try_get::<Option<i64>, _>("ended_at")?.map(time).transpose()?,
+        parent: parent(row)?,
+        children: unsigned(row.try_get("children")?)?,
+        membership: membership(row)?,
     })
+}
+
+/// Of a row with the columns `parent`, `parent_increment` and `parent_direction`.
+pub(super) fn parent(row: &SqliteRow) -> Result<Option<Parent>> {
+    let Some(job) = row.try_get("parent")? else { return Ok(None) };
+    let increment = unsigned(row.try_get("parent_increment")?)?;
+    Ok(Some(Parent { job, increment, direction: unsigned(row.try_get("parent_direction")?)? }))
+}
+
+fn membership(row: &SqliteRow) -> Result<Option<Membership>> {
+    let Some(family) = row.try_get("family")? else { return Ok(None) };
+    let number = |column: &str| -> Result<u64> { unsigned(row.try_get(column)?) };
+    Ok(Some(Membership {
+        family,
+        generation: number("generation")?,
+        explore: Explore { depth: number("depth")?, max_jobs: number("max_jobs")? },
+        explored: row.try_get("explored")?,
+        not_queued: number("not_queued")?,
+        family_queued: number("family_queued")?,
+        family_not_queued: number("family_not_queued")?,
+    }))
 }
 
 pub(super) fn unsigned(number: i64) -> Result<u64> {
@@ -49,6 +80,6 @@ fn time(milliseconds: i64) -> Result<Timestamp> {
     Timestamp::from_millisecond(milliseconds).map_err(|error| StoreError::Damaged(Box::new(error)))
 }
 
-fn damaged(what: String) -> StoreError {
+pub(super) fn damaged(what: String) -> StoreError {
     StoreError::Damaged(what.into())
 }

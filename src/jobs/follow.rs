@@ -1,0 +1,73 @@
+//! A new job along a direction that is listed at an increment of another.
+
+use super::submission::wrong_input;
+use super::{Jobs, JobsError, branches, queued};
+use crate::model::{FollowRequest, InputError, InputErrors, decode};
+use crate::path::Increment;
+use crate::store::{JobRecord, NewFollower, Page, Parent};
+use std::sync::Arc;
+use uuid::Uuid;
+
+impl Jobs {
+    /// Queues a job that follows a direction of this one.
+    pub async fn follow(
+        &self,
+        id: Uuid,
+        body: Vec<u8>,
+        idempotency_key: Option<String>,
+    ) -> Result<JobRecord, JobsError> {
+        let asked = decode::follow(&body).map_err(|errors| wrong_input(&body, errors, JobsError::Follow))?;
+        let job = self.store.job(id).await?.ok_or(JobsError::NoJob(id))?;
+        let parent = Parent { job: id, increment: asked.increment, direction: asked.direction };
+        let Some(origin) = self.store.branch(id, asked.increment).await? else {
+            return Err(self.why_no_branch(&job, &asked).await?);
+        };
+        let text = self.store.request(id).await?.ok_or(JobsError::NoJob(id))?;
+        let solver = Arc::clone(&self.solver);
+        tokio::task::spawn_blocking(move || -> Result<(), JobsError> {
+            let request = decode::decode(text.as_bytes()).map_err(|errors| {
+                refused("", format!("the job's model is no longer accepted, post it anew: {errors}"))
+            })?;
+            let beginning = branches::beginning(&parent, &origin).map_err(|error| {
+                refused("/increment", format!("what is stored there cannot be read, trace the path anew: {error}"))
+            })?;
+            solver.check_beginning(&request, beginning).map_err(JobsError::Follow)
+        })
+        .await??;
+        let max_increments = Some(asked.max_increments.unwrap_or(job.max_increments));
+        // Nothing to be found here any more: the parent was deleted just now.
+        let submitted = self.store.follow(NewFollower { parent, max_increments, idempotency_key }).await?;
+        queued(submitted.ok_or(JobsError::NoJob(id))?)
+    }
+
+    async fn why_no_branch(&self, job: &JobRecord, asked: &FollowRequest) -> Result<JobsError, JobsError> {
+        let FollowRequest { increment, .. } = asked;
+        let before = increment.checked_sub(1);
+        let lines = self.store.increments(job.id, before, Page { rows: 1, bytes: 1 }).await?;
+        let line = lines.first().filter(|line| line.index == *increment);
+        let Some(line) = line else {
+            let stored = match job.last_index {
+                Some(last) => format!("increments 0 to {last} are stored"),
+                None => "no increment is stored yet".to_owned(),
+            };
+            return Ok(refused("/increment", format!("found {increment}; {stored}")));
+        };
+        let lists = serde_json::from_str::<Increment>(&line.body).is_ok_and(|increment| increment.directions.is_some());
+        Ok(refused(
+            "/increment",
+            if lists {
+                format!(
+                    "increment {increment} was stored by a version that kept nothing to go on from: trace the path anew"
+                )
+            } else {
+                format!(
+                    "increment {increment} lists no directions, the path has one way on; take one that has `directions`"
+                )
+            },
+        ))
+    }
+}
+
+fn refused(pointer: &str, detail: String) -> JobsError {
+    JobsError::Follow(InputErrors(vec![InputError::new(pointer, detail)]))
+}
