@@ -91,12 +91,22 @@ fn star_dome() {
     }
     let model = json!({"model": {
         "name": "star dome", "dimension": 3, "nodes": nodes, "supports": supports, "elements": elements,
-        "stages": [{"name": "load", "forces": {"apex": [0, 0, -1]}, "until": {"limit_points": 2}}]
+        "stages": [{"name": "load", "forces": {"apex": [0, 0, -1]}, "until": {"limit_points": 4}}]
     }});
     let (increments, _) = trace(&request(&model.to_string()));
     let limit = increments.iter().find(|i| i.point.kind == PointKind::SmoothLimit).expect("a limit point");
     assert!((limit.load_factor - 3.155799708e-4).abs() < 1e-13, "{}", limit.load_factor);
     assert!((limit.displacements["apex"][2] + 0.76855727).abs() < 1e-8, "{}", limit.displacements["apex"][2]);
+    let minimum = increments.iter().filter(|i| i.point.kind == PointKind::SmoothLimit).nth(1).expect("a minimum");
+    let double = increments
+        .iter()
+        .find(|i| i.index > minimum.index && i.point.kind == PointKind::SmoothBifurcation)
+        .expect("a double bifurcation");
+    for i in increments.iter().filter(|i| i.point.event.is_some()) {
+        println!("{} {:?} {} {:?} {:?} {:?}", i.index, i.point.kind, i.load_factor, i.displacements["apex"], i.point, i.directions);
+    }
+    assert!((double.load_factor - 76.646e-4).abs() < 5e-8, "{}", double.load_factor);
+    assert_eq!(double.point.event.as_deref(), Some("two eigenvalues cross zero together"));
 }
 
 /// A frictionless node on a tilted plane in space: `K u = s f + r n`, `r = -s f·n` (unit stiffness).

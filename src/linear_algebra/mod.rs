@@ -1,5 +1,8 @@
 //! Dense factorisations that say when they cannot be trusted. May be called by everything above; calls nothing.
 
+pub mod inertia;
+
+pub use inertia::{Inertia, inertia};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 /// An LU factorisation with partial pivoting of a square matrix whose rows were brought to unit size first.
@@ -44,11 +47,52 @@ impl Factorisation {
         regular.then_some(Self { row_scales, lu })
     }
 
+    /// Sign (1 or -1) and natural logarithm of the size of the determinant.
+    pub fn determinant(&self) -> (f64, f64) {
+        let factors = self.lu.lu_internal();
+        let (mut sign, mut logarithm) = (self.lu.p().determinant::<f64>(), 0.0);
+        for (index, scale) in self.row_scales.iter().enumerate() {
+            let pivot = factors[(index, index)];
+            sign *= pivot.signum();
+            logarithm += pivot.abs().ln() + scale.ln();
+        }
+        (sign, logarithm)
+    }
+
+    /// Sign of the determinant: 1 or -1.
+    pub fn determinant_sign(&self) -> f64 {
+        let factors = self.lu.lu_internal();
+        let sign: f64 = self.lu.p().determinant();
+        (0..factors.nrows()).fold(sign, |sign, index| sign * factors[(index, index)].signum())
+    }
+
+    /// Smallest pivot over the largest one.
+    pub fn pivot_ratio(&self) -> f64 {
+        let factors = self.lu.lu_internal();
+        let pivots = (0..factors.nrows()).map(|index| factors[(index, index)].abs());
+        let (least, most) = pivots.fold((f64::INFINITY, 0.0_f64), |(l, m), pivot| (l.min(pivot), m.max(pivot)));
+        if most > 0.0 { least / most } else { 0.0 }
+    }
+
     /// Solves for one right-hand side, overwritten by the solution; `false` when the result is not finite.
     pub fn solve(&self, right_hand_side: &mut DVector<f64>) -> bool {
         right_hand_side.component_div_assign(&self.row_scales);
         self.lu.solve_mut(right_hand_side) && right_hand_side.iter().all(|value| value.is_finite())
     }
+}
+
+/// Sign and logarithm of the determinant of any square matrix; sign 0 where it is singular. `None` when a number is not
+/// finite.
+pub fn determinant(matrix: DMatrix<f64>) -> Option<(f64, f64)> {
+    let lu = matrix.lu();
+    let factors = lu.lu_internal();
+    let (mut sign, mut logarithm): (f64, f64) = (lu.p().determinant(), 0.0);
+    for index in 0..factors.nrows() {
+        let pivot = factors[(index, index)];
+        sign *= if pivot == 0.0 { 0.0 } else { pivot.signum() };
+        logarithm += pivot.abs().ln();
+    }
+    (sign == 0.0 || logarithm.is_finite()).then_some((sign, logarithm))
 }
 
 /// A basis of the null space, one vector a column, by elimination with complete pivoting.

@@ -29,6 +29,8 @@ pub struct Reached {
     pub error_estimate: f64,
     /// What ended the step early.
     pub event: Option<Watch>,
+    /// Sign of the bordered determinant there, where it is certain.
+    pub determinant: Option<f64>,
 }
 
 /// Work done, whether it led to a point or not.
@@ -48,6 +50,8 @@ pub enum Refused {
     Turned(f64),
     /// An event lies at the start itself.
     AtStart(Watch),
+    /// The signs of the equations changed, and no bifurcation point could be made out.
+    Unresolved,
 }
 
 /// The direction may turn by this much in a step.
@@ -67,6 +71,12 @@ impl Start<'_> {
         self.settle(&system, guess, Place::ArcLength { from: self.state, step }, work)
     }
 
+    /// The point at an arc length, from a guess.
+    pub fn reach_near(&self, guess: State, step: f64, work: &mut Work) -> Result<Reached, Refused> {
+        let system = ModeSystem::new(self.loading, self.modes, self.state);
+        self.settle(&system, guess, Place::ArcLength { from: self.state, step }, work)
+    }
+
     fn settle(
         &self,
         system: &ModeSystem<'_>,
@@ -77,7 +87,7 @@ impl Start<'_> {
         let corrected = system.correct(guess, place, self.force_scale).map_err(Refused::Newton)?;
         work.newton_iterations += corrected.iterations;
         work.factorisations += corrected.iterations + 1;
-        let (rate, error_estimate) =
+        let (rate, error_estimate, determinant) =
             system.tangent_and_error(&corrected, self.rate).ok_or(Refused::Newton(Failure::Singular))?;
         let step = corrected.state.distance(self.state);
         // The sphere around the start meets the path behind, too, and may meet other branches: the chord has to go the
@@ -89,7 +99,7 @@ impl Start<'_> {
         if turn > MOST_TURN {
             return Err(Refused::Turned(turn));
         }
-        Ok(Reached { corrected, rate, step, error_estimate, event: None })
+        Ok(Reached { corrected, rate, step, error_estimate, event: None, determinant })
     }
 
     /// A step of an arc length, or to the first event before.

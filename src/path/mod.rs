@@ -7,6 +7,7 @@
 //! | `scene`, `plan` | a request made dimensionless; what it needs and what is left out |
 //! | `state`, `mode_system` | a point; the equations of one contact mode and Newton's method on them |
 //! | `watch`, `root`, `advance` | what ends a mode; one step, ended exactly at the first event |
+//! | `singular`, `critical`, `branches` | whether a step passes a smooth bifurcation; where; which directions leave it |
 //! | `standing`, `directions`, `condensed`, `decide` | which contacts can change; every direction; which one is taken |
 //! | `program`, `naming` | the MPEC of an increment; where it names the mode |
 //! | `energy`, `record`, `increment`, `report`, `stop` | balances, rows, totals, reasons |
@@ -14,7 +15,9 @@
 
 mod advance;
 mod arrival;
+mod branches;
 mod condensed;
+mod critical;
 mod decide;
 mod directions;
 mod energy;
@@ -28,6 +31,7 @@ mod record;
 pub mod report;
 mod root;
 pub mod scene;
+mod singular;
 mod standing;
 mod state;
 mod stepping;

@@ -334,6 +334,17 @@ impl<'a> ModeSystem<'a> {
         if wrong_side { Err(Failure::NotConverged) } else { Ok(corrected) }
     }
 
+    /// A point as it is, with its residual.
+    pub fn judged(&self, state: State, force_scale: f64) -> Corrected {
+        let state = self.consistent(state);
+        let mut left_over = DVector::zeros(self.size);
+        let mut force = vec![0.0; self.loading.structure.freedoms()];
+        let (largest, forces) = self.residual(&state, &mut left_over, &mut force);
+        let geometric = left_over.iter().skip(self.loading.structure.unknowns()).fold(0.0_f64, |m, v| m.max(v.abs()));
+        let residual = (largest / forces.max(force_scale).max(f64::MIN_POSITIVE)).max(geometric);
+        Corrected { state, iterations: 0, iterations_to_small: 0, residual, left_over, force_scale: forces }
+    }
+
     /// Makes complementarity exact: no reaction on a free contact, no motion of a sticking node, friction of a slipping
     /// contact on its cone.
     fn consistent(&self, mut state: State) -> State {
@@ -362,13 +373,15 @@ impl<'a> ModeSystem<'a> {
 
     /// The path's direction at a converged point, and an estimate of the point's error: the size of one more Newton
     /// correction across the path.
-    pub fn tangent_and_error(&self, corrected: &Corrected, towards: &Rate) -> Option<(Rate, f64)> {
+    /// With them the sign of the bordered determinant, where it is certain.
+    pub fn tangent_and_error(&self, corrected: &Corrected, towards: &Rate) -> Option<(Rate, f64, Option<f64>)> {
         let factorisation = self.bordered(&corrected.state, towards)?;
         let rate = self.tangent_by(&factorisation)?;
         let mut values = corrected.left_over.clone();
         values[self.size - 1] = 0.0;
         let error = if factorisation.solve(&mut values) { self.rate_from(&values).size() } else { return None };
-        Some((rate, error))
+        let certain = factorisation.pivot_ratio() > super::singular::UNCERTAIN;
+        Some((rate, error, certain.then(|| factorisation.determinant_sign())))
     }
 
     fn bordered(&self, state: &State, towards: &Rate) -> Option<Factorisation> {

@@ -11,6 +11,7 @@ use super::name_event::describe_start;
 use super::record::{self, Row};
 use super::report::Report;
 use super::scene::{End, Scene};
+use super::singular::Signature;
 use super::standing::{Standing, standings};
 use super::state::{Rate, State};
 use super::stepping::{Accepted, NO_ENERGY};
@@ -52,6 +53,8 @@ pub(super) struct Here {
     /// Direction in `modes`; `None` before the stage's first decision.
     pub rate: Option<Rate>,
     pub load_sign: f64,
+    /// Signs that tell smooth bifurcations; `None` until known in these modes.
+    pub signature: Option<Signature>,
 }
 
 pub(super) struct Visited {
@@ -88,6 +91,7 @@ impl<'a> Path<'a> {
                 modes: vec![Mode::Free; scene.contacts.len()],
                 rate: None,
                 load_sign: 0.0,
+                signature: None,
             },
             step,
             index: 0,
@@ -168,6 +172,7 @@ impl<'a> Path<'a> {
     pub(super) fn take(&mut self, decision: &Decision) {
         let Some(choice) = decision.taken.map(|index| &decision.options[index]) else { return };
         self.here.modes.clone_from(&choice.modes);
+        self.here.signature = None;
         self.here.load_sign = choice.load_sign;
         self.here.rate = Some(choice.rate.clone());
         for (reaction, mode) in self.here.state.reactions.iter_mut().zip(&choice.modes) {
@@ -252,6 +257,7 @@ impl<'a> Path<'a> {
         self.stage += 1;
         self.here.state.load = 0.0;
         self.here.rate = None;
+        self.here.signature = None;
         self.counts = StageCounts::default();
         self.visited.clear();
         true
@@ -270,8 +276,9 @@ impl<'a> Path<'a> {
         self.index += 1;
         self.counts.increments += 1;
         self.here.state = reached.corrected.state;
+        self.here.signature = accepted.signature;
         let at_bound = self.at_bound(&reached.rate);
-        let arrival = self.classify(reached.event, &reached.rate);
+        let arrival = self.classify(reached.event, accepted.crossing, &reached.rate);
         let stage_ends = arrival.stage_ends || at_bound || self.count_ends_stage();
         let mut point = arrival.point;
         if let Some(reason) = arrival.stop {
