@@ -103,7 +103,10 @@ fn star_dome() {
         .find(|i| i.index > minimum.index && i.point.kind == PointKind::SmoothBifurcation)
         .expect("a double bifurcation");
     for i in increments.iter().filter(|i| i.point.event.is_some()) {
-        println!("{} {:?} {} {:?} {:?} {:?}", i.index, i.point.kind, i.load_factor, i.displacements["apex"], i.point, i.directions);
+        println!(
+            "{} {:?} {} {:?} {:?} {:?}",
+            i.index, i.point.kind, i.load_factor, i.displacements["apex"], i.point, i.directions
+        );
     }
     assert!((double.load_factor - 76.646e-4).abs() < 5e-8, "{}", double.load_factor);
     assert_eq!(double.point.event.as_deref(), Some("two eigenvalues cross zero together"));

@@ -65,11 +65,7 @@ fn a_pitchfork_in_closed_form() {
     let found = bifurcations(&increments);
     let rest = HALF_WIDTH.hypot(1.0);
     let critical = |guess: f64| {
-        root(
-            |l| l * l * l - rest * l * l + rest * HALF_WIDTH * HALF_WIDTH,
-            |l| 3.0 * l * l - 2.0 * rest * l,
-            guess,
-        )
+        root(|l| l * l * l - rest * l * l + rest * HALF_WIDTH * HALF_WIDTH, |l| 3.0 * l * l - 2.0 * rest * l, guess)
     };
     let (first, second) = (critical(0.94), critical(0.37));
     assert_eq!(found.len(), 4);

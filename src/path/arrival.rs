@@ -31,12 +31,7 @@ pub(super) struct Arrival {
 
 impl Path<'_> {
     /// What kind of point this is, and how the path goes on.
-    pub(super) fn classify(
-        &mut self,
-        event: Option<Watch>,
-        crossing: Option<Crossing>,
-        incoming: &Rate,
-    ) -> Arrival {
+    pub(super) fn classify(&mut self, event: Option<Watch>, crossing: Option<Crossing>, incoming: &Rate) -> Arrival {
         match event {
             None | Some(Watch::End(_)) if let Some(crossing) = crossing => {
                 self.smooth_bifurcation(crossing, incoming, event.is_some())

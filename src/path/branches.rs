@@ -18,10 +18,11 @@ use super::advance::MOST_TURN;
 use super::critical::SINGULAR;
 use super::decide::{Choice, sign_of};
 use super::mode_system::{Loading, ModeSystem, Place};
+use super::singular::scaled_rows;
 use super::state::{Rate, State};
 use super::watch::{self, Watch};
 use crate::contact::Mode;
-use crate::linear_algebra::null_space;
+use crate::linear_algebra::null_space_as_scaled;
 use nalgebra::{DMatrix, DVector};
 
 /// Branches at a point.
@@ -100,7 +101,11 @@ impl Point<'_> {
         let first = sign_of(rate.load);
         let load_sign = if first == 0.0 { later.unwrap_or(0.0) } else { first };
         let dissipation = (0..self.modes.len())
-            .map(|contact| self.loading.contacts[contact].friction * self.state.reactions[contact].normal * self.sliding(contact, &rate))
+            .map(|contact| {
+                self.loading.contacts[contact].friction
+                    * self.state.reactions[contact].normal
+                    * self.sliding(contact, &rate)
+            })
             .sum();
         Choice { rate, modes: self.modes.to_vec(), dissipation, load_sign, retrace, mechanism: false }
     }
@@ -121,10 +126,12 @@ impl Point<'_> {
 
     /// The branches' directions other than the path's own two. `None` where the null vectors cannot be had.
     fn directions(&self, tangent: &Rate, degenerate: &mut bool) -> Option<Vec<Rate>> {
-        let rows = self.system.size() - 1;
-        let matrix = self.system.matrix(self.state).rows(0, rows).into_owned();
-        let basis = null_space(&matrix, SINGULAR)?;
-        let left = null_space(&matrix.transpose(), SINGULAR)?;
+        let (matrix, sizes) = scaled_rows(&self.system, self.loading, self.state);
+        let mut left = null_space_as_scaled(matrix.transpose(), SINGULAR)?;
+        let basis = null_space_as_scaled(matrix, SINGULAR)?;
+        for mut column in left.column_iter_mut() {
+            column.component_div_assign(&sizes);
+        }
         let (own, others) = self.split(&basis, tangent)?;
         if others.is_empty() || left.ncols() != others.len() {
             return None;
@@ -199,7 +206,7 @@ impl Point<'_> {
         let derivative = self.second_derivative(&other.rate);
         let mixed = left.dot(&(&derivative * &own.values));
         let pure = left.dot(&(&derivative * &other.values));
-        let size = derivative.amax();
+        let size = left.amax() * derivative.amax();
         let weights = if mixed.abs() > NO_CURVATURE * size {
             let ratio = -0.5 * pure / mixed;
             [1.0, if ratio.abs() <= NO_CURVATURE { 0.0 } else { ratio }]

@@ -8,9 +8,9 @@
 use super::advance::{Reached, Start, Work};
 use super::mode_system::{ACCEPTED_RESIDUAL, ModeSystem};
 use super::root::find_root;
-use super::singular::{Change, Signature, determinant, reduced_tangent};
+use super::singular::{Change, Signature, bordered_determinant, reduced_tangent, scaled_rows};
 use super::state::{Rate, State};
-use crate::linear_algebra::null_space;
+use crate::linear_algebra::null_space_as_scaled;
 
 /// A smooth bifurcation point at the end of a step.
 #[derive(Debug, Clone, Copy)]
@@ -44,7 +44,7 @@ pub fn locate(start: &Start<'_>, change: Change, reached: &Reached, work: &mut W
     let system = ModeSystem::new(start.loading, start.modes, start.state);
     let origin = Placed { place: 0.0, state: start.state.clone(), rate: start.rate.clone() };
     let end = placed(start, reached);
-    let reference = determinant(&system, &end.state, &unit(&end.rate))?;
+    let reference = bordered_determinant(&system, start.loading, &end.state, &unit(&end.rate))?;
     let value = |state: &State, rate: &Rate| -> Option<f64> {
         match change {
             Change::None => None,
@@ -56,10 +56,8 @@ pub fn locate(start: &Start<'_>, change: Change, reached: &Reached, work: &mut W
             }
             Change::Odd => {
                 // Negative on the far side, of the size of the determinant there.
-                let mut matrix = system.matrix(state);
-                system.border(&mut matrix, rate);
-                let (sign, logarithm) = crate::linear_algebra::determinant(matrix)?;
-                Some(-sign * reference.0 * (logarithm - reference.1).min(300.0).exp())
+                let here = bordered_determinant(&system, start.loading, state, rate)?;
+                Some(-here.sign * reference.sign * (here.logarithm - reference.logarithm).min(300.0).exp())
             }
         }
     };
@@ -89,15 +87,14 @@ pub fn locate(start: &Start<'_>, change: Change, reached: &Reached, work: &mut W
             error = corrected.state.distance(previous) / 256.0;
         }
         previous = Some(corrected.state.clone());
-        let matrix = system.matrix(&corrected.state);
-        let null = null_space(&matrix.rows(0, system.size() - 1).into_owned(), SINGULAR)?;
+        let (matrix, _) = scaled_rows(&system, start.loading, &corrected.state);
+        let null = null_space_as_scaled(matrix, SINGULAR)?;
         if null.ncols() < 2 || best.as_ref().is_some_and(|(least, ..)| *least <= residual) {
             continue;
         }
         let (beyond, onward) = between(&left, &right, (root + PAST * end.place).min(right.place));
-        let after = determinant(&system, &beyond, &unit(&onward)).and_then(|(sign, _)| {
-            Signature::with_determinant(start.loading, start.modes, start.state, &beyond, sign)
-        });
+        let past = bordered_determinant(&system, start.loading, &beyond, &unit(&onward))?;
+        let after = Signature::with_determinant(start.loading, start.modes, start.state, &beyond, past.sign);
         let crossing = Crossing { eigenvalues: null.ncols() - 1, after };
         let step = corrected.state.distance(start.state);
         let found = Reached { corrected, rate, step, error_estimate: error, event: None, determinant: None };
@@ -110,11 +107,7 @@ pub fn locate(start: &Start<'_>, change: Change, reached: &Reached, work: &mut W
     (residual <= ACCEPTED_RESIDUAL).then_some((found, crossing))
 }
 
-fn root_between(
-    left: &Placed,
-    right: &Placed,
-    value: &impl Fn(&State, &Rate) -> Option<f64>,
-) -> Option<f64> {
+fn root_between(left: &Placed, right: &Placed, value: &impl Fn(&State, &Rate) -> Option<f64>) -> Option<f64> {
     let evaluate = |place: f64| {
         let (state, rate) = between(left, right, place);
         value(&state, &unit(&rate))

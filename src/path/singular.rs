@@ -20,9 +20,9 @@ use super::mode_system::{Loading, ModeSystem};
 use super::state::{Rate, State};
 use super::watch::Watch;
 use crate::contact::Mode;
-use crate::linear_algebra::{Factorisation, inertia, null_space};
+use crate::linear_algebra::{Determinant, determinant, inertia, null_space};
 use crate::structure::element::Element;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 /// What is carried along the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +38,10 @@ pub struct Signature {
 pub enum Change {
     None,
     /// So many more eigenvalues are negative (fewer, if below 0).
-    Count { before: usize, net: isize },
+    Count {
+        before: usize,
+        net: isize,
+    },
     /// An odd number of real eigenvalues crossed zero.
     Odd,
 }
@@ -50,9 +53,15 @@ const ZERO_PIVOT: f64 = 1e-13;
 
 /// The tangent reduced to the motions that the mode allows. `None` where the mode's matrix is unsymmetric, where fewer
 /// than two motions remain (the determinant says all), and where the tangent cannot change.
-pub fn reduced_tangent(system: &ModeSystem<'_>, loading: Loading<'_>, modes: &[Mode], state: &State) -> Option<DMatrix<f64>> {
-    let slips =
-        |(mode, contact): (&Mode, &crate::contact::Contact)| matches!(mode, Mode::Slip { .. }) && contact.friction > 0.0;
+pub fn reduced_tangent(
+    system: &ModeSystem<'_>,
+    loading: Loading<'_>,
+    modes: &[Mode],
+    state: &State,
+) -> Option<DMatrix<f64>> {
+    let slips = |(mode, contact): (&Mode, &crate::contact::Contact)| {
+        matches!(mode, Mode::Slip { .. }) && contact.friction > 0.0
+    };
     let unknowns = loading.structure.unknowns();
     if unknowns < 2
         || loading.structure.elements.iter().all(Element::is_linear)
@@ -74,7 +83,13 @@ pub fn reduced_tangent(system: &ModeSystem<'_>, loading: Loading<'_>, modes: &[M
 
 impl Signature {
     /// At a point whose bordered determinant's sign is known; `None` where the reduced tangent is singular.
-    pub fn with_determinant(loading: Loading<'_>, modes: &[Mode], start: &State, state: &State, sign: f64) -> Option<Self> {
+    pub fn with_determinant(
+        loading: Loading<'_>,
+        modes: &[Mode],
+        start: &State,
+        state: &State,
+        sign: f64,
+    ) -> Option<Self> {
         let system = ModeSystem::new(loading, modes, start);
         let negative = match reduced_tangent(&system, loading, modes, state) {
             Some(tangent) => Some(inertia(tangent, ZERO_PIVOT)?.negative),
@@ -87,17 +102,48 @@ impl Signature {
     pub fn at(loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate, work: &mut Work) -> Option<Self> {
         let system = ModeSystem::new(loading, modes, state);
         work.factorisations += 1;
-        let (sign, _) = determinant(&system, state, rate)?;
-        Self::with_determinant(loading, modes, state, state, sign)
+        let determinant = bordered_determinant(&system, loading, state, rate)?;
+        if determinant.pivot_ratio <= UNCERTAIN {
+            return None;
+        }
+        Self::with_determinant(loading, modes, state, state, determinant.sign)
     }
 }
 
-/// Sign and logarithm of the determinant bordered by a direction.
-pub fn determinant(system: &ModeSystem<'_>, state: &State, rate: &Rate) -> Option<(f64, f64)> {
-    let mut matrix = system.matrix(state);
+/// The mode's equations without the last, each row over the largest entry that any element has in it: where the
+/// elements' stiffnesses cancel, at a singular point, what is left over stays small. With the sizes of the rows.
+pub fn scaled_rows(system: &ModeSystem<'_>, loading: Loading<'_>, state: &State) -> (DMatrix<f64>, DVector<f64>) {
+    let structure = loading.structure;
+    let rows = system.size() - 1;
+    let mut matrix = system.matrix(state).rows(0, rows).into_owned();
+    let mut sizes = DVector::from_fn(rows, |row, _| matrix.row(row).amax());
+    for element in &structure.elements {
+        element.add_stiffness(structure, &state.displacement, &mut |row, _, value| {
+            if let Some(row) = structure.unknown_of[row] {
+                sizes[row] = sizes[row].max(value.abs());
+            }
+        });
+    }
+    for (mut row, size) in matrix.row_iter_mut().zip(sizes.iter_mut()) {
+        if *size <= 0.0 {
+            *size = 1.0;
+        }
+        row /= *size;
+    }
+    (matrix, sizes)
+}
+
+/// The determinant of the scaled equations bordered by a direction.
+pub fn bordered_determinant(
+    system: &ModeSystem<'_>,
+    loading: Loading<'_>,
+    state: &State,
+    rate: &Rate,
+) -> Option<Determinant> {
+    let (matrix, _) = scaled_rows(system, loading, state);
+    let mut matrix = matrix.insert_row(system.size() - 1, 0.0);
     system.border(&mut matrix, rate);
-    let factorisation = Factorisation::new(matrix)?;
-    (factorisation.pivot_ratio() > UNCERTAIN).then(|| factorisation.determinant())
+    determinant(matrix)
 }
 
 /// The signature at the end of a step, and how it changed.

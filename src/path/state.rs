@@ -47,8 +47,7 @@ impl State {
     pub fn chord(&self, other: &Self) -> Rate {
         let mut chord =
             Rate { displacement: other.displacement.clone(), load: other.load, reactions: other.reactions.clone() };
-        let own =
-            Rate { displacement: self.displacement.clone(), load: self.load, reactions: self.reactions.clone() };
+        let own = Rate { displacement: self.displacement.clone(), load: self.load, reactions: self.reactions.clone() };
         chord.add(&own, -1.0);
         chord
     }

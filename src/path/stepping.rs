@@ -61,8 +61,8 @@ fn first_crossing(
         // The start is singular: signs are known from the end on.
         let state = &reached.corrected.state;
         let regular = reached.determinant.filter(|_| !matches!(reached.event, Some(Watch::LoadRate { .. })));
-        let after = regular
-            .and_then(|sign| Signature::with_determinant(start.loading, start.modes, start.state, state, sign));
+        let after =
+            regular.and_then(|sign| Signature::with_determinant(start.loading, start.modes, start.state, state, sign));
         return Ok((reached, None, after));
     };
     let (after, change) = singular::compare(start, before, &reached);
