@@ -1,8 +1,8 @@
 //! The inertia of a symmetric matrix: how many eigenvalues are negative, zero and positive.
 //!
 //! `A = P L D Lᵀ Pᵀ` with 1x1 and 2x2 pivots has the inertia of `D` (Sylvester's law). Pivots by J. R. Bunch and
-//! L. Kaufman, Math. Comp. 31 (1977) 163, doi:10.1090/S0025-5718-1977-0428694-0: a third of the cost of an LU
-//! factorisation's pivots, and stable for indefinite matrices.
+//! L. Kaufman, Math. Comp. 31 (1977) 163, doi:10.1090/S0025-5718-1977-0428694-0: half the operations of an LU
+//! factorisation, and stable for indefinite matrices.
 
 use nalgebra::DMatrix;
 

@@ -160,7 +160,14 @@ pub fn compare(start: &Start<'_>, before: Signature, reached: &Reached) -> (Opti
     let mut net = last as isize - first as isize;
     if let Some(Watch::LoadRate { sign }) = reached.event {
         // K u̇ = ṡ f: the eigenvalue that vanishes at the limit point goes the way of the load, times the sign of f·u̇.
-        let work: f64 = start.loading.pattern.iter().zip(&reached.rate.displacement).map(|(f, u)| f * u).sum();
+        let system = ModeSystem::new(start.loading, start.modes, start.state);
+        let matrix = system.matrix(state);
+        let structure = start.loading.structure;
+        let column =
+            structure.freedom_of.iter().enumerate().map(|(unknown, freedom)| {
+                -matrix[(unknown, structure.unknowns())] * reached.rate.displacement[*freedom]
+            });
+        let work: f64 = column.sum();
         let own = if sign * work > 0.0 { 1 } else { -1 };
         // Which side of zero it has at the point itself is chance.
         if (net % 2 != 0) != odd {
