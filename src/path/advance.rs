@@ -37,6 +37,8 @@ pub struct Reached {
     pub drift: Option<Rate>,
     /// What ended the step early.
     pub event: Option<Watch>,
+    /// Sign of the bordered determinant there, where it is certain.
+    pub determinant: Option<f64>,
 }
 
 /// Work done, whether it led to a point or not.
@@ -56,6 +58,8 @@ pub enum Refused {
     Turned(f64),
     /// An event lies at the start itself.
     AtStart(Watch),
+    /// The signs of the equations changed, and no bifurcation point could be made out.
+    Unresolved,
 }
 
 /// The direction may turn by this much in a step.
@@ -75,6 +79,12 @@ impl Start<'_> {
         self.settle(system, guess, Place::ArcLength { from: self.state, step }, work)
     }
 
+    /// The point at an arc length, from a guess.
+    pub fn reach_near(&self, guess: State, step: f64, work: &mut Work) -> Result<Reached, Refused> {
+        let system = ModeSystem::new(self.loading, self.modes, self.state);
+        self.settle(system, guess, Place::ArcLength { from: self.state, step }, work)
+    }
+
     fn settle(
         &self,
         mut system: ModeSystem<'_>,
@@ -86,7 +96,8 @@ impl Start<'_> {
         work.newton_iterations += corrected.iterations;
         work.factorisations += corrected.iterations + 1;
         let singular = Refused::Newton(Failure::Singular);
-        let (mut rate, mut error_estimate) = system.tangent_and_error(&corrected, self.rate).ok_or(singular)?;
+        let (mut rate, mut error_estimate, mut determinant) =
+            system.tangent_and_error(&corrected, self.rate).ok_or(singular)?;
         if system.has_tracks() {
             // Once more, now that the turn of the slips at the end is known.
             system.set_turns(self.rate, Some((&corrected, &rate)));
@@ -98,7 +109,7 @@ impl Start<'_> {
             let hardness = corrected.iterations_to_small;
             corrected = again;
             corrected.iterations_to_small = hardness;
-            (rate, error_estimate) = system.tangent_and_error(&corrected, self.rate).ok_or(singular)?;
+            (rate, error_estimate, determinant) = system.tangent_and_error(&corrected, self.rate).ok_or(singular)?;
         }
         let step = corrected.state.distance(self.state);
         // The sphere around the start meets the path behind, too, and may meet other branches: the chord has to go the
@@ -110,7 +121,7 @@ impl Start<'_> {
         if turn > MOST_TURN {
             return Err(Refused::Turned(turn));
         }
-        Ok(Reached { corrected, rate, step, error_estimate, drift: None, event: None })
+        Ok(Reached { corrected, rate, step, error_estimate, drift: None, event: None, determinant })
     }
 
     /// A step of an arc length, or to the first event before.

@@ -10,6 +10,7 @@
 //! | `corner` | nodes that several obstacles hold at once |
 //! | `track`, `drift` | slip in a plane: its rule of fourth order; the error that is left |
 //! | `watch`, `root`, `advance` | what ends a mode; one step, ended exactly at the first event |
+//! | `singular`, `critical`, `branches` | whether a step passes a smooth bifurcation; where; which directions leave it |
 //! | `standing`, `directions`, `condensed`, `decide` | which contacts can change; every direction; which one is taken |
 //! | `program`, `naming` | the MPEC of an increment; where it names the mode |
 //! | `energy`, `record`, `increment`, `report`, `stop` | balances, rows, totals, reasons |
@@ -18,10 +19,12 @@
 
 mod advance;
 mod arrival;
+mod branches;
 mod changeable;
 pub mod checkpoint;
 mod condensed;
 mod corner;
+mod critical;
 mod decide;
 mod directions;
 mod drift;
@@ -39,6 +42,7 @@ mod record;
 pub mod report;
 mod root;
 pub mod scene;
+mod singular;
 mod standing;
 mod state;
 mod stepping;

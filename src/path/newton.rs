@@ -1,6 +1,7 @@
 //! Newton's method on the equations of a mode, and the path's direction at the point found.
 
 use super::mode_system::{Iterate, Kind, ModeSystem};
+use super::singular::UNCERTAIN;
 use super::state::{Rate, State};
 use crate::contact::Mode;
 use crate::contact::vector::Vector;
@@ -135,8 +136,8 @@ impl ModeSystem<'_> {
     }
 
     /// The path's direction at a converged point, and an estimate of the point's error: the size of one more Newton
-    /// correction across the path.
-    pub fn tangent_and_error(&self, corrected: &Corrected, towards: &Rate) -> Option<(Rate, f64)> {
+    /// correction across the path. With them the sign of the bordered determinant, where it is certain.
+    pub fn tangent_and_error(&self, corrected: &Corrected, towards: &Rate) -> Option<(Rate, f64, Option<f64>)> {
         let iterate = self.iterate_of(corrected);
         let factorisation = self.bordered(&iterate, towards)?;
         let rate = self.tangent_by(&factorisation, &iterate)?;
@@ -144,7 +145,30 @@ impl ModeSystem<'_> {
         values[self.size - 1] = 0.0;
         let error =
             if factorisation.solve(&mut values) { self.rate_at(&iterate, &values).size() } else { return None };
-        Some((rate, error))
+        let certain = factorisation.pivot_ratio() > UNCERTAIN && !self.has_tracks();
+        Some((rate, error, certain.then(|| factorisation.determinant_sign())))
+    }
+
+    /// A point as it is, with its residual.
+    pub fn judged(&self, state: State, force_scale: f64) -> Corrected {
+        let mut iterate = self.iterate(state);
+        self.make_consistent(&mut iterate);
+        let mut left_over = DVector::zeros(self.size);
+        let mut force = vec![0.0; self.loading.structure.freedoms()];
+        let (largest, forces) = self.residual(&iterate, &mut left_over, &mut force);
+        let geometric = left_over.iter().skip(self.loading.structure.unknowns()).fold(0.0_f64, |m, v| m.max(v.abs()));
+        let residual = (largest / forces.max(force_scale).max(f64::MIN_POSITIVE)).max(geometric);
+        self.share(&mut iterate.state);
+        Corrected {
+            modes: self.modes_at(&iterate),
+            state: iterate.state,
+            directions: iterate.directions,
+            iterations: 0,
+            iterations_to_small: 0,
+            residual,
+            left_over,
+            force_scale: forces,
+        }
     }
 }
 

@@ -42,6 +42,15 @@ impl State {
         state
     }
 
+    /// The change to another state.
+    pub fn chord(&self, other: &Self) -> Rate {
+        let mut chord =
+            Rate { displacement: other.displacement.clone(), load: other.load, reactions: other.reactions.clone() };
+        let own = Rate { displacement: self.displacement.clone(), load: self.load, reactions: self.reactions.clone() };
+        chord.add(&own, -1.0);
+        chord
+    }
+
     /// `‖(Δu, Δs)‖` to another state.
     pub fn distance(&self, other: &Self) -> f64 {
         let squared: f64 = self.displacement.iter().zip(&other.displacement).map(|(a, b)| (a - b) * (a - b)).sum();
@@ -82,6 +91,16 @@ impl Rate {
         for reaction in &mut self.reactions {
             reaction.normal *= factor;
             reaction.tangential.iter_mut().for_each(|value| *value *= factor);
+        }
+    }
+
+    /// Adds a multiple of another rate.
+    pub fn add(&mut self, other: &Self, factor: f64) {
+        self.displacement.iter_mut().zip(&other.displacement).for_each(|(sum, value)| *sum += factor * value);
+        self.load += factor * other.load;
+        for (sum, value) in self.reactions.iter_mut().zip(&other.reactions) {
+            sum.normal += factor * value.normal;
+            sum.tangential.iter_mut().zip(&value.tangential).for_each(|(sum, value)| *sum += factor * value);
         }
     }
 

@@ -13,6 +13,7 @@ use super::name_event::describe_start;
 use super::record::{self, Row};
 use super::report::Report;
 use super::scene::{End, Scene};
+use super::singular::Signature;
 use super::standing::{Standing, standings};
 use super::state::{Rate, State};
 use super::stepping::{Accepted, NO_ENERGY};
@@ -70,6 +71,8 @@ pub(super) struct Here {
     pub load_sign: f64,
     /// Error of the path up to here, where it has one.
     pub drift: Option<Rate>,
+    /// Signs that tell smooth bifurcations; `None` until known in these modes.
+    pub signature: Option<Signature>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -111,6 +114,7 @@ impl<'a> Path<'a> {
                 rate: None,
                 load_sign: 0.0,
                 drift: None,
+                signature: None,
             },
             step,
             index: 0,
@@ -193,6 +197,7 @@ impl<'a> Path<'a> {
 
     pub(super) fn go(&mut self, choice: &Choice) {
         self.here.modes.clone_from(&choice.modes);
+        self.here.signature = None;
         self.here.load_sign = choice.load_sign;
         self.here.rate = Some(choice.rate.clone());
         // A node that leaves a corner along one of its obstacles takes the whole force there.
@@ -291,6 +296,7 @@ impl<'a> Path<'a> {
         self.stage += 1;
         self.here.state.load = 0.0;
         self.here.rate = None;
+        self.here.signature = None;
         self.counts = StageCounts::default();
         self.visited.clear();
         true
@@ -311,9 +317,10 @@ impl<'a> Path<'a> {
         self.here.state = reached.corrected.state;
         self.here.modes = reached.corrected.modes;
         self.here.drift = reached.drift;
+        self.here.signature = accepted.signature;
         let arriving = Arriving { modes: self.here.modes.clone(), load_sign: self.here.load_sign, counts: self.counts };
         let at_bound = self.at_bound(&reached.rate);
-        let mut arrival = self.classify(reached.event, &reached.rate);
+        let mut arrival = self.classify(reached.event, accepted.crossing, &reached.rate);
         if accepted.returned {
             arrival.stop = Some(StopReason::Cycle);
         }
