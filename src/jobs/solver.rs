@@ -2,7 +2,7 @@
 
 use crate::cancel::CancelFlag;
 use crate::model::{InputErrors, JobRequest};
-use crate::path::{Increment, Path, Plan, Report, Scene};
+use crate::path::{Increment, Plan, Report, Scene, TracedPath};
 use std::ops::ControlFlow;
 
 pub trait Solver: Send + Sync + 'static {
@@ -35,7 +35,7 @@ impl Solver for PathSolver {
         accept: &mut dyn FnMut(Increment) -> ControlFlow<()>,
     ) -> Result<Option<Report>, InputErrors> {
         let scene = Scene::new(request)?;
-        let mut path = Path::new(&scene, cancel);
+        let mut path = TracedPath::new(&scene, cancel);
         for increment in path.by_ref() {
             if accept(increment).is_break() {
                 return Ok(None);

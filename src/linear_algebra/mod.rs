@@ -44,6 +44,14 @@ impl Factorisation {
         regular.then_some(Self { row_scales, lu })
     }
 
+    /// The sign of the determinant; the factorised matrix is regular, so that it is not zero.
+    pub fn determinant_sign(&self) -> f64 {
+        let factors = self.lu.lu_internal();
+        let negative = (0..factors.nrows()).filter(|index| factors[(*index, *index)] < 0.0).count();
+        let sign: f64 = self.lu.p().determinant();
+        if negative % 2 == 0 { sign } else { -sign }
+    }
+
     /// Solves for one right-hand side, overwritten by the solution; `false` when the result is not finite.
     pub fn solve(&self, right_hand_side: &mut DVector<f64>) -> bool {
         right_hand_side.component_div_assign(&self.row_scales);
@@ -123,6 +131,15 @@ mod tests {
     fn a_singular_matrix_is_refused() {
         assert!(Factorisation::new(DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 4.0])).is_none());
         assert!(Factorisation::new(DMatrix::from_row_slice(2, 2, &[1.0, f64::NAN, 2.0, 4.0])).is_none());
+    }
+
+    #[test]
+    fn the_sign_of_the_determinant_counts_exchanges() {
+        for (entries, sign) in [([0.0, 1.0, 1.0, 0.0], -1.0), ([2.0, 1.0, 1.0, 2.0], 1.0), ([1.0, 2.0, 2.0, 1.0], -1.0)]
+        {
+            let factorisation = Factorisation::new(DMatrix::from_row_slice(2, 2, &entries)).unwrap();
+            assert_eq!(factorisation.determinant_sign(), sign);
+        }
     }
 
     #[test]

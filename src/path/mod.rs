@@ -14,6 +14,7 @@
 //! | `program`, `naming` | the MPEC of an increment; where it names the mode |
 //! | `energy`, `record`, `increment`, `report`, `stop` | balances, rows, totals, reasons |
 //! | `tracer`, `stepping`, `arrival` | the iterator; how far a step goes; what a point turned out to be |
+//! | `regularised`, `traced` | the rival method; the path by whichever method is named |
 
 mod advance;
 mod arrival;
@@ -34,6 +35,7 @@ pub mod plan;
 mod program;
 mod rates;
 mod record;
+pub mod regularised;
 pub mod report;
 mod root;
 pub mod scene;
@@ -41,13 +43,16 @@ mod standing;
 mod state;
 mod stepping;
 pub mod stop;
+mod traced;
 pub mod tracer;
 mod track;
 mod watch;
 
 pub use increment::Increment;
 pub use plan::Plan;
+pub use regularised::RegularisedPath;
 pub use report::Report;
 pub use scene::Scene;
 pub use stop::{Outcome, StopReason};
+pub use traced::TracedPath;
 pub use tracer::Path;

@@ -20,3 +20,22 @@ pub struct Report {
     pub qp_solves: u64,
     pub mpec_solves: u64,
 }
+
+impl Report {
+    /// Of a path that has not ended; the reason stands for one that is dropped.
+    pub(super) fn begun() -> Self {
+        Self {
+            stop_reason: StopReason::Cancelled,
+            sentence: String::new(),
+            increments: 0,
+            elapsed_s: 0.0,
+            largest_residual: 0.0,
+            largest_complementarity: 0.0,
+            largest_energy_error: 0.0,
+            factorisations: 0,
+            newton_iterations: 0,
+            qp_solves: 0,
+            mpec_solves: 0,
+        }
+    }
+}
