@@ -274,7 +274,8 @@ pub struct Regularised {
     /// gaps is multiplied by the penalty: stiff penalties ask for a looser tolerance.
     pub tolerance: f64,
     /// Crisfield's ψ: the weight of the load in the arc length that `arc_length` bounds, 0 (cylindrical) or more. With 1
-    /// (spherical) that is the arc length of the other methods, which increments report in any case.
+    /// (spherical) that is the arc length of the other methods, which increments report in any case. Where the load
+    /// changes and no displacement does, as under an obstacle that slides along, it has to be above 0.
     pub load_weight: f64,
     pub load_sign: LoadSign,
 }

@@ -8,6 +8,9 @@ use crate::path::advance::Work;
 use crate::path::state::State;
 use nalgebra::DVector;
 
+/// Difference of the roots' products with the displacements before, over the square of the arc length, that is none.
+const NO_TURN: f64 = 1e-12;
+
 /// What closes the equations.
 #[derive(Debug, Clone, Copy)]
 pub enum Control {
@@ -178,8 +181,11 @@ fn root(
     // Without cancellation: the root of larger size first, the other from the product of both.
     let far = -0.5 * (b + discriminant.sqrt().copysign(b));
     let roots = if far == 0.0 { [0.0, 0.0] } else { [far / a, c / far] };
-    let along = |load_step: f64| change.displacement.dot(&corrected) + load_step * change.displacement.dot(by_load);
-    Some(if along(roots[0]) >= along(roots[1]) { roots[0] } else { roots[1] })
+    // Where the load changes and the displacements do not, the loads tell the roots apart.
+    let turning = change.displacement.dot(by_load) * (roots[0] - roots[1]);
+    let still = turning.abs() <= NO_TURN * size * size;
+    let ahead = if still { change.load * (roots[0] - roots[1]) } else { turning };
+    Some(if ahead >= 0.0 { roots[0] } else { roots[1] })
 }
 
 #[cfg(test)]
