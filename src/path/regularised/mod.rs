@@ -25,12 +25,14 @@
 //! | `law` | one contact: reaction and its derivative |
 //! | `system` | residual and tangent of the whole structure |
 //! | `increment` | predictor and corrector of one increment |
-//! | `tracer` | the iterator: step lengths, stages, ends |
+//! | `stepping` | step lengths, and the increment that ends a stage |
+//! | `tracer` | the iterator: points accepted, stages, rows |
 //! | `record` | energies and rows |
 
 mod increment;
 mod law;
 mod record;
+mod stepping;
 mod system;
 #[cfg(test)]
 mod tests;
