@@ -107,9 +107,9 @@ impl System<'_> {
         for (index, (contact, response)) in self.loading.contacts.iter().zip(contacts).enumerate() {
             let first = contact.node * structure.dimension;
             let mut motion: Vector = self.loading.pattern.shifts[index].map(|shift| -shift);
-            for component in 0..structure.dimension {
+            for (component, motion) in motion.iter_mut().enumerate().take(structure.dimension) {
                 if structure.unknown_of[first + component].is_none() {
-                    motion[component] += self.loading.support_rate(first + component);
+                    *motion += self.loading.support_rate(first + component);
                 }
             }
             for row in 0..structure.dimension {
