@@ -2,7 +2,7 @@
 
 use crate::cancel::CancelFlag;
 use crate::model::{InputError, InputErrors, JobRequest};
-use crate::path::{Checkpoint, CheckpointError, Increment, Path, Plan, Report, Scene};
+use crate::path::{Checkpoint, CheckpointError, Increment, Path, Plan, Report, Scene, TracedPath};
 use std::ops::ControlFlow;
 
 /// Where a path begins that follows a direction of another.
@@ -74,15 +74,19 @@ impl Solver for PathSolver {
     }
 }
 
-fn junction(path: &Path<'_>) -> Option<Junction> {
+fn junction(path: &TracedPath<'_>) -> Option<Junction> {
+    let TracedPath::Exact(path) = path else { return None };
     let listed = path.listed_directions();
     let open = || (0..listed).map(|direction| path.can_be_followed(direction)).collect();
     (listed > 0).then(|| Junction { checkpoint: path.checkpoint(), open: open() })
 }
 
-fn begin(scene: &Scene, beginning: Option<Beginning>, cancel: CancelFlag) -> Result<Path<'_>, InputErrors> {
-    let Some(Beginning { checkpoint, direction, event }) = beginning else { return Ok(Path::new(scene, cancel)) };
-    Path::follow(scene, checkpoint, direction, event, cancel).map_err(|error| {
+fn begin(scene: &Scene, beginning: Option<Beginning>, cancel: CancelFlag) -> Result<TracedPath<'_>, InputErrors> {
+    let Some(Beginning { checkpoint, direction, event }) = beginning else {
+        return Ok(TracedPath::new(scene, cancel));
+    };
+    let followed = Path::follow(scene, checkpoint, direction, event, cancel);
+    followed.map(|path| TracedPath::Exact(Box::new(path))).map_err(|error| {
         let pointer = match error {
             CheckpointError::Version { .. } | CheckpointError::OtherModel { .. } | CheckpointError::NothingListed => {
                 "/increment"

@@ -182,6 +182,15 @@ mod tests {
     }
 
     #[test]
+    fn the_sign_of_the_determinant_counts_exchanges() {
+        for (entries, sign) in [([0.0, 1.0, 1.0, 0.0], -1.0), ([2.0, 1.0, 1.0, 2.0], 1.0), ([1.0, 2.0, 2.0, 1.0], -1.0)]
+        {
+            let factorisation = Factorisation::new(DMatrix::from_row_slice(2, 2, &entries)).unwrap();
+            assert_eq!(factorisation.determinant_sign(), sign);
+        }
+    }
+
+    #[test]
     fn rows_of_very_different_size_are_solved() {
         let factorisation = Factorisation::new(DMatrix::from_row_slice(2, 2, &[1e-18, 2e-18, 3e18, 4e18])).unwrap();
         let mut solution = DVector::from_vec(vec![5e-18, 11e18]);

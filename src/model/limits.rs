@@ -29,6 +29,8 @@ pub const MAX_MODES: u64 = 10_000_000;
 pub const MAX_EXPLORE_DEPTH: u64 = 100;
 /// Upper bound of `analysis.explore.max_jobs`: all of them may be queued at one time.
 pub const MAX_EXPLORE_JOBS: u64 = 10_000;
+/// Upper bound of `analysis.regularised.desired_iterations`.
+pub const MAX_DESIRED_ITERATIONS: u64 = 1_000;
 
 /// Numbers of a request are zero or lie between this and [`MAX_MAGNITUDE`] in absolute value, so that neither a ratio
 /// of two of them nor its square can overflow or vanish.

@@ -227,6 +227,9 @@ pub struct Analysis {
     /// Follow the directions not taken by jobs of their own; absent: none is followed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub explore: Option<Explore>,
+    /// Parameters of `method: "regularised"`; given with that method only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub regularised: Option<Regularised>,
 }
 
 /// How far the directions not taken are followed: each by a job of its own, queued when this one has completed or stopped.
@@ -257,6 +260,7 @@ impl Default for Analysis {
             max_increments: 1000,
             max_modes: 65_536,
             explore: None,
+            regularised: None,
         }
     }
 }
@@ -272,6 +276,54 @@ pub enum Method {
     Mpec,
     /// The rival, for comparison: penalty contact and regularised friction under a conventional arc-length method.
     Regularised,
+}
+
+/// Parameters of the rival method: penalties of contact and friction, and Crisfield's arc-length control.
+///
+/// Penalties are multiples of the plan's `force_scale / displacement_scale`, the stiffness of the softest bar.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct Regularised {
+    /// Normal reaction per penetration; above 0.
+    pub normal_penalty: f64,
+    /// Tangential reaction per elastic slip while the contact sticks; above 0.
+    pub tangential_penalty: f64,
+    /// Newton iterations that the step length aims at; four times as many are tried. 1 or more.
+    pub desired_iterations: u64,
+    /// Equilibrium residual over the largest force at which an increment has converged; between 0 and 1. Round-off in
+    /// gaps is multiplied by the penalty: stiff penalties ask for a looser tolerance.
+    pub tolerance: f64,
+    /// Crisfield's ψ: the weight of the load in the arc length that `arc_length` bounds, 0 (cylindrical) or more. With 1
+    /// (spherical) that is the arc length of the other methods, which increments report in any case. Where the load
+    /// changes and no displacement does, as under an obstacle that slides along, it has to be above 0.
+    pub load_weight: f64,
+    pub load_sign: LoadSign,
+}
+
+impl Default for Regularised {
+    fn default() -> Self {
+        Self {
+            normal_penalty: 1e4,
+            tangential_penalty: 1e4,
+            desired_iterations: 5,
+            tolerance: 1e-8,
+            load_weight: 0.0,
+            load_sign: LoadSign::default(),
+        }
+    }
+}
+
+/// How the sign of the load in the predictor is chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum LoadSign {
+    /// The sign of the tangent's determinant (Crisfield 1981).
+    Determinant,
+    /// The side to which the previous increment's displacements went (Feng, Perić and Owen 1996).
+    #[default]
+    PreviousIncrement,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]

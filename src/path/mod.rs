@@ -16,6 +16,7 @@
 //! | `energy`, `record`, `increment`, `report`, `stop` | balances, rows, totals, reasons |
 //! | `tracer`, `stepping`, `arrival` | the iterator; how far a step goes; what a point turned out to be |
 //! | `checkpoint` | a path put down at a point, to be taken up there again or followed in another direction |
+//! | `regularised`, `traced` | the rival method; the path by whichever method is named |
 
 mod advance;
 mod arrival;
@@ -39,6 +40,7 @@ pub mod plan;
 mod program;
 mod rates;
 mod record;
+pub mod regularised;
 pub mod report;
 mod root;
 pub mod scene;
@@ -47,6 +49,7 @@ mod standing;
 mod state;
 mod stepping;
 pub mod stop;
+mod traced;
 pub mod tracer;
 mod track;
 mod watch;
@@ -54,7 +57,9 @@ mod watch;
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use increment::Increment;
 pub use plan::Plan;
+pub use regularised::RegularisedPath;
 pub use report::Report;
 pub use scene::Scene;
 pub use stop::{Outcome, StopReason};
+pub use traced::TracedPath;
 pub use tracer::Path;

@@ -101,6 +101,7 @@ impl Scene {
         let Contacts { contacts, contact_names, reported, corners } =
             build_contacts(model, &numbers, length, &structure, &mut left_out);
         left_out.extend(plan_what_is_left_out(model, &contacts, &structure));
+        left_out.extend(super::regularised::left_out(&request.analysis));
         let first_contacts: Vec<usize> =
             (0..contacts.len()).filter_map(|contact| reported.iter().position(|one| one.contact == contact)).collect();
         let scaled = Scaled {

@@ -21,7 +21,7 @@ const ITERATIONS_SOUGHT: f64 = 4.0;
 /// Energy imbalance of an increment, over the largest energy so far, that a step aims at.
 const IMBALANCE_SOUGHT: f64 = 5e-9;
 /// Stretch of a bar at which steps that do not converge are its collapse.
-const COLLAPSED: f64 = 1e-4;
+pub(super) const COLLAPSED: f64 = 1e-4;
 /// Energies below this fraction of the force scale times the displacement scale are round-off.
 pub(super) const NO_ENERGY: f64 = 1e-12;
 /// A step after which the next would have to be shorter than this fraction of it is taken again, shorter.

@@ -1,9 +1,9 @@
 //! How the path is to be traced.
 
 use super::numbers;
-use crate::model::limits::{MAX_EXPLORE_DEPTH, MAX_EXPLORE_JOBS, MAX_INCREMENTS, MAX_MODES};
+use crate::model::limits::{MAX_DESIRED_ITERATIONS, MAX_EXPLORE_DEPTH, MAX_EXPLORE_JOBS, MAX_INCREMENTS, MAX_MODES};
 use crate::model::mistakes::{Mistakes, Place};
-use crate::model::request::{Analysis, ArcLength};
+use crate::model::request::{Analysis, ArcLength, Method, Regularised};
 
 pub(super) fn analysis(analysis: &Analysis, at: &Place, mistakes: &mut Mistakes) {
     arc_length(&analysis.arc_length, &at.member("arc_length"), mistakes);
@@ -11,8 +11,34 @@ pub(super) fn analysis(analysis: &Analysis, at: &Place, mistakes: &mut Mistakes)
     numbers::count(analysis.max_modes, MAX_MODES, &at.member("max_modes"), mistakes);
     if let Some(explore) = analysis.explore {
         let at = at.member("explore");
+        if analysis.method == Method::Regularised {
+            mistakes.add(&at, || "the method `regularised` lists no directions that could be followed; leave it out");
+        }
         numbers::count(explore.depth, MAX_EXPLORE_DEPTH, &at.member("depth"), mistakes);
         numbers::count(explore.max_jobs, MAX_EXPLORE_JOBS, &at.member("max_jobs"), mistakes);
+    }
+    if let Some(given) = &analysis.regularised {
+        let at = at.member("regularised");
+        if analysis.method != Method::Regularised {
+            mistakes.add(&at, || "parameters of the method `regularised`, which is not the one chosen; leave them out, or give `\"method\": \"regularised\"`".to_owned());
+        }
+        regularised(given, &at, mistakes);
+    }
+}
+
+fn regularised(regularised: &Regularised, at: &Place, mistakes: &mut Mistakes) {
+    let &Regularised { normal_penalty, tangential_penalty, desired_iterations, tolerance, load_weight, load_sign: _ } =
+        regularised;
+    numbers::positive(normal_penalty, &at.member("normal_penalty"), mistakes);
+    numbers::positive(tangential_penalty, &at.member("tangential_penalty"), mistakes);
+    numbers::count(desired_iterations, MAX_DESIRED_ITERATIONS, &at.member("desired_iterations"), mistakes);
+    let at_tolerance = at.member("tolerance");
+    if numbers::positive(tolerance, &at_tolerance, mistakes) && tolerance >= 1.0 {
+        mistakes.add(&at_tolerance, || format!("found {tolerance:?}; a number between 0 and 1 is expected"));
+    }
+    let at_weight = at.member("load_weight");
+    if numbers::number(load_weight, &at_weight, mistakes) && load_weight < 0.0 {
+        mistakes.add(&at_weight, || format!("found {load_weight:?}; 0 or more is expected"));
     }
 }
 

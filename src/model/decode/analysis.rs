@@ -2,11 +2,11 @@
 
 use super::reader::{Choices, Fields, Input, count, number};
 use crate::model::mistakes::Mistakes;
-use crate::model::request::{Analysis, ArcLength, Events, Explore, Method, Selection};
+use crate::model::request::{Analysis, ArcLength, Events, Explore, LoadSign, Method, Regularised, Selection};
 
 const ANALYSIS: Fields = Fields {
     what: "an analysis",
-    known: &["method", "selection", "events", "arc_length", "max_increments", "max_modes", "explore"],
+    known: &["method", "selection", "events", "arc_length", "max_increments", "max_modes", "explore", "regularised"],
     later: &[("record", "leave it out: everything is recorded"), ("keep_all", "leave it out: every increment is kept")],
 };
 
@@ -15,8 +15,23 @@ const ARC_LENGTH: Fields =
 
 const EXPLORE: Fields = Fields { what: "an exploration", known: &["depth", "max_jobs"], later: &[] };
 
-const METHOD: Choices<Method> =
-    Choices { what: "a method", known: &[("auto", Method::Auto), ("mpec", Method::Mpec)], later: &["regularised"] };
+const REGULARISED: Fields = Fields {
+    what: "a regularisation",
+    known: &["normal_penalty", "tangential_penalty", "desired_iterations", "tolerance", "load_weight", "load_sign"],
+    later: &[],
+};
+
+const METHOD: Choices<Method> = Choices {
+    what: "a method",
+    known: &[("auto", Method::Auto), ("mpec", Method::Mpec), ("regularised", Method::Regularised)],
+    later: &[],
+};
+
+const LOAD_SIGN: Choices<LoadSign> = Choices {
+    what: "a choice of the load's sign",
+    known: &[("determinant", LoadSign::Determinant), ("previous_increment", LoadSign::PreviousIncrement)],
+    later: &[],
+};
 
 const SELECTION: Choices<Selection> = Choices {
     what: "a selection",
@@ -44,6 +59,7 @@ pub(super) fn analysis(input: &Input, mistakes: &mut Mistakes) -> Option<Analysi
     let max_increments = object.with_default("max_increments", default.max_increments, mistakes, count);
     let max_modes = object.with_default("max_modes", default.max_modes, mistakes, count);
     let explore = object.optional("explore", mistakes, explore);
+    let regularised = object.optional("regularised", mistakes, regularised);
     Some(Analysis {
         method: method?,
         selection: selection?,
@@ -52,6 +68,7 @@ pub(super) fn analysis(input: &Input, mistakes: &mut Mistakes) -> Option<Analysi
         max_increments: max_increments?,
         max_modes: max_modes?,
         explore: explore?,
+        regularised: regularised?,
     })
 }
 
@@ -71,4 +88,24 @@ fn explore(input: &Input, mistakes: &mut Mistakes) -> Option<Explore> {
     let depth = object.required("depth", mistakes, count);
     let max_jobs = object.required("max_jobs", mistakes, count);
     Some(Explore { depth: depth?, max_jobs: max_jobs? })
+}
+
+fn regularised(input: &Input, mistakes: &mut Mistakes) -> Option<Regularised> {
+    let object = input.object(&REGULARISED, mistakes)?;
+    let default = Regularised::default();
+    let normal_penalty = object.with_default("normal_penalty", default.normal_penalty, mistakes, number);
+    let tangential_penalty = object.with_default("tangential_penalty", default.tangential_penalty, mistakes, number);
+    let desired_iterations = object.with_default("desired_iterations", default.desired_iterations, mistakes, count);
+    let tolerance = object.with_default("tolerance", default.tolerance, mistakes, number);
+    let load_weight = object.with_default("load_weight", default.load_weight, mistakes, number);
+    let load_sign = object
+        .with_default("load_sign", default.load_sign, mistakes, |input, mistakes| input.choice(&LOAD_SIGN, mistakes));
+    Some(Regularised {
+        normal_penalty: normal_penalty?,
+        tangential_penalty: tangential_penalty?,
+        desired_iterations: desired_iterations?,
+        tolerance: tolerance?,
+        load_weight: load_weight?,
+        load_sign: load_sign?,
+    })
 }

@@ -117,12 +117,23 @@ fn analysis() -> impl Strategy<Value = Analysis> {
             load_scale,
         },
     );
-    let method = one_of([Method::Auto, Method::Mpec]);
+    let method = one_of([Method::Auto, Method::Mpec, Method::Regularised]);
+    let load_sign = one_of([LoadSign::Determinant, LoadSign::PreviousIncrement]);
+    let regularised = (number(), number(), any::<u64>(), number(), number(), load_sign).prop_map(
+        |(normal_penalty, tangential_penalty, desired_iterations, tolerance, load_weight, load_sign)| Regularised {
+            normal_penalty,
+            tangential_penalty,
+            desired_iterations,
+            tolerance,
+            load_weight,
+            load_sign,
+        },
+    );
     let selection = one_of([Selection::MaxDissipation, Selection::MinPotentialEnergy, Selection::Straightest]);
     let events = one_of([Events::Auto, Events::All]);
     let explore = of((any::<u64>(), any::<u64>()).prop_map(|(depth, max_jobs)| Explore { depth, max_jobs }));
-    (method, selection, events, arc_length, any::<u64>(), any::<u64>(), explore).prop_map(
-        |(method, selection, events, arc_length, max_increments, max_modes, explore)| Analysis {
+    (method, selection, events, arc_length, any::<u64>(), any::<u64>(), explore, of(regularised)).prop_map(
+        |(method, selection, events, arc_length, max_increments, max_modes, explore, regularised)| Analysis {
             method,
             selection,
             events,
@@ -130,6 +141,7 @@ fn analysis() -> impl Strategy<Value = Analysis> {
             max_increments,
             max_modes,
             explore,
+            regularised,
         },
     )
 }

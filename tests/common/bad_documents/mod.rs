@@ -5,6 +5,7 @@
 mod form;
 mod loading;
 mod model;
+mod regularised;
 
 use serde_json::{Value, json};
 
@@ -42,6 +43,7 @@ pub fn bad_documents() -> Vec<BadDocument> {
         loading::motions(),
         loading::ends(),
         loading::analysis(),
+        regularised::regularised(),
         model::sizes(),
     ]
     .concat()
