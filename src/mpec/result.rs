@@ -3,6 +3,7 @@
 use nalgebra::DVector;
 use thiserror::Error;
 
+use super::cone::ConeActivity;
 pub use super::evaluation::Quantity;
 pub use super::relaxed::Multipliers;
 
@@ -56,6 +57,9 @@ pub enum StationarityKind {
     Mordukhovich,
     Clarke,
     Weak,
+    /// Multipliers exist in the branch that was taken; a cone pair is biactive with both members zero, and the
+    /// infinitely many directions that it could take were not examined. Nothing is claimed of B-stationarity.
+    OneBranch,
     /// Not stationary, or not established.
     Unknown,
 }
@@ -89,10 +93,12 @@ pub struct Solution {
     pub multipliers: Multipliers,
     /// One a pair.
     pub activity: Vec<PairActivity>,
+    /// One a cone pair.
+    pub cone_activity: Vec<ConeActivity>,
     pub stationarity: StationarityKind,
     /// Largest violation of an equality, inequality or sign; bounds hold always.
     pub largest_violation: f64,
-    /// Largest `|a_i b_i|`.
+    /// Largest `|a_i b_i|`, of the cone pairs `|A_i·B_i|`.
     pub largest_product: f64,
     pub counts: Counts,
 }
@@ -106,6 +112,8 @@ pub enum InputError {
     BoundsLength { expected: usize, lower: usize, upper: usize },
     #[error("variable {variable} has the lower bound {lower} and the upper bound {upper}")]
     Bounds { variable: usize, lower: f64, upper: f64 },
+    #[error("cone pair {pair} has members of size {size}; 2 or more is expected")]
+    ConeSize { pair: usize, size: usize },
     #[error("setting {name} is {value}; it must be {wanted}")]
     Setting { name: &'static str, value: f64, wanted: &'static str },
 }
