@@ -23,7 +23,7 @@ impl Path<'_> {
         let mut tried = step;
         for _ in 0..TRIALS {
             let named = self.name(&state, rate, &modes, tried);
-            if named.is_some_and(|named| named.modes == modes) {
+            if named.is_some_and(|named| named.agrees_with(&modes)) {
                 return true;
             }
             tried *= 0.3;
@@ -39,7 +39,7 @@ impl Path<'_> {
         let mut program = IncrementProgram::new(loading, base, expected, step, force);
         if program.pairs() == 0 {
             // No contact can be reached: there is nothing to decide.
-            return Some(Named { modes: modes.to_vec() });
+            return Some(Named { modes: modes.to_vec(), variables: program.variables_at(expected) });
         }
         let start = program.variables_at(expected);
         let (named, counts) = program.name(&start, modes, &self.cancel);
@@ -62,7 +62,7 @@ impl Path<'_> {
             if !option.retrace && !option.mechanism {
                 for _ in 0..TRIALS {
                     let named = self.name(&state, &option.rate, &option.modes, step);
-                    if named.is_some_and(|named| named.modes == option.modes) {
+                    if named.is_some_and(|named| named.agrees_with(&option.modes)) {
                         agrees = true;
                         break;
                     }

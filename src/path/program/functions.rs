@@ -5,13 +5,36 @@ use super::IncrementProgram;
 use crate::mpec::Problem;
 use nalgebra::{DMatrix, DVector};
 
+impl IncrementProgram<'_> {
+    /// Contacts with friction.
+    fn rough(&self) -> impl Iterator<Item = &InReach> {
+        self.reach.iter().filter(|entry| entry.friction > 0.0)
+    }
+
+    /// Contacts with friction whose cone is a second-order one.
+    fn coned(&self) -> impl Iterator<Item = &InReach> {
+        self.rough().filter(|_| self.in_space())
+    }
+
+    /// Contacts with friction whose cone is polyhedral.
+    fn split(&self) -> impl Iterator<Item = &InReach> {
+        self.rough().filter(|_| !self.in_space())
+    }
+
+    /// Slip along each tangent as a combination of variables: `(variable, factor)`.
+    fn slip_terms(&self, entry: &InReach, tangent: usize) -> impl Iterator<Item = (usize, f64)> {
+        let terms = if self.in_space() { [Some((entry.slip(tangent), 1.0)), None] } else { entry.parts().map(Some) };
+        terms.into_iter().flatten()
+    }
+}
+
 impl Problem for IncrementProgram<'_> {
     fn variables(&self) -> usize {
         self.variables
     }
 
     fn equalities(&self) -> usize {
-        self.loading.structure.unknowns() + self.reach.iter().filter(|entry| entry.friction > 0.0).count()
+        self.loading.structure.unknowns() + self.rough().count() * self.tangents()
     }
 
     fn inequalities(&self) -> usize {
@@ -19,16 +42,21 @@ impl Problem for IncrementProgram<'_> {
     }
 
     fn pairs(&self) -> usize {
-        self.reach.iter().map(|entry| if entry.friction > 0.0 { 3 } else { 1 }).sum()
+        self.reach.len() + 2 * self.split().count()
+    }
+
+    fn cone_sizes(&self) -> Vec<usize> {
+        self.coned().map(|_| 3).collect()
     }
 
     fn bounds(&self) -> (DVector<f64>, DVector<f64>) {
         let mut lower = DVector::repeat(self.variables, f64::NEG_INFINITY);
         for entry in &self.reach {
-            lower[entry.first] = 0.0;
-            if entry.friction > 0.0 {
-                lower[entry.first + 2] = 0.0;
-                lower[entry.first + 3] = 0.0;
+            lower[entry.normal()] = 0.0;
+        }
+        for entry in self.split() {
+            for (part, _) in entry.parts() {
+                lower[part] = 0.0;
             }
         }
         (lower, DVector::repeat(self.variables, f64::INFINITY))
@@ -44,8 +72,7 @@ impl Problem for IncrementProgram<'_> {
         let load = x[structure.unknowns()];
         squared += load * load;
         forward += load * self.forward.load;
-        let slip = |entry: &InReach| entry.traction * (x[entry.first + 2] - x[entry.first + 3]);
-        let dissipated: f64 = self.reach.iter().filter(|entry| entry.friction > 0.0).map(slip).sum();
+        let dissipated: f64 = self.rough().map(|entry| self.dissipation_of(entry, x)).sum();
         0.5 * self.arc_weight * squared - self.forward_weight * forward + dissipated
     }
 
@@ -58,9 +85,12 @@ impl Problem for IncrementProgram<'_> {
         }
         let load = structure.unknowns();
         gradient[load] = self.arc_weight * x[load] - self.forward_weight * self.forward.load;
-        for entry in self.reach.iter().filter(|entry| entry.friction > 0.0) {
-            gradient[entry.first + 2] = entry.traction;
-            gradient[entry.first + 3] = -entry.traction;
+        for entry in self.rough() {
+            for tangent in 0..self.tangents() {
+                for (variable, factor) in self.slip_terms(entry, tangent) {
+                    gradient[variable] = factor * entry.traction[tangent];
+                }
+            }
         }
     }
 
@@ -75,17 +105,22 @@ impl Problem for IncrementProgram<'_> {
         }
         let mut row = structure.unknowns();
         for entry in &self.reach {
-            let mut motion = 0.0;
-            for (unknown, normal, tangent) in self.node_of(entry) {
-                values[unknown] -= x[entry.first] * normal;
+            let mut motion = [0.0; 2];
+            for (unknown, normal, tangents) in self.node_of(entry) {
+                values[unknown] -= x[entry.normal()] * normal;
                 if entry.friction > 0.0 {
-                    values[unknown] -= x[entry.first + 1] * tangent;
-                    motion += tangent * x[unknown];
+                    for k in 0..self.tangents() {
+                        values[unknown] -= x[entry.tangential(k)] * tangents[k];
+                        motion[k] += tangents[k] * x[unknown];
+                    }
                 }
             }
             if entry.friction > 0.0 {
-                values[row] = motion - x[entry.first + 2] + x[entry.first + 3];
-                row += 1;
+                for (k, motion) in motion.into_iter().enumerate().take(self.tangents()) {
+                    values[row] =
+                        self.slip_terms(entry, k).fold(motion, |rest, (variable, factor)| rest - factor * x[variable]);
+                    row += 1;
+                }
             }
         }
     }
@@ -101,17 +136,22 @@ impl Problem for IncrementProgram<'_> {
         }
         let mut row = unknowns;
         for entry in &self.reach {
-            for (unknown, normal, tangent) in self.node_of(entry) {
-                jacobian[(unknown, entry.first)] = -normal;
+            for (unknown, normal, tangents) in self.node_of(entry) {
+                jacobian[(unknown, entry.normal())] = -normal;
                 if entry.friction > 0.0 {
-                    jacobian[(unknown, entry.first + 1)] = -tangent;
-                    jacobian[(row, unknown)] = tangent;
+                    for k in 0..self.tangents() {
+                        jacobian[(unknown, entry.tangential(k))] = -tangents[k];
+                        jacobian[(row + k, unknown)] = tangents[k];
+                    }
                 }
             }
             if entry.friction > 0.0 {
-                jacobian[(row, entry.first + 2)] = -1.0;
-                jacobian[(row, entry.first + 3)] = 1.0;
-                row += 1;
+                for k in 0..self.tangents() {
+                    for (variable, factor) in self.slip_terms(entry, k) {
+                        jacobian[(row, variable)] = -factor;
+                    }
+                    row += 1;
+                }
             }
         }
     }
@@ -123,13 +163,13 @@ impl Problem for IncrementProgram<'_> {
         for entry in &self.reach {
             let contact = &self.loading.contacts[entry.contact];
             first[pair] = contact.gap(structure.dimension, &state.displacement) / self.step;
-            second[pair] = x[entry.first];
+            second[pair] = x[entry.normal()];
             pair += 1;
-            if entry.friction > 0.0 {
-                let bound = entry.friction * x[entry.first];
-                for (side, offset) in [(1.0, 2), (-1.0, 3)] {
-                    first[pair] = (bound + side * x[entry.first + 1]) / (1.0 + entry.friction);
-                    second[pair] = x[entry.first + offset];
+            if entry.friction > 0.0 && !self.in_space() {
+                let bound = entry.friction * x[entry.normal()];
+                for (part, side) in entry.parts() {
+                    first[pair] = (bound + side * x[entry.tangential(0)]) / (1.0 + entry.friction);
+                    second[pair] = x[part];
                     pair += 1;
                 }
             }
@@ -142,15 +182,35 @@ impl Problem for IncrementProgram<'_> {
             for (unknown, normal, _) in self.node_of(entry) {
                 first[(pair, unknown)] = normal;
             }
-            second[(pair, entry.first)] = 1.0;
+            second[(pair, entry.normal())] = 1.0;
             pair += 1;
-            if entry.friction > 0.0 {
-                for (side, offset) in [(1.0, 2), (-1.0, 3)] {
-                    first[(pair, entry.first)] = entry.friction / (1.0 + entry.friction);
-                    first[(pair, entry.first + 1)] = side / (1.0 + entry.friction);
-                    second[(pair, entry.first + offset)] = 1.0;
+            if entry.friction > 0.0 && !self.in_space() {
+                for (part, side) in entry.parts() {
+                    first[(pair, entry.normal())] = entry.friction / (1.0 + entry.friction);
+                    first[(pair, entry.tangential(0))] = side / (1.0 + entry.friction);
+                    second[(pair, part)] = 1.0;
                     pair += 1;
                 }
+            }
+        }
+    }
+
+    fn cone_values(&self, x: &DVector<f64>, first: &mut DVector<f64>, second: &mut DVector<f64>) {
+        for (place, entry) in self.coned().enumerate() {
+            let (a, b) = entry.cone_members(x);
+            first.rows_mut(3 * place, 3).copy_from_slice(&a);
+            second.rows_mut(3 * place, 3).copy_from_slice(&b);
+        }
+    }
+
+    fn cone_jacobians(&self, _x: &DVector<f64>, first: &mut DMatrix<f64>, second: &mut DMatrix<f64>) {
+        for (place, entry) in self.coned().enumerate() {
+            let row = 3 * place;
+            first[(row, entry.normal())] = entry.friction / (1.0 + entry.friction);
+            second[(row, entry.bound())] = 1.0;
+            for k in 0..2 {
+                first[(row + 1 + k, entry.tangential(k))] = 1.0 / (1.0 + entry.friction);
+                second[(row + 1 + k, entry.slip(k))] = 1.0;
             }
         }
     }

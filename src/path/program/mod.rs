@@ -7,7 +7,13 @@
 //! ```
 //!
 //! (Y. Kanno, J. A. C. Martins, J. Optim. Theory Appl. 131 (2006), doi:10.1007/s10957-006-9137-4; the split of the slip
-//! into two parts is the polyhedral form of the cone in 2D.) Variables are scaled: `y = (Δu, Δs)/S`, `ρ = r/F`,
+//! into two parts is the polyhedral form of the cone in 2D.) In 3D the last line's friction and the slip are
+//!
+//! ```text
+//! t_k·Δx = a_k, k = 1, 2,       K ∋ (μ r_n, r_t)  ⊥  (λ, a) ∈ K,       K the second-order cone
+//! ```
+//!
+//! Variables are scaled: `y = (Δu, Δs)/S`, `ρ = r/F`,
 //! `α = a/S`, with `S` the arc length sought and `F` the force scale, so that all are of order one whatever the step.
 //!
 //! `γ1` follows from `S`: along a unit direction `e` with dissipation `D` per arc the objective is
@@ -15,15 +21,20 @@
 //! was expected, `γ1` is adapted until `‖y‖` is near 1. `γ2` is a fraction of the dissipation (or 1 where there is
 //! none), so that the branch does not depend on the step.
 
+mod end;
+mod frame;
 mod functions;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_in_space;
 
 use super::mode_system::Loading;
-use super::state::{Rate, State, along};
+use super::state::{Rate, State};
 use crate::cancel::CancelFlag;
 use crate::contact::Mode;
-use crate::mpec::{self, Finish, PairActivity, Settings};
+use crate::mpec::{self, Finish, Settings};
+use frame::Components;
 use nalgebra::DVector;
 
 /// Contacts whose gap is beyond this many arc lengths cannot close in the increment and are left out.
@@ -48,13 +59,45 @@ pub struct IncrementProgram<'a> {
     variables: usize,
 }
 
-/// A contact of the program and its first variable: `ρ_n`, then with friction `ρ_t`, `α⁺`, `α⁻`.
+/// A contact of the program and its first variable: `ρ_n`, then with friction in 2D `ρ_t`, `α⁺`, `α⁻`, in 3D `ρ_t`
+/// (two), `λ/S`, `α` (two).
 struct InReach {
     contact: usize,
     first: usize,
     friction: f64,
-    /// `r_t⁽ᵏ⁾/F`
-    traction: f64,
+    /// `r_t⁽ᵏ⁾/F` along the tangents.
+    traction: Components,
+}
+
+impl InReach {
+    fn normal(&self) -> usize {
+        self.first
+    }
+
+    fn tangential(&self, tangent: usize) -> usize {
+        self.first + 1 + tangent
+    }
+
+    /// In 2D: the parts of the slip and their signs.
+    fn parts(&self) -> [(usize, f64); 2] {
+        [(self.first + 2, 1.0), (self.first + 3, -1.0)]
+    }
+
+    /// In 3D: the bound on the slip.
+    fn bound(&self) -> usize {
+        self.first + 3
+    }
+
+    /// In 3D: the slip.
+    fn slip(&self, tangent: usize) -> usize {
+        self.first + 4 + tangent
+    }
+
+    /// In 3D: `(μ ρ_n, ρ_t)/(1 + μ)` and `(λ, a)/S`.
+    fn cone_members(&self, x: &DVector<f64>) -> ([f64; 3], [f64; 3]) {
+        let of_force = [self.friction * x[self.normal()], x[self.tangential(0)], x[self.tangential(1)]];
+        (of_force.map(|value| value / (1.0 + self.friction)), [x[self.bound()], x[self.slip(0)], x[self.slip(1)]])
+    }
 }
 
 /// What the program says of an increment.
@@ -62,6 +105,15 @@ struct InReach {
 pub struct Named {
     /// The contact modes at the end of the increment.
     pub modes: Vec<Mode>,
+    /// The program's variables there.
+    pub variables: DVector<f64>,
+}
+
+impl Named {
+    /// Whether the modes are these, slip in about the same directions.
+    pub fn agrees_with(&self, modes: &[Mode]) -> bool {
+        self.modes.len() == modes.len() && self.modes.iter().zip(modes).all(|(one, other)| frame::agree(*one, *other))
+    }
 }
 
 /// Work of the programs solved.
@@ -81,9 +133,13 @@ impl<'a> IncrementProgram<'a> {
             if data.gap(structure.dimension, &base.displacement) > REACH * step {
                 continue;
             }
-            let traction = base.reactions[contact].tangential[0] / force;
+            let traction = frame::traction(&base.reactions[contact]).map(|component| component / force);
             reach.push(InReach { contact, first: next, friction: data.friction, traction });
-            next += if data.friction > 0.0 { 4 } else { 1 };
+            next += match (data.friction > 0.0, structure.dimension) {
+                (false, _) => 1,
+                (true, 2) => 4,
+                (true, _) => 6,
+            };
         }
         let mut program =
             Self { loading, base, step, forward, force, arc_weight: 1.0, forward_weight: 1.0, reach, variables: next };
@@ -95,16 +151,35 @@ impl<'a> IncrementProgram<'a> {
         program
     }
 
-    /// `-r_t⁽ᵏ⁾·u̇_t / F`
-    fn dissipation_along(&self, rate: &Rate) -> f64 {
-        self.reach.iter().map(|entry| -entry.traction * self.tangential(entry.contact, &rate.displacement)).sum()
+    fn in_space(&self) -> bool {
+        self.loading.structure.dimension == 3
     }
 
-    fn tangential(&self, contact: usize, motion: &[f64]) -> f64 {
-        let dimension = self.loading.structure.dimension;
-        let contact = &self.loading.contacts[contact];
-        let first = contact.node * dimension;
-        along(&motion[first..first + dimension], &contact.obstacle.tangents(dimension)[0])
+    /// Number of tangents.
+    fn tangents(&self) -> usize {
+        self.loading.structure.dimension - 1
+    }
+
+    /// `-r_t⁽ᵏ⁾·u̇_t / F`
+    fn dissipation_along(&self, rate: &Rate) -> f64 {
+        let of = |entry: &InReach| {
+            let motion = self.motion(entry, &rate.displacement);
+            (0..self.tangents()).map(|k| -entry.traction[k] * motion[k]).sum::<f64>()
+        };
+        self.reach.iter().map(of).sum()
+    }
+
+    /// `r_t⁽ᵏ⁾·Δu_t / (F S)` of the variables: the objective's dissipation.
+    fn dissipation_of(&self, entry: &InReach, x: &DVector<f64>) -> f64 {
+        if self.in_space() {
+            return (0..2).map(|k| entry.traction[k] * x[entry.slip(k)]).sum();
+        }
+        let [(forward, _), (backward, _)] = entry.parts();
+        entry.traction[0] * (x[forward] - x[backward])
+    }
+
+    fn motion(&self, entry: &InReach, displacement: &[f64]) -> Components {
+        frame::motion(&self.loading.contacts[entry.contact], self.loading.structure.dimension, displacement)
     }
 
     /// The variables of a state on the way, for a start.
@@ -117,15 +192,38 @@ impl<'a> IncrementProgram<'a> {
         x[structure.unknowns()] = rate.load;
         for entry in &self.reach {
             let (reaction, change) = (self.base.reactions[entry.contact], rate.reactions[entry.contact]);
-            x[entry.first] = (reaction.normal + self.step * change.normal) / self.force;
-            if entry.friction > 0.0 {
-                x[entry.first + 1] = (reaction.tangential[0] + self.step * change.tangential[0]) / self.force;
-                let slip = self.tangential(entry.contact, &rate.displacement);
-                x[entry.first + 2] = slip.max(0.0);
-                x[entry.first + 3] = (-slip).max(0.0);
+            x[entry.normal()] = (reaction.normal + self.step * change.normal) / self.force;
+            if entry.friction == 0.0 {
+                continue;
+            }
+            let (traction, change) = (frame::traction(&reaction), frame::traction(&change));
+            for k in 0..self.tangents() {
+                x[entry.tangential(k)] = (traction[k] + self.step * change[k]) / self.force;
+            }
+            let slip = self.motion(entry, &rate.displacement);
+            if self.in_space() {
+                x[entry.slip(0)] = slip[0];
+                x[entry.slip(1)] = slip[1];
+                x[entry.bound()] = self.bound_at(entry, &x, slip);
+            } else {
+                for (part, side) in entry.parts() {
+                    x[part] = (side * slip[0]).max(0.0);
+                }
             }
         }
         x
+    }
+
+    /// A bound on the slip that tells the start's branch: above it for a contact that stays apart, below it for one that
+    /// is about to close, so that it is taken to slip.
+    fn bound_at(&self, entry: &InReach, x: &DVector<f64>, slip: Components) -> f64 {
+        let size = slip[0].hypot(slip[1]);
+        if x[entry.normal()] > 0.0 {
+            return size;
+        }
+        let contact = &self.loading.contacts[entry.contact];
+        let gap = contact.gap(self.loading.structure.dimension, &self.state(x).displacement);
+        if gap > 0.0 { 1.0 + size } else { 0.5 * size }
     }
 
     fn state(&self, x: &DVector<f64>) -> State {
@@ -164,7 +262,8 @@ impl<'a> IncrementProgram<'a> {
             }
             let size = solution.x.rows(0, self.loading.structure.unknowns() + 1).norm();
             if (0.5..=2.0).contains(&size) {
-                return (Some(self.read(&solution.activity, present)), counts);
+                let modes = self.read(&solution, present);
+                return (Some(Named { modes, variables: solution.x }), counts);
             }
             self.arc_weight *= size.clamp(0.02, 50.0);
             start = solution.x;
@@ -172,39 +271,14 @@ impl<'a> IncrementProgram<'a> {
         (None, counts)
     }
 
-    fn read(&self, activity: &[PairActivity], present: &[Mode]) -> Named {
-        let mut modes = vec![Mode::Free; self.loading.contacts.len()];
-        let mut pairs = activity.iter().copied();
-        let mut next = || pairs.next().unwrap_or(PairActivity::NeitherZero);
-        for entry in &self.reach {
-            let present = present[entry.contact];
-            let normal = next();
-            let closed = if entry.friction > 0.0 {
-                match (next(), next()) {
-                    (PairActivity::FirstZero, _) => Mode::Slip { direction: [1.0, 0.0] },
-                    (_, PairActivity::FirstZero) => Mode::Slip { direction: [-1.0, 0.0] },
-                    (PairActivity::BothZero, _) | (_, PairActivity::BothZero) if present.is_active() => present,
-                    _ => Mode::Stick,
-                }
-            } else {
-                Mode::Slip { direction: [0.0; 2] }
-            };
-            modes[entry.contact] = match normal {
-                PairActivity::FirstZero => closed,
-                PairActivity::BothZero => present,
-                PairActivity::SecondZero | PairActivity::NeitherZero => Mode::Free,
-            };
-        }
-        Named { modes }
-    }
-
-    /// Rows and directions of the contact's node: `(unknown, normal component, tangent component)`.
-    fn node_of(&self, entry: &InReach) -> impl Iterator<Item = (usize, f64, f64)> {
+    /// Rows and directions of the contact's node: `(unknown, normal component, components of the tangents)`.
+    fn node_of(&self, entry: &InReach) -> impl Iterator<Item = (usize, f64, Components)> {
         let structure = self.loading.structure;
         let contact = &self.loading.contacts[entry.contact];
         let (normal, tangents) = (contact.obstacle.normal(), contact.obstacle.tangents(structure.dimension));
         let first = contact.node * structure.dimension;
-        (0..structure.dimension)
-            .filter_map(move |k| structure.unknown_of[first + k].map(|unknown| (unknown, normal[k], tangents[0][k])))
+        (0..structure.dimension).filter_map(move |k| {
+            structure.unknown_of[first + k].map(|unknown| (unknown, normal[k], [tangents[0][k], tangents[1][k]]))
+        })
     }
 }

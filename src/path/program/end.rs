@@ -1,0 +1,100 @@
+//! What is read off the end of an increment: contact modes, the state, and the state made exact.
+
+use super::frame;
+use super::{InReach, IncrementProgram};
+use crate::cancel::CancelFlag;
+use crate::contact::{Mode, Reaction};
+use crate::mpec::semismooth::{self, Polished};
+use crate::mpec::{ConeActivity, PairActivity, Solution};
+use crate::path::state::State;
+use nalgebra::DVector;
+
+/// Tangential force or slip, relative to the scales, that has no direction of its own.
+const NO_DIRECTION: f64 = 1e-9;
+
+impl IncrementProgram<'_> {
+    /// The contact modes of a solution; `present` decides where a pair is biactive.
+    pub(super) fn read(&self, solution: &Solution, present: &[Mode]) -> Vec<Mode> {
+        let mut modes = vec![Mode::Free; self.loading.contacts.len()];
+        let mut pairs = solution.activity.iter().copied();
+        let mut next = || pairs.next().unwrap_or(PairActivity::NeitherZero);
+        let mut cones = solution.cone_activity.iter().copied();
+        for entry in &self.reach {
+            let present = present[entry.contact];
+            let normal = next();
+            let closed = if entry.friction == 0.0 {
+                Mode::Slip { direction: Default::default() }
+            } else if self.in_space() {
+                let activity = cones.next().unwrap_or(ConeActivity::NotComplementary);
+                closed_in_space(entry, &solution.x, activity, present)
+            } else {
+                match (next(), next()) {
+                    (PairActivity::FirstZero, _) => frame::slip([1.0, 0.0]),
+                    (_, PairActivity::FirstZero) => frame::slip([-1.0, 0.0]),
+                    (PairActivity::BothZero, _) | (_, PairActivity::BothZero) if present.is_active() => present,
+                    _ => Mode::Stick,
+                }
+            };
+            modes[entry.contact] = match normal {
+                PairActivity::FirstZero => closed,
+                PairActivity::BothZero => present,
+                PairActivity::SecondZero | PairActivity::NeitherZero => Mode::Free,
+            };
+        }
+        modes
+    }
+
+    /// The state at variables of the program, reactions included.
+    pub fn end_state(&self, x: &DVector<f64>) -> State {
+        let mut state = self.state(x);
+        state.reactions.fill(Reaction::default());
+        for entry in &self.reach {
+            let mut tangential = [0.0; 2];
+            if entry.friction > 0.0 {
+                for (k, component) in tangential.iter_mut().enumerate().take(self.tangents()) {
+                    *component = x[entry.tangential(k)] * self.force;
+                }
+            }
+            state.reactions[entry.contact] = frame::reaction(x[entry.normal()] * self.force, tangential);
+        }
+        state
+    }
+
+    /// The increment's equilibrium, contact and friction with the arc length exactly the one sought, by the semismooth
+    /// Newton method from variables of the program: what serves where a mode's own equations cannot start, since the
+    /// direction of slip is not known. `None` where it does not converge.
+    pub fn polish(&self, x: &DVector<f64>, cancel: &CancelFlag) -> Option<Polished> {
+        let moved = self.loading.structure.unknowns() + 1;
+        let arc_length = |x: &DVector<f64>| {
+            let size = x.rows(0, moved).norm();
+            let mut gradient = DVector::zeros(x.len());
+            if size > 0.0 {
+                gradient.rows_mut(0, moved).copy_from(&(x.rows(0, moved) / size));
+            }
+            (size - 1.0, gradient)
+        };
+        semismooth::polish(self, x, Some(&arc_length), cancel).ok().filter(|polished| polished.is_converged)
+    }
+}
+
+/// The mode of a closed contact in 3D.
+fn closed_in_space(entry: &InReach, x: &DVector<f64>, activity: ConeActivity, present: Mode) -> Mode {
+    let (force, slip) = entry.cone_members(x);
+    let size = |v: &[f64; 3]| v[1].hypot(v[2]);
+    let sliding = if size(&force) > NO_DIRECTION {
+        frame::slip([-force[1], -force[2]])
+    } else if size(&slip) > NO_DIRECTION {
+        frame::slip([slip[1], slip[2]])
+    } else {
+        present
+    };
+    match activity {
+        ConeActivity::BothOnBoundary | ConeActivity::FirstZero | ConeActivity::FirstZeroSecondOnBoundary => sliding,
+        ConeActivity::SecondZeroFirstOnBoundary if matches!(present, Mode::Slip { .. }) => sliding,
+        ConeActivity::BothZero if present.is_active() => present,
+        ConeActivity::SecondZero
+        | ConeActivity::SecondZeroFirstOnBoundary
+        | ConeActivity::BothZero
+        | ConeActivity::NotComplementary => Mode::Stick,
+    }
+}
