@@ -25,10 +25,12 @@
 //! | `evaluation`, `input` | the problem at one point; what the caller got wrong |
 //! | `elastic`, `active_set`, `active_cones`, [`quadratic`] | one quadratic program |
 //! | [`cone`], `cone_rows` | the second-order cone, and how a cone pair enters the smooth program |
+//! | `activity` | which members are zero |
 //! | [`semismooth`] | Newton's method on the complementarity system itself |
 
 mod active_cones;
 mod active_set;
+mod activity;
 mod branch;
 pub mod cone;
 mod cone_rows;
@@ -46,6 +48,7 @@ mod solver;
 mod sqp;
 mod stationarity;
 
+pub use activity::Activities;
 pub use cone::ConeActivity;
 pub use problem::Problem;
 pub use result::{Counts, InputError, Multipliers, PairActivity, Quantity, Solution, StationarityKind, Status};

@@ -3,22 +3,10 @@
 use nalgebra::DVector;
 use thiserror::Error;
 
+pub use super::activity::PairActivity;
 use super::cone::ConeActivity;
 pub use super::evaluation::Quantity;
 pub use super::relaxed::Multipliers;
-
-/// Which member of a pair is zero.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PairActivity {
-    /// `a = 0 < b`.
-    FirstZero,
-    /// `b = 0 < a`.
-    SecondZero,
-    /// Both zero to the biactive tolerance.
-    BothZero,
-    /// Neither is zero: the solve ended before complementarity was reached.
-    NeitherZero,
-}
 
 /// Why a solve ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

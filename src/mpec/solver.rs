@@ -14,6 +14,7 @@
 
 use nalgebra::DVector;
 
+use super::activity::{Activities, PairActivity};
 use super::branch::{self, Candidate};
 use super::cone::ConeActivity;
 use super::elastic::StepSolver;
@@ -21,7 +22,7 @@ use super::evaluation::{Evaluation, Quantity};
 use super::input::check_input;
 use super::problem::Problem;
 use super::relaxed::{Pattern, Rows};
-use super::result::{Counts, InputError, PairActivity, Solution, StationarityKind, Status};
+use super::result::{Counts, InputError, Solution, StationarityKind, Status};
 use super::settings::Settings;
 use super::sqp::{self, SqpEnd, SqpSettings};
 use crate::cancel::CancelFlag;
@@ -232,12 +233,14 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             },
         };
         let both_zero = self.settings.biactive_tolerance;
-        let activity = candidate.at.first.iter().zip(candidate.at.second.iter());
+        // A settled pattern is not refined: what its point leaves violated says how near the cones' boundary is near.
+        let left = if status == Status::PatternSettled { 10.0 * candidate.at.largest_violation() } else { 0.0 };
+        let activities = Activities::of(&candidate.at, both_zero, both_zero.max(left));
         Solution {
             status,
             objective: candidate.at.objective,
-            activity: activity.map(|(&a, &b)| activity_of(a, b, both_zero)).collect(),
-            cone_activity: candidate.at.cones.pairs().map(|(a, b)| ConeActivity::of(a, b, both_zero)).collect(),
+            activity: activities.pairs,
+            cone_activity: activities.cones,
             stationarity: candidate.stationarity,
             largest_violation: candidate.at.largest_violation(),
             largest_product: candidate.at.largest_product(),
@@ -285,15 +288,6 @@ fn is_better(candidate: &Candidate, best: &Candidate, tolerance: f64) -> bool {
         (false, true) => false,
         (true, true) => candidate.at.objective < best.at.objective,
         (false, false) => candidate.infeasibility() < best.infeasibility(),
-    }
-}
-
-fn activity_of(a: f64, b: f64, tolerance: f64) -> PairActivity {
-    match (a <= tolerance, b <= tolerance) {
-        (true, true) => PairActivity::BothZero,
-        (true, false) => PairActivity::FirstZero,
-        (false, true) => PairActivity::SecondZero,
-        (false, false) => PairActivity::NeitherZero,
     }
 }
 

@@ -23,7 +23,7 @@ mod mode_system;
 mod name_event;
 mod naming;
 pub mod plan;
-mod program;
+pub mod program;
 mod record;
 pub mod report;
 mod root;

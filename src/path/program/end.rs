@@ -1,24 +1,52 @@
 //! What is read off the end of an increment: contact modes, the state, and the state made exact.
 
 use super::frame;
-use super::{InReach, IncrementProgram};
+use super::{InReach, IncrementProgram, Named};
 use crate::cancel::CancelFlag;
 use crate::contact::{Mode, Reaction};
 use crate::mpec::semismooth::{self, Polished};
-use crate::mpec::{ConeActivity, PairActivity, Solution};
+use crate::mpec::{Activities, ConeActivity, PairActivity, Problem, Solution};
 use crate::path::state::State;
 use nalgebra::DVector;
 
 /// Tangential force or slip, relative to the scales, that has no direction of its own.
 const NO_DIRECTION: f64 = 1e-9;
+/// Largest member of a pair that counts as zero at an exact end.
+const SAME: f64 = 1e-9;
+/// Least cosine between the motion that the program found and the exact one.
+const SAME_WAY: f64 = 0.9;
 
 impl IncrementProgram<'_> {
-    /// The contact modes of a solution; `present` decides where a pair is biactive.
-    pub(super) fn read(&self, solution: &Solution, present: &[Mode]) -> Vec<Mode> {
+    /// What a solution of the program says. Where there are cones, it is first made exact, so that directions of slip are
+    /// those of the increment's own end.
+    pub(super) fn end(&self, solution: Solution, present: &[Mode], cancel: &CancelFlag) -> Named {
+        if let Some(exact) = self.exact_end(&solution.x, cancel)
+            && let Ok(activities) = Activities::at(self, &exact, SAME)
+        {
+            return Named { modes: self.read(&exact, &activities, present), end: Some(self.end_state(&exact)) };
+        }
+        let activities = Activities { pairs: solution.activity, cones: solution.cone_activity };
+        Named { modes: self.read(&solution.x, &activities, present), end: None }
+    }
+
+    /// The exact end near variables of the program, where there are cones.
+    fn exact_end(&self, x: &DVector<f64>, cancel: &CancelFlag) -> Option<DVector<f64>> {
+        if self.cone_sizes().is_empty() {
+            return None;
+        }
+        let polished = self.polish(x, cancel).filter(|polished| polished.is_converged)?;
+        let moved = self.loading.structure.unknowns() + 1;
+        let (before, after) = (x.rows(0, moved), polished.x.rows(0, moved));
+        // Another solution than the program's is no answer to what the program chose.
+        (before.dot(&after) >= SAME_WAY * before.norm() * after.norm()).then_some(polished.x)
+    }
+
+    /// The contact modes at variables of the program; `present` decides where a pair is biactive.
+    fn read(&self, x: &DVector<f64>, activities: &Activities, present: &[Mode]) -> Vec<Mode> {
         let mut modes = vec![Mode::Free; self.loading.contacts.len()];
-        let mut pairs = solution.activity.iter().copied();
+        let mut pairs = activities.pairs.iter().copied();
         let mut next = || pairs.next().unwrap_or(PairActivity::NeitherZero);
-        let mut cones = solution.cone_activity.iter().copied();
+        let mut cones = activities.cones.iter().copied();
         for entry in &self.reach {
             let present = present[entry.contact];
             let normal = next();
@@ -26,7 +54,7 @@ impl IncrementProgram<'_> {
                 Mode::Slip { direction: Default::default() }
             } else if self.in_space() {
                 let activity = cones.next().unwrap_or(ConeActivity::NotComplementary);
-                closed_in_space(entry, &solution.x, activity, present)
+                closed_in_space(entry, x, activity, present)
             } else {
                 match (next(), next()) {
                     (PairActivity::FirstZero, _) => frame::slip([1.0, 0.0]),
@@ -45,7 +73,7 @@ impl IncrementProgram<'_> {
     }
 
     /// The state at variables of the program, reactions included.
-    pub fn end_state(&self, x: &DVector<f64>) -> State {
+    fn end_state(&self, x: &DVector<f64>) -> State {
         let mut state = self.state(x);
         state.reactions.fill(Reaction::default());
         for entry in &self.reach {
@@ -62,8 +90,8 @@ impl IncrementProgram<'_> {
 
     /// The increment's equilibrium, contact and friction with the arc length exactly the one sought, by the semismooth
     /// Newton method from variables of the program: what serves where a mode's own equations cannot start, since the
-    /// direction of slip is not known. `None` where it does not converge.
-    pub fn polish(&self, x: &DVector<f64>, cancel: &CancelFlag) -> Option<Polished> {
+    /// direction of slip is not known.
+    pub(super) fn polish(&self, x: &DVector<f64>, cancel: &CancelFlag) -> Option<Polished> {
         let moved = self.loading.structure.unknowns() + 1;
         let arc_length = |x: &DVector<f64>| {
             let size = x.rows(0, moved).norm();
@@ -73,7 +101,7 @@ impl IncrementProgram<'_> {
             }
             (size - 1.0, gradient)
         };
-        semismooth::polish(self, x, Some(&arc_length), cancel).ok().filter(|polished| polished.is_converged)
+        semismooth::polish(self, x, Some(&arc_length), cancel).ok()
     }
 }
 

@@ -105,8 +105,9 @@ impl InReach {
 pub struct Named {
     /// The contact modes at the end of the increment.
     pub modes: Vec<Mode>,
-    /// The program's variables there.
-    pub variables: DVector<f64>,
+    /// In 3D, where some contact has friction: the state there, with the arc length exactly the one sought and residuals at
+    /// round-off. `None` where the semismooth method did not get there.
+    pub end: Option<State>,
 }
 
 impl Named {
@@ -262,8 +263,7 @@ impl<'a> IncrementProgram<'a> {
             }
             let size = solution.x.rows(0, self.loading.structure.unknowns() + 1).norm();
             if (0.5..=2.0).contains(&size) {
-                let modes = self.read(&solution, present);
-                return (Some(Named { modes, variables: solution.x }), counts);
+                return (Some(self.end(solution, present, cancel)), counts);
             }
             self.arc_weight *= size.clamp(0.02, 50.0);
             start = solution.x;

@@ -82,6 +82,31 @@ fn slip_in_plane(contact: &Contact, mode: Mode) -> [f64; 3] {
     std::array::from_fn(|k| direction[0] * tangents[0][k] + direction[1] * tangents[1][k])
 }
 
+/// How far an end is from equilibrium, Coulomb's law and the arc length, by its own reckoning.
+fn off_balance(scene: &OneBar, base: &State, end: &State, step: f64) -> f64 {
+    let mut force = vec![0.0; 6];
+    scene.structure.internal_force(&end.displacement, &mut force);
+    let contact = &scene.contacts[0];
+    let (reaction, tangents) = (end.reactions[0], contact.obstacle.tangents(3));
+    let traction = frame::traction(&reaction);
+    let mut worst = (base.distance(end) - step).abs().max(contact.gap(3, &end.displacement).abs());
+    let normal = contact.obstacle.normal();
+    for k in 0..3 {
+        let tangential = traction[0] * tangents[0][k] + traction[1] * tangents[1][k];
+        let applied = end.load * scene.pattern[3 + k] + reaction.normal * normal[k] + tangential;
+        worst = worst.max((force[3 + k] - applied).abs());
+    }
+    let slip: [f64; 2] = std::array::from_fn(|k| {
+        (0..3).map(|c| tangents[k][c] * (end.displacement[3 + c] - base.displacement[3 + c])).sum()
+    });
+    let size = slip[0].hypot(slip[1]);
+    let strength = contact.friction * reaction.normal;
+    for k in 0..2 {
+        worst = worst.max((traction[k] + strength * slip[k] / size).abs());
+    }
+    worst
+}
+
 /// What a march along the tractrix took and how far off it ended.
 struct March {
     increments: u64,
@@ -114,9 +139,8 @@ fn march(step: f64) -> March {
         march.counts.qp_solves += counts.qp_solves;
         march.counts.mpec_solves += counts.mpec_solves;
         let named = named.unwrap_or_else(|| panic!("no name at increment {}", march.increments));
-        let polished = program.polish(&named.variables, &CancelFlag::default()).expect("the polish converges");
-        march.worst_residual = march.worst_residual.max(*polished.residuals.last().unwrap());
-        let end = program.end_state(&polished.x);
+        let end = named.end.expect("an exact end");
+        march.worst_residual = march.worst_residual.max(off_balance(&scene, &base, &end, step));
         let slip = slip_in_plane(&scene.contacts[0], named.modes[0]);
         let moved: f64 = dot(&slip, &chord(&base, &end).displacement[3..6]);
         assert!(moved > 0.0, "the tip moves along its slip");
@@ -152,7 +176,7 @@ fn the_tip_slides_along_the_tractrix_to_first_order() {
     }
     let order = (coarse.error / fine.error).log2();
     assert!((0.9..1.1).contains(&order), "order {order}");
-    assert!(fine.error < 2e-3, "{:e}", fine.error);
+    assert!(fine.error < 5e-3, "{:e}", fine.error);
 }
 
 /// At an unstressed start nothing tells the direction of slip; the exact one is `(√(c² - b²), -b)/c`.
@@ -166,8 +190,7 @@ fn the_direction_of_the_first_slip_is_found() {
     let start = program.variables_at(&forward);
     let (named, _) = program.name(&start, &[Mode::Stick], &CancelFlag::default());
     let named = named.expect("named");
-    let polished = program.polish(&named.variables, &CancelFlag::default()).expect("the polish converges");
-    let end = program.end_state(&polished.x);
+    let end = named.end.expect("an exact end");
     let traction = frame::traction(&end.reactions[0]);
     let slip = slip_in_plane(&scene.contacts[0], frame::slip([-traction[0], -traction[1]]));
     let c: f64 = friction * h;
@@ -186,8 +209,7 @@ fn a_landing_tip_slides_in_the_direction_in_which_it_lands() {
     let start = program.variables_at(&forward);
     let (named, _) = program.name(&start, &[Mode::Free], &CancelFlag::default());
     let named = named.expect("named");
-    let polished = program.polish(&named.variables, &CancelFlag::default()).expect("the polish converges");
-    let end = program.end_state(&polished.x);
+    let end = named.end.expect("an exact end");
     let contact = &scene.contacts[0];
     assert!(contact.gap(3, &end.displacement).abs() < 1e-13);
     let reaction = end.reactions[0];
@@ -198,7 +220,6 @@ fn a_landing_tip_slides_in_the_direction_in_which_it_lands() {
     let moved = [end.displacement[3], end.displacement[4], 0.0];
     let size = dot(&moved, &moved).sqrt();
     assert!(dot(&slip, &moved) / size > 0.999, "{slip:?} against {moved:?}");
-    println!("residuals of the landing: {:?}", polished.residuals);
 }
 
 /// Pushed less than friction bears, the tip sticks; the increment is all load.
@@ -212,7 +233,7 @@ fn a_pressed_tip_sticks() {
     let (named, _) = program.name(&start, &[Mode::Stick], &CancelFlag::default());
     let named = named.expect("named");
     assert_eq!(named.modes, [Mode::Stick]);
-    let end = program.end_state(&program.polish(&named.variables, &CancelFlag::default()).expect("converges").x);
+    let end = named.end.expect("an exact end");
     assert!((end.load - 0.02).abs() < 1e-14 && end.displacement.iter().all(|u| u.abs() < 1e-14));
     assert!((end.reactions[0].normal - 0.02).abs() < 1e-14);
 }
