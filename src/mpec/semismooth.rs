@@ -28,6 +28,9 @@ use crate::linear_algebra::Factorisation;
 const MOST_ITERATIONS: usize = 30;
 /// Halvings of a step.
 const HALVINGS: usize = 12;
+/// Full steps taken although no part of them makes the residual smaller: where a pair changes sides, the way to the
+/// solution may lead over larger residuals.
+const WATCHDOG_STEPS: usize = 3;
 /// Residual of a converged system.
 const CONVERGED: f64 = 1e-11;
 /// Residual below which iterating on gains nothing.
@@ -74,23 +77,39 @@ pub fn polish<P: Problem + ?Sized>(
     let mut x = start.clone();
     let mut values = residual(&at, &x, closing);
     let mut residuals = vec![values.amax()];
+    let mut best = (values.amax(), x.clone());
+    let mut watchdog_steps = WATCHDOG_STEPS;
     for _ in 0..MOST_ITERATIONS {
         let size = values.amax();
         if cancel.is_cancelled() || size <= ROUND_OFF || at.update_derivatives(problem, &x).is_err() {
             break;
         }
         let Some(step) = newton_step(jacobian(&at, &x, closing), &values) else { break };
-        let Some((next, next_values)) = shortened(problem, &mut at, &x, &step, &values, closing) else { break };
-        let next_size = next_values.amax();
-        // Below the bar, a step that no longer helps is round-off.
-        if next_size >= size && size <= CONVERGED {
-            break;
-        }
+        let (next, next_values) = match shortened(problem, &mut at, &x, &step, &values, closing) {
+            Some(better) => better,
+            // Below the bar, a step that no longer helps is round-off.
+            None if size <= CONVERGED || watchdog_steps == 0 => break,
+            None => {
+                watchdog_steps -= 1;
+                let trial = &x + step;
+                if at.update_values(problem, &trial).is_err() {
+                    break;
+                }
+                let trial_values = residual(&at, &trial, closing);
+                if trial_values.iter().any(|value| !value.is_finite()) {
+                    break;
+                }
+                (trial, trial_values)
+            }
+        };
+        residuals.push(next_values.amax());
         x = next;
         values = next_values;
-        residuals.push(next_size);
+        if values.amax() < best.0 {
+            best = (values.amax(), x.clone());
+        }
     }
-    Ok(Polished { x, is_converged: values.amax() <= CONVERGED, residuals })
+    Ok(Polished { x: best.1, is_converged: best.0 <= CONVERGED, residuals })
 }
 
 /// The first of `step`, half of it, ... that makes the residual smaller; `at` is left with the values there. `None`

@@ -28,6 +28,8 @@ mod functions;
 mod tests;
 #[cfg(test)]
 mod tests_in_space;
+#[cfg(test)]
+mod tests_of_chains;
 
 use super::mode_system::Loading;
 use super::state::{Rate, State};
@@ -41,6 +43,8 @@ use nalgebra::DVector;
 const REACH: f64 = 3.0;
 /// The forward term's share of the dissipation.
 const FORWARD_SHARE: f64 = 0.1;
+/// Dissipation per arc below which it is round-off of a motion that sticks.
+const LEAST_DISSIPATION: f64 = 1e-12;
 /// Solves with `γ1` adapted before the last one is taken as it is.
 const MOST_ADAPTATIONS: usize = 6;
 
@@ -65,7 +69,7 @@ struct InReach {
     contact: usize,
     first: usize,
     friction: f64,
-    /// `r_t⁽ᵏ⁾/F` along the tangents.
+    /// `r_t⁽ᵏ⁾/F` along the tangents; in 3D divided by what the objective is divided by.
     traction: Components,
 }
 
@@ -145,11 +149,23 @@ impl<'a> IncrementProgram<'a> {
         let mut program =
             Self { loading, base, step, forward, force, arc_weight: 1.0, forward_weight: 1.0, reach, variables: next };
         let dissipation = program.dissipation_along(forward);
-        if dissipation > 0.0 {
+        if dissipation > LEAST_DISSIPATION {
             program.forward_weight = FORWARD_SHARE * dissipation;
         }
         program.arc_weight = dissipation + program.forward_weight;
+        if program.in_space() && program.arc_weight > 0.0 {
+            program.divide_objective(program.arc_weight);
+        }
         program
+    }
+
+    /// Brings the objective to numbers near one, whatever the friction, so that tolerances mean the same.
+    fn divide_objective(&mut self, scale: f64) {
+        self.arc_weight /= scale;
+        self.forward_weight /= scale;
+        for entry in &mut self.reach {
+            entry.traction.iter_mut().for_each(|component| *component /= scale);
+        }
     }
 
     fn in_space(&self) -> bool {
