@@ -21,7 +21,7 @@
 //! | `branch` | one pattern of zero members after another |
 //! | `stationarity` | how stationary a point is |
 //! | `sqp`, `secant` | one smooth program |
-//! | `relaxed` | the smooth program's rows and their linearisation |
+//! | `pattern`, `relaxed` | the smooth program's rows and their linearisation |
 //! | `evaluation`, `input` | the problem at one point; what the caller got wrong |
 //! | `elastic`, `active_set`, `active_cones`, [`quadratic`] | one quadratic program |
 //! | [`cone`], `cone_rows` | the second-order cone, and how a cone pair enters the smooth program |
@@ -37,6 +37,7 @@ mod cone_rows;
 mod elastic;
 mod evaluation;
 mod input;
+mod pattern;
 pub mod problem;
 pub mod quadratic;
 mod relaxed;

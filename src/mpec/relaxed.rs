@@ -1,6 +1,6 @@
 //! The smooth program that stands for the one with complementarity constraints, and its linearisation.
 //!
-//! Each pair `0 <= a ⊥ b >= 0` is treated in one of these ways ([`PairTreatment`]):
+//! Each pair `0 <= a ⊥ b >= 0` is treated in one of these ways (`mpec::pattern`):
 //!
 //! ```text
 //! Product(ε):   a >= 0,  b >= 0,  ε - a b >= 0          the regularisation, ε falling to 0
@@ -23,45 +23,8 @@ use nalgebra::{DMatrix, DVector};
 use super::cone;
 use super::cone_rows::{ConeRow, ConeTreatment, Member};
 use super::evaluation::{ConeMembers, Evaluation};
+use super::pattern::{PairTreatment, Pattern};
 use super::quadratic::{ConeRows, QuadraticProgram, QuadraticSolution};
-
-/// How one pair enters the smooth program.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum PairTreatment {
-    /// Both nonnegative, their product at most this.
-    Product(f64),
-    FirstZero,
-    SecondZero,
-    BothFree,
-    BothZero,
-}
-
-impl PairTreatment {
-    fn first_is_zero(self) -> bool {
-        matches!(self, Self::FirstZero | Self::BothZero)
-    }
-
-    fn second_is_zero(self) -> bool {
-        matches!(self, Self::SecondZero | Self::BothZero)
-    }
-}
-
-/// How every pair is treated.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Pattern {
-    pub pairs: Vec<PairTreatment>,
-    pub cones: Vec<ConeTreatment>,
-}
-
-impl Pattern {
-    /// All products at most `relaxation`.
-    pub fn relaxed(pairs: usize, cones: usize, relaxation: f64) -> Self {
-        Self {
-            pairs: vec![PairTreatment::Product(relaxation); pairs],
-            cones: vec![ConeTreatment::Product(relaxation); cones],
-        }
-    }
-}
 
 /// What a row of the smooth program belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

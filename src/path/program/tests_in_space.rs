@@ -9,6 +9,7 @@ use crate::path::state::dot;
 use crate::structure::Structure;
 use crate::structure::bar::Bar;
 use crate::structure::element::Element;
+use crate::structure::spring::Spring;
 use nalgebra::DMatrix;
 
 /// One bar from a pin to a tip near the floor `z >= 0`; the tip is pushed by `pattern`.
@@ -39,6 +40,14 @@ impl OneBar {
             pattern: [0.0; 3].into_iter().chain(pattern).collect(),
             held: vec![0.0; 6],
         }
+    }
+
+    /// A spring to the ground besides, without which the tip can turn about the pin.
+    fn with_spring(mut self, stiffness: f64) -> Self {
+        let mut matrix = [[0.0; 3]; 3];
+        (0..3).for_each(|k| matrix[k][k] = stiffness);
+        self.structure.elements.push(Element::Spring(Spring { node: 1, other: None, stiffness: matrix }));
+        self
     }
 
     fn loading(&self) -> Loading<'_> {
@@ -220,6 +229,45 @@ fn a_landing_tip_slides_in_the_direction_in_which_it_lands() {
     let moved = [end.displacement[3], end.displacement[4], 0.0];
     let size = dot(&moved, &moved).sqrt();
     assert!(dot(&slip, &moved) / size > 0.999, "{slip:?} against {moved:?}");
+}
+
+/// Without the program, from a predictor that knows no reaction and no direction of slip: the residual falls to round-off,
+/// at the end as the square of the one before.
+#[test]
+fn the_landing_converges_quadratically_from_the_predictor() {
+    let scene = OneBar::new([0.0, 0.1, 1.0], [-1.4, 0.0, 0.004], 0.2, [1.0, 0.2, -0.4]);
+    let base = scene.at_rest();
+    let forward = scene.rate([0.8, 0.1, -0.5], 0.05);
+    let program = IncrementProgram::new(scene.loading(), &base, &forward, 0.02, 0.02);
+    let end = program.polish(&program.variables_at(&forward), &CancelFlag::default()).expect("finite");
+    println!("residuals of the landing: {:?}", end.residuals);
+    assert!(end.is_converged, "{:?}", end.residuals);
+    assert!(end.residuals.last().is_some_and(|last| *last < 1e-14), "{:?}", end.residuals);
+    let small: Vec<f64> = end.residuals.iter().copied().filter(|size| *size < 1e-3).collect();
+    assert!(small.len() >= 3, "{:?}", end.residuals);
+    for pair in small.windows(2) {
+        assert!(pair[1] <= 100.0 * pair[0] * pair[0] + 1e-14, "{:?}", end.residuals);
+    }
+}
+
+/// A tip near the floor that stays apart, and one that leaves it: the slip's bound is undetermined and does no harm.
+#[test]
+fn a_tip_that_is_apart_at_the_end_bears_nothing() {
+    for (height, pattern, tip) in [(0.01, [1.0, 0.2, 0.0], [0.8, 0.1, 0.0]), (0.0, [0.3, 0.0, 1.0], [0.1, 0.0, 0.5])] {
+        let scene = OneBar::new([0.0, 0.1, 1.0], [-1.4, 0.0, height], 0.2, pattern).with_spring(0.5);
+        let base = scene.at_rest();
+        let forward = scene.rate(tip, 0.05);
+        let mut program = IncrementProgram::new(scene.loading(), &base, &forward, 0.02, 0.02);
+        assert_eq!(program.pairs(), 1, "the floor is within reach");
+        let start = program.variables_at(&forward);
+        let (named, _) = program.name(&start, &[Mode::Free], &CancelFlag::default());
+        let named = named.expect("named");
+        assert_eq!(named.modes, [Mode::Free]);
+        let end = named.end.expect("an exact end");
+        assert!((base.distance(&end) - 0.02).abs() < 1e-14);
+        assert!(end.reactions[0].size() < 1e-14, "{:?}", end.reactions[0]);
+        assert!(scene.contacts[0].gap(3, &end.displacement) > 1e-4);
+    }
 }
 
 /// Pushed less than friction bears, the tip sticks; the increment is all load.
