@@ -187,7 +187,7 @@ fn both_branches_of_a_chosen_load_are_found() {
     assert!((&stuck.x - point(0.0, 0.0)).amax() < 1e-6, "{}", stuck.x);
     assert_eq!((stuck.status, stuck.stationarity), (Status::Solved, StationarityKind::Strong));
 
-    // With the target behind the push, the onset of slip holds from neither side: both branches lead down from it.
+    // At the onset of slip both branches lead down.
     let onset = mass.solve(&point(0.0, friction), &warm);
     assert_eq!(onset.status, Status::Solved);
     assert!(onset.objective < mass.objective(&point(0.0, friction)) - 1e-3);
@@ -288,6 +288,25 @@ fn the_nearest_complementary_pair_is_a_minimum_of_a_branch() {
     }
     assert!(on_boundary >= 20, "only {on_boundary} of {count} exercise the boundary");
     assert!(global >= 90, "only {global} of {count} are global");
+}
+
+/// Where two branches meet and neither leads down, that is claimed; where both members vanish, infinitely many meet and no
+/// more is claimed than that of one.
+#[test]
+fn what_is_claimed_of_biactive_pairs_is_what_was_examined() {
+    let end = |p, q| {
+        let problem = Nearest { p, q };
+        mpec::solve(&problem, &DVector::zeros(6), &Settings::default(), &CancelFlag::default()).expect("well-formed")
+    };
+    let at_onset = end([1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]);
+    assert_eq!(at_onset.cone_activity, [ConeActivity::SecondZeroFirstOnBoundary]);
+    assert!((&at_onset.x - DVector::from_column_slice(&[1.0, 1.0, 0.0, 0.0, 0.0, 0.0])).amax() < 1e-7);
+    assert_eq!((at_onset.status, at_onset.stationarity), (Status::Solved, StationarityKind::Branch));
+
+    let at_apex = end([-1.0, 0.2, 0.0], [-1.0, 0.0, 0.3]);
+    assert_eq!(at_apex.cone_activity, [ConeActivity::BothZero]);
+    assert!(at_apex.x.amax() < 1e-7);
+    assert_eq!((at_apex.status, at_apex.stationarity), (Status::Solved, StationarityKind::OneBranch));
 }
 
 /// Newton's method on the system itself, from a mass at rest under a push that makes it slide in a direction that the

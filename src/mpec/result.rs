@@ -45,8 +45,8 @@ pub enum StationarityKind {
     Mordukhovich,
     Clarke,
     Weak,
-    /// Multipliers exist in the branch that was taken; a cone pair is biactive with both members zero, and the
-    /// infinitely many directions that it could take were not examined. Nothing is claimed of B-stationarity.
+    /// Multipliers exist in one of the branches that meet where cone pairs are biactive, and not all others were shown to
+    /// have them: where both members vanish, infinitely many meet. Nothing is claimed of B-stationarity.
     OneBranch,
     /// Not stationary, or not established.
     Unknown,

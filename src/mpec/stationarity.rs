@@ -15,8 +15,8 @@
 //!
 //! Cone pairs. Where one is not biactive, it is a smooth manifold nearby, the branch at hand, and changes nothing of the
 //! above. Where one member vanishes and the other lies on the boundary, two branches meet, and the enumeration goes over
-//! both: stationarity of every branch, or none is claimed. Where both vanish, infinitely many branches meet; then only
-//! the two in which one stays zero and the one at hand are looked at, and no more than that one's stationarity is claimed.
+//! both: stationarity of every branch, or no more than of one. Where both vanish, infinitely many branches meet; then only
+//! the two in which one stays zero and the one at hand are looked at, and no more than one's stationarity is claimed.
 //!
 //! Source: H. Scheel and S. Scholtes, *Mathematical programs with complementarity constraints: stationarity, optimality,
 //! and sensitivity*, Math. Oper. Res. 25 (2000), doi:10.1287/moor.25.1.1.15213.
@@ -186,6 +186,7 @@ pub fn classify<P: Problem + ?Sized>(
     }
 
     let mut best: Option<(f64, Pattern)> = None;
+    let mut stationary: Option<Multipliers> = None;
     let choices: Vec<usize> =
         both.iter().map(|_| 2).chain(cones.iter().map(|(_, treatments)| treatments.len())).collect();
     let branches = choices.iter().try_fold(1_usize, |count, choices| count.checked_mul(*choices));
@@ -208,20 +209,21 @@ pub fn classify<P: Problem + ?Sized>(
                         best = Some((projection.objective, treatments));
                     }
                 }
-                Some(_) => {}
+                Some(projection) => {
+                    stationary.get_or_insert(projection.multipliers);
+                }
                 None => all_judged = false,
             }
         }
     }
     let descent = |best: Option<(f64, Pattern)>| best.map(|(_, treatments)| treatments);
     if !cones.is_empty() {
-        let own = judge.project(pattern.clone(), steps)?.filter(|projection| projection.is_zero);
-        let kind = match (all_judged && cones_complete && best.is_none(), &own) {
+        let kind = match (all_judged && cones_complete && best.is_none(), &stationary) {
             (true, _) => StationarityKind::Branch,
             (false, Some(_)) => StationarityKind::OneBranch,
             (false, None) => StationarityKind::Unknown,
         };
-        return Ok(Verdict { kind, multipliers: own.map(|own| own.multipliers), descent: descent(best) });
+        return Ok(Verdict { kind, multipliers: stationary, descent: descent(best) });
     }
     let tight = judge.project(with_biactive(&|_| PairTreatment::BothZero), steps)?;
     let weak = match &tight {
