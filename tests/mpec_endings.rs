@@ -221,6 +221,7 @@ fn branch_minima(problem: &Quadratic) -> Vec<f64> {
             inequality_values,
             lower: DVector::from_element(n, f64::NEG_INFINITY),
             upper: DVector::from_element(n, f64::INFINITY),
+            cones: Vec::new(),
         };
         if let Ok(solution) = solve_interior(&program, &CancelFlag::default()) {
             minima.push(program.objective(&solution.step));

@@ -10,11 +10,12 @@
 //! Its solution is the program's when the other constraints hold at `d` and the multipliers of the inequalities are
 //! nonnegative (a Karush-Kuhn-Tucker point of a convex program is a solution). Otherwise violated rows enter the set
 //! and rows with a negative multiplier leave it, a bounded number of times: the primal-dual active set method of
-//! M. Hintermüller, K. Ito and K. Kunisch, SIAM J. Optim. 13 (2002), doi:10.1137/S1052623401383558. It may fail, and then
-//! the interior-point method answers; what it does return is exact to round-off and costs microseconds.
+//! M. Hintermüller, K. Ito and K. Kunisch, SIAM J. Optim. 13 (2002), doi:10.1137/S1052623401383558. Second-order cones
+//! take part in it (`mpec::active_cones`). It may fail, and then the interior-point method answers; what it does return is exact to round-off and costs microseconds.
 
 use nalgebra::{DMatrix, DVector};
 
+use super::active_cones::{CORRECTIONS, ConeState, Expansions};
 use super::quadratic::{QuadraticProgram, QuadraticSolution};
 
 /// Relative slack in "holds", "nonnegative" and "solves the system".
@@ -28,6 +29,7 @@ pub struct WorkingSet {
     pub inequality: Vec<bool>,
     pub lower: Vec<bool>,
     pub upper: Vec<bool>,
+    pub cones: Vec<ConeState>,
 }
 
 impl WorkingSet {
@@ -37,6 +39,7 @@ impl WorkingSet {
             inequality: program.inequality_values.iter().map(|value| *value <= margin).collect(),
             lower: program.lower.iter().map(|bound| -*bound <= margin).collect(),
             upper: program.upper.iter().map(|bound| *bound <= margin).collect(),
+            cones: program.cones.iter().map(|cone| ConeState::at_rest(cone.values.as_slice(), margin)).collect(),
         }
     }
 
@@ -49,11 +52,19 @@ impl WorkingSet {
             inequality: slack.iter().zip(solution.inequality_multipliers.iter()).map(|(s, λ)| λ > s).collect(),
             lower: indices.clone().map(|j| solution.lower_multipliers[j] > step[j] - program.lower[j]).collect(),
             upper: indices.map(|j| solution.upper_multipliers[j] > program.upper[j] - step[j]).collect(),
+            cones: program
+                .cones
+                .iter()
+                .zip(&solution.cone_multipliers)
+                .map(|(cone, multiplier)| ConeState::of_solution(&cone.at(step), multiplier))
+                .collect(),
         }
     }
 
     fn fits(&self, program: &QuadraticProgram) -> bool {
-        self.inequality.len() == program.inequality_values.len() && self.lower.len() == program.gradient.len()
+        self.inequality.len() == program.inequality_values.len()
+            && self.lower.len() == program.gradient.len()
+            && self.cones.len() == program.cones.len()
     }
 }
 
@@ -64,9 +75,14 @@ pub fn solve(program: &QuadraticProgram, guess: &mut WorkingSet, changes: usize)
         return None;
     }
     let mut set = guess.clone();
-    for _ in 0..=changes {
-        let solution = solve_equalities(program, &set)?;
-        if !revise(program, &solution, &mut set) {
+    let mut expansions = Expansions::new(program);
+    let solves = changes + if program.cones.is_empty() { 0 } else { CORRECTIONS };
+    let force = ROUND_OFF * (1.0 + program.gradient.amax());
+    for _ in 0..=solves {
+        let mut solution = solve_equalities(program, &set, &expansions)?;
+        let length = ROUND_OFF * (1.0 + solution.step.amax());
+        let changed = revise(program, &solution, &mut set, force, length);
+        if !expansions.revise(program, &mut solution, &mut set.cones, force, length) && !changed {
             *guess = set;
             return Some(clipped(solution));
         }
@@ -75,12 +91,17 @@ pub fn solve(program: &QuadraticProgram, guess: &mut WorkingSet, changes: usize)
 }
 
 /// The linear system of the working set.
-fn solve_equalities(program: &QuadraticProgram, set: &WorkingSet) -> Option<QuadraticSolution> {
+fn solve_equalities(
+    program: &QuadraticProgram,
+    set: &WorkingSet,
+    expansions: &Expansions,
+) -> Option<QuadraticSolution> {
     let variables = program.gradient.len();
     let equalities = program.equality_values.len();
     let members = |flags: &[bool]| -> Vec<usize> { (0..flags.len()).filter(|&i| flags[i]).collect() };
     let (rows, below, above) = (members(&set.inequality), members(&set.lower), members(&set.upper));
-    let active = equalities + rows.len() + below.len() + above.len();
+    let on_cones = expansions.rows(program, &set.cones);
+    let active = equalities + rows.len() + below.len() + above.len() + on_cones.len();
     if active > 2 * variables {
         return None;
     }
@@ -90,6 +111,7 @@ fn solve_equalities(program: &QuadraticProgram, set: &WorkingSet) -> Option<Quad
     for j in 0..variables {
         right[j] = -program.gradient[j];
     }
+    expansions.add_curvature(program, &set.cones, &mut matrix, &mut right);
     let mut place = variables;
     let mut put_row = |values: &dyn Fn(usize) -> f64, value: f64| {
         for j in 0..variables {
@@ -112,6 +134,9 @@ fn solve_equalities(program: &QuadraticProgram, set: &WorkingSet) -> Option<Quad
     for &k in &above {
         put_row(&|j| if j == k { -1.0 } else { 0.0 }, program.upper[k]);
     }
+    for (row, value) in &on_cones {
+        put_row(&|j| row[j], *value);
+    }
     let unknowns = solve_refined(&matrix, matrix.clone(), &right, 1).or_else(|| {
         // Rows that say the same twice make the system singular but not contradictory. A small negative block for the
         // multipliers makes it regular, and refinement against the true matrix takes the block's effect out again.
@@ -128,6 +153,7 @@ fn solve_equalities(program: &QuadraticProgram, set: &WorkingSet) -> Option<Quad
         inequality_multipliers: DVector::zeros(program.inequality_values.len()),
         lower_multipliers: DVector::zeros(variables),
         upper_multipliers: DVector::zeros(variables),
+        cone_multipliers: Vec::new(),
     };
     let mut multipliers = unknowns.iter().skip(variables + equalities).map(|value| -value);
     let mut scatter = |places: &[usize], target: &mut DVector<f64>| {
@@ -138,6 +164,7 @@ fn solve_equalities(program: &QuadraticProgram, set: &WorkingSet) -> Option<Quad
     scatter(&rows, &mut solution.inequality_multipliers);
     scatter(&below, &mut solution.lower_multipliers);
     scatter(&above, &mut solution.upper_multipliers);
+    solution.cone_multipliers = expansions.multipliers(program, &set.cones, multipliers);
     Some(solution)
 }
 
@@ -161,11 +188,15 @@ fn solve_refined(
 }
 
 /// Takes violated rows in and rows with negative multipliers out; false where nothing had to change.
-fn revise(program: &QuadraticProgram, solution: &QuadraticSolution, set: &mut WorkingSet) -> bool {
+fn revise(
+    program: &QuadraticProgram,
+    solution: &QuadraticSolution,
+    set: &mut WorkingSet,
+    force: f64,
+    length: f64,
+) -> bool {
     let step = &solution.step;
     let slack = &program.inequality_values + &program.inequality * step;
-    let force = ROUND_OFF * (1.0 + program.gradient.amax());
-    let length = ROUND_OFF * (1.0 + step.amax());
     let mut changed = false;
     let mut update = |flag: &mut bool, slack: f64, multiplier: f64, length: f64| {
         let wanted = if *flag { multiplier >= -force } else { slack < -length };

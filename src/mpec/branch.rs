@@ -10,10 +10,13 @@
 
 use nalgebra::DVector;
 
+use super::cone;
+use super::cone_rows::ConeTreatment;
 use super::elastic::StepSolver;
 use super::evaluation::Evaluation;
+use super::pattern::{PairTreatment, Pattern};
 use super::problem::Problem;
-use super::relaxed::{Multipliers, PairTreatment, Rows};
+use super::relaxed::{Multipliers, Rows};
 use super::result::StationarityKind;
 use super::settings::{Finish, Settings};
 use super::sqp::{self, SqpEnd, SqpSettings};
@@ -25,6 +28,8 @@ const CLEAR_RATIO: f64 = 0.05;
 /// Decrease of the objective that justifies another branch, relative to `1 + |f|`.
 const WORTHWHILE: f64 = 1e-10;
 
+/// Most pairs whose branches are all tried before a problem is called infeasible, whatever the settings ask for.
+const ENUMERATION_CEILING: usize = 10;
 /// A point that a search over branches or a regularised program ended at.
 #[derive(Debug, Clone)]
 pub struct Candidate {
@@ -53,20 +58,62 @@ impl Candidate {
                 StationarityKind::Mordukhovich
                 | StationarityKind::Clarke
                 | StationarityKind::Weak
+                | StationarityKind::OneBranch
                 | StationarityKind::Unknown => self.end == SqpEnd::Settled,
             }
     }
 }
 
 /// The branch whose zero members are the smaller ones.
-pub fn nearest_pattern(at: &Evaluation) -> Vec<PairTreatment> {
+pub fn nearest_pattern(at: &Evaluation) -> Pattern {
     let pairs = at.first.iter().zip(at.second.iter());
-    pairs.map(|(a, b)| if a <= b { PairTreatment::FirstZero } else { PairTreatment::SecondZero }).collect()
+    Pattern {
+        pairs: pairs.map(|(a, b)| if a <= b { PairTreatment::FirstZero } else { PairTreatment::SecondZero }).collect(),
+        cones: at.cones.pairs().map(|(a, b)| ConeTreatment::nearest(a, b)).collect(),
+    }
 }
 
-/// True where every pair's smaller member is small beside the larger.
+/// The branch nearest to a point, then those around it: all of them where there are few scalar pairs (at most `limit`) and
+/// no cones, else those that differ in one pair.
+pub fn patterns_around(at: &Evaluation, limit: usize) -> Vec<Pattern> {
+    let nearest = nearest_pattern(at);
+    let pairs = nearest.pairs.len();
+    let flips: Vec<Vec<usize>> = if pairs <= limit.min(ENUMERATION_CEILING) && nearest.cones.is_empty() {
+        let mut subsets: Vec<usize> = (0..1_usize << pairs).collect();
+        subsets.sort_by_key(|subset| subset.count_ones());
+        subsets.into_iter().map(|subset| (0..pairs).filter(|pair| subset >> pair & 1 == 1).collect()).collect()
+    } else {
+        std::iter::once(vec![]).chain((0..pairs.min(1 << ENUMERATION_CEILING)).map(|pair| vec![pair])).collect()
+    };
+    let flipped = |flipped: Vec<usize>| {
+        let mut pattern = nearest.clone();
+        for pair in flipped {
+            pattern.pairs[pair] = match pattern.pairs[pair] {
+                PairTreatment::FirstZero => PairTreatment::SecondZero,
+                PairTreatment::SecondZero
+                | PairTreatment::Product(_)
+                | PairTreatment::BothFree
+                | PairTreatment::BothZero => PairTreatment::FirstZero,
+            };
+        }
+        pattern
+    };
+    let mut patterns: Vec<Pattern> = flips.into_iter().map(flipped).collect();
+    for (pair, (a, b)) in at.cones.pairs().enumerate().take(1 << ENUMERATION_CEILING) {
+        for treatment in nearest.cones[pair].others(a, b) {
+            let mut pattern = nearest.clone();
+            pattern.cones[pair] = treatment;
+            patterns.push(pattern);
+        }
+    }
+    patterns
+}
+
+/// True where every pair's smaller member is small beside the larger, and every cone pair nearly complementary.
 pub fn is_clear(at: &Evaluation) -> bool {
+    let largest = |v: &[f64]| v.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     at.first.iter().zip(at.second.iter()).all(|(a, b)| a.min(*b) <= CLEAR_RATIO * a.max(*b))
+        && at.cones.pairs().all(|(a, b)| cone::natural_residual(a, b) <= CLEAR_RATIO * largest(a).max(largest(b)))
 }
 
 /// Solves the branch `pattern` from `start` and follows descent into its neighbours. The end
@@ -75,20 +122,21 @@ pub fn descend<P: Problem + ?Sized>(
     problem: &P,
     bounds: &(DVector<f64>, DVector<f64>),
     start: &DVector<f64>,
-    mut pattern: Vec<PairTreatment>,
+    mut pattern: Pattern,
     settings: &Settings,
     steps: &mut StepSolver,
     cancel: &CancelFlag,
 ) -> Candidate {
     let mut stop_when_settled = settings.finish == Finish::PatternSettled;
-    let mut changes_left = 2 * problem.pairs() + 8;
+    let cone_sizes = problem.cone_sizes();
+    let mut changes_left = 2 * problem.pairs() + 3 * cone_sizes.len() + 8;
     let mut start = start.clone();
     let mut best: Option<Candidate> = None;
     loop {
         steps.counts.branches += 1;
         let sequence =
             SqpSettings { tolerance: settings.tolerance, iteration_limit: settings.iteration_limit, stop_when_settled };
-        let rows = Rows::new(problem.equalities(), problem.inequalities(), pattern.clone());
+        let rows = Rows::new(problem.equalities(), problem.inequalities(), &cone_sizes, pattern.clone());
         let outcome = sqp::solve(problem, &rows, bounds, &start, sequence, steps, cancel);
         let mut candidate = Candidate {
             end: outcome.end,
@@ -108,8 +156,8 @@ pub fn descend<P: Problem + ?Sized>(
                 Some(_) | None => candidate,
             };
         }
-        let settled_clearly = candidate.end == SqpEnd::Settled
-            && stationarity::biactive(&candidate.at, settings.biactive_tolerance).is_empty();
+        let settled_clearly =
+            candidate.end == SqpEnd::Settled && !stationarity::is_biactive(&candidate.at, settings.biactive_tolerance);
         if stopped || settled_clearly || candidate.end == SqpEnd::Unbounded || changes_left == 0 {
             return candidate;
         }
@@ -141,12 +189,12 @@ pub fn descend<P: Problem + ?Sized>(
 /// Classifies a converged point; returns the branch that leads down from it.
 fn judge<P: Problem + ?Sized>(
     problem: &P,
-    pattern: &[PairTreatment],
+    pattern: &Pattern,
     candidate: &mut Candidate,
     settings: &Settings,
     steps: &mut StepSolver,
     cancel: &CancelFlag,
-) -> Result<Option<Vec<PairTreatment>>, SqpEnd> {
+) -> Result<Option<Pattern>, SqpEnd> {
     let converged = candidate.end == SqpEnd::Converged;
     let verdict = stationarity::classify(
         problem,

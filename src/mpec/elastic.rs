@@ -5,7 +5,8 @@
 //! 3. the elastic program, where the constraints seem contradictory:
 //!
 //! ```text
-//! min ½ dᵀHd + q·d + ρ Σ (p + m + t)   s.t.   e + E d = p - m,   c + C d >= -t,   lower <= d <= upper,   p, m, t >= 0
+//! min ½ dᵀHd + q·d + ρ Σ (p + m + t)   s.t.   e + E d = p - m,   c + C d >= -t,   v + V d + t (1, 0) ∈ K,
+//!                                               lower <= d <= upper,   p, m, t >= 0
 //! ```
 //!
 //! which always has a solution; `ρ` is raised until the violation that remains no longer falls. Source: P. E. Gill,
@@ -14,7 +15,7 @@
 use nalgebra::DMatrix;
 
 use super::active_set::{self, WorkingSet};
-use super::quadratic::{self, QuadraticFailure, QuadraticProgram, QuadraticSolution};
+use super::quadratic::{self, ConeRows, QuadraticFailure, QuadraticProgram, QuadraticSolution};
 use super::result::Counts;
 use crate::cancel::CancelFlag;
 
@@ -98,8 +99,11 @@ impl StepSolver {
             };
             let n = program.gradient.len();
             let remaining_violation: f64 = solution.step.iter().skip(n).map(|slack| slack.max(0.0)).sum();
-            let scale =
-                1.0 + largest(program.equality_values.as_slice()).max(largest(program.inequality_values.as_slice()));
+            let in_cones = program.cones.iter().fold(0.0_f64, |worst, cone| worst.max(largest(cone.values.as_slice())));
+            let scale = 1.0
+                + largest(program.equality_values.as_slice())
+                    .max(largest(program.inequality_values.as_slice()))
+                    .max(in_cones);
             let settled = remaining_violation <= 1e-8 * scale
                 || best.as_ref().is_some_and(|step| remaining_violation > 0.99 * step.remaining_violation);
             best = Some(Step { solution: first_variables(solution, n), remaining_violation, same_working_set: false });
@@ -119,7 +123,8 @@ fn largest(values: &[f64]) -> f64 {
 fn relax_rows(program: &QuadraticProgram, weight: f64) -> QuadraticProgram {
     let n = program.gradient.len();
     let (equalities, inequalities) = (program.equality_values.len(), program.inequality_values.len());
-    let total = n + 2 * equalities + inequalities;
+    let in_cones = n + 2 * equalities + inequalities;
+    let total = in_cones + program.cones.len();
     let mut hessian = DMatrix::zeros(total, total);
     hessian.view_mut((0, 0), (n, n)).copy_from(&program.hessian);
     let mut equality = DMatrix::zeros(equalities, total);
@@ -133,7 +138,14 @@ fn relax_rows(program: &QuadraticProgram, weight: f64) -> QuadraticProgram {
     for i in 0..inequalities {
         inequality[(i, n + 2 * equalities + i)] = 1.0;
     }
+    // A vector that lacks `t` of lying in the cone lies there with `t` added to its first entry.
+    let cones = program.cones.iter().enumerate().map(|(i, cone)| {
+        let mut rows = cone.rows.clone().resize_horizontally(total, 0.0);
+        rows[(0, in_cones + i)] = 1.0;
+        ConeRows { rows, values: cone.values.clone() }
+    });
     QuadraticProgram {
+        cones: cones.collect(),
         hessian,
         gradient: program.gradient.clone().resize_vertically(total, weight),
         equality,
@@ -171,6 +183,7 @@ mod tests {
             inequality_values: DVector::from_column_slice(&[-1.0, -1.0]),
             lower: DVector::from_element(1, f64::NEG_INFINITY),
             upper: DVector::from_element(1, f64::INFINITY),
+            cones: Vec::new(),
         };
         let mut steps = StepSolver::default();
         let step = steps.solve(&program, &CancelFlag::default()).expect("the elastic program has a solution");
@@ -190,6 +203,7 @@ mod tests {
             inequality_values: DVector::zeros(0),
             lower: DVector::from_element(1, f64::NEG_INFINITY),
             upper: DVector::from_element(1, f64::INFINITY),
+            cones: Vec::new(),
         };
         let cancel = CancelFlag::default();
         assert_eq!(StepSolver::default().solve(&program, &cancel).err(), Some(QuadraticFailure::NotFinite));

@@ -3,6 +3,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::cone;
 use super::problem::Problem;
 
 /// The function of a [`Problem`] that returned a number that is not finite.
@@ -17,6 +18,8 @@ pub enum Quantity {
     InequalityJacobian,
     Pairs,
     PairJacobians,
+    Cones,
+    ConeJacobians,
     QuadraticModel,
 }
 
@@ -33,6 +36,59 @@ pub struct Evaluation {
     pub second: DVector<f64>,
     pub first_jacobian: DMatrix<f64>,
     pub second_jacobian: DMatrix<f64>,
+    pub cones: ConeMembers,
+}
+
+/// Both members of every cone pair, one pair below the other.
+#[derive(Debug, Clone)]
+pub struct ConeMembers {
+    /// Where each pair begins, and the end of the last.
+    starts: Vec<usize>,
+    pub first: DVector<f64>,
+    pub second: DVector<f64>,
+    pub first_jacobian: DMatrix<f64>,
+    pub second_jacobian: DMatrix<f64>,
+}
+
+impl ConeMembers {
+    fn new(sizes: &[usize], variables: usize) -> Self {
+        let mut starts = vec![0];
+        let mut total = 0;
+        for size in sizes {
+            total += size;
+            starts.push(total);
+        }
+        Self {
+            starts,
+            first: DVector::zeros(total),
+            second: DVector::zeros(total),
+            first_jacobian: DMatrix::zeros(total, variables),
+            second_jacobian: DMatrix::zeros(total, variables),
+        }
+    }
+
+    /// Number of cone pairs.
+    pub fn count(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Entries of a pair in the stacked members.
+    pub fn range(&self, pair: usize) -> std::ops::Range<usize> {
+        self.starts[pair]..self.starts[pair + 1]
+    }
+
+    pub fn first_of(&self, pair: usize) -> &[f64] {
+        &self.first.as_slice()[self.range(pair)]
+    }
+
+    pub fn second_of(&self, pair: usize) -> &[f64] {
+        &self.second.as_slice()[self.range(pair)]
+    }
+
+    /// Members of every pair.
+    pub fn pairs(&self) -> impl Iterator<Item = (&[f64], &[f64])> {
+        (0..self.count()).map(|pair| (self.first_of(pair), self.second_of(pair)))
+    }
 }
 
 impl Evaluation {
@@ -50,6 +106,7 @@ impl Evaluation {
             second: DVector::zeros(pairs),
             first_jacobian: DMatrix::zeros(pairs, n),
             second_jacobian: DMatrix::zeros(pairs, n),
+            cones: ConeMembers::new(&problem.cone_sizes(), n),
         }
     }
 
@@ -66,7 +123,12 @@ impl Evaluation {
         finite(self.equality.as_slice(), Quantity::Equalities)?;
         finite(self.inequality.as_slice(), Quantity::Inequalities)?;
         finite(self.first.as_slice(), Quantity::Pairs)?;
-        finite(self.second.as_slice(), Quantity::Pairs)
+        finite(self.second.as_slice(), Quantity::Pairs)?;
+        if self.cones.count() > 0 {
+            problem.cone_values(x, &mut self.cones.first, &mut self.cones.second);
+        }
+        finite(self.cones.first.as_slice(), Quantity::Cones)?;
+        finite(self.cones.second.as_slice(), Quantity::Cones)
     }
 
     /// Their derivatives at `x`.
@@ -79,6 +141,8 @@ impl Evaluation {
             &mut self.inequality_jacobian,
             &mut self.first_jacobian,
             &mut self.second_jacobian,
+            &mut self.cones.first_jacobian,
+            &mut self.cones.second_jacobian,
         ] {
             jacobian.fill(0.0);
         }
@@ -91,10 +155,26 @@ impl Evaluation {
         finite(self.equality_jacobian.as_slice(), Quantity::EqualityJacobian)?;
         finite(self.inequality_jacobian.as_slice(), Quantity::InequalityJacobian)?;
         finite(self.first_jacobian.as_slice(), Quantity::PairJacobians)?;
-        finite(self.second_jacobian.as_slice(), Quantity::PairJacobians)
+        finite(self.second_jacobian.as_slice(), Quantity::PairJacobians)?;
+        if self.cones.count() > 0 {
+            problem.cone_jacobians(x, &mut self.cones.first_jacobian, &mut self.cones.second_jacobian);
+        }
+        finite(self.cones.first_jacobian.as_slice(), Quantity::ConeJacobians)?;
+        finite(self.cones.second_jacobian.as_slice(), Quantity::ConeJacobians)
     }
 
-    /// Largest violation of `h = 0`, `g >= 0`, `a >= 0`, `b >= 0`.
+    /// Takes over another point's values; the derivatives stay as they are.
+    pub fn swap_values(&mut self, other: &mut Self) {
+        std::mem::swap(&mut self.objective, &mut other.objective);
+        std::mem::swap(&mut self.equality, &mut other.equality);
+        std::mem::swap(&mut self.inequality, &mut other.inequality);
+        std::mem::swap(&mut self.first, &mut other.first);
+        std::mem::swap(&mut self.second, &mut other.second);
+        std::mem::swap(&mut self.cones.first, &mut other.cones.first);
+        std::mem::swap(&mut self.cones.second, &mut other.cones.second);
+    }
+
+    /// Largest violation of `h = 0`, `g >= 0`, `a >= 0`, `b >= 0` and of the cones.
     pub fn largest_violation(&self) -> f64 {
         let below_zero = |values: &DVector<f64>| values.iter().fold(0.0_f64, |worst, value| worst.max(-value));
         self.equality
@@ -102,11 +182,13 @@ impl Evaluation {
             .max(below_zero(&self.inequality))
             .max(below_zero(&self.first))
             .max(below_zero(&self.second))
+            .max(self.cones.pairs().fold(0.0, |worst, (a, b)| worst.max(-cone::slack(a)).max(-cone::slack(b))))
     }
 
-    /// Largest `|a_i b_i|`.
+    /// Largest `|a_i b_i|`, of the cone pairs `|A_i·B_i|`.
     pub fn largest_product(&self) -> f64 {
-        self.first.iter().zip(self.second.iter()).fold(0.0, |worst, (a, b)| worst.max((a * b).abs()))
+        let scalar = self.first.iter().zip(self.second.iter()).fold(0.0_f64, |worst, (a, b)| worst.max((a * b).abs()));
+        self.cones.pairs().fold(scalar, |worst, (a, b)| worst.max(cone::product(a, b).abs()))
     }
 }
 

@@ -30,6 +30,9 @@ pub fn check_input<P: Problem + ?Sized>(
             return Err(InputError::Bounds { variable, lower, upper });
         }
     }
+    if let Some((pair, &size)) = problem.cone_sizes().iter().enumerate().find(|(_, size)| **size < 2) {
+        return Err(InputError::ConeSize { pair, size });
+    }
     let positive = |name, value: f64| {
         if value > 0.0 && value.is_finite() {
             Ok(())

@@ -1,7 +1,8 @@
 //! Mathematical programs with complementarity constraints.
 //!
 //! ```text
-//! min f(x)   s.t.   h(x) = 0,   g(x) >= 0,   lower <= x <= upper,   0 <= a_i(x)  ⊥  b_i(x) >= 0
+//! min f(x)   s.t.   h(x) = 0,   g(x) >= 0,   lower <= x <= upper,   0 <= a_i(x)  ⊥  b_i(x) >= 0,
+//!                   K ∋ A_i(x)  ⊥  B_i(x) ∈ K,     K the second-order cone
 //! ```
 //!
 //! solved through a sequence of regularised problems (`a_i b_i <= ε`, ε falling to 0) by sequential quadratic
@@ -20,25 +21,36 @@
 //! | `branch` | one pattern of zero members after another |
 //! | `stationarity` | how stationary a point is |
 //! | `sqp`, `secant` | one smooth program |
-//! | `relaxed` | the smooth program's rows and their linearisation |
+//! | `pattern`, `relaxed` | the smooth program's rows and their linearisation |
 //! | `evaluation`, `input` | the problem at one point; what the caller got wrong |
-//! | `elastic`, `active_set`, [`quadratic`] | one quadratic program |
+//! | `elastic`, `active_set`, `active_cones`, [`quadratic`] | one quadratic program |
+//! | [`cone`], `cone_rows` | the second-order cone, and how a cone pair enters the smooth program |
+//! | `activity` | which members are zero |
+//! | [`semismooth`] | Newton's method on the complementarity system itself |
 
+mod active_cones;
 mod active_set;
+mod activity;
 mod branch;
+pub mod cone;
+mod cone_rows;
 mod elastic;
 mod evaluation;
 mod input;
+mod pattern;
 pub mod problem;
 pub mod quadratic;
 mod relaxed;
 pub mod result;
 mod secant;
+pub mod semismooth;
 pub mod settings;
 mod solver;
 mod sqp;
 mod stationarity;
 
+pub use activity::Activities;
+pub use cone::ConeActivity;
 pub use problem::Problem;
 pub use result::{Counts, InputError, Multipliers, PairActivity, Quantity, Solution, StationarityKind, Status};
 pub use settings::{Finish, Settings};

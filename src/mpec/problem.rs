@@ -2,7 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// `min f(x)` s.t. `h(x) = 0`, `g(x) >= 0`, `lower <= x <= upper`, `0 <= a(x) ⊥ b(x) >= 0`.
+/// `min f(x)` s.t. `h(x) = 0`, `g(x) >= 0`, `lower <= x <= upper`, `0 <= a(x) ⊥ b(x) >= 0`, and cone pairs
+/// `K ∋ A_i(x) ⊥ B_i(x) ∈ K`, `K` the second-order cone (`mpec::cone`).
 ///
 /// All functions are evaluated at `x` of length [`Problem::variables`]; outputs are overwritten. Jacobians have one
 /// row a function and one column a variable and arrive zeroed. Everything is dimensionless and best scaled to numbers
@@ -38,6 +39,15 @@ pub trait Problem {
     fn pair_values(&self, x: &DVector<f64>, first: &mut DVector<f64>, second: &mut DVector<f64>);
     /// Gradients of both members of every pair.
     fn pair_jacobians(&self, x: &DVector<f64>, first: &mut DMatrix<f64>, second: &mut DMatrix<f64>);
+
+    /// Sizes of the cone pairs' members, each 2 or more: 3 for a contact with friction in space.
+    fn cone_sizes(&self) -> Vec<usize> {
+        Vec::new()
+    }
+    /// Both members of every cone pair, one pair below the other.
+    fn cone_values(&self, _x: &DVector<f64>, _first: &mut DVector<f64>, _second: &mut DVector<f64>) {}
+    /// Their gradients, stacked likewise.
+    fn cone_jacobians(&self, _x: &DVector<f64>, _first: &mut DMatrix<f64>, _second: &mut DMatrix<f64>) {}
 
     /// A positive semidefinite matrix for the quadratic programs' objective. Where `None` is returned, the solver
     /// builds one from differences of the Lagrangian's gradient (damped BFGS). The answer has to be of one kind at every

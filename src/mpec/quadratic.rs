@@ -1,12 +1,12 @@
 //! Convex quadratic programs, by the interior-point method of Clarabel. No other file knows that solver.
 //!
 //! ```text
-//! min ½ dᵀ H d + q·d    s.t.   e + E d = 0,   c + C d >= 0,   lower <= d <= upper
+//! min ½ dᵀ H d + q·d    s.t.   e + E d = 0,   c + C d >= 0,   v_i + V_i d ∈ K,   lower <= d <= upper
 //! ```
 //!
-//! Lagrangian `½ dᵀHd + q·d - λ·(e + E d) - κ·(c + C d) - ν_l·(d - lower) - ν_u·(upper - d)`, `κ, ν_l, ν_u >= 0`: this
-//! fixes the signs of the multipliers everywhere in `mpec`. A second-order cone is one more block of rows, appended to
-//! the blocks of [`solve_interior`].
+//! Lagrangian `½ dᵀHd + q·d - λ·(e + E d) - κ·(c + C d) - Σ ζ_i·(v_i + V_i d) - ν_l·(d - lower) - ν_u·(upper - d)`,
+//! `κ, ν_l, ν_u >= 0`, `ζ_i ∈ K`: this fixes the signs of the multipliers everywhere in `mpec`. `K` is the second-order
+//! cone (`mpec::cone`).
 //!
 //! Source: P. J. Goulart and Y. Chen, *Clarabel: An interior-point solver for conic programs with quadratic objectives*,
 //! arXiv:2405.12762.
@@ -43,6 +43,24 @@ pub struct QuadraticProgram {
     /// Bounds on `d`; infinite where there is none.
     pub lower: DVector<f64>,
     pub upper: DVector<f64>,
+    /// Rows that have to lie in second-order cones.
+    pub cones: Vec<ConeRows>,
+}
+
+/// `v + V d ∈ K`.
+#[derive(Debug, Clone)]
+pub struct ConeRows {
+    /// `V`, one row a component of the cone.
+    pub rows: DMatrix<f64>,
+    /// `v`.
+    pub values: DVector<f64>,
+}
+
+impl ConeRows {
+    /// `v + V d`
+    pub fn at(&self, step: &DVector<f64>) -> DVector<f64> {
+        &self.values + &self.rows * step
+    }
 }
 
 /// Minimiser and multipliers of a [`QuadraticProgram`].
@@ -56,6 +74,8 @@ pub struct QuadraticSolution {
     /// Nonnegative; zero where there is no bound.
     pub lower_multipliers: DVector<f64>,
     pub upper_multipliers: DVector<f64>,
+    /// One a cone, each in its cone.
+    pub cone_multipliers: Vec<DVector<f64>>,
 }
 
 /// Why a quadratic program gave no solution.
@@ -83,6 +103,7 @@ impl QuadraticProgram {
             && finite(self.equality_values.as_slice())
             && finite(self.inequality.as_slice())
             && finite(self.inequality_values.as_slice())
+            && self.cones.iter().all(|cone| finite(cone.rows.as_slice()) && finite(cone.values.as_slice()))
             && self.lower.iter().zip(self.upper.iter()).all(|(lower, upper)| lower <= upper)
     }
 
@@ -94,6 +115,15 @@ impl QuadraticProgram {
     /// `dᵀHd`.
     pub fn curvature(&self, step: &DVector<f64>) -> f64 {
         step.dot(&(&self.hessian * step))
+    }
+
+    /// `Σ V_iᵀ ζ_i`
+    pub fn cone_force(&self, solution: &QuadraticSolution) -> DVector<f64> {
+        let mut force = DVector::zeros(self.gradient.len());
+        for (cone, multiplier) in self.cones.iter().zip(&solution.cone_multipliers) {
+            force += cone.rows.tr_mul(multiplier);
+        }
+        force
     }
 }
 
@@ -111,14 +141,20 @@ pub fn solve_interior(program: &QuadraticProgram, cancel: &CancelFlag) -> Result
     let bounded = |bounds: &DVector<f64>| -> Vec<usize> { (0..variables).filter(|&j| bounds[j].is_finite()).collect() };
     let (below, above) = (bounded(&program.lower), bounded(&program.upper));
 
-    // Rows in the solver's form A d + s = b: equalities, inequalities, lower bounds, upper bounds.
+    // Rows in the solver's form A d + s = b: equalities, inequalities, lower bounds, upper bounds, cones.
     let mut right = Vec::with_capacity(equalities + inequalities + below.len() + above.len());
     right.extend(program.equality_values.iter().map(|value| -value));
     right.extend(program.inequality_values.iter());
     right.extend(below.iter().map(|&j| -program.lower[j]));
     right.extend(above.iter().map(|&j| program.upper[j]));
+    let mut cones =
+        vec![SupportedConeT::ZeroConeT(equalities), SupportedConeT::NonnegativeConeT(right.len() - equalities)];
+    let cones_start = right.len();
+    for cone in &program.cones {
+        right.extend(cone.values.iter());
+        cones.push(SupportedConeT::SecondOrderConeT(cone.values.len()));
+    }
     let rows = constraint_rows(program, &below, &above);
-    let cones = [SupportedConeT::ZeroConeT(equalities), SupportedConeT::NonnegativeConeT(right.len() - equalities)];
 
     let mut solver = DefaultSolver::new(
         &upper_triangle(&program.hessian),
@@ -161,6 +197,13 @@ pub fn solve_interior(program: &QuadraticProgram, cancel: &CancelFlag) -> Result
     for (row, &j) in above.iter().enumerate() {
         upper_multipliers[j] = z[bounds_start + below.len() + row].max(0.0);
     }
+    let mut cone_start = cones_start;
+    let cone_multipliers = program.cones.iter().map(|cone| {
+        let place = cone_start..cone_start + cone.values.len();
+        cone_start = place.end;
+        super::cone::projection(&z[place])
+    });
+    let cone_multipliers = cone_multipliers.collect();
     Ok(QuadraticSolution {
         step: DVector::from_column_slice(x),
         equality_multipliers: DVector::from_iterator(equalities, z[..equalities].iter().map(|value| -value)),
@@ -170,6 +213,7 @@ pub fn solve_interior(program: &QuadraticProgram, cancel: &CancelFlag) -> Result
         ),
         lower_multipliers,
         upper_multipliers,
+        cone_multipliers,
     })
 }
 
@@ -221,9 +265,17 @@ fn constraint_rows(program: &QuadraticProgram, below: &[usize], above: &[usize])
             columns.push(equalities + inequalities + below.len() + next_above, 1.0);
             next_above += 1;
         }
+        let mut row = equalities + inequalities + below.len() + above.len();
+        for cone in &program.cones {
+            for value in &cone.rows.column(j) {
+                columns.push(row, -value);
+                row += 1;
+            }
+        }
         columns.close();
     }
-    columns.into_matrix(equalities + inequalities + below.len() + above.len())
+    let in_cones: usize = program.cones.iter().map(|cone| cone.values.len()).sum();
+    columns.into_matrix(equalities + inequalities + below.len() + above.len() + in_cones)
 }
 
 /// A compressed-column matrix under construction; exact zeros are left out.

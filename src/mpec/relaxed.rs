@@ -1,6 +1,6 @@
 //! The smooth program that stands for the one with complementarity constraints, and its linearisation.
 //!
-//! Each pair `0 <= a ⊥ b >= 0` is treated in one of these ways ([`PairTreatment`]):
+//! Each pair `0 <= a ⊥ b >= 0` is treated in one of these ways (`mpec::pattern`):
 //!
 //! ```text
 //! Product(ε):   a >= 0,  b >= 0,  ε - a b >= 0          the regularisation, ε falling to 0
@@ -12,35 +12,19 @@
 //!
 //! Linearised at `x`, with the step `d`: `a + ∇a·d`, and `ε - a b - (b ∇a + a ∇b)·d >= 0` for the product.
 //!
+//! Cone pairs are treated likewise (`mpec::cone_rows`).
+//!
 //! Source: S. Scholtes, *Convergence properties of a regularization scheme for mathematical programs with
 //! complementarity constraints*, SIAM J. Optim. 11 (2001), doi:10.1137/S1052623499361233. With multipliers `λ_a, λ_b, π`
 //! of the three rows of a product, the pair's own multipliers are `ν_a = λ_a - π b` and `ν_b = λ_b - π a`.
 
 use nalgebra::{DMatrix, DVector};
 
-use super::evaluation::Evaluation;
-use super::quadratic::{QuadraticProgram, QuadraticSolution};
-
-/// How one pair enters the smooth program.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum PairTreatment {
-    /// Both nonnegative, their product at most this.
-    Product(f64),
-    FirstZero,
-    SecondZero,
-    BothFree,
-    BothZero,
-}
-
-impl PairTreatment {
-    fn first_is_zero(self) -> bool {
-        matches!(self, Self::FirstZero | Self::BothZero)
-    }
-
-    fn second_is_zero(self) -> bool {
-        matches!(self, Self::SecondZero | Self::BothZero)
-    }
-}
+use super::cone;
+use super::cone_rows::{ConeRow, ConeTreatment, Member};
+use super::evaluation::{ConeMembers, Evaluation};
+use super::pattern::{PairTreatment, Pattern};
+use super::quadratic::{ConeRows, QuadraticProgram, QuadraticSolution};
 
 /// What a row of the smooth program belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,6 +34,8 @@ pub enum Row {
     First(usize),
     Second(usize),
     Product(usize),
+    /// A row of a cone pair.
+    Cone(usize, ConeRow),
 }
 
 /// Multipliers in the problem's own terms; signs as in `mpec::quadratic`.
@@ -63,6 +49,10 @@ pub struct Multipliers {
     pub first: DVector<f64>,
     /// One a pair: `ν_b`.
     pub second: DVector<f64>,
+    /// Of the cone pairs' first members, stacked as in [`super::Problem::cone_values`].
+    pub cone_first: DVector<f64>,
+    /// Of their second members.
+    pub cone_second: DVector<f64>,
     /// One a variable, nonnegative.
     pub lower: DVector<f64>,
     /// One a variable, nonnegative.
@@ -72,23 +62,31 @@ pub struct Multipliers {
 /// The rows of the smooth program for one choice of treatments.
 #[derive(Debug, Clone)]
 pub struct Rows {
-    treatments: Vec<PairTreatment>,
+    pattern: Pattern,
     equality: Vec<Row>,
     inequality: Vec<Row>,
+    /// Members of cone pairs that have to lie in the cone.
+    in_cone: Vec<(usize, Member)>,
 }
 
 impl Rows {
-    pub fn new(equalities: usize, inequalities: usize, treatments: Vec<PairTreatment>) -> Self {
+    pub fn new(equalities: usize, inequalities: usize, cone_sizes: &[usize], pattern: Pattern) -> Self {
         let mut equality: Vec<Row> = (0..equalities).map(Row::Equality).collect();
         let mut inequality: Vec<Row> = (0..inequalities).map(Row::Inequality).collect();
-        for (i, treatment) in treatments.iter().enumerate() {
+        for (i, treatment) in pattern.pairs.iter().enumerate() {
             if treatment.first_is_zero() { &mut equality } else { &mut inequality }.push(Row::First(i));
             if treatment.second_is_zero() { &mut equality } else { &mut inequality }.push(Row::Second(i));
             if matches!(treatment, PairTreatment::Product(_)) {
                 inequality.push(Row::Product(i));
             }
         }
-        Self { treatments, equality, inequality }
+        let mut in_cone = Vec::new();
+        for (i, (treatment, &size)) in pattern.cones.iter().zip(cone_sizes).enumerate() {
+            equality.extend(treatment.equalities(size).into_iter().map(|row| Row::Cone(i, row)));
+            inequality.extend(treatment.inequality().map(|row| Row::Cone(i, row)));
+            in_cone.extend(treatment.in_cone().iter().map(|&member| (i, member)));
+        }
+        Self { pattern, equality, inequality, in_cone }
     }
 
     fn value(&self, at: &Evaluation, row: Row) -> f64 {
@@ -97,13 +95,14 @@ impl Rows {
             Row::Inequality(i) => at.inequality[i],
             Row::First(i) => at.first[i],
             Row::Second(i) => at.second[i],
-            Row::Product(i) => match self.treatments[i] {
+            Row::Product(i) => match self.pattern.pairs[i] {
                 PairTreatment::Product(relaxation) => relaxation - at.first[i] * at.second[i],
                 PairTreatment::FirstZero
                 | PairTreatment::SecondZero
                 | PairTreatment::BothFree
                 | PairTreatment::BothZero => 0.0,
             },
+            Row::Cone(i, row) => self.pattern.cones[i].value(&at.cones, i, row),
         }
     }
 
@@ -111,7 +110,9 @@ impl Rows {
     pub fn violation(&self, at: &Evaluation) -> f64 {
         let equalities: f64 = self.equality.iter().map(|&row| self.value(at, row).abs()).sum();
         let inequalities: f64 = self.inequality.iter().map(|&row| (-self.value(at, row)).max(0.0)).sum();
-        equalities + inequalities
+        let outside = |&(i, member): &(usize, Member)| (-cone::slack(member_of(&at.cones, i, member))).max(0.0);
+        let cones: f64 = self.in_cone.iter().map(outside).sum();
+        equalities + inequalities + cones
     }
 
     /// The quadratic program at `x`; its Hessian is left to the caller.
@@ -132,6 +133,7 @@ impl Rows {
             inequality_values: DVector::zeros(self.inequality.len()),
             lower: &bounds.0 - x,
             upper: &bounds.1 - x,
+            cones: self.in_cone.iter().map(|&(i, member)| cone_rows(&at.cones, i, member)).collect(),
         };
         for (place, &row) in self.equality.iter().enumerate() {
             program.equality_values[place] = self.value(at, row);
@@ -146,6 +148,14 @@ impl Rows {
     }
 
     fn put_gradient(&self, at: &Evaluation, row: Row, into: &mut DMatrix<f64>, place: usize) {
+        if let Row::Cone(i, row) = row {
+            let (by_first, by_second) = ConeTreatment::derivatives(&at.cones, i, row);
+            let range = at.cones.range(i);
+            let gradient = at.cones.first_jacobian.rows(range.start, range.len()).tr_mul(&by_first)
+                + at.cones.second_jacobian.rows(range.start, range.len()).tr_mul(&by_second);
+            into.set_row(place, &gradient.transpose());
+            return;
+        }
         for j in 0..into.ncols() {
             into[(place, j)] = match row {
                 Row::Equality(i) => at.equality_jacobian[(i, j)],
@@ -153,6 +163,7 @@ impl Rows {
                 Row::First(i) => at.first_jacobian[(i, j)],
                 Row::Second(i) => at.second_jacobian[(i, j)],
                 Row::Product(i) => -at.second[i] * at.first_jacobian[(i, j)] - at.first[i] * at.second_jacobian[(i, j)],
+                Row::Cone(..) => 0.0,
             };
         }
     }
@@ -194,16 +205,22 @@ impl Rows {
         }
         program.equality_values -= &program.equality * step;
         program.inequality_values -= &program.inequality * step;
+        for (cone, &(i, member)) in program.cones.iter_mut().zip(&self.in_cone) {
+            cone.values.copy_from_slice(member_of(&trial.cones, i, member));
+            cone.values -= &cone.rows * step;
+        }
     }
 
     /// The multipliers of a quadratic program's rows, sorted back to what they belong to.
     pub fn multipliers(&self, at: &Evaluation, solution: &QuadraticSolution) -> Multipliers {
-        let pairs = self.treatments.len();
+        let pairs = self.pattern.pairs.len();
         let mut multipliers = Multipliers {
             equality: DVector::zeros(at.equality.len()),
             inequality: DVector::zeros(at.inequality.len()),
             first: DVector::zeros(pairs),
             second: DVector::zeros(pairs),
+            cone_first: DVector::zeros(at.cones.first.len()),
+            cone_second: DVector::zeros(at.cones.second.len()),
             lower: solution.lower_multipliers.clone(),
             upper: solution.upper_multipliers.clone(),
         };
@@ -219,9 +236,44 @@ impl Rows {
                     multipliers.first[i] -= value * at.second[i];
                     multipliers.second[i] -= value * at.first[i];
                 }
+                Row::Cone(i, row) => {
+                    let (by_first, by_second) = ConeTreatment::derivatives(&at.cones, i, row);
+                    let range = at.cones.range(i);
+                    multipliers.cone_first.rows_mut(range.start, range.len()).axpy(value, &by_first, 1.0);
+                    multipliers.cone_second.rows_mut(range.start, range.len()).axpy(value, &by_second, 1.0);
+                }
             }
         }
+        for (&(i, member), value) in self.in_cone.iter().zip(&solution.cone_multipliers) {
+            let range = at.cones.range(i);
+            let target = match member {
+                Member::First => &mut multipliers.cone_first,
+                Member::Second => &mut multipliers.cone_second,
+            };
+            let mut target = target.rows_mut(range.start, range.len());
+            target += value;
+        }
         multipliers
+    }
+}
+
+fn member_of(cones: &ConeMembers, pair: usize, member: Member) -> &[f64] {
+    match member {
+        Member::First => cones.first_of(pair),
+        Member::Second => cones.second_of(pair),
+    }
+}
+
+/// A member that has to lie in the cone, linearised.
+fn cone_rows(cones: &ConeMembers, pair: usize, member: Member) -> ConeRows {
+    let range = cones.range(pair);
+    let jacobian = match member {
+        Member::First => &cones.first_jacobian,
+        Member::Second => &cones.second_jacobian,
+    };
+    ConeRows {
+        rows: jacobian.rows(range.start, range.len()).into_owned(),
+        values: DVector::from_column_slice(member_of(cones, pair, member)),
     }
 }
 

@@ -3,21 +3,10 @@
 use nalgebra::DVector;
 use thiserror::Error;
 
+pub use super::activity::PairActivity;
+use super::cone::ConeActivity;
 pub use super::evaluation::Quantity;
 pub use super::relaxed::Multipliers;
-
-/// Which member of a pair is zero.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PairActivity {
-    /// `a = 0 < b`.
-    FirstZero,
-    /// `b = 0 < a`.
-    SecondZero,
-    /// Both zero to the biactive tolerance.
-    BothZero,
-    /// Neither is zero: the solve ended before complementarity was reached.
-    NeitherZero,
-}
 
 /// Why a solve ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,6 +45,9 @@ pub enum StationarityKind {
     Mordukhovich,
     Clarke,
     Weak,
+    /// Multipliers exist in one of the branches that meet where cone pairs are biactive, and not all others were shown to
+    /// have them: where both members vanish, infinitely many meet. Nothing is claimed of B-stationarity.
+    OneBranch,
     /// Not stationary, or not established.
     Unknown,
 }
@@ -89,10 +81,12 @@ pub struct Solution {
     pub multipliers: Multipliers,
     /// One a pair.
     pub activity: Vec<PairActivity>,
+    /// One a cone pair.
+    pub cone_activity: Vec<ConeActivity>,
     pub stationarity: StationarityKind,
     /// Largest violation of an equality, inequality or sign; bounds hold always.
     pub largest_violation: f64,
-    /// Largest `|a_i b_i|`.
+    /// Largest `|a_i b_i|`, of the cone pairs `|A_i·B_i|`.
     pub largest_product: f64,
     pub counts: Counts,
 }
@@ -106,6 +100,8 @@ pub enum InputError {
     BoundsLength { expected: usize, lower: usize, upper: usize },
     #[error("variable {variable} has the lower bound {lower} and the upper bound {upper}")]
     Bounds { variable: usize, lower: f64, upper: f64 },
+    #[error("cone pair {pair} has members of size {size}; 2 or more is expected")]
+    ConeSize { pair: usize, size: usize },
     #[error("setting {name} is {value}; it must be {wanted}")]
     Setting { name: &'static str, value: f64, wanted: &'static str },
 }

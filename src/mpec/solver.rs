@@ -14,21 +14,22 @@
 
 use nalgebra::DVector;
 
+use super::activity::{Activities, PairActivity};
 use super::branch::{self, Candidate};
+use super::cone::ConeActivity;
 use super::elastic::StepSolver;
 use super::evaluation::{Evaluation, Quantity};
 use super::input::check_input;
+use super::pattern::Pattern;
 use super::problem::Problem;
-use super::relaxed::{PairTreatment, Rows};
-use super::result::{Counts, InputError, PairActivity, Solution, StationarityKind, Status};
+use super::relaxed::Rows;
+use super::result::{Counts, InputError, Solution, StationarityKind, Status};
 use super::settings::Settings;
 use super::sqp::{self, SqpEnd, SqpSettings};
 use crate::cancel::CancelFlag;
 
 /// Factor on `ε` from one restart to the next.
 const RESTART_FACTOR: f64 = 100.0;
-/// Most pairs whose branches are all tried before a problem is called infeasible, whatever the settings ask for.
-const ENUMERATION_CEILING: usize = 10;
 /// Past this, `ε` relaxes nothing any more.
 const LARGEST_RELAXATION: f64 = 1e8;
 /// Most values of `ε` in one descent, whatever the settings ask for.
@@ -84,12 +85,13 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         if let Err(quantity) = at.update_values(self.problem, start) {
             return Some(Status::NotFinite(quantity));
         }
-        if (self.problem.pairs() == 0 || self.settings.warm_start && branch::is_clear(&at))
+        let unpaired = self.problem.pairs() == 0 && at.cones.count() == 0;
+        if (unpaired || self.settings.warm_start && branch::is_clear(&at))
             && let Some(end) = self.search(start, &at)
         {
             return end.reason();
         }
-        if self.problem.pairs() == 0 {
+        if unpaired {
             return None;
         }
         let mut first_relaxation = self.settings.first_relaxation;
@@ -107,26 +109,8 @@ impl<P: Problem + ?Sized> Run<'_, P> {
     /// those that differ in one pair; all of them where there are few pairs.
     fn try_other_branches(&mut self) -> Option<Status> {
         let best = self.best.as_ref().filter(|best| !best.is_feasible(self.settings.tolerance))?;
-        let (x, nearest) = (best.x.clone(), branch::nearest_pattern(&best.at));
-        let pairs = nearest.len();
-        let flips: Vec<Vec<usize>> = if pairs <= self.settings.enumeration_limit.min(ENUMERATION_CEILING) {
-            let mut subsets: Vec<usize> = (0..1_usize << pairs).collect();
-            subsets.sort_by_key(|subset| subset.count_ones());
-            subsets.into_iter().map(|subset| (0..pairs).filter(|pair| subset >> pair & 1 == 1).collect()).collect()
-        } else {
-            std::iter::once(vec![]).chain((0..pairs.min(1 << ENUMERATION_CEILING)).map(|pair| vec![pair])).collect()
-        };
-        for flipped in flips {
-            let mut pattern = nearest.clone();
-            for pair in flipped {
-                pattern[pair] = match pattern[pair] {
-                    PairTreatment::FirstZero => PairTreatment::SecondZero,
-                    PairTreatment::SecondZero
-                    | PairTreatment::Product(_)
-                    | PairTreatment::BothFree
-                    | PairTreatment::BothZero => PairTreatment::FirstZero,
-                };
-            }
+        let x = best.x.clone();
+        for pattern in branch::patterns_around(&best.at, self.settings.enumeration_limit) {
             if let Some(over) = self.search_from(&x, pattern) {
                 return over.reason();
             }
@@ -138,8 +122,9 @@ impl<P: Problem + ?Sized> Run<'_, P> {
     fn regularise(&mut self, start: &DVector<f64>, first_relaxation: f64) -> Option<Over> {
         let mut x = start.clone();
         let mut relaxation = first_relaxation;
-        let mut last_searched: Option<Vec<PairTreatment>> = None;
-        let mut last_pattern: Option<Vec<PairTreatment>> = None;
+        let mut last_searched: Option<Pattern> = None;
+        let mut last_pattern: Option<Pattern> = None;
+        let cone_sizes = self.problem.cone_sizes();
         let sequence = SqpSettings {
             tolerance: self.settings.tolerance,
             iteration_limit: self.settings.iteration_limit,
@@ -147,8 +132,8 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         };
         for _ in 0..LEVEL_LIMIT {
             self.steps.counts.relaxation_levels += 1;
-            let treatments = vec![PairTreatment::Product(relaxation); self.problem.pairs()];
-            let rows = Rows::new(self.problem.equalities(), self.problem.inequalities(), treatments);
+            let treatments = Pattern::relaxed(self.problem.pairs(), cone_sizes.len(), relaxation);
+            let rows = Rows::new(self.problem.equalities(), self.problem.inequalities(), &cone_sizes, treatments);
             let outcome = sqp::solve(self.problem, &rows, &self.bounds, &x, sequence, &mut self.steps, self.cancel);
             match outcome.end {
                 SqpEnd::Cancelled => return Some(Over::Stopped(Status::Cancelled)),
@@ -189,7 +174,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
     }
 
     /// Descends from the branch `pattern`.
-    fn search_from(&mut self, x: &DVector<f64>, pattern: Vec<PairTreatment>) -> Option<Over> {
+    fn search_from(&mut self, x: &DVector<f64>, pattern: Pattern) -> Option<Over> {
         let candidate =
             branch::descend(self.problem, &self.bounds, x, pattern, self.settings, &mut self.steps, self.cancel);
         let over = match candidate.end {
@@ -249,11 +234,14 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             },
         };
         let both_zero = self.settings.biactive_tolerance;
-        let activity = candidate.at.first.iter().zip(candidate.at.second.iter());
+        // A settled pattern is not refined: what its point leaves violated says how near the cones' boundary is near.
+        let left = if status == Status::PatternSettled { 10.0 * candidate.at.largest_violation() } else { 0.0 };
+        let activities = Activities::of(&candidate.at, both_zero, both_zero.max(left));
         Solution {
             status,
             objective: candidate.at.objective,
-            activity: activity.map(|(&a, &b)| activity_of(a, b, both_zero)).collect(),
+            activity: activities.pairs,
+            cone_activity: activities.cones,
             stationarity: candidate.stationarity,
             largest_violation: candidate.at.largest_violation(),
             largest_product: candidate.at.largest_product(),
@@ -304,15 +292,6 @@ fn is_better(candidate: &Candidate, best: &Candidate, tolerance: f64) -> bool {
     }
 }
 
-fn activity_of(a: f64, b: f64, tolerance: f64) -> PairActivity {
-    match (a <= tolerance, b <= tolerance) {
-        (true, true) => PairActivity::BothZero,
-        (true, false) => PairActivity::FirstZero,
-        (false, true) => PairActivity::SecondZero,
-        (false, false) => PairActivity::NeitherZero,
-    }
-}
-
 /// The start itself, where nothing was computed that is worth returning.
 fn empty_solution<P: Problem + ?Sized>(problem: &P, start: &DVector<f64>, status: Status, counts: Counts) -> Solution {
     Solution {
@@ -321,6 +300,7 @@ fn empty_solution<P: Problem + ?Sized>(problem: &P, start: &DVector<f64>, status
         objective: f64::NAN,
         multipliers: sqp::no_multipliers(problem),
         activity: vec![PairActivity::NeitherZero; problem.pairs()],
+        cone_activity: vec![ConeActivity::NotComplementary; problem.cone_sizes().len()],
         stationarity: StationarityKind::Unknown,
         largest_violation: f64::INFINITY,
         largest_product: f64::INFINITY,

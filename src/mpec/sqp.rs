@@ -183,6 +183,7 @@ impl<P: Problem + ?Sized> Sequence<'_, P> {
                     &program.gradient
                         - program.equality.tr_mul(&step.solution.equality_multipliers)
                         - program.inequality.tr_mul(&step.solution.inequality_multipliers)
+                        - program.cone_force(&step.solution)
                 };
                 secant.update(&change, &(lagrangian(&next) - lagrangian(&program)));
             }
@@ -275,11 +276,7 @@ impl<P: Problem + ?Sized> Sequence<'_, P> {
     fn take_last_step(&mut self, step: &DVector<f64>, allowed_violation: f64) {
         if self.try_point(step, 1.0) && self.rows.violation(&self.trial) <= allowed_violation {
             std::mem::swap(&mut self.x, &mut self.trial_x);
-            std::mem::swap(&mut self.at.objective, &mut self.trial.objective);
-            std::mem::swap(&mut self.at.equality, &mut self.trial.equality);
-            std::mem::swap(&mut self.at.inequality, &mut self.trial.inequality);
-            std::mem::swap(&mut self.at.first, &mut self.trial.first);
-            std::mem::swap(&mut self.at.second, &mut self.trial.second);
+            self.at.swap_values(&mut self.trial);
         }
     }
 }
@@ -297,7 +294,8 @@ fn is_stationary(program: &QuadraticProgram, step: &Step, tolerance: f64, x: &DV
     }
     let work = (&program.inequality * direction).dot(&step.solution.inequality_multipliers).abs()
         + direction.dot(&step.solution.lower_multipliers).abs()
-        + direction.dot(&step.solution.upper_multipliers).abs();
+        + direction.dot(&step.solution.upper_multipliers).abs()
+        + program.cone_force(&step.solution).dot(direction).abs();
     force <= tolerance && work <= tolerance
 }
 
@@ -308,11 +306,14 @@ fn clamped(x: &DVector<f64>, bounds: &(DVector<f64>, DVector<f64>)) -> DVector<f
 /// Zero for every row.
 pub fn no_multipliers<P: Problem + ?Sized>(problem: &P) -> Multipliers {
     let n = problem.variables();
+    let cone_entries = problem.cone_sizes().iter().sum();
     Multipliers {
         equality: DVector::zeros(problem.equalities()),
         inequality: DVector::zeros(problem.inequalities()),
         first: DVector::zeros(problem.pairs()),
         second: DVector::zeros(problem.pairs()),
+        cone_first: DVector::zeros(cone_entries),
+        cone_second: DVector::zeros(cone_entries),
         lower: DVector::zeros(n),
         upper: DVector::zeros(n),
     }

@@ -40,7 +40,11 @@ impl Path<'_> {
         let mut program = IncrementProgram::new(loading, base, expected, step, force);
         if program.pairs() == 0 {
             // No contact can be reached: there is nothing to decide.
-            return Some(Named { modes: modes.to_vec() });
+            return Some(Named {
+                modes: modes.to_vec(),
+                #[cfg(test)]
+                end: None,
+            });
         }
         let start = program.variables_at(expected);
         let (named, counts) = program.name(&start, modes, &self.cancel);

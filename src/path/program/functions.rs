@@ -2,10 +2,35 @@
 
 use super::InReach;
 use super::IncrementProgram;
+use super::frame;
 use crate::contact::Frame;
 use crate::contact::vector::{Vector, add, dot, scaled};
 use crate::mpec::Problem;
 use nalgebra::{DMatrix, DVector};
+
+impl IncrementProgram<'_> {
+    /// Contacts with friction.
+    fn rough(&self) -> impl Iterator<Item = &InReach> {
+        self.reach.iter().filter(|entry| entry.friction > 0.0)
+    }
+
+    /// Contacts with friction whose cone is a second-order one.
+    fn coned(&self) -> impl Iterator<Item = &InReach> {
+        self.reach.iter().filter(|entry| entry.tangents == 2)
+    }
+
+    /// Contacts with friction whose cone is polyhedral.
+    fn split(&self) -> impl Iterator<Item = &InReach> {
+        self.reach.iter().filter(|entry| entry.tangents == 1)
+    }
+
+    /// Slip along each tangent as a combination of variables: `(variable, factor)`.
+    fn slip_terms(&self, entry: &InReach, tangent: usize) -> impl Iterator<Item = (usize, f64)> {
+        let terms =
+            if entry.tangents == 2 { [Some((entry.slip(tangent), 1.0)), None] } else { entry.parts().map(Some) };
+        terms.into_iter().flatten()
+    }
+}
 
 impl Problem for IncrementProgram<'_> {
     fn variables(&self) -> usize {
@@ -13,7 +38,7 @@ impl Problem for IncrementProgram<'_> {
     }
 
     fn equalities(&self) -> usize {
-        self.loading.structure.unknowns() + self.reach.iter().filter(|entry| entry.friction > 0.0).count()
+        self.loading.structure.unknowns() + self.reach.iter().map(|entry| entry.tangents).sum::<usize>()
     }
 
     fn inequalities(&self) -> usize {
@@ -21,16 +46,21 @@ impl Problem for IncrementProgram<'_> {
     }
 
     fn pairs(&self) -> usize {
-        self.reach.iter().map(|entry| if entry.friction > 0.0 { 3 } else { 1 }).sum()
+        self.reach.len() + 2 * self.split().count()
+    }
+
+    fn cone_sizes(&self) -> Vec<usize> {
+        self.coned().map(|_| 3).collect()
     }
 
     fn bounds(&self) -> (DVector<f64>, DVector<f64>) {
         let mut lower = DVector::repeat(self.variables, f64::NEG_INFINITY);
         for entry in &self.reach {
-            lower[entry.first] = 0.0;
-            if entry.friction > 0.0 {
-                lower[entry.first + 2] = 0.0;
-                lower[entry.first + 3] = 0.0;
+            lower[entry.normal()] = 0.0;
+        }
+        for entry in self.split() {
+            for (part, _) in entry.parts() {
+                lower[part] = 0.0;
             }
         }
         (lower, DVector::repeat(self.variables, f64::INFINITY))
@@ -46,8 +76,7 @@ impl Problem for IncrementProgram<'_> {
         let load = x[structure.unknowns()];
         squared += load * load;
         forward += load * self.forward.load;
-        let slip = |entry: &InReach| entry.traction * (x[entry.first + 2] - x[entry.first + 3]);
-        let dissipated: f64 = self.reach.iter().filter(|entry| entry.friction > 0.0).map(slip).sum();
+        let dissipated: f64 = self.rough().map(|entry| self.dissipation_of(entry, x)).sum();
         0.5 * self.arc_weight * squared - self.forward_weight * forward + dissipated
     }
 
@@ -60,9 +89,12 @@ impl Problem for IncrementProgram<'_> {
         }
         let load = structure.unknowns();
         gradient[load] = self.arc_weight * x[load] - self.forward_weight * self.forward.load;
-        for entry in self.reach.iter().filter(|entry| entry.friction > 0.0) {
-            gradient[entry.first + 2] = entry.traction;
-            gradient[entry.first + 3] = -entry.traction;
+        for entry in self.rough() {
+            for tangent in 0..entry.tangents {
+                for (variable, factor) in self.slip_terms(entry, tangent) {
+                    gradient[variable] = factor * entry.traction[tangent];
+                }
+            }
         }
     }
 
@@ -79,16 +111,18 @@ impl Problem for IncrementProgram<'_> {
         let mut row = load;
         for entry in &self.reach {
             let frame = self.loading.frame(entry.contact, &state);
-            let mut motion = x[load] * dot(&self.driven(entry), &entry.tangent);
+            let tangents = entry.tangents_at(&frame);
+            let mut motion = frame::components(&entry.frame, &self.driven(entry)).map(|part| part * x[load]);
             for (unknown, k) in self.node_of(entry) {
-                values[unknown] -= x[entry.first] * frame.normal[k];
-                if entry.friction > 0.0 {
-                    values[unknown] -= x[entry.first + 1] * frame.tangents[0][k];
-                    motion += entry.tangent[k] * x[unknown];
+                values[unknown] -= x[entry.normal()] * frame.normal[k];
+                for t in 0..entry.tangents {
+                    values[unknown] -= x[entry.tangential(t)] * tangents[t][k];
+                    motion[t] += entry.frame.tangents[t][k] * x[unknown];
                 }
             }
-            if entry.friction > 0.0 {
-                values[row] = motion - x[entry.first + 2] + x[entry.first + 3];
+            for (t, motion) in motion.into_iter().enumerate().take(entry.tangents) {
+                values[row] =
+                    self.slip_terms(entry, t).fold(motion, |rest, (variable, factor)| rest - factor * x[variable]);
                 row += 1;
             }
         }
@@ -112,23 +146,24 @@ impl Problem for IncrementProgram<'_> {
         let mut row = unknowns;
         for entry in &self.reach {
             let frame = self.loading.frame(entry.contact, &state);
+            let tangents = entry.tangents_at(&frame);
+            let driven = frame::components(&entry.frame, &self.driven(entry));
             for (unknown, k) in self.node_of(entry) {
-                jacobian[(unknown, entry.first)] = -frame.normal[k];
-                if entry.friction > 0.0 {
-                    jacobian[(unknown, entry.first + 1)] = -frame.tangents[0][k];
-                    jacobian[(row, unknown)] = entry.tangent[k];
+                jacobian[(unknown, entry.normal())] = -frame.normal[k];
+                for t in 0..entry.tangents {
+                    jacobian[(unknown, entry.tangential(t))] = -tangents[t][k];
+                    jacobian[(row + t, unknown)] = entry.frame.tangents[t][k];
                 }
             }
-            if entry.friction > 0.0 {
-                jacobian[(row, unknowns)] = dot(&self.driven(entry), &entry.tangent);
+            for (t, driven) in driven.into_iter().enumerate().take(entry.tangents) {
+                jacobian[(row, unknowns)] = driven;
+                for (variable, factor) in self.slip_terms(entry, t) {
+                    jacobian[(row, variable)] = -factor;
+                }
+                row += 1;
             }
             if frame.curvature != 0.0 {
                 self.add_turn_of_reaction(entry, &frame, x, jacobian);
-            }
-            if entry.friction > 0.0 {
-                jacobian[(row, entry.first + 2)] = -1.0;
-                jacobian[(row, entry.first + 3)] = 1.0;
-                row += 1;
             }
         }
     }
@@ -138,13 +173,13 @@ impl Problem for IncrementProgram<'_> {
         let mut pair = 0;
         for entry in &self.reach {
             first[pair] = self.loading.gap(entry.contact, &state) / self.step;
-            second[pair] = x[entry.first];
+            second[pair] = x[entry.normal()];
             pair += 1;
-            if entry.friction > 0.0 {
-                let bound = entry.friction * x[entry.first];
-                for (side, offset) in [(1.0, 2), (-1.0, 3)] {
-                    first[pair] = (bound + side * x[entry.first + 1]) / (1.0 + entry.friction);
-                    second[pair] = x[entry.first + offset];
+            if entry.tangents == 1 {
+                let bound = entry.friction * x[entry.normal()];
+                for (part, side) in entry.parts() {
+                    first[pair] = (bound + side * x[entry.tangential(0)]) / (1.0 + entry.friction);
+                    second[pair] = x[part];
                     pair += 1;
                 }
             }
@@ -161,15 +196,35 @@ impl Problem for IncrementProgram<'_> {
                 first[(pair, unknown)] = normal[k];
             }
             first[(pair, load)] = dot(&self.driven(entry), &normal);
-            second[(pair, entry.first)] = 1.0;
+            second[(pair, entry.normal())] = 1.0;
             pair += 1;
-            if entry.friction > 0.0 {
-                for (side, offset) in [(1.0, 2), (-1.0, 3)] {
-                    first[(pair, entry.first)] = entry.friction / (1.0 + entry.friction);
-                    first[(pair, entry.first + 1)] = side / (1.0 + entry.friction);
-                    second[(pair, entry.first + offset)] = 1.0;
+            if entry.tangents == 1 {
+                for (part, side) in entry.parts() {
+                    first[(pair, entry.normal())] = entry.friction / (1.0 + entry.friction);
+                    first[(pair, entry.tangential(0))] = side / (1.0 + entry.friction);
+                    second[(pair, part)] = 1.0;
                     pair += 1;
                 }
+            }
+        }
+    }
+
+    fn cone_values(&self, x: &DVector<f64>, first: &mut DVector<f64>, second: &mut DVector<f64>) {
+        for (place, entry) in self.coned().enumerate() {
+            let (a, b) = entry.cone_members(x);
+            first.rows_mut(3 * place, 3).copy_from_slice(&a);
+            second.rows_mut(3 * place, 3).copy_from_slice(&b);
+        }
+    }
+
+    fn cone_jacobians(&self, _x: &DVector<f64>, first: &mut DMatrix<f64>, second: &mut DMatrix<f64>) {
+        for (place, entry) in self.coned().enumerate() {
+            let row = 3 * place;
+            first[(row, entry.normal())] = entry.friction / (1.0 + entry.friction);
+            second[(row, entry.bound())] = 1.0;
+            for k in 0..2 {
+                first[(row + 1 + k, entry.tangential(k))] = 1.0 / (1.0 + entry.friction);
+                second[(row + 1 + k, entry.slip(k))] = 1.0;
             }
         }
     }
@@ -186,11 +241,12 @@ impl Problem for IncrementProgram<'_> {
 impl IncrementProgram<'_> {
     /// On a curved obstacle the reaction turns with the node's place.
     fn add_turn_of_reaction(&self, entry: &InReach, frame: &Frame, x: &DVector<f64>, jacobian: &mut DMatrix<f64>) {
-        let normal = x[entry.first];
-        let tangential = if entry.friction > 0.0 { x[entry.first + 1] } else { 0.0 };
+        let tangents = entry.tangents_at(frame);
         let turn = |motion: &Vector| {
-            let of_normal = scaled(&frame.normal_change(motion), normal * self.step);
-            add(&of_normal, tangential * self.step, &frame.tangent_change(motion))
+            let of_normal = scaled(&frame.normal_change(motion), x[entry.normal()] * self.step);
+            (0..entry.tangents).fold(of_normal, |sum, t| {
+                add(&sum, x[entry.tangential(t)] * self.step, &entry.tangent_change(frame, &tangents[t], motion))
+            })
         };
         let load = self.loading.structure.unknowns();
         let driven = turn(&self.driven(entry));

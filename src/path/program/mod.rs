@@ -7,7 +7,13 @@
 //! ```
 //!
 //! (Y. Kanno, J. A. C. Martins, J. Optim. Theory Appl. 131 (2006), doi:10.1007/s10957-006-9137-4; the split of the slip
-//! into two parts is the polyhedral form of the cone in 2D.) Variables are scaled: `y = (Δu, Δs)/S`, `ρ = r/F`,
+//! into two parts is the polyhedral form of the cone in 2D.) In 3D the last line's friction and the slip are
+//!
+//! ```text
+//! t_k·Δx = a_k, k = 1, 2,       K ∋ (μ r_n, r_t)  ⊥  (λ, a) ∈ K,       K the second-order cone
+//! ```
+//!
+//! Variables are scaled: `y = (Δu, Δs)/S`, `ρ = r/F`,
 //! `α = a/S`, with `S` the arc length sought and `F` the force scale, so that all are of order one whatever the step.
 //!
 //! `γ1` follows from `S`: along a unit direction `e` with dissipation `D` per arc the objective is
@@ -15,22 +21,32 @@
 //! was expected, `γ1` is adapted until `‖y‖` is near 1. `γ2` is a fraction of the dissipation (or 1 where there is
 //! none), so that the branch does not depend on the step.
 
+mod end;
+mod frame;
 mod functions;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_in_space;
+#[cfg(test)]
+mod tests_of_chains;
 
 use super::loading::Loading;
 use super::state::{Rate, State};
+use super::track::Start;
 use crate::cancel::CancelFlag;
-use crate::contact::Mode;
 use crate::contact::vector::{Vector, dot, scaled};
-use crate::mpec::{self, Finish, PairActivity, Settings};
+use crate::contact::{Frame, Mode};
+use crate::mpec::{self, Finish, Settings};
+use frame::Components;
 use nalgebra::DVector;
 
 /// Contacts whose gap is beyond this many arc lengths cannot close in the increment and are left out.
 const REACH: f64 = 3.0;
 /// The forward term's share of the dissipation.
 const FORWARD_SHARE: f64 = 0.1;
+/// Dissipation per arc below which it is round-off of a motion that sticks.
+const LEAST_DISSIPATION: f64 = 1e-12;
 /// Solves with `γ1` adapted before the last one is taken as it is.
 const MOST_ADAPTATIONS: usize = 6;
 
@@ -49,15 +65,49 @@ pub struct IncrementProgram<'a> {
     variables: usize,
 }
 
-/// A contact of the program and its first variable: `ρ_n`, then with friction `ρ_t`, `α⁺`, `α⁻`.
+/// A contact of the program and its first variable: `ρ_n`, then with friction in 2D `ρ_t`, `α⁺`, `α⁻`, in 3D `ρ_t`
+/// (two), `λ/S`, `α` (two).
 struct InReach {
     contact: usize,
     first: usize,
     friction: f64,
-    /// `r_t⁽ᵏ⁾/F`
-    traction: f64,
-    /// The tangent at the start of the increment, along which slip is counted.
-    tangent: Vector,
+    /// Number of tangents with friction: 0, 1 (a polyhedral cone) or 2 (a circular one).
+    tangents: usize,
+    /// Frame at the start of the increment, along which slip is counted.
+    frame: Frame,
+    /// `r_t⁽ᵏ⁾/F` along the tangents; with circular cones divided by what the objective is divided by.
+    traction: Components,
+}
+
+impl InReach {
+    fn normal(&self) -> usize {
+        self.first
+    }
+
+    fn tangential(&self, tangent: usize) -> usize {
+        self.first + 1 + tangent
+    }
+
+    /// In 2D: the parts of the slip and their signs.
+    fn parts(&self) -> [(usize, f64); 2] {
+        [(self.first + 2, 1.0), (self.first + 3, -1.0)]
+    }
+
+    /// In 3D: the bound on the slip.
+    fn bound(&self) -> usize {
+        self.first + 3
+    }
+
+    /// In 3D: the slip.
+    fn slip(&self, tangent: usize) -> usize {
+        self.first + 4 + tangent
+    }
+
+    /// In 3D: `(μ ρ_n, ρ_t)/(1 + μ)` and `(λ, a)/S`.
+    fn cone_members(&self, x: &DVector<f64>) -> ([f64; 3], [f64; 3]) {
+        let of_force = [self.friction * x[self.normal()], x[self.tangential(0)], x[self.tangential(1)]];
+        (of_force.map(|value| value / (1.0 + self.friction)), [x[self.bound()], x[self.slip(0)], x[self.slip(1)]])
+    }
 }
 
 /// What the program says of an increment.
@@ -65,6 +115,10 @@ struct InReach {
 pub struct Named {
     /// The contact modes at the end of the increment.
     pub modes: Vec<Mode>,
+    /// In 3D, where some contact has friction: the state there, with the arc length exactly the one sought and residuals at
+    /// round-off. `None` where the semismooth method did not get there.
+    #[cfg(test)]
+    pub end: Option<State>,
 }
 
 /// Work of the programs solved.
@@ -81,32 +135,63 @@ impl<'a> IncrementProgram<'a> {
         let mut next = structure.unknowns() + 1;
         let mut reach = Vec::new();
         for (contact, data) in loading.contacts.iter().enumerate() {
-            if loading.gap(contact, base) > REACH * step {
+            let frame = loading.frame(contact, base);
+            if frame.gap > REACH * step {
                 continue;
             }
-            let tangent = loading.frame(contact, base).tangents[0];
-            let traction = dot(&base.reactions[contact].tangential, &tangent) / force;
-            let friction = if data.tangents() > 0 { data.friction } else { 0.0 };
-            reach.push(InReach { contact, first: next, friction, traction, tangent });
-            next += if data.tangents() > 0 { 4 } else { 1 };
+            let tangents = data.tangents();
+            let friction = if tangents > 0 { data.friction } else { 0.0 };
+            let traction = frame::components(&frame, &base.reactions[contact].tangential);
+            let traction = traction.map(|component| component / force);
+            reach.push(InReach { contact, first: next, friction, tangents, frame, traction });
+            next += match tangents {
+                0 => 1,
+                1 => 4,
+                _ => 6,
+            };
         }
         let mut program =
             Self { loading, base, step, forward, force, arc_weight: 1.0, forward_weight: 1.0, reach, variables: next };
         let dissipation = program.dissipation_along(forward);
-        if dissipation > 0.0 {
+        if dissipation > LEAST_DISSIPATION {
             program.forward_weight = FORWARD_SHARE * dissipation;
         }
         program.arc_weight = dissipation + program.forward_weight;
+        if program.reach.iter().any(|entry| entry.tangents == 2) && program.arc_weight > 0.0 {
+            program.divide_objective(program.arc_weight);
+        }
         program
+    }
+
+    /// Brings the objective to numbers near one, whatever the friction, so that tolerances mean the same.
+    fn divide_objective(&mut self, scale: f64) {
+        self.arc_weight /= scale;
+        self.forward_weight /= scale;
+        for entry in &mut self.reach {
+            entry.traction.iter_mut().for_each(|component| *component /= scale);
+        }
     }
 
     /// `-r_t⁽ᵏ⁾·u̇_t / F`
     fn dissipation_along(&self, rate: &Rate) -> f64 {
-        self.reach.iter().map(|entry| -entry.traction * self.tangential(entry, rate)).sum()
+        let of = |entry: &InReach| {
+            let motion = self.motion(entry, rate);
+            (0..entry.tangents).map(|k| -entry.traction[k] * motion[k]).sum::<f64>()
+        };
+        self.reach.iter().map(of).sum()
     }
 
-    fn tangential(&self, entry: &InReach, rate: &Rate) -> f64 {
-        dot(&self.loading.relative_rate(entry.contact, rate), &entry.tangent)
+    /// `r_t⁽ᵏ⁾·Δu_t / (F S)` of the variables: the objective's dissipation.
+    fn dissipation_of(&self, entry: &InReach, x: &DVector<f64>) -> f64 {
+        if entry.tangents == 2 {
+            return (0..2).map(|k| entry.traction[k] * x[entry.slip(k)]).sum();
+        }
+        let [(forward, _), (backward, _)] = entry.parts();
+        entry.traction[0] * (x[forward] - x[backward])
+    }
+
+    fn motion(&self, entry: &InReach, rate: &Rate) -> Components {
+        frame::components(&entry.frame, &self.loading.relative_rate(entry.contact, rate))
     }
 
     /// The variables of a state on the way, for a start.
@@ -119,17 +204,38 @@ impl<'a> IncrementProgram<'a> {
         x[structure.unknowns()] = rate.load;
         for entry in &self.reach {
             let (reaction, change) = (self.base.reactions[entry.contact], rate.reactions[entry.contact]);
-            x[entry.first] = (reaction.normal + self.step * change.normal) / self.force;
-            if entry.friction > 0.0 {
-                x[entry.first + 1] = (dot(&reaction.tangential, &entry.tangent)
-                    + self.step * dot(&change.tangential, &entry.tangent))
-                    / self.force;
-                let slip = self.tangential(entry, rate);
-                x[entry.first + 2] = slip.max(0.0);
-                x[entry.first + 3] = (-slip).max(0.0);
+            x[entry.normal()] = (reaction.normal + self.step * change.normal) / self.force;
+            if entry.friction == 0.0 {
+                continue;
+            }
+            let components = |vector: &Vector| frame::components(&entry.frame, vector);
+            let (traction, change) = (components(&reaction.tangential), components(&change.tangential));
+            for k in 0..entry.tangents {
+                x[entry.tangential(k)] = (traction[k] + self.step * change[k]) / self.force;
+            }
+            let slip = self.motion(entry, rate);
+            if entry.tangents == 2 {
+                x[entry.slip(0)] = slip[0];
+                x[entry.slip(1)] = slip[1];
+                x[entry.bound()] = self.bound_at(entry, &x, slip);
+            } else {
+                for (part, side) in entry.parts() {
+                    x[part] = (side * slip[0]).max(0.0);
+                }
             }
         }
         x
+    }
+
+    /// A bound on the slip that tells the start's branch: above it for a contact that stays apart, below it for one that
+    /// is about to close, so that it is taken to slip.
+    fn bound_at(&self, entry: &InReach, x: &DVector<f64>, slip: Components) -> f64 {
+        let size = slip[0].hypot(slip[1]);
+        if x[entry.normal()] > 0.0 {
+            return size;
+        }
+        let gap = self.loading.gap(entry.contact, &self.state(x));
+        if gap > 0.0 { 1.0 + size } else { 0.5 * size }
     }
 
     fn state(&self, x: &DVector<f64>) -> State {
@@ -169,38 +275,12 @@ impl<'a> IncrementProgram<'a> {
             }
             let size = solution.x.rows(0, self.loading.structure.unknowns() + 1).norm();
             if (0.5..=2.0).contains(&size) {
-                return (Some(self.read(&solution.activity, present)), counts);
+                return (Some(self.end(solution, present, cancel)), counts);
             }
             self.arc_weight *= size.clamp(0.02, 50.0);
             start = solution.x;
         }
         (None, counts)
-    }
-
-    fn read(&self, activity: &[PairActivity], present: &[Mode]) -> Named {
-        let mut modes = vec![Mode::Free; self.loading.contacts.len()];
-        let mut pairs = activity.iter().copied();
-        let mut next = || pairs.next().unwrap_or(PairActivity::NeitherZero);
-        for entry in &self.reach {
-            let present = present[entry.contact];
-            let normal = next();
-            let closed = if entry.friction > 0.0 {
-                match (next(), next()) {
-                    (PairActivity::FirstZero, _) => Mode::Slip { direction: entry.tangent },
-                    (_, PairActivity::FirstZero) => Mode::Slip { direction: scaled(&entry.tangent, -1.0) },
-                    (PairActivity::BothZero, _) | (_, PairActivity::BothZero) if present.is_active() => present,
-                    _ => Mode::Stick,
-                }
-            } else {
-                Mode::Slip { direction: [0.0; 3] }
-            };
-            modes[entry.contact] = match normal {
-                PairActivity::FirstZero => closed,
-                PairActivity::BothZero => present,
-                PairActivity::SecondZero | PairActivity::NeitherZero => Mode::Free,
-            };
-        }
-        Named { modes }
     }
 
     /// Unknowns of the contact's node with their components.
@@ -216,11 +296,30 @@ impl<'a> IncrementProgram<'a> {
         let structure = self.loading.structure;
         let first = self.loading.contacts[entry.contact].node * structure.dimension;
         let mut motion = scaled(&self.loading.pattern.shifts[entry.contact], -1.0);
-        for k in 0..structure.dimension {
+        for (k, component) in motion.iter_mut().enumerate().take(structure.dimension) {
             if structure.unknown_of[first + k].is_none() {
-                motion[k] += self.loading.support_rate(first + k);
+                *component += self.loading.support_rate(first + k);
             }
         }
         motion
+    }
+}
+
+impl InReach {
+    /// The tangents at another place on the obstacle.
+    fn tangents_at(&self, frame: &Frame) -> [Vector; 2] {
+        if self.tangents < 2 || frame.curvature == 0.0 {
+            return if self.tangents < 2 { frame.tangents } else { self.frame.tangents };
+        }
+        let normal = self.frame.normal;
+        self.frame.tangents.map(|direction| Start { direction, normal }.carried_to(&frame.normal))
+    }
+
+    /// How one of them turns with a motion.
+    fn tangent_change(&self, frame: &Frame, tangent: &Vector, motion: &Vector) -> Vector {
+        if self.tangents < 2 {
+            return frame.tangent_change(motion);
+        }
+        scaled(&frame.normal, -dot(&frame.normal_change(motion), tangent))
     }
 }

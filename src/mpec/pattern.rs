@@ -1,0 +1,41 @@
+//! How each pair is treated in a smooth program; the rows that follow from it are `mpec::relaxed`'s and `mpec::cone_rows`'.
+
+use super::cone_rows::ConeTreatment;
+
+/// How one pair enters the smooth program.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PairTreatment {
+    /// Both nonnegative, their product at most this.
+    Product(f64),
+    FirstZero,
+    SecondZero,
+    BothFree,
+    BothZero,
+}
+
+impl PairTreatment {
+    pub fn first_is_zero(self) -> bool {
+        matches!(self, Self::FirstZero | Self::BothZero)
+    }
+
+    pub fn second_is_zero(self) -> bool {
+        matches!(self, Self::SecondZero | Self::BothZero)
+    }
+}
+
+/// How every pair is treated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pattern {
+    pub pairs: Vec<PairTreatment>,
+    pub cones: Vec<ConeTreatment>,
+}
+
+impl Pattern {
+    /// All products at most `relaxation`.
+    pub fn relaxed(pairs: usize, cones: usize, relaxation: f64) -> Self {
+        Self {
+            pairs: vec![PairTreatment::Product(relaxation); pairs],
+            cones: vec![ConeTreatment::Product(relaxation); cones],
+        }
+    }
+}
