@@ -11,7 +11,7 @@
 //! | `program`, `naming` | the MPEC of an increment; where it names the mode |
 //! | `energy`, `record`, `increment`, `report`, `stop` | balances, rows, totals, reasons |
 //! | `tracer`, `stepping`, `arrival` | the iterator; how far a step goes; what a point turned out to be |
-//! | `checkpoint` | a path put down at a point, to be taken up there again or followed in another direction |
+//! | `checkpoint`, `follow` | a path put down at a point and taken up again; along another direction |
 
 mod advance;
 mod arrival;
@@ -20,6 +20,7 @@ mod condensed;
 mod decide;
 mod directions;
 mod energy;
+mod follow;
 pub mod increment;
 mod mode_system;
 mod name_event;
