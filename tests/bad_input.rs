@@ -4,14 +4,16 @@ mod common;
 
 use arcslip::model::{InputError, InputErrors, JobRequest, read};
 use arcslip::scenes;
-use common::bad_documents::{bad_documents, good_request};
+use common::bad_documents::{bad_documents, full_request, good_request};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
 #[test]
-fn the_request_that_the_others_spoil_is_accepted() {
-    let text = serde_json::to_vec(&good_request()).unwrap();
-    assert!(read(&text).is_ok());
+fn the_requests_that_the_others_spoil_are_accepted() {
+    for request in [good_request(), full_request()] {
+        let text = serde_json::to_vec(&request).unwrap();
+        assert_eq!(read(&text).err().unwrap_or_default().to_string(), "");
+    }
 }
 
 #[test]
@@ -147,10 +149,13 @@ proptest! {
 
     #[test]
     fn mutated_scenes_are_taken_or_refused_cleanly(
-        scene in 0..scenes::ALL.len(),
+        scene in 0..=scenes::ALL.len(),
         mutations in proptest::collection::vec((any::<prop::sample::Index>(), mutation()), 1..4),
     ) {
-        let mut document: Value = serde_json::from_str(scenes::ALL[scene].request).unwrap();
+        let mut document: Value = match scenes::ALL.get(scene) {
+            Some(scene) => serde_json::from_str(scene.request).unwrap(),
+            None => full_request(),
+        };
         for (index, mutation) in &mutations {
             let count = places(&document);
             if count > 0 {

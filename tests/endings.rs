@@ -5,31 +5,9 @@ mod common;
 use arcslip::cancel::CancelFlag;
 use arcslip::path::increment::PointKind;
 use arcslip::path::{Path, Scene, StopReason};
+use common::generators::row_of_bars as row;
 use common::paths::{request, scene, trace};
-use serde_json::{Map, Value, json};
-
-/// The row of n snapping bars.
-fn row(n: usize) -> Value {
-    let (mut nodes, mut supports, mut forces) = (Map::new(), Map::new(), Map::new());
-    let (mut elements, mut contacts) = (Vec::new(), Vec::new());
-    let bar =
-        |a: String, b: String, stiffness: f64| json!({"kind": "bar", "nodes": [a, b], "axial_stiffness": stiffness});
-    for i in 0..n {
-        let foot = 1.5 + 0.1 * i as f64 / (n - 1) as f64;
-        nodes.insert(format!("pin{i}"), json!([3 * i, 1]));
-        nodes.insert(format!("tip{i}"), json!([3.0 * i as f64 - foot, 0]));
-        supports.insert(format!("pin{i}"), json!(["x", "y"]));
-        forces.insert(format!("tip{i}"), json!([1, 0]));
-        elements.push(bar(format!("pin{i}"), format!("tip{i}"), 1.0));
-        contacts.push(json!({"node": format!("tip{i}"), "obstacle": "floor", "friction": 0.3}));
-    }
-    (1..n).for_each(|i| elements.push(bar(format!("tip{}", i - 1), format!("tip{i}"), 0.5)));
-    json!({"model": {
-        "name": format!("row of {n} snapping bars"), "dimension": 2, "nodes": nodes, "supports": supports,
-        "elements": elements, "obstacles": {"floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}},
-        "contacts": contacts, "stages": [{"name": "push", "forces": forces}]
-    }})
-}
+use serde_json::json;
 
 /// One bar snaps alone and the path truly ends: exhaustive enumeration finds no direction at s = 0.104818.
 #[test]

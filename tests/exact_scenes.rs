@@ -6,17 +6,13 @@ use arcslip::model::JobRequest;
 use arcslip::model::request::Method;
 use arcslip::path::increment::{PointKind, Status};
 use arcslip::path::{Increment, StopReason};
-use common::paths::{scene, trace};
+use common::paths::{close, scene, trace};
 
 const METHODS: [Method; 2] = [Method::Auto, Method::Mpec];
 
 fn with(mut request: JobRequest, method: Method) -> JobRequest {
     request.analysis.method = method;
     request
-}
-
-fn close(found: f64, exact: f64, bar: f64, what: &str) {
-    assert!((found - exact).abs() <= bar, "{what}: found {found:e}, exact {exact:e}, bar {bar:e}");
 }
 
 fn limits(increments: &[Increment], kind: PointKind) -> Vec<&Increment> {

@@ -46,6 +46,7 @@ fn in_units(mut request: JobRequest, length: f64, force: f64) -> JobRequest {
             bound.below.iter_mut().for_each(|value| *value *= length);
         }
     }
+    request.analysis.arc_length.displacement_scale.iter_mut().for_each(|scale| *scale *= length);
     request
 }
 

@@ -70,7 +70,9 @@ fn twelve_bar_truss_in_space() {
 
 /// The 24-bar star dome (Green strain). Minimising the two-parameter symmetric problem in 20-digit arithmetic gives the
 /// first limit load/EA 3.155799708e-4 at apex drop 0.76855727. (A value in circulation, 3.155739e-4 at 0.7688, is two
-/// parts in 100 000 lower.)
+/// parts in 100 000 lower.) Past the following minimum two eigenvalues vanish together at 76.5387152565e-4, drop
+/// 9.0965011515: bisection on the smallest eigenvalue of the tangent along the symmetric path gives the same. (The value
+/// in circulation, 76.646e-4, is met at drop 9.1042, where both are already negative.)
 #[test]
 fn star_dome() {
     let mut nodes = Map::new();
@@ -91,12 +93,20 @@ fn star_dome() {
     }
     let model = json!({"model": {
         "name": "star dome", "dimension": 3, "nodes": nodes, "supports": supports, "elements": elements,
-        "stages": [{"name": "load", "forces": {"apex": [0, 0, -1]}, "until": {"limit_points": 2}}]
+        "stages": [{"name": "load", "forces": {"apex": [0, 0, -1]}, "until": {"limit_points": 4}}]
     }});
     let (increments, _) = trace(&request(&model.to_string()));
     let limit = increments.iter().find(|i| i.point.kind == PointKind::SmoothLimit).expect("a limit point");
     assert!((limit.load_factor - 3.155799708e-4).abs() < 1e-13, "{}", limit.load_factor);
     assert!((limit.displacements["apex"][2] + 0.76855727).abs() < 1e-8, "{}", limit.displacements["apex"][2]);
+    let minimum = increments.iter().filter(|i| i.point.kind == PointKind::SmoothLimit).nth(1).expect("a minimum");
+    let double = increments
+        .iter()
+        .find(|i| i.index > minimum.index && i.point.kind == PointKind::SmoothBifurcation)
+        .expect("a double bifurcation");
+    assert!((double.load_factor - 76.5387152565e-4).abs() < 1e-13, "{}", double.load_factor);
+    assert!((double.displacements["apex"][2] + 9.0965011515).abs() < 1e-9);
+    assert_eq!(double.point.event.as_deref(), Some("two eigenvalues cross zero together"));
 }
 
 /// A frictionless node on a tilted plane in space: `K u = s f + r n`, `r = -s f·n` (unit stiffness).

@@ -18,7 +18,19 @@ async fn problem(ask: RequestBuilder, status: u16, kind: &str) -> Value {
     assert_eq!(answer.headers()["content-type"], "application/problem+json", "{kind}");
     assert!(answer.headers().contains_key("x-request-id"), "{kind}");
     let text = answer.text().await.expect("a body");
-    for leak in ["SELECT", "INSERT", "sqlx", "sqlite", "src/", ".rs", "/tmp", "panicked"] {
+    for leak in [
+        "deserialize",
+        "invalid digit",
+        "expected one of",
+        "SELECT",
+        "INSERT",
+        "sqlx",
+        "sqlite",
+        "src/",
+        ".rs",
+        "/tmp",
+        "panicked",
+    ] {
         assert!(!text.contains(leak), "{text}");
     }
     let problem: Value = serde_json::from_str(&text).expect("a problem");
@@ -62,12 +74,27 @@ async fn parameters_and_headers() {
     for path in ["/v1/jobs/1", "/v1/jobs/x/stream", "/v1/jobs/x/increments", "/v1/jobs/x/path.csv"] {
         problem(server.ask(Method::GET, path), 400, "invalid-parameter").await;
     }
+    for (query, told) in [
+        ("limit=x", "limit: found `x`; a whole number from 1 to 200 is expected"),
+        ("limit=2&status=done", "status: found `done`; `queued`, `running`"),
+        ("cursor=%26", "cursor: found `&`; the `next_cursor`"),
+        ("stauts=queued", "there is no parameter `stauts`; did you mean `status`?"),
+        ("limit=1&limit=2", "limit: it stands twice"),
+        ("=", "there is no parameter ``; known: `status`, `cursor`, `limit`"),
+    ] {
+        let problem = problem(server.ask(Method::GET, &format!("/v1/jobs?{query}")), 400, "invalid-parameter").await;
+        assert!(problem["detail"].as_str().expect("text").starts_with(told), "{query}: {problem}");
+    }
     let stream = format!("/v1/jobs/{id}/stream");
     for last in ["x", "-1", "1.5"] {
         let ask = server.ask(Method::GET, &stream).header("last-event-id", last);
         problem(ask, 400, "invalid-parameter").await;
     }
-    problem(server.ask(Method::GET, &stream).header("accept", "image/png"), 406, "not-acceptable").await;
+    for refused in ["image/png", "*/*;q=0", "text/event-stream;q=0, application/x-ndjson;q=0.0"] {
+        problem(server.ask(Method::GET, &stream).header("accept", refused), 406, "not-acceptable").await;
+    }
+    let lines = server.ask(Method::GET, &stream).header("accept", "text/event-stream;q=0, */*").send().await;
+    assert_eq!(lines.expect("an answer").headers()["content-type"], "application/x-ndjson");
     let post = || server.ask(Method::POST, "/v1/jobs").json(&request("errors", 1));
     problem(post().header("idempotency-key", ""), 400, "invalid-parameter").await;
     problem(post().header("idempotency-key", "k".repeat(256)), 400, "invalid-parameter").await;

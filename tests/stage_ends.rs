@@ -5,6 +5,7 @@ mod common;
 use arcslip::model::request::{DisplacementBound, Until};
 use arcslip::path::StopReason;
 use arcslip::path::increment::PointKind;
+use common::generators::slider_chain;
 use common::paths::{request, scene, trace};
 use serde_json::json;
 
@@ -78,26 +79,11 @@ fn a_bound_that_is_met_before_the_stage_begins_ends_it_at_once() {
 /// The slider chain: block m+1 starts to slip exactly at `s = (m+1) μ W`, block m then having moved `μ W/k` past block
 /// m+1's rest position.
 #[test]
-fn slider_chain() {
+fn a_count_of_contact_changes_ends_the_slider_chain() {
     let (friction, weight, stiffness) = (0.3, 2.0, 5.0);
     for n in [2usize, 5, 7] {
-        let mut nodes = serde_json::Map::new();
-        let (mut weights, mut elements, mut contacts) = (serde_json::Map::new(), Vec::new(), Vec::new());
-        for i in 0..n {
-            nodes.insert(format!("block{i}"), json!([-(i as f64), 0]));
-            weights.insert(format!("block{i}"), json!([0, -weight]));
-            contacts.push(json!({"node": format!("block{i}"), "obstacle": "floor", "friction": friction}));
-        }
-        for i in 1..n {
-            let ends = [format!("block{}", i - 1), format!("block{i}")];
-            elements.push(json!({"kind": "spring", "nodes": ends, "stiffness": [[stiffness, 0], [0, 0]]}));
-        }
-        let model = json!({"model": {
-            "name": "slider chain", "dimension": 2, "nodes": nodes, "elements": elements,
-            "obstacles": {"floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}}, "contacts": contacts,
-            "stages": [{"name": "weigh", "forces": weights, "until": {"load_above": 1}},
-                       {"name": "pull", "forces": {"block0": [1, 0]}, "until": {"contact_change": n - 1}}]
-        }});
+        let mut model = slider_chain(n, friction, weight, stiffness);
+        model["model"]["stages"][1]["until"] = json!({"contact_change": n - 1});
         let (increments, report) = trace(&request(&model.to_string()));
         assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{n}");
         let changes: Vec<_> = increments.iter().filter(|i| matches!(i.point.kind, PointKind::ContactChange)).collect();

@@ -22,9 +22,9 @@ pub struct Arguments {
     /// Where jobs are kept; created if it is not there.
     #[arg(long, value_name = "FILE", default_value = "arcslip.db", env = "ARCSLIP_DATABASE")]
     database: PathBuf,
-    /// Solves at a time; 0 answers HTTP only. Default: one a processor.
-    #[arg(long, value_name = "N", env = "ARCSLIP_WORKERS")]
-    workers: Option<usize>,
+    /// Solves at a time, 1 to 1024. Default: one a processor.
+    #[arg(long, value_name = "N", env = "ARCSLIP_WORKERS", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    workers: Option<u16>,
     /// Queue every built-in scene once.
     #[arg(long)]
     demo: bool,
@@ -49,7 +49,8 @@ async fn serve(arguments: &Arguments) -> Outcome {
     let mut interrupt = signal(SignalKind::interrupt()).map_err(Failure::other)?;
     let mut terminate = signal(SignalKind::terminate()).map_err(Failure::other)?;
     let store = store::open(&arguments.database).await.map_err(Failure::other)?;
-    let workers = arguments.workers.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, NonZero::get));
+    let workers =
+        arguments.workers.map_or_else(|| std::thread::available_parallelism().map_or(1, NonZero::get), usize::from);
     let settings = Settings { workers, ..Settings::default() };
     let server =
         Server::start(arguments.listen, store, Arc::new(PathSolver), settings).await.map_err(Failure::other)?;
@@ -82,4 +83,30 @@ fn start_log(format: LogFormat) {
     }
     // A panic in a solve belongs to its job: in the log it stands under that job's span.
     std::panic::set_hook(Box::new(|panic| tracing::error!(%panic, "a panic")));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Debug, clap::Parser)]
+    struct Line {
+        #[command(flatten)]
+        arguments: Arguments,
+    }
+
+    #[test]
+    fn a_service_has_a_bounded_number_of_workers_and_not_none() {
+        let workers = |count: &str| {
+            Line::try_parse_from(["serve".to_owned(), format!("--workers={count}")])
+                .map(|line| line.arguments.workers)
+                .map_err(|refusal| refusal.to_string())
+        };
+        assert_eq!(workers("1"), Ok(Some(1)));
+        assert_eq!(workers("1024"), Ok(Some(1024)));
+        for refused in ["0", "1025", "-1", "many"] {
+            assert!(workers(refused).unwrap_err().contains("--workers"), "{refused}");
+        }
+    }
 }

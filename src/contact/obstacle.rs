@@ -1,44 +1,45 @@
-//! Obstacles: normal and tangents.
+//! Obstacles: how far a node is from them, and which way.
 
-/// A rigid obstacle.
+use super::vector::{Vector, add, dot, size, unit};
+
+/// A rigid obstacle as one contact sees it.
 #[derive(Debug, Clone)]
 pub enum Obstacle {
     /// A half-space with unit `normal` into the free side.
-    Plane { normal: [f64; 3] },
+    Plane { normal: Vector },
+    /// A circle or sphere.
+    Ball {
+        /// The undeformed node's place, measured from the centre.
+        offset: Vector,
+        /// 1 where nodes are free outside, -1 where they are free inside.
+        side: f64,
+    },
 }
 
 impl Obstacle {
-    /// Unit normal into the free side.
-    pub fn normal(&self) -> [f64; 3] {
+    /// Change of the distance from the undeformed place, unit normal into the free side, and curvature `κ`: the normal
+    /// turns by `dn = κ (dx - n (n·dx))`.
+    ///
+    /// `relative` is the node's displacement less the obstacle's.
+    pub(super) fn distance(&self, relative: &Vector) -> (f64, Vector, f64) {
         match self {
-            Self::Plane { normal } => *normal,
+            Self::Plane { normal } => (dot(normal, relative), *normal, 0.0),
+            Self::Ball { offset, side } => {
+                let place = add(offset, 1.0, relative);
+                let (radius, before) = (size(&place), size(offset));
+                // The difference of the radii without the cancellation.
+                let change = (2.0 * dot(offset, relative) + dot(relative, relative)) / (radius + before);
+                let outward = unit(&place);
+                let normal = [side * outward[0], side * outward[1], side * outward[2]];
+                (side * change, normal, side / radius)
+            }
         }
     }
 
-    /// Orthonormal tangents; in 2D the first is the normal turned clockwise (along +x on a floor), the second zero.
-    pub fn tangents(&self, dimension: usize) -> [[f64; 3]; 2] {
-        let normal = self.normal();
-        if dimension == 2 {
-            return [[normal[1], -normal[0], 0.0], [0.0; 3]];
+    pub fn is_curved(&self) -> bool {
+        match self {
+            Self::Plane { .. } => false,
+            Self::Ball { .. } => true,
         }
-        // The coordinate axis least aligned with the normal; the first of them, so that the choice is reproducible.
-        let mut axis = 0;
-        for k in 1..3 {
-            if normal[k].abs() < normal[axis].abs() {
-                axis = k;
-            }
-        }
-        let mut first = [0.0; 3];
-        first[axis] = 1.0;
-        let along = normal[axis];
-        (0..3).for_each(|k| first[k] -= along * normal[k]);
-        let size = first.iter().map(|value| value * value).sum::<f64>().sqrt();
-        first.iter_mut().for_each(|value| *value /= size);
-        let second = [
-            normal[1] * first[2] - normal[2] * first[1],
-            normal[2] * first[0] - normal[0] * first[2],
-            normal[0] * first[1] - normal[1] * first[0],
-        ];
-        [first, second]
     }
 }

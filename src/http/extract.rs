@@ -1,11 +1,12 @@
 //! What calls read from requests; every refusal is a problem.
 
 use super::problem::{Kind, Problem};
+use crate::model::names::{quoted, suggestion};
 use axum::body::Bytes;
 use axum::extract::rejection::BytesRejection;
 use axum::extract::{FromRequest, FromRequestParts, Path, Query, Request};
 use axum::http::request::Parts;
-use axum::http::{HeaderMap, StatusCode, header};
+use axum::http::{HeaderMap, StatusCode, Uri, header};
 use axum::response::IntoResponse;
 use serde::de::DeserializeOwned;
 use uuid::Uuid;
@@ -55,18 +56,46 @@ impl<S: Send + Sync> FromRequestParts<S> for JobId {
     }
 }
 
+/// Parameters of a query, every one of which may be left out.
+pub trait Taken: DeserializeOwned {
+    /// Their names, each with what it takes.
+    const TAKEN: &'static [(&'static str, &'static str)];
+}
+
 /// The query's parameters.
 pub struct Parameters<T>(pub T);
 
-impl<S: Send + Sync, T: DeserializeOwned> FromRequestParts<S> for Parameters<T> {
+impl<S: Send + Sync, T: Taken> FromRequestParts<S> for Parameters<T> {
     type Rejection = Problem;
 
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
         match Query::<T>::from_request_parts(parts, state).await {
             Ok(Query(parameters)) => Ok(Self(parameters)),
-            Err(rejection) => Err(Problem::new(Kind::InvalidParameter, rejection.body_text())),
+            Err(_) => Err(refused_query::<T>(parts.uri.query().unwrap_or_default())),
         }
     }
+}
+
+/// Says which parameter is wrong: each is read by itself, and the first that cannot be is named.
+fn refused_query<T: Taken>(query: &str) -> Problem {
+    let mut seen = Vec::new();
+    for part in query.split('&') {
+        let Ok(alone) = Uri::builder().path_and_query(format!("/?{part}")).build() else { continue };
+        let pairs = Query::<Vec<(String, String)>>::try_from_uri(&alone).map(|Query(pairs)| pairs);
+        let Some((name, value)) = pairs.unwrap_or_default().into_iter().next() else { continue };
+        let Some((_, takes)) = T::TAKEN.iter().find(|(known, _)| *known == name) else {
+            let known = suggestion(&name, T::TAKEN.iter().map(|(known, _)| *known));
+            return Problem::new(Kind::InvalidParameter, format!("there is no parameter {}{known}", quoted(&name)));
+        };
+        if Query::<T>::try_from_uri(&alone).is_err() {
+            return Problem::parameter(&name, format_args!("found {}; {takes} is expected", quoted(&value)));
+        }
+        if seen.contains(&name) {
+            return Problem::parameter(&name, "it stands twice; once would do");
+        }
+        seen.push(name);
+    }
+    Problem::new(Kind::InvalidParameter, "the query cannot be read; `name=value` joined by `&` is expected")
 }
 
 /// The `Idempotency-Key` header, if there is one.

@@ -1,6 +1,6 @@
 //! Stored increments, a page at a time.
 
-use super::extract::{JobId, Parameters, bounded};
+use super::extract::{JobId, Parameters, Taken, bounded};
 use super::problem::Problem;
 use super::view::IncrementPage;
 use super::{Service, document};
@@ -25,6 +25,11 @@ pub struct PageParameters {
     /// Increments at most; a page of large increments may hold fewer and not be the last.
     #[param(minimum = 1, maximum = 10_000, default = 1_000)]
     limit: Option<u32>,
+}
+
+impl Taken for PageParameters {
+    const TAKEN: &'static [(&'static str, &'static str)] =
+        &[("after", "the index of an increment, 0 or more,"), ("limit", "a whole number from 1 to 10000")];
 }
 
 /// Increments stored so far, in order.

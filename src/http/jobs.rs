@@ -1,6 +1,6 @@
 //! Jobs: submit, list, read, cancel, delete.
 
-use super::extract::{JobId, JsonText, Parameters, bounded, idempotency_key};
+use super::extract::{JobId, JsonText, Parameters, Taken, bounded, idempotency_key};
 use super::problem::Problem;
 use super::view::{Job, JobList, address};
 use super::{Service, document};
@@ -25,6 +25,10 @@ pub struct SubmitParameters {
     /// Check the request and answer its plan; queue nothing.
     #[serde(default)]
     validate: bool,
+}
+
+impl Taken for SubmitParameters {
+    const TAKEN: &'static [(&'static str, &'static str)] = &[("validate", "`true` or `false`")];
 }
 
 /// Queue a job, or only check it.
@@ -73,6 +77,14 @@ pub struct ListParameters {
     cursor: Option<Uuid>,
     #[param(minimum = 1, maximum = 200, default = 50)]
     limit: Option<u32>,
+}
+
+impl Taken for ListParameters {
+    const TAKEN: &'static [(&'static str, &'static str)] = &[
+        ("status", "`queued`, `running`, `completed`, `stopped`, `cancelled` or `failed`"),
+        ("cursor", "the `next_cursor` of the page before, a UUID,"),
+        ("limit", "a whole number from 1 to 200"),
+    ];
 }
 
 /// List jobs, newest first.

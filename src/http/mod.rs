@@ -1,10 +1,12 @@
 //! The service's HTTP face; version 1 of the interface.
 //!
-//! [`problem`] is the one edge where errors become answers, [`extract`] reads requests, [`view`] holds what is answered;
-//! [`jobs`], [`follow`], [`increments`], [`stream`], [`csv`], [`scenes`], [`probes`] and [`pages`] are the calls, [`document`] their
-//! OpenAPI description, [`request_id`] what names each request, [`server`] listening and going down in good order.
+//! [`problem`] is the one edge where errors become answers, [`extract`] and [`accept`] read requests, [`view`] holds
+//! what is answered; [`jobs`], [`follow`], [`increments`], [`stream`], [`csv`], [`scenes`], [`probes`] and [`pages`] are the calls,
+//! [`document`] their OpenAPI description, [`request_id`] what names each request, [`server`] listening and going down in
+//! good order.
 //! Called by `command`; knows `jobs` and, for reading, `store`.
 
+pub mod accept;
 pub mod csv;
 pub mod document;
 pub mod extract;

@@ -4,6 +4,7 @@
 //! there is no gap, and only what is stored is sent, so that a client which resumes sees every index once. Nothing is
 //! queued for a slow reader; it is served from the store at its own pace.
 
+use super::accept::preferred;
 use super::extract::{JobId, last_event_id};
 use super::problem::{Kind, Problem};
 use super::view::Job;
@@ -72,21 +73,10 @@ enum Format {
 
 impl Format {
     fn accepted(headers: &HeaderMap) -> Result<Self, Problem> {
-        let mut any = false;
-        for value in headers.get_all(header::ACCEPT) {
-            for range in value.to_str().unwrap_or_default().split(',') {
-                any = true;
-                match range.split(';').next().unwrap_or_default().trim() {
-                    NDJSON => return Ok(Self::Lines),
-                    EVENT_STREAM | "text/*" | "*/*" => return Ok(Self::Events),
-                    _ => {}
-                }
-            }
-        }
-        if any {
-            Err(Problem::new(Kind::NotAcceptable, format!("offered are {EVENT_STREAM} and {NDJSON}")))
-        } else {
-            Ok(Self::Events)
+        match preferred(headers, &[EVENT_STREAM, NDJSON]) {
+            Some(0) => Ok(Self::Events),
+            Some(_) => Ok(Self::Lines),
+            None => Err(Problem::new(Kind::NotAcceptable, format!("offered are {EVENT_STREAM} and {NDJSON}"))),
         }
     }
 }

@@ -1,5 +1,8 @@
 //! Dense factorisations that say when they cannot be trusted. May be called by everything above; calls nothing.
 
+pub mod inertia;
+
+pub use inertia::{Inertia, inertia};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 /// An LU factorisation with partial pivoting of a square matrix whose rows were brought to unit size first.
@@ -44,11 +47,56 @@ impl Factorisation {
         regular.then_some(Self { row_scales, lu })
     }
 
+    /// Sign of the determinant: 1 or -1.
+    pub fn determinant_sign(&self) -> f64 {
+        let factors = self.lu.lu_internal();
+        let sign: f64 = self.lu.p().determinant();
+        (0..factors.nrows()).fold(sign, |sign, index| sign * factors[(index, index)].signum())
+    }
+
+    /// Smallest pivot over the largest one.
+    pub fn pivot_ratio(&self) -> f64 {
+        let factors = self.lu.lu_internal();
+        let pivots = (0..factors.nrows()).map(|index| factors[(index, index)].abs());
+        let (least, most) = pivots.fold((f64::INFINITY, 0.0_f64), |(l, m), pivot| (l.min(pivot), m.max(pivot)));
+        if most > 0.0 { least / most } else { 0.0 }
+    }
+
     /// Solves for one right-hand side, overwritten by the solution; `false` when the result is not finite.
     pub fn solve(&self, right_hand_side: &mut DVector<f64>) -> bool {
         right_hand_side.component_div_assign(&self.row_scales);
         self.lu.solve_mut(right_hand_side) && right_hand_side.iter().all(|value| value.is_finite())
     }
+}
+
+/// A determinant as its sign and its size's natural logarithm.
+#[derive(Debug, Clone, Copy)]
+pub struct Determinant {
+    /// 0 where a pivot is.
+    pub sign: f64,
+    pub logarithm: f64,
+    /// Smallest pivot over the largest one.
+    pub pivot_ratio: f64,
+}
+
+/// The determinant of any square matrix, its rows as they are. `None` when a number is not finite.
+pub fn determinant(matrix: DMatrix<f64>) -> Option<Determinant> {
+    if !matrix.iter().all(|value| value.is_finite()) {
+        return None;
+    }
+    let lu = matrix.lu();
+    let factors = lu.lu_internal();
+    let (mut sign, mut logarithm): (f64, f64) = (lu.p().determinant(), 0.0);
+    let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+    for index in 0..factors.nrows() {
+        let pivot = factors[(index, index)];
+        sign *= if pivot == 0.0 { 0.0 } else { pivot.signum() };
+        logarithm += pivot.abs().ln();
+        least = least.min(pivot.abs());
+        most = most.max(pivot.abs());
+    }
+    let pivot_ratio = if most > 0.0 { least / most } else { 0.0 };
+    Some(Determinant { sign, logarithm, pivot_ratio })
 }
 
 /// A basis of the null space, one vector a column, by elimination with complete pivoting.
@@ -57,7 +105,6 @@ impl Factorisation {
 /// rank is decided once for the whole matrix. `None` when a number is not finite.
 pub fn null_space(matrix: &DMatrix<f64>, tolerance: f64) -> Option<DMatrix<f64>> {
     let mut work = matrix.clone();
-    let (rows, columns) = work.shape();
     for mut row in work.row_iter_mut() {
         let size = row.amax();
         if !size.is_finite() {
@@ -66,6 +113,15 @@ pub fn null_space(matrix: &DMatrix<f64>, tolerance: f64) -> Option<DMatrix<f64>>
         if size > 0.0 {
             row /= size;
         }
+    }
+    null_space_as_scaled(work, tolerance)
+}
+
+/// The same without a change of the rows' sizes: a row that is nothing but round-off counts as zero.
+pub fn null_space_as_scaled(mut work: DMatrix<f64>, tolerance: f64) -> Option<DMatrix<f64>> {
+    let (rows, columns) = work.shape();
+    if !work.iter().all(|value| value.is_finite()) {
+        return None;
     }
     let mut order: Vec<usize> = (0..columns).collect();
     let mut rank = 0;

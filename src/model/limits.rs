@@ -23,12 +23,12 @@ pub const MAX_STAGES: usize = 1_000;
 pub const MAX_UNKNOWNS: usize = 3_000;
 /// Upper bound of `analysis.max_increments`.
 pub const MAX_INCREMENTS: u64 = 10_000_000;
-/// Upper bound of `analysis.explore.depth`.
-pub const MAX_DEPTH: u64 = 1_000;
-/// Upper bound of `analysis.explore.max_jobs`.
-pub const MAX_JOBS: u64 = 10_000;
 /// Upper bound of `analysis.max_modes`.
 pub const MAX_MODES: u64 = 10_000_000;
+/// Upper bound of `analysis.explore.depth`.
+pub const MAX_EXPLORE_DEPTH: u64 = 100;
+/// Upper bound of `analysis.explore.max_jobs`: all of them may be queued at one time.
+pub const MAX_EXPLORE_JOBS: u64 = 10_000;
 
 /// Numbers of a request are zero or lie between this and [`MAX_MAGNITUDE`] in absolute value, so that neither a ratio
 /// of two of them nor its square can overflow or vanish.

@@ -1,6 +1,9 @@
 //! One step along the current mode, ended early by the first event.
 
-use super::mode_system::{Corrected, Failure, Loading, ModeSystem, Place};
+use super::drift::Pointed;
+use super::loading::Loading;
+use super::mode_system::ModeSystem;
+use super::newton::{Corrected, Failure, Place};
 use super::root::find_root;
 use super::scene::End;
 use super::state::{Rate, State};
@@ -16,6 +19,8 @@ pub struct Start<'a> {
     /// The direction in `modes`.
     pub rate: &'a Rate,
     pub modes: &'a [Mode],
+    /// Error of the path so far, where it has one.
+    pub drift: Option<&'a Rate>,
     pub force_scale: f64,
 }
 
@@ -28,8 +33,12 @@ pub struct Reached {
     pub step: f64,
     /// Distance to the path (dimensionless).
     pub error_estimate: f64,
+    /// Error of the path up to here, where it has one.
+    pub drift: Option<Rate>,
     /// What ended the step early.
     pub event: Option<Watch>,
+    /// Sign of the bordered determinant there, where it is certain.
+    pub determinant: Option<f64>,
 }
 
 /// Work done, whether it led to a point or not.
@@ -49,6 +58,8 @@ pub enum Refused {
     Turned(f64),
     /// An event lies at the start itself.
     AtStart(Watch),
+    /// The signs of the equations changed, and no bifurcation point could be made out.
+    Unresolved,
 }
 
 /// The direction may turn by this much in a step.
@@ -65,21 +76,41 @@ impl Start<'_> {
     pub fn reach(&self, step: f64, work: &mut Work) -> Result<Reached, Refused> {
         let system = ModeSystem::new(self.loading, self.modes, self.state);
         let guess = self.state.advanced(self.rate, step);
-        self.settle(&system, guess, Place::ArcLength { from: self.state, step }, work)
+        self.settle(system, guess, Place::ArcLength { from: self.state, step }, work)
+    }
+
+    /// The point at an arc length, from a guess.
+    pub fn reach_near(&self, guess: State, step: f64, work: &mut Work) -> Result<Reached, Refused> {
+        let system = ModeSystem::new(self.loading, self.modes, self.state);
+        self.settle(system, guess, Place::ArcLength { from: self.state, step }, work)
     }
 
     fn settle(
         &self,
-        system: &ModeSystem<'_>,
+        mut system: ModeSystem<'_>,
         guess: State,
         place: Place<'_>,
         work: &mut Work,
     ) -> Result<Reached, Refused> {
-        let corrected = system.correct(guess, place, self.force_scale).map_err(Refused::Newton)?;
+        let mut corrected = system.correct(guess, place, self.force_scale).map_err(Refused::Newton)?;
         work.newton_iterations += corrected.iterations;
         work.factorisations += corrected.iterations + 1;
-        let (rate, error_estimate) =
-            system.tangent_and_error(&corrected, self.rate).ok_or(Refused::Newton(Failure::Singular))?;
+        let singular = Refused::Newton(Failure::Singular);
+        let (mut rate, mut error_estimate, mut determinant) =
+            system.tangent_and_error(&corrected, self.rate).ok_or(singular)?;
+        if system.has_tracks() {
+            // Once more, now that the turn of the slips at the end is known.
+            system.set_turns(self.rate, Some((&corrected, &rate)));
+            let again =
+                system.correct_from(system.iterate_of(&corrected), place, self.force_scale).map_err(Refused::Newton)?;
+            work.newton_iterations += again.iterations;
+            work.factorisations += again.iterations + 1;
+            // How hard the increment is shows in the first solve.
+            let hardness = corrected.iterations_to_small;
+            corrected = again;
+            corrected.iterations_to_small = hardness;
+            (rate, error_estimate, determinant) = system.tangent_and_error(&corrected, self.rate).ok_or(singular)?;
+        }
         let step = corrected.state.distance(self.state);
         // The sphere around the start meets the path behind, too, and may meet other branches: the chord has to go the
         // way of both directions.
@@ -90,7 +121,7 @@ impl Start<'_> {
         if turn > MOST_TURN {
             return Err(Refused::Turned(turn));
         }
-        Ok(Reached { corrected, rate, step, error_estimate, event: None })
+        Ok(Reached { corrected, rate, step, error_estimate, drift: None, event: None, determinant })
     }
 
     /// A step of an arc length, or to the first event before.
@@ -126,15 +157,37 @@ impl Start<'_> {
                 .map(|end| Watch::End(*end))
                 .find(|watch| self.value(*watch, &reached.corrected.state, &reached.rate) <= AT_END);
         }
-        if let Some(Watch::LoadRate { .. }) = event {
-            // Where a contact reaches the end of its mode at the limit point itself, the change is what matters.
+        if matches!(event, None | Some(Watch::LoadRate { .. })) {
+            // A contact may reach the end of its mode just where the step ends, or at the limit point itself: the change
+            // is what matters.
             event = self.coinciding(&watches, &reached).or(event);
         }
         if let Some(Watch::End(end)) = event {
             reached = self.hold_exactly(end, reached, work)?;
         }
         reached.event = event;
+        reached.drift = self.drift_at(&reached, work);
+        reached.error_estimate += reached.drift.as_ref().map_or(0.0, Rate::size);
         Ok(reached)
+    }
+
+    /// The path's error at a point reached, where it has one.
+    fn drift_at(&self, reached: &Reached, work: &mut Work) -> Option<Rate> {
+        let mut system = ModeSystem::new(self.loading, self.modes, self.state);
+        if self.drift.is_none() && !system.has_tracks() {
+            return None;
+        }
+        let end = Pointed { corrected: &reached.corrected, rate: &reached.rate };
+        let before = self.drift;
+        let drift = if system.has_tracks() {
+            system.set_turns(self.rate, Some((&reached.corrected, &reached.rate)));
+            let middle = self.reach(0.5 * reached.step, work).ok()?;
+            system.drift(self.rate, before, Pointed { corrected: &middle.corrected, rate: &middle.rate }, end)
+        } else {
+            system.drift(self.rate, before, end, end)
+        };
+        work.factorisations += 1;
+        drift.or_else(|| before.cloned())
     }
 
     fn value(&self, watch: Watch, state: &State, rate: &Rate) -> f64 {
@@ -232,7 +285,7 @@ impl Start<'_> {
             End::LimitPoints(_) | End::ContactChanges(_) | End::Increments(_) => return Ok(reached),
         };
         let system = ModeSystem::new(self.loading, self.modes, self.state);
-        let mut exact = self.settle(&system, reached.corrected.state, place, work)?;
+        let mut exact = self.settle(system, reached.corrected.state, place, work)?;
         match end {
             End::Load { bound, .. } => exact.corrected.state.load = bound,
             End::Displacement { freedom, bound, .. } => exact.corrected.state.displacement[freedom] = bound,

@@ -1,5 +1,7 @@
 //! What a point turned out to be, and how the path goes on from it.
 
+use super::branches::branches;
+use super::critical::Crossing;
 use super::decide::{self, Before, Choice};
 use super::increment::{Point, PointKind};
 use super::name_event::describe_change;
@@ -8,12 +10,12 @@ use super::state::Rate;
 use super::stop::StopReason;
 use super::tracer::{Path, Visited};
 use super::watch::Watch;
-use crate::contact::Reaction;
+use crate::contact::{Reaction, all_continue};
 use crate::model::request::Method;
 use std::sync::Arc;
 
 /// States closer than this are one.
-const SAME_STATE: f64 = 1e-9;
+pub(super) const SAME_STATE: f64 = 1e-9;
 /// A reaction this small against the largest force so far is what the location of its zero left over.
 const ROUND_OFF: f64 = 1e-14;
 
@@ -30,8 +32,11 @@ pub(super) struct Arrival {
 
 impl Path<'_> {
     /// What kind of point this is, and how the path goes on.
-    pub(super) fn classify(&mut self, event: Option<Watch>, incoming: &Rate) -> Arrival {
+    pub(super) fn classify(&mut self, event: Option<Watch>, crossing: Option<Crossing>, incoming: &Rate) -> Arrival {
         match event {
+            None | Some(Watch::End(_)) if let Some(crossing) = crossing => {
+                self.smooth_bifurcation(crossing, incoming, event.is_some())
+            }
             None | Some(Watch::End(_)) => {
                 self.here.rate = Some(incoming.clone());
                 let stage_ends = event.is_some();
@@ -44,7 +49,7 @@ impl Path<'_> {
                 let what = if sign > 0.0 { "load maximum" } else { "load minimum" };
                 self.look_around(incoming, PointKind::SmoothLimit, Some(what.to_owned()), Some(-sign), false)
             }
-            Some(Watch::Gap(_) | Watch::Normal(_) | Watch::Cone { .. } | Watch::Sliding(_)) => {
+            Some(Watch::Gap(_) | Watch::Normal(_) | Watch::Cone { .. } | Watch::Sliding(_) | Watch::Facet { .. }) => {
                 self.contact_change(incoming)
             }
         }
@@ -80,6 +85,39 @@ impl Path<'_> {
                 options.iter().any(|option| !option.retrace && option.dissipation > kept + tolerance);
         }
         Arrival { point, options, taken, stop: None, stage_ends, unconfirmed: false }
+    }
+
+    /// An eigenvalue crosses zero within the mode: the path goes on in its own direction, the branches are listed.
+    fn smooth_bifurcation(&mut self, crossing: Crossing, incoming: &Rate, stage_ends: bool) -> Arrival {
+        self.here.rate = Some(incoming.clone());
+        let rules = self.rules();
+        let here = &self.here;
+        let found = branches(self.loading(), &here.modes, &here.state, incoming, rules.force_scale);
+        let mut options = found.options;
+        let standings = self.standings(&here.state);
+        let (mut unexplored_modes, mut degenerate) = (0, found.degenerate);
+        if !standings.iter().all(|standing| matches!(standing, Standing::Settled(_))) {
+            // Other modes of the contacts that can change; in the current mode, singular here, the branches are it.
+            let before = Before::Incoming(incoming);
+            let (others, found) = decide::list(self.loading(), &here.state, &standings, before, rules);
+            options.extend(others.into_iter().filter(|other| other.modes != here.modes));
+            unexplored_modes = found.unexplored;
+            degenerate |= found.mechanism;
+        }
+        let kept = options[0].dissipation + 1e-8 * rules.force_scale;
+        let point = Point {
+            kind: PointKind::SmoothBifurcation,
+            bifurcation: decide::is_bifurcation(&options, Some(0), None),
+            event: Some(match crossing.eigenvalues {
+                1 => "one eigenvalue crosses zero".to_owned(),
+                2 => "two eigenvalues cross zero together".to_owned(),
+                count => format!("{count} eigenvalues cross zero together"),
+            }),
+            better_direction: options.iter().any(|option| !option.retrace && option.dissipation > kept),
+            unexplored_modes,
+            degenerate: degenerate || options.len() % 2 == 1,
+        };
+        Arrival { point, options, taken: Some(0), stop: None, stage_ends, unconfirmed: false }
     }
 
     /// A contact has reached the end of its mode: list the directions and take one.
@@ -141,14 +179,14 @@ impl Path<'_> {
         let here = &self.here;
         let known = self.visited.iter().any(|visited| {
             visited.stage == self.stage
-                && visited.modes == here.modes
+                && all_continue(&visited.modes, &here.modes)
                 && visited.state.distance(&here.state) < SAME_STATE
-                && visited.state.reactions.iter().zip(&here.state.reactions).all(|(a, b)| {
-                    let tolerance = SAME_STATE * self.force_scale;
-                    (a.normal - b.normal).abs() < tolerance
-                        && (a.tangential[0] - b.tangential[0]).abs() < tolerance
-                        && (a.tangential[1] - b.tangential[1]).abs() < tolerance
-                })
+                && visited
+                    .state
+                    .reactions
+                    .iter()
+                    .zip(&here.state.reactions)
+                    .all(|(a, b)| a.difference(b) < SAME_STATE * self.force_scale)
         });
         let (state, modes) = (here.state.clone(), here.modes.clone());
         self.visited.push(Arc::new(Visited { stage: self.stage, state, modes }));

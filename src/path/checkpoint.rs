@@ -8,6 +8,7 @@
 use super::advance::Work;
 use super::follow::{Followed, Listed};
 use super::increment::Energy;
+use super::loading::LoadPattern;
 use super::report::Report;
 use super::scene::Scene;
 use super::state::{Rate, State};
@@ -28,7 +29,7 @@ pub struct Checkpoint {
     phase: Phase,
     stage: usize,
     stage_over: bool,
-    held: Vec<f64>,
+    held: LoadPattern,
     here: Here,
     step: f64,
     index: u64,
@@ -43,6 +44,7 @@ pub struct Checkpoint {
     listed: Option<Listed>,
     followed: Option<Followed>,
     visited: Vec<Arc<Visited>>,
+    begun: Option<(State, Rate)>,
 }
 
 /// States that a path has passed, for telling a cycle. They only grow along a stage: kept apart from the checkpoints,
@@ -125,7 +127,12 @@ impl Checkpoint {
             listed.arriving.iter().try_for_each(|arriving| modes(&arriving.modes))?;
             listed.options.iter().try_for_each(|option| rate(&option.rate).and_then(|()| modes(&option.modes)))
         };
-        same("degrees of freedom", self.held.len(), freedoms)?;
+        same("degrees of freedom", self.held.forces.len(), freedoms)?;
+        same("contacts", self.held.shifts.len(), contacts)?;
+        if let Some((begun, direction)) = &self.begun {
+            state(begun)?;
+            rate(direction)?;
+        }
         state(&self.here.state)?;
         modes(&self.here.modes)?;
         self.here.rate.iter().try_for_each(rate)?;
@@ -160,6 +167,7 @@ impl<'a> Path<'a> {
             work,
             report,
             visited,
+            begun,
             listed,
             followed,
         } = self;
@@ -183,6 +191,7 @@ impl<'a> Path<'a> {
             listed: listed.clone(),
             followed: followed.clone(),
             visited: visited.clone(),
+            begun: begun.clone(),
         }
     }
 
@@ -213,6 +222,7 @@ impl<'a> Path<'a> {
             listed,
             followed,
             visited,
+            begun,
         } = checkpoint;
         path.phase = phase;
         path.stage = stage;
@@ -232,6 +242,7 @@ impl<'a> Path<'a> {
         path.listed = listed;
         path.followed = followed;
         path.visited = visited;
+        path.begun = begun;
         Ok(path)
     }
 }

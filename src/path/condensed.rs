@@ -2,36 +2,20 @@
 //!
 //! With `v` the velocities of those contacts and `τ` the coordinate along the held structure's own direction `z₀`,
 //! `(u̇, ṡ, ṙ) = Z v + z₀ τ`; a mode picks one linear equation for each velocity and leaves a line, taken in both senses.
-//! The inequalities are those listed in `directions`.
+//! The inequalities are those listed in `directions`; `changeable` writes them down, `rates` finds the rays.
 
+use super::changeable::{Changeable, Forms, Outcome};
 use super::directions::{Candidate, Found, RANK, WEAK, is_mechanism, merge};
-use super::mode_system::{Loading, ModeSystem};
+use super::loading::Loading;
+use super::mode_system::ModeSystem;
+use super::rates::{self, RateProblem, Ray};
 use super::standing::Standing;
 use super::state::{Rate, State};
 use crate::cancel::CancelFlag;
+use crate::contact::vector::{add, dot};
 use crate::contact::{Mode, Reaction};
 use crate::linear_algebra::{Factorisation, null_space};
 use nalgebra::{DMatrix, DVector};
-
-/// A velocity of a changeable contact.
-#[derive(Debug, Clone, Copy)]
-enum Velocity {
-    Normal,
-    Tangential,
-}
-
-/// A changeable contact with the places of its velocities among the columns, and its reaction rates as linear forms.
-struct Changeable {
-    contact: usize,
-    standing: Standing,
-    friction: f64,
-    normal_column: Option<usize>,
-    tangential_column: Option<usize>,
-    normal_rate: DVector<f64>,
-    tangential_rate: DVector<f64>,
-    /// Size of the pressing reaction: what a unit of slip dissipates is `μ` times this.
-    normal: f64,
-}
 
 /// The rate equations condensed on the changeable contacts: column `j` is the full rate for unit `v_j`, the last one
 /// is `z₀`.
@@ -39,6 +23,9 @@ pub(super) struct Condensed<'a> {
     loading: Loading<'a>,
     columns: Vec<Rate>,
     changeable: Vec<Changeable>,
+    problem: RateProblem,
+    /// What the options of each mean.
+    outcomes: Vec<Vec<Outcome>>,
 }
 
 impl<'a> Condensed<'a> {
@@ -51,174 +38,127 @@ impl<'a> Condensed<'a> {
         incoming: Option<&Rate>,
     ) -> Option<Self> {
         let factorisation = bordered(system, loading, state, incoming)?;
-        let mut changeable = Vec::new();
-        let mut velocities = Vec::new();
-        for (contact, standing) in standings.iter().enumerate() {
-            let friction = loading.contacts[contact].friction;
-            let mut place = |velocity: Velocity| {
-                velocities.push((contact, velocity));
-                Some(velocities.len() - 1)
-            };
-            let (normal_column, tangential_column) = match standing {
-                Standing::Settled(_) => continue,
-                Standing::OnCone { .. } => (None, place(Velocity::Tangential)),
-                Standing::Touching if friction > 0.0 => (place(Velocity::Normal), place(Velocity::Tangential)),
-                Standing::Touching => (place(Velocity::Normal), None),
-            };
-            changeable.push(Changeable {
-                contact,
-                standing: *standing,
-                friction,
-                normal_column,
-                tangential_column,
-                normal_rate: DVector::zeros(0),
-                tangential_rate: DVector::zeros(0),
-                normal: state.reactions[contact].normal,
-            });
-        }
-        let mut columns = Vec::with_capacity(velocities.len() + 1);
-        for (contact, velocity) in velocities {
-            let mut values = DVector::zeros(system.size());
-            let offset = match velocity {
-                Velocity::Normal => 0,
-                Velocity::Tangential => 1,
-            };
-            values[system.row_of(contact) + offset] = 1.0;
-            if !factorisation.solve(&mut values) {
-                return None;
+        let changeable = changeable(loading, state, standings);
+        let mut columns = Vec::new();
+        for entry in &changeable {
+            let contact = entry.contacts[0];
+            let frame = loading.frame(contact, state);
+            let row = system.row_of(contact);
+            for (_, direction) in &entry.velocities {
+                let mut values = DVector::zeros(system.size());
+                values[row] = dot(&frame.normal, direction);
+                for (k, tangent) in frame.tangents.iter().enumerate().take(system.held_tangents(contact)) {
+                    values[row + 1 + k] = dot(tangent, direction);
+                }
+                if !factorisation.solve(&mut values) {
+                    return None;
+                }
+                columns.push(system.rate_from(state, &values));
             }
-            columns.push(system.rate_from(&values));
         }
         let mut values = DVector::zeros(system.size());
         values[system.size() - 1] = 1.0;
         if !factorisation.solve(&mut values) {
             return None;
         }
-        columns.push(system.rate_from(&values));
-        for entry in &mut changeable {
-            let reaction = |column: &Rate| column.reactions[entry.contact];
-            entry.normal_rate = DVector::from_iterator(columns.len(), columns.iter().map(|c| reaction(c).normal));
-            entry.tangential_rate =
-                DVector::from_iterator(columns.len(), columns.iter().map(|c| reaction(c).tangential[0]));
-        }
-        Some(Self { loading, columns, changeable })
+        columns.push(system.rate_from(state, &values));
+        let normals = |contact: usize| loading.frame(contact, state).normal;
+        let mut forms = Forms { columns: &columns, normals: &normals, rows: Vec::new(), is_force: Vec::new() };
+        let (entities, outcomes) = changeable.iter().map(|entry| entry.options(loading, state, &mut forms)).unzip();
+        let freedoms = columns[0].displacement.len();
+        let motion = DMatrix::from_fn(freedoms + 1, columns.len(), |row, column| {
+            if row < freedoms { columns[column].displacement[row] } else { columns[column].load }
+        });
+        let reactions = DMatrix::from_fn(4 * columns[0].reactions.len(), columns.len(), |row, column| {
+            let reaction = &columns[column].reactions[row / 4];
+            if row % 4 == 0 { reaction.normal } else { reaction.tangential[row % 4 - 1] }
+        });
+        let problem = RateProblem {
+            forms: DMatrix::from_fn(forms.rows.len(), columns.len(), |row, column| forms.rows[row][column]),
+            is_force: forms.is_force,
+            entities,
+            motion,
+            reactions,
+        };
+        Some(Self { loading, columns, changeable, problem, outcomes })
     }
 
-    /// Options of one contact, holding first: where the number examined is bounded, the held structure is among them.
-    fn options(&self, entry: &Changeable) -> Vec<Mode> {
-        match entry.standing {
-            Standing::Settled(mode) => vec![mode],
-            Standing::OnCone { direction } => vec![Mode::Stick, Mode::Slip { direction }],
-            Standing::Touching if entry.friction > 0.0 => vec![
-                Mode::Stick,
-                Mode::Slip { direction: [1.0, 0.0] },
-                Mode::Slip { direction: [-1.0, 0.0] },
-                Mode::Free,
-            ],
-            Standing::Touching => vec![Mode::Slip { direction: [0.0; 2] }, Mode::Free],
-        }
-    }
-
-    /// Examines the contact modes one after another, at most so many.
+    /// Lists the directions, by branch and bound over the contacts' options.
     pub(super) fn enumerate(
         &self,
         held: &[Mode],
         state: &State,
+        incoming: Option<&Rate>,
         most_modes: u64,
         cancel: &CancelFlag,
         found: &mut Found,
     ) {
-        let options: Vec<Vec<Mode>> = self.changeable.iter().map(|entry| self.options(entry)).collect();
-        let total = options.iter().try_fold(1u64, |total, option| total.checked_mul(option.len() as u64));
-        let examined = total.unwrap_or(u64::MAX).min(most_modes);
-        found.unexplored = total.unwrap_or(u64::MAX) - examined;
-        for number in 0..examined {
-            if cancel.is_cancelled() {
-                found.unexplored += examined - number;
-                return;
-            }
-            let mut rest = number;
-            let chosen: Vec<Mode> = options
-                .iter()
-                .map(|option| {
-                    let mode = option[(rest % option.len() as u64) as usize];
-                    rest /= option.len() as u64;
-                    mode
-                })
-                .collect();
-            self.examine(&chosen, held, state, found);
+        let mut first = vec![vec![0; self.changeable.len()]];
+        if let Some(rate) = incoming {
+            first.extend(rates::near(&self.problem, &self.weights_of(rate)));
         }
-    }
-
-    /// The directions of one mode.
-    fn examine(&self, chosen: &[Mode], held: &[Mode], state: &State, found: &mut Found) {
-        let columns = self.columns.len();
-        let mut equations = DMatrix::zeros(columns - 1, columns);
-        let mut next = 0;
-        let mut add = |form: DVector<f64>| {
-            equations.set_row(next, &form.transpose());
-            next += 1;
-        };
-        let unit = |column: usize| DVector::from_fn(columns, |row, _| f64::from(u8::from(row == column)));
-        for (entry, mode) in self.changeable.iter().zip(chosen) {
-            match mode {
-                Mode::Free => {
-                    add(entry.normal_rate.clone());
-                    if entry.tangential_column.is_some() {
-                        add(entry.tangential_rate.clone());
-                    }
-                }
-                Mode::Stick => {
-                    for column in [entry.normal_column, entry.tangential_column].into_iter().flatten() {
-                        add(unit(column));
-                    }
-                }
-                Mode::Slip { direction } => {
-                    if let Some(column) = entry.normal_column {
-                        add(unit(column));
-                    }
-                    if entry.tangential_column.is_some() {
-                        add(&entry.tangential_rate + &entry.normal_rate * (entry.friction * direction[0]));
-                    }
-                }
-            }
-        }
-        let Some(basis) = null_space(&equations, RANK) else {
-            found.degenerate = true;
-            return;
-        };
-        if basis.ncols() > 1 {
-            found.degenerate = true;
+        let findings = rates::explore(&self.problem, &first, most_modes, cancel);
+        found.unexplored = findings.unexplored;
+        found.degenerate |= findings.degenerate;
+        for basis in &findings.planes {
             found.mechanism |= basis.column_iter().any(|column| {
                 let (rate, _) = self.combine(&column.into_owned());
                 is_mechanism(self.loading, state, &rate)
             });
-            return;
         }
-        for sense in [1.0, -1.0] {
-            let weights: DVector<f64> = basis.column(0) * sense;
-            let (mut rate, weights) = self.combine(&weights);
-            if rate.size() < 0.5 {
-                // Reactions that change with nothing else: redundant contacts.
-                found.degenerate = true;
-                return;
+        for ray in &findings.rays {
+            self.add(ray, held, found);
+        }
+    }
+
+    /// The weights that come nearest to a rate: its velocities, and what it has along `z₀`.
+    fn weights_of(&self, rate: &Rate) -> DVector<f64> {
+        let last = self.columns.len() - 1;
+        let mut weights = DVector::zeros(last + 1);
+        for entry in &self.changeable {
+            let motion = self.loading.relative_rate(entry.contacts[0], rate);
+            for (column, direction) in &entry.velocities {
+                weights[*column] = dot(&motion, direction);
             }
-            let Some(weak) = self.feasible(chosen, &weights, rate.largest_reaction()) else { continue };
-            let mut modes = held.to_vec();
-            for (entry, mode) in self.changeable.iter().zip(chosen) {
-                modes[entry.contact] = *mode;
+        }
+        let mut rest = rate.clone();
+        for (column, weight) in self.columns.iter().zip(weights.iter()).take(last) {
+            rest.displacement.iter_mut().zip(&column.displacement).for_each(|(sum, value)| *sum -= weight * value);
+            rest.load -= weight * column.load;
+        }
+        let own = &self.columns[last];
+        weights[last] = own.product(&rest) / own.product(own);
+        weights
+    }
+
+    /// Adds a ray as a candidate direction.
+    fn add(&self, ray: &Ray, held: &[Mode], found: &mut Found) {
+        let (mut rate, _) = self.combine(&ray.weights);
+        let mut modes = held.to_vec();
+        for ((entry, outcomes), &choice) in self.changeable.iter().zip(&self.outcomes).zip(&ray.chosen) {
+            entry.take_reaction_apart(self.loading, &mut rate);
+            for (contact, mode) in &outcomes[choice].modes {
+                modes[*contact] = *mode;
+                let reaction = &mut rate.reactions[*contact];
                 match mode {
-                    Mode::Free => rate.reactions[entry.contact] = Reaction::default(),
-                    Mode::Stick => {}
-                    Mode::Slip { direction } => {
-                        let drag = -entry.friction * rate.reactions[entry.contact].normal;
-                        rate.reactions[entry.contact].tangential = [drag * direction[0], drag * direction[1]];
+                    Mode::Free if entry.contacts.len() == 1 => *reaction = Reaction::default(),
+                    Mode::Slip { direction } if entry.contacts.len() == 1 => {
+                        // Exactly on the cone along the direction; what is across it turns the direction.
+                        let friction = self.loading.contacts[*contact].friction;
+                        let drag = -friction * reaction.normal - dot(&reaction.tangential, direction);
+                        reaction.tangential = add(&reaction.tangential, drag, direction);
                     }
+                    Mode::Free | Mode::Stick | Mode::Slip { .. } => {}
                 }
             }
-            let dissipation = self.dissipation(&weights);
-            merge(found, Candidate { rate, labels: vec![modes], weak, dissipation });
         }
+        self.changeable.iter().for_each(|entry| entry.move_to_slider(self.loading, &modes, &mut rate));
+        let force = WEAK * rate.largest_reaction().max(f64::MIN_POSITIVE);
+        if !self.changeable.iter().all(|entry| entry.is_in_cone(self.loading, &modes, &rate, force)) {
+            return;
+        }
+        let dissipation = self.changeable.iter().map(|entry| entry.dissipation(self.loading, &modes, &rate)).sum();
+        merge(found, Candidate { rate, labels: vec![modes], weak: ray.weak, dissipation });
     }
 
     /// The rate of unit arc length for weights of the columns, and the weights that give it; of no size where the
@@ -229,11 +169,7 @@ impl<'a> Condensed<'a> {
         for (column, weight) in self.columns.iter().zip(weights.iter()).skip(1) {
             rate.displacement.iter_mut().zip(&column.displacement).for_each(|(sum, value)| *sum += weight * value);
             rate.load += weight * column.load;
-            for (sum, value) in rate.reactions.iter_mut().zip(&column.reactions) {
-                sum.normal += weight * value.normal;
-                sum.tangential[0] += weight * value.tangential[0];
-                sum.tangential[1] += weight * value.tangential[1];
-            }
+            rate.reactions.iter_mut().zip(&column.reactions).for_each(|(sum, value)| sum.add(*weight, value));
         }
         let size = rate.size();
         if size > WEAK * rate.largest_reaction() {
@@ -244,58 +180,30 @@ impl<'a> Condensed<'a> {
             (rate, weights.clone())
         }
     }
+}
 
-    /// Whether the inequalities hold; `Some(true)` where one of them holds with equality.
-    fn feasible(&self, chosen: &[Mode], weights: &DVector<f64>, reaction_size: f64) -> Option<bool> {
-        if !weights.iter().all(|weight| weight.is_finite()) {
-            return None;
-        }
-        let force = WEAK * reaction_size.max(f64::MIN_POSITIVE);
-        let mut weak = false;
-        let mut holds = |value: f64, tolerance: f64| {
-            weak |= value.abs() <= tolerance;
-            value >= -tolerance
-        };
-        for (entry, mode) in self.changeable.iter().zip(chosen) {
-            let normal_rate = entry.normal_rate.dot(weights);
-            let tangential_rate = entry.tangential_rate.dot(weights);
-            let velocity = |column: Option<usize>| column.map_or(0.0, |column| weights[column]);
-            let touching = entry.standing == Standing::Touching;
-            let feasible = match mode {
-                Mode::Free => holds(velocity(entry.normal_column), WEAK),
-                Mode::Stick => match entry.standing {
-                    Standing::OnCone { direction } => {
-                        holds(entry.friction * normal_rate + direction[0] * tangential_rate, force)
-                    }
-                    Standing::Settled(_) | Standing::Touching => {
-                        holds(entry.friction * normal_rate - tangential_rate.abs(), force)
-                    }
-                },
-                Mode::Slip { direction } => {
-                    let along = direction[0] * velocity(entry.tangential_column);
-                    let sliding = entry.friction == 0.0 || holds(along, WEAK);
-                    let pressed = !touching || holds(normal_rate, force);
-                    sliding && pressed
+/// The contacts that can change, each corner once, with their columns.
+fn changeable(loading: Loading<'_>, state: &State, standings: &[Standing]) -> Vec<Changeable> {
+    let mut entries: Vec<Changeable> = Vec::new();
+    let mut next = 0;
+    for (contact, standing) in standings.iter().enumerate() {
+        let contacts = match standing {
+            Standing::Settled(_) => continue,
+            Standing::OnCone { .. } | Standing::Touching => vec![contact],
+            Standing::Cornered { .. } => {
+                if entries.iter().any(|entry| entry.contacts.contains(&contact)) {
+                    continue;
                 }
-            };
-            if !feasible {
-                return None;
+                let cornered = |other: &usize| matches!(standings[*other], Standing::Cornered { .. });
+                let corner = loading.corners.iter().find(|corner| corner.contacts.contains(&contact));
+                corner.map_or(vec![contact], |corner| corner.contacts.iter().copied().filter(cornered).collect())
             }
-        }
-        Some(weak)
+        };
+        let entry = Changeable::new(loading, state, contacts, *standing, next);
+        next += entry.velocities.len();
+        entries.push(entry);
     }
-
-    fn dissipation(&self, weights: &DVector<f64>) -> f64 {
-        self.changeable
-            .iter()
-            .map(|entry| match (entry.standing, entry.tangential_column) {
-                (Standing::OnCone { direction }, Some(column)) => {
-                    entry.friction * entry.normal * direction[0] * weights[column]
-                }
-                _ => 0.0,
-            })
-            .sum()
-    }
+    entries
 }
 
 /// A factorisation of the held system with a border that makes it regular: the load, the incoming direction, or the

@@ -6,13 +6,15 @@
 
 use super::advance::MOST_TURN;
 use super::directions::{Candidate, Found, directions, is_mechanism};
-use super::mode_system::{Loading, ModeSystem, Place};
+use super::loading::Loading;
+use super::mode_system::ModeSystem;
+use super::newton::Place;
 use super::standing::Standing;
 use super::state::{Rate, State, dot};
 use super::stop::StopReason;
 use super::watch;
 use crate::cancel::CancelFlag;
-use crate::contact::Mode;
+use crate::contact::{Mode, Reaction};
 use crate::model::request::Selection;
 use serde::{Deserialize, Serialize};
 
@@ -119,7 +121,7 @@ fn confirm(loading: Loading<'_>, state: &State, candidate: &Candidate, force_sca
         if state.angle_of_chord(&corrected.state, &candidate.rate) > MOST_TURN {
             return None;
         }
-        let rate = system.tangent(&corrected.state, &candidate.rate)?;
+        let rate = system.tangent(&corrected, &candidate.rate)?;
         let feasible = watch::of_mode(loading, modes).iter().all(|watch| {
             let value = watch.value(loading, modes, &corrected.state, &rate);
             value >= -TRIAL_TOLERANCE * watch.scale(force_scale.max(corrected.force_scale))
@@ -133,10 +135,10 @@ fn confirm(loading: Loading<'_>, state: &State, candidate: &Candidate, force_sca
 fn is_reverse(rate: &Rate, incoming: &Rate) -> bool {
     let size = rate.largest_reaction().max(incoming.largest_reaction()).max(f64::MIN_POSITIVE);
     rate.product(incoming) < -1.0 + 1e-9
-        && rate.reactions.iter().zip(&incoming.reactions).all(|(a, b)| {
-            (a.normal + b.normal).abs() <= 1e-4 * size
-                && (a.tangential[0] + b.tangential[0]).abs() <= 1e-4 * size
-                && (a.tangential[1] + b.tangential[1]).abs() <= 1e-4 * size
+        && rate.reactions.iter().zip(&incoming.reactions).all(|(rate, incoming)| {
+            let mut sum = *rate;
+            sum.add(1.0, incoming);
+            sum.difference(&Reaction::default()) <= 1e-4 * size
         })
 }
 
@@ -151,7 +153,9 @@ pub fn decide(
     let (options, found) = list(loading, state, standings, before, rules);
     let odd = options.len() % 2 == 1;
     let mut open: Vec<usize> = (0..options.len()).filter(|&index| !options[index].retrace).collect();
-    let pushed = Rate { displacement: loading.pattern.to_vec(), load: 0.0, reactions: Vec::new() };
+    let mut push = loading.pattern.forces.clone();
+    push.iter_mut().zip(&loading.pattern.supports).for_each(|(sum, value)| *sum += value);
+    let pushed = Rate { displacement: push, load: 0.0, reactions: Vec::new() };
     let previous = match before {
         Before::Incoming(rate) => rate,
         Before::StageStart => {

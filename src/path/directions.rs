@@ -22,7 +22,8 @@
 //! where it is not degenerate: an odd count is reported.
 
 use super::condensed::Condensed;
-use super::mode_system::{Loading, ModeSystem};
+use super::loading::Loading;
+use super::mode_system::ModeSystem;
 use super::standing::Standing;
 use super::state::{Rate, State};
 use crate::cancel::CancelFlag;
@@ -74,9 +75,9 @@ pub fn directions(
         .zip(loading.contacts)
         .map(|(standing, contact)| match standing {
             Standing::Settled(mode) => *mode,
-            Standing::OnCone { .. } => Mode::Stick,
-            Standing::Touching if contact.friction > 0.0 => Mode::Stick,
-            Standing::Touching => Mode::Slip { direction: [0.0; 2] },
+            Standing::OnCone { .. } | Standing::Cornered { .. } => Mode::Stick,
+            Standing::Touching if contact.tangents() > 0 => Mode::Stick,
+            Standing::Touching => Mode::Slip { direction: [0.0; 3] },
         })
         .collect();
     let system = ModeSystem::new(loading, &held, state);
@@ -86,7 +87,7 @@ pub fn directions(
         found.mechanism = resists_nothing(&system, loading, state);
         return found;
     };
-    condensed.enumerate(&held, state, most_modes, cancel, &mut found);
+    condensed.enumerate(&held, state, incoming, most_modes, cancel, &mut found);
     found
 }
 
@@ -95,7 +96,7 @@ fn resists_nothing(system: &ModeSystem<'_>, loading: Loading<'_>, state: &State)
     let matrix = system.matrix(state);
     let Some(basis) = null_space(&matrix.rows(0, system.size() - 1).into_owned(), RANK) else { return false };
     basis.column_iter().any(|column| {
-        let rate = system.rate_from(&column.into_owned());
+        let rate = system.rate_from(state, &column.into_owned());
         is_mechanism(loading, state, &rate)
     })
 }
@@ -114,11 +115,8 @@ pub(super) fn merge(found: &mut Found, candidate: Candidate) {
     for known in &mut found.candidates {
         let size = known.rate.largest_reaction().max(candidate.rate.largest_reaction()).max(f64::MIN_POSITIVE);
         let same_motion = (1.0 - known.rate.product(&candidate.rate)) < 0.5 * SAME * SAME;
-        let same_reactions = known.rate.reactions.iter().zip(&candidate.rate.reactions).all(|(a, b)| {
-            (a.normal - b.normal).abs() <= SAME * size
-                && (a.tangential[0] - b.tangential[0]).abs() <= SAME * size
-                && (a.tangential[1] - b.tangential[1]).abs() <= SAME * size
-        });
+        let same_reactions =
+            known.rate.reactions.iter().zip(&candidate.rate.reactions).all(|(a, b)| a.difference(b) <= SAME * size);
         if same_motion && same_reactions {
             known.labels.extend(candidate.labels);
             known.labels.sort_by_key(|modes| modes.iter().filter(|mode| **mode != Mode::Stick).count());

@@ -1,16 +1,20 @@
 //! External work and dissipation along an increment.
 //!
 //! ```text
-//! ΔW = f_held·Δu + ∫ s d(f·u),      ΔD = -Σ ∫ r_t·dx_t
+//! ΔW = f_held·Δu + ∫ s d(f·u) + ∫ Q ds,      ΔD = -Σ ∫ r_t·dx
 //! ```
+//!
+//! `Q` is what supports and obstacles that move with the load factor push with; `x` a node's place relative to its
+//! obstacle.
 //!
 //! Both integrands are products along a curve whose ends and end directions are known: cubic Hermite interpolants of
 //! both factors, integrated exactly, give an error of fourth order in the step. The interpolants' parameter is arc
 //! length; the chord `S` between directions that differ by an angle `θ` spans `S (1 + θ²/24)` of it.
 
-use super::mode_system::Loading;
+use super::loading::Loading;
 use super::state::{Rate, State, dot};
 use crate::contact::Mode;
+use crate::contact::vector::{Vector, add, dot as inner, scaled};
 
 /// A scalar at both ends of an increment with its derivatives by arc length.
 #[derive(Clone, Copy)]
@@ -34,36 +38,81 @@ pub fn work_and_dissipation(loading: Loading<'_>, modes: &[Mode], start: Placed<
     let change: Vec<f64> = end.0.displacement.iter().zip(&start.0.displacement).map(|(a, b)| a - b).collect();
     let path = Ends {
         first: 0.0,
-        first_rate: dot(loading.pattern, &start.1.displacement),
-        last: dot(loading.pattern, &change),
-        last_rate: dot(loading.pattern, &end.1.displacement),
+        first_rate: dot(&loading.pattern.forces, &start.1.displacement),
+        last: dot(&loading.pattern.forces, &change),
+        last_rate: dot(&loading.pattern.forces, &end.1.displacement),
     };
-    let work = dot(loading.held, &change) + integral(load, path, length);
+    let mut work = dot(&loading.held.forces, &change) + integral(load, path, length);
+    if loading.pattern.moves_boundary() {
+        let (first, first_rate) = boundary_force(loading, start);
+        let (last, last_rate) = boundary_force(loading, end);
+        let driven = Ends { first: 0.0, last: load.last - load.first, ..load };
+        work += integral(Ends { first, first_rate, last, last_rate }, driven, length);
+    }
     let mut dissipation = 0.0;
-    let dimension = loading.structure.dimension;
     for (index, (mode, contact)) in modes.iter().zip(loading.contacts).enumerate() {
-        if !matches!(mode, Mode::Slip { .. }) || contact.friction == 0.0 {
+        if !matches!(mode, Mode::Slip { .. }) || contact.tangents() == 0 {
             continue;
         }
-        let node = contact.node * dimension..(contact.node + 1) * dimension;
-        for (k, tangent) in contact.obstacle.tangents(dimension).iter().enumerate().take(dimension - 1) {
-            let along = |values: &[f64]| super::state::along(&values[node.clone()], tangent);
+        let chord = add(&loading.relative(index, end.0), -1.0, &loading.relative(index, start.0));
+        let (first, last) = (loading.relative_rate(index, start.1), loading.relative_rate(index, end.1));
+        for k in 0..loading.structure.dimension {
             let traction = Ends {
                 first: start.0.reactions[index].tangential[k],
                 first_rate: start.1.reactions[index].tangential[k],
                 last: end.0.reactions[index].tangential[k],
                 last_rate: end.1.reactions[index].tangential[k],
             };
-            let slip = Ends {
-                first: 0.0,
-                first_rate: along(&start.1.displacement),
-                last: along(&change),
-                last_rate: along(&end.1.displacement),
-            };
+            let slip = Ends { first: 0.0, first_rate: first[k], last: chord[k], last_rate: last[k] };
             dissipation -= integral(traction, slip, length);
         }
     }
     (work, dissipation)
+}
+
+/// `Q` and its derivative by arc length.
+fn boundary_force(loading: Loading<'_>, at: Placed<'_>) -> (f64, f64) {
+    let (state, rate) = at;
+    let structure = loading.structure;
+    let mut force = vec![0.0; structure.freedoms()];
+    structure.internal_force(&state.displacement, &mut force);
+    let mut change = vec![0.0; structure.freedoms()];
+    structure.each_stiffness(&state.displacement, &mut |row, column, value| {
+        change[row] += value * rate.displacement[column];
+    });
+    for freedom in 0..structure.freedoms() {
+        force[freedom] -= state.load * loading.pattern.forces[freedom] + loading.held.forces[freedom];
+        change[freedom] -= rate.load * loading.pattern.forces[freedom];
+    }
+    let (mut sum, mut sum_rate) = (0.0, 0.0);
+    for (index, contact) in loading.contacts.iter().enumerate() {
+        let (reaction, reaction_rate) = reaction_in_space(loading, index, at);
+        let first = contact.node * structure.dimension;
+        for component in 0..structure.dimension {
+            force[first + component] -= reaction[component];
+            change[first + component] -= reaction_rate[component];
+        }
+        sum += inner(&reaction, &loading.pattern.shifts[index]);
+        sum_rate += inner(&reaction_rate, &loading.pattern.shifts[index]);
+    }
+    for (freedom, motion) in loading.pattern.supports.iter().enumerate() {
+        sum += force[freedom] * motion;
+        sum_rate += change[freedom] * motion;
+    }
+    (sum, sum_rate)
+}
+
+/// The whole force of an obstacle on its node, and its derivative by arc length.
+fn reaction_in_space(loading: Loading<'_>, contact: usize, at: Placed<'_>) -> (Vector, Vector) {
+    let (reaction, change) = (&at.0.reactions[contact], &at.1.reactions[contact]);
+    if *reaction == Default::default() && *change == Default::default() {
+        return Default::default();
+    }
+    let frame = loading.frame(contact, at.0);
+    let turn = frame.normal_change(&loading.relative_rate(contact, at.1));
+    let force = add(&reaction.tangential, reaction.normal, &frame.normal);
+    let rate = add(&add(&change.tangential, change.normal, &frame.normal), 1.0, &scaled(&turn, reaction.normal));
+    (force, rate)
 }
 
 /// `∫ a db` over the length; the integrand is of degree five, so that Gauss's three points are exact.

@@ -8,7 +8,7 @@ use super::report::Report;
 use super::scene::{End, Scene};
 use super::tracer::{Emitted, Path, Phase, StageCounts, Visited};
 use crate::cancel::CancelFlag;
-use crate::contact::Mode;
+use crate::contact::{Mode, all_continue};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -74,6 +74,7 @@ impl<'a> Path<'a> {
             path.turn(choice);
         }
         path.counts = counts;
+        path.begun = path.here.rate.clone().map(|rate| (path.here.state.clone(), rate));
         path.phase = Phase::NotStarted;
         path.stage_over = false;
         path.index = 0;
@@ -105,7 +106,8 @@ impl<'a> Path<'a> {
             && let Some(arriving) = &listed.arriving
         {
             // What this point counts as depends on how the path leaves it.
-            let changed = arriving.counts.contact_changes < counts.contact_changes || arriving.modes != choice.modes;
+            let changed = arriving.counts.contact_changes < counts.contact_changes
+                || !all_continue(&arriving.modes, &choice.modes);
             let turned = arriving.load_sign * choice.load_sign < 0.0;
             counts = arriving.counts;
             counts.contact_changes += u64::from(changed);

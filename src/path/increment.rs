@@ -38,10 +38,16 @@ pub struct ContactState {
     pub gap: f64,
     /// Force, 0 or more.
     pub normal_reaction: f64,
-    /// Force on the node along the obstacle's tangents (`dimension - 1` of them).
+    /// Force on the node along the obstacle's tangents at the node's place (`dimension - 1` of them): in 2D the normal `n`
+    /// turned clockwise; in 3D the coordinate axis least aligned with `n` (the first of them) made perpendicular to it
+    /// and of unit length, `t`, and `n × t`.
     pub tangential_reaction: Vec<f64>,
-    /// Tangential motion against the obstacle in this increment (length).
+    /// Motion against the obstacle in this increment along the same tangents (length).
     pub slip: Vec<f64>,
+    /// Equilibrium does not tell this contact's reaction from those of others that hold the same node: the reactions of
+    /// least norm are given.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub indeterminate: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]

@@ -5,8 +5,12 @@
 //! | file | what it does |
 //! |---|---|
 //! | `scene`, `plan` | a request made dimensionless; what it needs and what is left out |
-//! | `state`, `mode_system` | a point; the equations of one contact mode and Newton's method on them |
+//! | `state`, `loading` | a point; the structure under a pattern of forces, supports and obstacles that move |
+//! | `mode_system`, `newton` | the equations of one contact mode; Newton's method on them |
+//! | `corner` | nodes that several obstacles hold at once |
+//! | `track`, `drift` | slip in a plane: its rule of fourth order; the error that is left |
 //! | `watch`, `root`, `advance` | what ends a mode; one step, ended exactly at the first event |
+//! | `singular`, `critical`, `branches` | whether a step passes a smooth bifurcation; where; which directions leave it |
 //! | `standing`, `directions`, `condensed`, `decide` | which contacts can change; every direction; which one is taken |
 //! | `program`, `naming` | the MPEC of an increment; where it names the mode |
 //! | `energy`, `record`, `increment`, `report`, `stop` | balances, rows, totals, reasons |
@@ -15,27 +19,37 @@
 
 mod advance;
 mod arrival;
+mod branches;
+mod changeable;
 pub mod checkpoint;
 mod condensed;
+mod corner;
+mod critical;
 mod decide;
 mod directions;
+mod drift;
 mod energy;
 mod follow;
 pub mod increment;
+mod loading;
 mod mode_system;
 mod name_event;
 mod naming;
+mod newton;
 pub mod plan;
 mod program;
+mod rates;
 mod record;
 pub mod report;
 mod root;
 pub mod scene;
+mod singular;
 mod standing;
 mod state;
 mod stepping;
 pub mod stop;
 pub mod tracer;
+mod track;
 mod watch;
 
 pub use checkpoint::{Checkpoint, CheckpointError};

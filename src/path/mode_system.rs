@@ -1,197 +1,383 @@
-//! The equations of one contact mode, and Newton's method on them.
+//! The equations of one contact mode.
 //!
 //! ```text
-//! f_int(u) - s f - f_held - Σ_i (n r_n + t r_t)_i = 0        equilibrium
-//! g_i(u) = 0                                                 closed contacts
-//! t_i·(x_i - x_i⁰) = 0                                       sticking contacts, unknown r_t
-//! r_t = -μ r_n d                                             slipping contacts, eliminated
+//! f_int(u) - s f - f_held - Σ_i (n r_n + r_t)_i = 0          equilibrium
+//! g_i(u, s) = 0                                              closed contacts
+//! t·(x_i - x_i⁰) = 0                                         sticking contacts, unknown r_t
+//! r_t = -μ r_n d                                             slipping contacts, d a tangent
 //! c(u, s) = 0                                                arc length, or a held load or displacement
 //! ```
 //!
-//! Unknowns `(u, s, r)`; the matrix is square, and regular at smooth limit points because `c` borders it
+//! `x_i` is the node's place relative to its obstacle. Along a line `d` is known; in a plane it is an unknown with the
+//! equation of `track`. Unknowns are `(u, s)`, then for each closed contact `r_n` and what its mode adds; the matrix is
+//! square, and regular at smooth limit points because `c` borders it
 //! (E. Riks, Int. J. Solids Struct. 15 (1979) 529, doi:10.1016/0020-7683(79)90081-7).
 
+use super::corner::{self, total_force};
+use super::loading::Loading;
+use super::newton::{Corrected, Place};
 use super::state::{Rate, State};
-use crate::contact::{Contact, Mode, Reaction};
+use super::track::{self, Start, Turn};
+use crate::contact::vector::{Vector, add, cross, dot, scaled};
+use crate::contact::{Frame, Mode, Reaction};
 use crate::linear_algebra::Factorisation;
-use crate::structure::Structure;
 use nalgebra::{DMatrix, DVector};
 
-/// The structure under a load pattern, with what is held from before.
-#[derive(Clone, Copy)]
-pub struct Loading<'a> {
-    pub structure: &'a Structure,
-    pub contacts: &'a [Contact],
-    /// Multiplied by the load factor; all degrees of freedom.
-    pub pattern: &'a [f64],
-    /// Held by earlier stages; all degrees of freedom.
-    pub held: &'a [f64],
-}
-
-/// The last equation: where on the branch the point is to be.
+/// What a contact contributes to the equations.
 #[derive(Debug, Clone, Copy)]
-pub enum Place<'a> {
-    /// `‖(Δu, Δs)‖ = step` from a state, on the side of the predictor.
-    ArcLength { from: &'a State, step: f64 },
-    /// `s = value`
-    Load(f64),
-    /// `u = value` at a degree of freedom.
-    Displacement { freedom: usize, value: f64 },
+pub(super) enum Role {
+    Free,
+    /// Closed, no traction.
+    Frictionless,
+    /// Slip along the frame's first tangent, in the sense of the sign.
+    Line {
+        sign: f64,
+    },
+    /// Slip along any tangent, on a track with an equation of its own.
+    Plane {
+        start: Start,
+        turn: Turn,
+    },
+    Stick,
+    /// Holds its node together with other contacts, and has the whole force in its unknowns.
+    Held,
+    /// Holds its node together with one that is `Held`; adds nothing.
+    HeldBy,
 }
 
-/// A converged point and what it took.
-#[derive(Debug, Clone)]
-pub struct Corrected {
-    pub state: State,
-    pub iterations: u64,
-    /// Iterations until the error was small; those after it polish, and their number is round-off's.
-    pub iterations_to_small: u64,
-    /// Equilibrium residual over the force scale.
-    pub residual: f64,
-    /// Equilibrium and contact equations left over, one a row.
-    left_over: DVector<f64>,
-    /// Largest force in the structure, its loads and its contacts.
-    pub force_scale: f64,
-}
-
-/// Why no point was found.
+/// Which equation the track of a slip in a plane has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Failure {
-    Singular,
-    NotConverged,
+pub(super) enum Kind {
+    /// Of rates: the node goes along the direction.
+    Rates,
+    /// Of the increment: its chord lies between the directions at both ends.
+    Increment,
 }
 
-/// Newton iterations before a step is given up.
-const MOST_ITERATIONS: u64 = 16;
-/// Relative residual that an accepted point must have.
-pub const ACCEPTED_RESIDUAL: f64 = 1e-11;
-/// Relative residual below which iterating on gains nothing.
-const ROUND_OFF: f64 = 1e-15;
-/// Error below which Newton's method is as good as converged.
-const SMALL: f64 = 1e-6;
+/// A state on the way to convergence, with the directions of slip (one a contact; empty where none is unknown).
+#[derive(Debug, Clone)]
+pub(super) struct Iterate {
+    pub state: State,
+    pub directions: Vec<Vector>,
+}
 
 /// One mode's equations.
 pub struct ModeSystem<'a> {
-    loading: Loading<'a>,
+    pub(super) loading: Loading<'a>,
+    /// Where sticking contacts hold their nodes and slips start.
+    pub(super) anchor: &'a State,
+    pub(super) roles: Vec<Role>,
     modes: &'a [Mode],
-    /// Where sticking contacts hold their nodes.
-    anchor: &'a State,
     /// First row and column of each closed contact.
     first_of: Vec<usize>,
-    size: usize,
+    pub(super) size: usize,
 }
 
 impl<'a> ModeSystem<'a> {
+    /// `anchor` is the state in which the modes begin.
     pub fn new(loading: Loading<'a>, modes: &'a [Mode], anchor: &'a State) -> Self {
         let mut next = loading.structure.unknowns() + 1;
         let mut first_of = Vec::with_capacity(modes.len());
-        for mode in modes {
-            first_of.push(next);
-            next += match mode {
-                Mode::Free => 0,
-                Mode::Slip { .. } => 1,
-                Mode::Stick => loading.structure.dimension,
+        let mut roles = Vec::with_capacity(modes.len());
+        for (index, (mode, contact)) in modes.iter().zip(loading.contacts).enumerate() {
+            let held = loading.corners.iter().find_map(|corner| {
+                let mut holding = corner.holding(modes);
+                let first = holding.next()?;
+                (first == index || holding.any(|other| other == index)).then_some(first == index)
+            });
+            let role = match mode {
+                Mode::Stick if held == Some(true) => Role::Held,
+                Mode::Stick if held == Some(false) => Role::HeldBy,
+                Mode::Free => Role::Free,
+                Mode::Stick => Role::Stick,
+                Mode::Slip { .. } if contact.tangents() == 0 => Role::Frictionless,
+                Mode::Slip { direction } if contact.tangents() == 1 => {
+                    let tangent = loading.frame(index, anchor).tangents[0];
+                    Role::Line { sign: if dot(direction, &tangent) < 0.0 { -1.0 } else { 1.0 } }
+                }
+                Mode::Slip { direction } => {
+                    let normal = loading.frame(index, anchor).normal;
+                    Role::Plane { start: Start { direction: *direction, normal }, turn: Turn::default() }
+                }
             };
+            first_of.push(next);
+            next += match role {
+                Role::Free | Role::HeldBy => 0,
+                Role::Held => loading.structure.dimension,
+                Role::Frictionless | Role::Line { .. } => 1,
+                Role::Plane { .. } => 2,
+                Role::Stick => 1 + contact.tangents(),
+            };
+            roles.push(role);
         }
-        Self { loading, modes, anchor, first_of, size: next }
+        Self { loading, anchor, roles, modes, first_of, size: next }
     }
 
-    /// Number of unknowns `(u, s, r)`.
+    /// Number of unknowns.
     pub fn size(&self) -> usize {
         self.size
     }
 
-    /// Column of a closed contact's normal reaction; its tangential ones follow. Its rows are one less.
+    /// Whether some contact slips in a plane.
+    pub fn has_tracks(&self) -> bool {
+        self.roles.iter().any(|role| matches!(role, Role::Plane { .. }))
+    }
+
+    /// Sets how fast the slips in planes turn at the start, by the path's direction there, and for a second solve at the
+    /// end.
+    pub fn set_turns(&mut self, start: &Rate, end: Option<(&Corrected, &Rate)>) {
+        for index in 0..self.roles.len() {
+            let Role::Plane { start: begun, .. } = self.roles[index] else { continue };
+            let at_start = track::turn_rate(self.loading, index, self.anchor, start, &begun.direction);
+            let at_end = end.and_then(|(corrected, rate)| {
+                let Mode::Slip { direction } = corrected.modes[index] else { return None };
+                track::turn_rate(self.loading, index, &corrected.state, rate, &direction)
+            });
+            self.roles[index] = Role::Plane { start: begun, turn: Turn { at_start, at_end } };
+        }
+    }
+
+    /// Column of a closed contact's normal reaction; its other unknowns follow. Its rows are one less.
     pub fn column_of(&self, contact: usize) -> usize {
         self.first_of[contact]
     }
 
-    /// Row of a closed contact's normal equation; its tangential ones follow.
+    /// Row of a closed contact's normal equation; its others follow.
     pub fn row_of(&self, contact: usize) -> usize {
         self.first_of[contact] - 1
     }
 
-    /// All rows but the last, which is left zero for the bordering equation.
-    pub fn matrix(&self, state: &State) -> DMatrix<f64> {
-        let structure = self.loading.structure;
-        let (dimension, unknowns) = (structure.dimension, structure.unknowns());
-        let mut matrix = DMatrix::zeros(self.size, self.size);
-        structure.add_tangent(&state.displacement, &mut matrix);
-        for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
-            matrix[(unknown, unknowns)] = -self.loading.pattern[*freedom];
-        }
-        for (index, (contact, mode)) in self.loading.contacts.iter().zip(self.modes).enumerate() {
-            if !mode.is_active() {
-                continue;
+    /// A state with the directions of slip that the modes give; where contacts hold a node together, the first of them
+    /// has the whole force.
+    pub(super) fn iterate(&self, mut state: State) -> Iterate {
+        for corner in self.loading.corners {
+            let mut holding = corner.holding(self.modes);
+            if let Some(first) = holding.next() {
+                let force = total_force(self.loading, corner.holding(self.modes), &state);
+                let normal = self.loading.frame(first, &state).normal;
+                let along = dot(&force, &normal);
+                state.reactions[first] = Reaction { normal: along, tangential: add(&force, -along, &normal) };
+                holding.for_each(|other| state.reactions[other] = Reaction::default());
             }
-            let normal = contact.obstacle.normal();
-            let tangents = contact.obstacle.tangents(dimension);
-            let column = self.column_of(index);
-            let row = self.row_of(index);
-            for component in 0..dimension {
-                let Some(unknown) = structure.unknown_of[contact.node * dimension + component] else { continue };
-                matrix[(row, unknown)] = normal[component];
-                match mode {
-                    Mode::Free => {}
-                    Mode::Slip { direction } => {
-                        let drag = direction[0] * tangents[0][component] + direction[1] * tangents[1][component];
-                        matrix[(unknown, column)] = -(normal[component] - contact.friction * drag);
-                    }
-                    Mode::Stick => {
-                        matrix[(unknown, column)] = -normal[component];
-                        for k in 0..dimension - 1 {
-                            matrix[(unknown, column + 1 + k)] = -tangents[k][component];
-                            matrix[(row + 1 + k, unknown)] = tangents[k][component];
-                        }
-                    }
+        }
+        let directions = if self.has_tracks() {
+            let of = |(index, role): (usize, &Role)| match role {
+                Role::Plane { start, .. } => start.carried_to(&self.loading.frame(index, &state).normal),
+                _ => [0.0; 3],
+            };
+            self.roles.iter().enumerate().map(of).collect()
+        } else {
+            Vec::new()
+        };
+        Iterate { state, directions }
+    }
+
+    /// A converged point.
+    pub(super) fn iterate_of(&self, corrected: &Corrected) -> Iterate {
+        Iterate { directions: corrected.directions.clone(), ..self.iterate(corrected.state.clone()) }
+    }
+
+    /// Where several contacts hold a node together, their reactions become those of least norm.
+    pub(super) fn share(&self, state: &mut State) {
+        corner::share(self.loading, self.loading.corners, self.modes, state);
+    }
+
+    /// All rows but the last of the rate equations at a state, which is left zero for the bordering equation.
+    pub fn matrix(&self, state: &State) -> DMatrix<f64> {
+        self.assemble(&self.iterate(state.clone()), Kind::Rates)
+    }
+
+    /// All rows but the last.
+    pub(super) fn assemble(&self, iterate: &Iterate, kind: Kind) -> DMatrix<f64> {
+        let structure = self.loading.structure;
+        let (state, unknowns) = (&iterate.state, structure.unknowns());
+        let mut matrix = DMatrix::zeros(self.size, self.size);
+        if self.loading.pattern.supports.is_empty() {
+            structure.add_tangent(&state.displacement, &mut matrix);
+        } else {
+            structure.each_stiffness(&state.displacement, &mut |row, column, value| {
+                let Some(row) = structure.unknown_of[row] else { return };
+                match structure.unknown_of[column] {
+                    Some(column) => matrix[(row, column)] += value,
+                    None => matrix[(row, unknowns)] += value * self.loading.support_rate(column),
+                }
+            });
+        }
+        for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
+            matrix[(unknown, unknowns)] -= self.loading.pattern.forces[*freedom];
+        }
+        for (contact, role) in self.roles.iter().enumerate() {
+            match role {
+                Role::Free | Role::HeldBy => {}
+                Role::Stick | Role::Held => self.add_stick(contact, &mut matrix),
+                Role::Frictionless | Role::Line { .. } | Role::Plane { .. } => {
+                    self.add_slip(contact, iterate, kind, &mut matrix);
                 }
             }
         }
         matrix
     }
 
+    /// A row `vector·(relative motion)`.
+    fn put_motion(&self, contact: usize, row: usize, vector: &Vector, matrix: &mut DMatrix<f64>) {
+        let structure = self.loading.structure;
+        let load = structure.unknowns();
+        let first = self.loading.contacts[contact].node * structure.dimension;
+        for component in 0..structure.dimension {
+            match structure.unknown_of[first + component] {
+                Some(unknown) => matrix[(row, unknown)] += vector[component],
+                None => matrix[(row, load)] += vector[component] * self.loading.support_rate(first + component),
+            }
+        }
+        matrix[(row, load)] -= dot(vector, &self.loading.pattern.shifts[contact]);
+    }
+
+    /// A column of equilibrium: the negative of a force on the contact's node.
+    fn put_force(&self, contact: usize, column: usize, force: &Vector, matrix: &mut DMatrix<f64>) {
+        let structure = self.loading.structure;
+        let first = self.loading.contacts[contact].node * structure.dimension;
+        for component in 0..structure.dimension {
+            if let Some(unknown) = structure.unknown_of[first + component] {
+                matrix[(unknown, column)] -= force[component];
+            }
+        }
+    }
+
+    fn add_stick(&self, contact: usize, matrix: &mut DMatrix<f64>) {
+        let frame = self.loading.frame(contact, self.anchor);
+        let (row, column) = (self.row_of(contact), self.column_of(contact));
+        self.put_force(contact, column, &frame.normal, matrix);
+        self.put_motion(contact, row, &frame.normal, matrix);
+        for (k, tangent) in frame.tangents.iter().enumerate().take(self.held_tangents(contact)) {
+            self.put_force(contact, column + 1 + k, tangent, matrix);
+            self.put_motion(contact, row + 1 + k, tangent, matrix);
+        }
+    }
+
+    /// Number of tangents along which a sticking contact holds its node.
+    pub(super) fn held_tangents(&self, contact: usize) -> usize {
+        match self.roles[contact] {
+            Role::Held => self.loading.structure.dimension - 1,
+            Role::Stick => self.loading.contacts[contact].tangents(),
+            Role::Free | Role::Frictionless | Role::Line { .. } | Role::Plane { .. } | Role::HeldBy => 0,
+        }
+    }
+
+    fn add_slip(&self, contact: usize, iterate: &Iterate, kind: Kind, matrix: &mut DMatrix<f64>) {
+        let structure = self.loading.structure;
+        let frame = self.loading.frame(contact, &iterate.state);
+        let (row, column) = (self.row_of(contact), self.column_of(contact));
+        let friction = self.loading.contacts[contact].friction;
+        let normal = iterate.state.reactions[contact].normal;
+        let direction = self.direction(contact, &frame, iterate);
+        self.put_force(contact, column, &add(&frame.normal, -friction, &direction), matrix);
+        self.put_motion(contact, row, &frame.normal, matrix);
+        if let Role::Plane { start, turn } = &self.roles[contact] {
+            let across = cross(&frame.normal, &direction);
+            self.put_force(contact, column + 1, &scaled(&across, -friction * normal), matrix);
+            match kind {
+                Kind::Rates => self.put_motion(contact, row + 1, &across, matrix),
+                Kind::Increment => {
+                    let chord = self.chord(contact, &iterate.state);
+                    let rule = track::Rule::new(&frame, start, turn, &direction, &chord);
+                    self.put_motion(contact, row + 1, &rule.across, matrix);
+                    matrix[(row + 1, column + 1)] = rule.by_turn;
+                }
+            }
+        }
+        if frame.curvature == 0.0 {
+            return;
+        }
+        // The reaction turns with the place on the obstacle.
+        let dimension = structure.dimension;
+        let first = self.loading.contacts[contact].node * dimension;
+        let change_with = |motion: &Vector| {
+            let drag = self.direction_change(contact, &frame, &direction, motion);
+            scaled(&add(&frame.normal_change(motion), -friction, &drag), normal)
+        };
+        for component in 0..dimension {
+            let mut motion = [0.0; 3];
+            motion[component] = 1.0;
+            let change = change_with(&motion);
+            match structure.unknown_of[first + component] {
+                Some(unknown) => self.put_force(contact, unknown, &change, matrix),
+                None => {
+                    let change = scaled(&change, self.loading.support_rate(first + component));
+                    self.put_force(contact, structure.unknowns(), &change, matrix);
+                }
+            }
+        }
+        let shifted = scaled(&change_with(&self.loading.pattern.shifts[contact]), -1.0);
+        self.put_force(contact, structure.unknowns(), &shifted, matrix);
+    }
+
+    /// Motion relative to the obstacle since the anchor.
+    pub(super) fn chord(&self, contact: usize, state: &State) -> Vector {
+        add(&self.loading.relative(contact, state), -1.0, &self.loading.relative(contact, self.anchor))
+    }
+
+    /// The direction of a slip at an iterate; zero without friction.
+    fn direction(&self, contact: usize, frame: &Frame, iterate: &Iterate) -> Vector {
+        match self.roles[contact] {
+            Role::Line { sign } => scaled(&frame.tangents[0], sign),
+            Role::Plane { .. } => iterate.directions[contact],
+            Role::Free | Role::Frictionless | Role::Stick | Role::Held | Role::HeldBy => [0.0; 3],
+        }
+    }
+
+    /// How a slip's direction turns with the place on the obstacle, its own turn apart.
+    fn direction_change(&self, contact: usize, frame: &Frame, direction: &Vector, motion: &Vector) -> Vector {
+        match self.roles[contact] {
+            Role::Line { sign } => scaled(&frame.tangent_change(motion), sign),
+            Role::Plane { .. } => scaled(&frame.normal, -dot(&frame.normal_change(motion), direction)),
+            Role::Free | Role::Frictionless | Role::Stick | Role::Held | Role::HeldBy => [0.0; 3],
+        }
+    }
+
     /// Puts the bordering row of a rate into a matrix.
     pub fn border(&self, matrix: &mut DMatrix<f64>, rate: &Rate) {
         let structure = self.loading.structure;
-        let last = self.size - 1;
+        let (last, load) = (self.size - 1, structure.unknowns());
         for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
             matrix[(last, unknown)] = rate.displacement[*freedom];
         }
-        matrix[(last, structure.unknowns())] = rate.load;
+        // Supports that move with the load are part of the arc.
+        let supports: f64 = self.loading.pattern.supports.iter().zip(&rate.displacement).map(|(a, b)| a * b).sum();
+        matrix[(last, load)] = rate.load + supports;
     }
 
     /// Equilibrium and contact equations; returns the largest equilibrium residual and the force scale.
-    fn residual(&self, state: &State, values: &mut DVector<f64>, force: &mut [f64]) -> (f64, f64) {
+    pub(super) fn residual(&self, iterate: &Iterate, values: &mut DVector<f64>, force: &mut [f64]) -> (f64, f64) {
         let structure = self.loading.structure;
-        let dimension = structure.dimension;
+        let (dimension, state) = (structure.dimension, &iterate.state);
         let mut scale = structure.internal_force(&state.displacement, force);
         for (freedom, value) in force.iter_mut().enumerate() {
-            let load = state.load * self.loading.pattern[freedom] + self.loading.held[freedom];
+            let load = state.load * self.loading.pattern.forces[freedom] + self.loading.held.forces[freedom];
             scale = scale.max(load.abs()).max(value.abs());
             *value -= load;
         }
         values.fill(0.0);
-        for (index, (contact, mode)) in self.loading.contacts.iter().zip(self.modes).enumerate() {
-            if !mode.is_active() {
+        for (contact, role) in self.roles.iter().enumerate() {
+            if matches!(role, Role::Free) {
                 continue;
             }
-            let reaction = &state.reactions[index];
+            let reaction = &state.reactions[contact];
             scale = scale.max(reaction.size());
-            let normal = contact.obstacle.normal();
-            let tangents = contact.obstacle.tangents(dimension);
-            let first = contact.node * dimension;
+            let frame = self.loading.frame(contact, state);
+            let first = self.loading.contacts[contact].node * dimension;
             for component in 0..dimension {
-                force[first + component] -= reaction.normal * normal[component]
-                    + reaction.tangential[0] * tangents[0][component]
-                    + reaction.tangential[1] * tangents[1][component];
+                force[first + component] -= reaction.normal * frame.normal[component] + reaction.tangential[component];
             }
-            let row = self.row_of(index);
-            values[row] = contact.gap(dimension, &state.displacement);
-            if *mode == Mode::Stick {
-                for (k, tangent) in tangents.iter().enumerate().take(dimension - 1) {
-                    values[row + 1 + k] = (0..dimension)
-                        .map(|c| (state.displacement[first + c] - self.anchor.displacement[first + c]) * tangent[c])
-                        .sum();
+            let row = self.row_of(contact);
+            match role {
+                // A sticking node is put in its place exactly: see `place_exactly`.
+                Role::Free | Role::Stick | Role::Held | Role::HeldBy => {}
+                Role::Frictionless | Role::Line { .. } => values[row] = frame.gap,
+                Role::Plane { start, turn } => {
+                    values[row] = frame.gap;
+                    let chord = self.chord(contact, state);
+                    let rule = track::Rule::new(&frame, start, turn, &iterate.directions[contact], &chord);
+                    values[row + 1] = dot(&rule.across, &chord);
                 }
             }
         }
@@ -204,7 +390,7 @@ impl<'a> ModeSystem<'a> {
     }
 
     /// Value of the last equation, and its row.
-    fn place(&self, state: &State, place: Place<'_>, matrix: Option<&mut DMatrix<f64>>) -> f64 {
+    pub(super) fn place(&self, state: &State, place: Place<'_>, matrix: Option<&mut DMatrix<f64>>) -> f64 {
         let structure = self.loading.structure;
         let (last, unknowns) = (self.size - 1, structure.unknowns());
         match place {
@@ -230,160 +416,164 @@ impl<'a> ModeSystem<'a> {
                 state.load - value
             }
             Place::Displacement { freedom, value } => {
-                if let (Some(matrix), Some(unknown)) = (matrix, structure.unknown_of[freedom]) {
-                    matrix[(last, unknown)] = 1.0;
+                if let Some(matrix) = matrix {
+                    match structure.unknown_of[freedom] {
+                        Some(unknown) => matrix[(last, unknown)] = 1.0,
+                        None => matrix[(last, unknowns)] = self.loading.support_rate(freedom),
+                    }
                 }
                 state.displacement[freedom] - value
             }
         }
     }
 
-    /// Takes a vector of unknowns apart.
-    pub fn rate_from(&self, values: &DVector<f64>) -> Rate {
+    /// Takes a vector of unknowns apart, at a state.
+    pub fn rate_from(&self, state: &State, values: &DVector<f64>) -> Rate {
+        self.rate_at(&self.iterate(state.clone()), values)
+    }
+
+    pub(super) fn rate_at(&self, iterate: &Iterate, values: &DVector<f64>) -> Rate {
         let structure = self.loading.structure;
+        let load = values[structure.unknowns()];
         let mut displacement = vec![0.0; structure.freedoms()];
-        for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
-            displacement[*freedom] = values[unknown];
+        for (freedom, value) in displacement.iter_mut().enumerate() {
+            *value = match structure.unknown_of[freedom] {
+                Some(unknown) => values[unknown],
+                None => load * self.loading.support_rate(freedom),
+            };
         }
-        let reactions = self.modes.iter().zip(self.loading.contacts).enumerate().map(|(index, (mode, contact))| {
-            let column = self.column_of(index);
-            match mode {
-                Mode::Free => Reaction::default(),
-                Mode::Slip { direction } => {
-                    let normal = values[column];
-                    let drag = -contact.friction * normal;
-                    Reaction { normal, tangential: [drag * direction[0], drag * direction[1]] }
+        let mut rate = Rate { displacement, load, reactions: vec![Reaction::default(); self.roles.len()] };
+        for (contact, role) in self.roles.iter().enumerate() {
+            let column = self.column_of(contact);
+            rate.reactions[contact] = match role {
+                Role::Free | Role::HeldBy => continue,
+                Role::Stick | Role::Held => {
+                    let frame = self.loading.frame(contact, self.anchor);
+                    let tangents = frame.tangents.iter().take(self.held_tangents(contact));
+                    let tangential = tangents
+                        .enumerate()
+                        .fold([0.0; 3], |sum, (k, tangent)| add(&sum, values[column + 1 + k], tangent));
+                    Reaction { normal: values[column], tangential }
                 }
-                Mode::Stick => {
-                    let mut tangential = [0.0; 2];
-                    for (k, value) in tangential.iter_mut().enumerate().take(structure.dimension - 1) {
-                        *value = values[column + 1 + k];
+                Role::Frictionless => Reaction { normal: values[column], tangential: [0.0; 3] },
+                Role::Line { .. } | Role::Plane { .. } => {
+                    let frame = self.loading.frame(contact, &iterate.state);
+                    let friction = self.loading.contacts[contact].friction;
+                    let pressed = friction * iterate.state.reactions[contact].normal;
+                    let direction = self.direction(contact, &frame, iterate);
+                    let mut tangential = scaled(&direction, -friction * values[column]);
+                    if matches!(role, Role::Plane { .. }) {
+                        let across = cross(&frame.normal, &direction);
+                        tangential = add(&tangential, -pressed * values[column + 1], &across);
+                    }
+                    if frame.curvature != 0.0 {
+                        let motion = self.loading.relative_rate(contact, &rate);
+                        let change = self.direction_change(contact, &frame, &direction, &motion);
+                        tangential = add(&tangential, -pressed, &change);
                     }
                     Reaction { normal: values[column], tangential }
                 }
-            }
-        });
-        Rate { displacement, load: values[structure.unknowns()], reactions: reactions.collect() }
+            };
+        }
+        rate
     }
 
-    /// Newton's method from a guess, to round-off.
-    ///
-    /// `force_scale` is the largest force met so far on the path; residuals are relative to it or to the present
-    /// forces, whichever is larger.
-    pub fn correct(&self, guess: State, place: Place<'_>, force_scale: f64) -> Result<Corrected, Failure> {
-        let mut state = self.consistent(guess);
-        let mut values = DVector::zeros(self.size);
-        let mut force = vec![0.0; self.loading.structure.freedoms()];
-        let mut iterations = 0;
-        let mut iterations_to_small = None;
-        let mut best: Option<(f64, Corrected)> = None;
-        loop {
-            let (largest, forces) = self.residual(&state, &mut values, &mut force);
-            let scale = forces.max(force_scale).max(f64::MIN_POSITIVE);
-            let residual = largest / scale;
-            let last = self.size - 1;
-            values[last] = self.place(&state, place, None);
-            let geometric = values.iter().skip(self.loading.structure.unknowns()).fold(0.0_f64, |m, v| m.max(v.abs()));
-            let error = residual.max(geometric);
-            if !error.is_finite() {
-                return Err(Failure::NotConverged);
+    /// Goes on by minus a Newton correction.
+    pub(super) fn corrected_by(&self, iterate: &Iterate, values: &DVector<f64>) -> Iterate {
+        let correction = self.rate_at(iterate, values);
+        let mut state = iterate.state.advanced(&correction, -1.0);
+        let mut directions = iterate.directions.clone();
+        self.place_exactly(&mut state);
+        for (contact, role) in self.roles.iter().enumerate() {
+            if let Role::Plane { .. } = role {
+                let frame = self.loading.frame(contact, &state);
+                let turn = -values[self.column_of(contact) + 1];
+                directions[contact] = track::turned(&frame, &directions[contact], turn);
             }
-            if error <= SMALL {
-                iterations_to_small.get_or_insert(iterations);
-            }
-            let improved = best.as_ref().is_none_or(|(least, _)| error < 0.5 * least);
-            if best.as_ref().is_none_or(|(least, _)| error <= *least) {
-                let state = state.clone();
-                let iterations_to_small = iterations_to_small.unwrap_or(iterations);
-                let corrected = Corrected {
-                    state,
-                    iterations,
-                    iterations_to_small,
-                    residual,
-                    left_over: values.clone(),
-                    force_scale: forces,
-                };
-                best = Some((error, corrected));
-            }
-            let least = best.as_ref().map_or(f64::INFINITY, |(least, _)| *least);
-            let settled = least <= ROUND_OFF || (!improved && least <= ACCEPTED_RESIDUAL);
-            if settled && iterations > 0 {
-                break;
-            }
-            if iterations == MOST_ITERATIONS {
-                if least <= ACCEPTED_RESIDUAL {
-                    break;
-                }
-                return Err(Failure::NotConverged);
-            }
-            let mut matrix = self.matrix(&state);
-            self.place(&state, place, Some(&mut matrix));
-            let factorisation = Factorisation::new(matrix).ok_or(Failure::Singular)?;
-            if !factorisation.solve(&mut values) {
-                return Err(Failure::Singular);
-            }
-            let correction = self.rate_from(&values);
-            state = self.consistent(state.advanced(&correction, -1.0));
-            iterations += 1;
         }
-        let Some((_, corrected)) = best else { return Err(Failure::NotConverged) };
-        let wrong_side = match place {
-            Place::ArcLength { from, step } => corrected.state.distance(from) < 0.5 * step,
-            Place::Load(_) | Place::Displacement { .. } => false,
-        };
-        if wrong_side { Err(Failure::NotConverged) } else { Ok(corrected) }
+        let mut next = Iterate { state, directions };
+        self.make_consistent(&mut next);
+        next
+    }
+
+    /// Supports and sticking nodes are where they have to be.
+    fn place_exactly(&self, state: &mut State) {
+        self.loading.place_supports(state);
+        let structure = self.loading.structure;
+        for (contact, role) in self.roles.iter().enumerate() {
+            if !matches!(role, Role::Stick | Role::Held) || !self.holds_node(contact) {
+                continue;
+            }
+            let shift = scaled(&self.loading.pattern.shifts[contact], state.load - self.anchor.load);
+            let first = self.loading.contacts[contact].node * structure.dimension;
+            for component in 0..structure.dimension {
+                if structure.unknown_of[first + component].is_some() {
+                    state.displacement[first + component] =
+                        self.anchor.displacement[first + component] + shift[component];
+                }
+            }
+        }
+    }
+
+    /// Whether sticking leaves the node no motion at all.
+    fn holds_node(&self, contact: usize) -> bool {
+        let structure = self.loading.structure;
+        let first = self.loading.contacts[contact].node * structure.dimension;
+        let free = (first..first + structure.dimension).filter(|freedom| structure.unknown_of[*freedom].is_some());
+        1 + self.held_tangents(contact) >= free.count()
     }
 
     /// Makes complementarity exact: no reaction on a free contact, no motion of a sticking node, friction of a slipping
     /// contact on its cone.
-    fn consistent(&self, mut state: State) -> State {
-        let dimension = self.loading.structure.dimension;
-        for (index, (mode, contact)) in self.modes.iter().zip(self.loading.contacts).enumerate() {
-            match mode {
-                Mode::Free => state.reactions[index] = Reaction::default(),
-                Mode::Slip { direction } => {
-                    let drag = -contact.friction * state.reactions[index].normal;
-                    state.reactions[index].tangential = [drag * direction[0], drag * direction[1]];
-                }
-                Mode::Stick => {
-                    let nodes = contact.node * dimension..(contact.node + 1) * dimension;
-                    state.displacement[nodes.clone()].copy_from_slice(&self.anchor.displacement[nodes]);
+    pub(super) fn make_consistent(&self, iterate: &mut Iterate) {
+        self.place_exactly(&mut iterate.state);
+        for (contact, role) in self.roles.iter().enumerate() {
+            match role {
+                Role::Free => iterate.state.reactions[contact] = Reaction::default(),
+                Role::Stick | Role::Held | Role::HeldBy => {}
+                Role::Frictionless => iterate.state.reactions[contact].tangential = [0.0; 3],
+                Role::Line { .. } | Role::Plane { .. } => {
+                    let frame = self.loading.frame(contact, &iterate.state);
+                    let direction = self.direction(contact, &frame, iterate);
+                    let drag = -self.loading.contacts[contact].friction * iterate.state.reactions[contact].normal;
+                    iterate.state.reactions[contact].tangential = scaled(&direction, drag);
                 }
             }
         }
-        state
     }
 
-    /// The path's direction in this mode: the null vector of the equations, of unit arc length, on the side of
-    /// `towards`. `None` where the equations have no such vector or more than one.
-    pub fn tangent(&self, state: &State, towards: &Rate) -> Option<Rate> {
-        self.tangent_by(&self.bordered(state, towards)?)
+    /// The modes at an iterate: directions of slip as they are there.
+    pub(super) fn modes_at(&self, iterate: &Iterate) -> Vec<Mode> {
+        let at = |(contact, mode): (usize, &Mode)| match self.roles[contact] {
+            Role::Line { .. } | Role::Plane { .. } => {
+                let frame = self.loading.frame(contact, &iterate.state);
+                Mode::Slip { direction: self.direction(contact, &frame, iterate) }
+            }
+            Role::Free | Role::Frictionless | Role::Stick | Role::Held | Role::HeldBy => *mode,
+        };
+        self.modes.iter().enumerate().map(at).collect()
     }
 
-    /// The path's direction at a converged point, and an estimate of the point's error: the size of one more Newton
-    /// correction across the path.
-    pub fn tangent_and_error(&self, corrected: &Corrected, towards: &Rate) -> Option<(Rate, f64)> {
-        let factorisation = self.bordered(&corrected.state, towards)?;
-        let rate = self.tangent_by(&factorisation)?;
-        let mut values = corrected.left_over.clone();
-        values[self.size - 1] = 0.0;
-        let error = if factorisation.solve(&mut values) { self.rate_from(&values).size() } else { return None };
-        Some((rate, error))
+    /// The path's direction in this mode at its anchor or at a converged point: the null vector of the rate equations, of
+    /// unit arc length, on the side of `towards`. `None` where the equations have no such vector or more than one.
+    pub fn tangent(&self, corrected: &Corrected, towards: &Rate) -> Option<Rate> {
+        let iterate = self.iterate_of(corrected);
+        self.tangent_by(&self.bordered(&iterate, towards)?, &iterate)
     }
 
-    fn bordered(&self, state: &State, towards: &Rate) -> Option<Factorisation> {
-        let mut matrix = self.matrix(state);
+    pub(super) fn bordered(&self, iterate: &Iterate, towards: &Rate) -> Option<Factorisation> {
+        let mut matrix = self.assemble(iterate, Kind::Rates);
         self.border(&mut matrix, towards);
         Factorisation::new(matrix)
     }
 
-    fn tangent_by(&self, factorisation: &Factorisation) -> Option<Rate> {
+    pub(super) fn tangent_by(&self, factorisation: &Factorisation, iterate: &Iterate) -> Option<Rate> {
         let mut values = DVector::zeros(self.size);
         values[self.size - 1] = 1.0;
         if !factorisation.solve(&mut values) {
             return None;
         }
-        let mut rate = self.rate_from(&values);
+        let mut rate = self.rate_at(iterate, &values);
         let size = rate.size();
         if size <= 0.0 || !size.is_finite() {
             return None;

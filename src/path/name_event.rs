@@ -23,7 +23,7 @@ pub(super) fn describe_change(scene: &Scene, old: &[Mode], new: Option<&[Mode]>,
             Status::Slip => "slip",
         };
         match after {
-            Some(after) if after == *before => {}
+            Some(after) if after.continues(*before) => {}
             Some(after) if word(after) == word(*before) => {
                 parts.push(format!("{node} on {obstacle}: slip turns round"));
             }
@@ -31,6 +31,7 @@ pub(super) fn describe_change(scene: &Scene, old: &[Mode], new: Option<&[Mode]>,
             None => match standings[index] {
                 Standing::Settled(_) => {}
                 Standing::OnCone { .. } => parts.push(format!("{node} on {obstacle}: on the friction cone")),
+                Standing::Cornered { .. } => parts.push(format!("{node} on {obstacle}: about to leave the corner")),
                 Standing::Touching => parts.push(format!("{node} on {obstacle}: reaction zero")),
             },
         }

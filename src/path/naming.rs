@@ -1,5 +1,6 @@
 //! Where the MPEC names the mode: every increment of `method: "mpec"`, and its directions where a mode ends.
 
+use super::corner::agree;
 use super::decide::Choice;
 use super::program::{IncrementProgram, Named};
 use super::state::{Rate, State};
@@ -23,7 +24,7 @@ impl Path<'_> {
         let mut tried = step;
         for _ in 0..TRIALS {
             let named = self.name(&state, rate, &modes, tried);
-            if named.is_some_and(|named| named.modes == modes) {
+            if named.is_some_and(|named| agree(self.loading(), &named.modes, &modes)) {
                 return true;
             }
             tried *= 0.3;
@@ -62,7 +63,7 @@ impl Path<'_> {
             if !option.retrace && !option.mechanism {
                 for _ in 0..TRIALS {
                     let named = self.name(&state, &option.rate, &option.modes, step);
-                    if named.is_some_and(|named| named.modes == option.modes) {
+                    if named.is_some_and(|named| agree(self.loading(), &named.modes, &option.modes)) {
                         agrees = true;
                         break;
                     }

@@ -3,15 +3,18 @@
 use super::advance::Work;
 use super::decide::Choice;
 use super::increment::{ContactState, Diagnostics, Direction, Energy, Increment, Point, Status};
+use super::loading::Loading;
 use super::scene::Scene;
 use super::state::State;
-use crate::contact::Mode;
+use crate::contact::vector::{add, dot};
+use crate::contact::{Mode, tangents_in_space};
 use std::sync::Arc;
 
 /// What a row is made from.
 pub(super) struct Row<'a> {
     pub index: u64,
     pub stage: usize,
+    pub loading: Loading<'a>,
     pub state: &'a State,
     /// The point before; the state itself at the start.
     pub before: &'a State,
@@ -101,32 +104,49 @@ pub(super) fn increment(scene: &Scene, row: &Row<'_>) -> Increment {
 fn contact_rows(scene: &Scene, row: &Row<'_>) -> (Vec<ContactState>, f64) {
     let plan = scene.plan();
     let (length, force) = (plan.displacement_scale, plan.force_scale);
-    let structure = &scene.structure;
-    let dimension = structure.dimension;
+    let dimension = scene.structure.dimension;
     let mut violation = 0.0_f64;
-    let mut rows = Vec::with_capacity(scene.contacts.len());
-    for (index, contact) in scene.contacts.iter().enumerate() {
-        let gap = contact.gap(dimension, &row.state.displacement);
-        let first = contact.node * dimension;
-        let moved = |c: usize| row.state.displacement[first + c] - row.before.displacement[first + c];
+    let mut rows = Vec::with_capacity(scene.reported.len());
+    let loading = row.loading;
+    let members = |contact: usize| scene.reported.iter().filter(|one| one.contact == contact).count();
+    let coincident = scene.reported.len() > scene.contacts.len();
+    for one in &scene.reported {
+        let index = one.contact;
+        let contact = &scene.contacts[index];
+        let frame = loading.frame(index, row.state);
+        let gap = frame.gap;
+        let moved = add(&loading.relative(index, row.state), -1.0, &loading.relative(index, row.before));
         let reaction = row.state.reactions[index];
-        let tangents = contact.obstacle.tangents(dimension);
-        let motion = |k: usize| -> f64 { (0..dimension).map(|c| moved(c) * tangents[k][c]).sum() };
+        let tangents = if dimension == 2 {
+            [[frame.normal[1], -frame.normal[0], 0.0], [0.0; 3]]
+        } else {
+            tangents_in_space(&frame.normal)
+        };
         let scaled = 1.0 / row.force_scale.max(f64::MIN_POSITIVE);
         let normal = reaction.normal * scaled;
         violation = violation.max(-gap).max(-normal).max(gap.min(normal).abs());
         violation = violation.max(reaction.tangential_size() * scaled - contact.friction * normal);
-        let (node, obstacle) = &scene.contact_names[index];
         let pairs = 0..dimension - 1;
+        let closed = row.modes[index].is_active();
+        let traction = |k: usize| dot(&reaction.tangential, &tangents[k]) * one.tangential_share * force;
         rows.push(ContactState {
-            node: Arc::clone(node),
-            obstacle: Arc::clone(obstacle),
+            node: Arc::clone(&one.node),
+            obstacle: Arc::clone(&one.obstacle),
             status: status(row.modes[index]),
             gap: gap * length,
-            normal_reaction: reaction.normal * force,
-            tangential_reaction: pairs.clone().map(|k| reaction.tangential[k] * force).collect(),
-            slip: pairs.map(|k| if row.modes[index] == Mode::Free { 0.0 } else { motion(k) * length }).collect(),
+            normal_reaction: reaction.normal * one.normal_share * force,
+            tangential_reaction: pairs.clone().map(traction).collect(),
+            slip: pairs.map(|k| if closed { dot(&moved, &tangents[k]) * length } else { 0.0 }).collect(),
+            indeterminate: closed && ((coincident && members(index) > 1) || held_by_too_many(scene, row.modes, index)),
         });
     }
     (rows, violation)
+}
+
+/// Whether a contact holds its node together with others whose reactions equilibrium does not tell apart.
+fn held_by_too_many(scene: &Scene, modes: &[Mode], contact: usize) -> bool {
+    scene.corners.iter().filter(|corner| corner.contacts.contains(&contact)).any(|corner| {
+        let parts: usize = corner.holding(modes).map(|one| 1 + scene.contacts[one].tangents()).sum();
+        parts > scene.structure.dimension && corner.holding(modes).any(|one| one == contact)
+    })
 }

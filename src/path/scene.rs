@@ -2,21 +2,25 @@
 //!
 //! Lengths are divided by `displacement_scale` `ℓ`, forces by `force_scale` `φ`, each stage's load factor by its
 //! `load_scale` `σ`; a pattern `f` becomes `f σ/φ`. By default `ℓ` is the longest bar and `φ` the smallest axial
-//! stiffness; without bars, `φ` is the largest force of any stage and `ℓ` that force over the
-//! largest spring stiffness (Frobenius norm).
-//! `σ = φ / max |f|`. All follow the units of the input, so that a change of units changes nothing but round-off.
+//! stiffness; without bars, `φ` is the largest force of any stage, or the largest spring stiffness (Frobenius norm) times
+//! the largest prescribed motion if that is more, and `ℓ` that force over that stiffness.
+//! `σ` is the smaller of `φ / max |f|` and `ℓ / max |motion|`. All follow the units of the input, so that a change of units changes nothing but round-off.
 
+use super::corner::Corner;
+use super::loading::LoadPattern;
 use super::plan::{LeftOut, Plan};
-use crate::contact::Contact;
 use crate::contact::obstacle::Obstacle;
+use crate::contact::vector::{Vector, size};
+use crate::contact::{Contact, Sliding};
 use crate::linear_algebra::{Factorisation, null_space};
 use crate::model::limits::PENETRATION_TOLERANCE;
-use crate::model::request::{self, Analysis, JobRequest, Model};
+use crate::model::request::{self, Analysis, JobRequest, Model, Side};
 use crate::model::{InputError, InputErrors};
 use crate::structure::Structure;
 use crate::structure::bar::Bar;
 use crate::structure::element::Element;
 use crate::structure::spring::Spring;
+use indexmap::IndexMap;
 use nalgebra::DMatrix;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -25,19 +29,37 @@ use std::sync::Arc;
 #[derive(Debug, Clone)]
 pub struct Scene {
     pub(super) structure: Structure,
+    /// Contacts that are solved for; coincident ones of a node are one of them.
     pub(super) contacts: Vec<Contact>,
+    /// Names of their nodes and obstacles.
     pub(super) contact_names: Vec<(Arc<str>, Arc<str>)>,
+    /// The contacts of the request, in its order.
+    pub(super) reported: Vec<Reported>,
+    /// Nodes with several contacts.
+    pub(super) corners: Vec<Corner>,
     pub(super) node_names: Vec<Arc<str>>,
     pub(super) stages: Vec<StageLoad>,
     pub(super) analysis: Analysis,
     plan: Plan,
 }
 
+/// A contact of the request and its part of the one that is solved for.
+#[derive(Debug, Clone)]
+pub(super) struct Reported {
+    pub node: Arc<str>,
+    pub obstacle: Arc<str>,
+    /// Which of the scene's contacts.
+    pub contact: usize,
+    /// Shares of the reaction's parts; 1 but for coincident contacts.
+    pub normal_share: f64,
+    pub tangential_share: f64,
+}
+
 /// A stage's load pattern over all degrees of freedom and its ends, dimensionless.
 #[derive(Debug, Clone)]
 pub(super) struct StageLoad {
     pub name: Arc<str>,
-    pub pattern: Vec<f64>,
+    pub pattern: LoadPattern,
     pub load_scale: f64,
     pub ends: Vec<End>,
 }
@@ -76,29 +98,24 @@ impl Scene {
             model.nodes.keys().enumerate().map(|(number, name)| (name.as_str(), number)).collect();
         let structure = build_structure(model, &numbers, length, force);
         let mut left_out = Vec::new();
-        let mut contacts = Vec::new();
-        let mut contact_names = Vec::new();
-        for contact in &model.contacts {
-            let node = numbers[contact.node.as_str()];
-            let built = build_contact(model, contact, node, length, &structure);
-            if built.friction == 0.0 && contact.friction > 0.0 {
-                left_out.push(LeftOut {
-                    what: format!("friction of {} on {}", contact.node, contact.obstacle),
-                    why: "the node's supports leave it no motion along the obstacle".to_owned(),
-                });
-            }
-            contacts.push(built);
-            contact_names.push((Arc::from(contact.node.as_str()), Arc::from(contact.obstacle.as_str())));
-        }
+        let Contacts { contacts, contact_names, reported, corners } =
+            build_contacts(model, &numbers, length, &structure, &mut left_out);
         left_out.extend(plan_what_is_left_out(model, &contacts, &structure));
-        let stages: Vec<StageLoad> = model
-            .stages
-            .iter()
-            .map(|stage| build_stage(stage, &numbers, &structure, length, force, &request.analysis))
-            .collect();
+        let first_contacts: Vec<usize> =
+            (0..contacts.len()).filter_map(|contact| reported.iter().position(|one| one.contact == contact)).collect();
+        let scaled = Scaled {
+            model,
+            analysis: &request.analysis,
+            numbers: &numbers,
+            structure: &structure,
+            first_contacts: &first_contacts,
+            length,
+            force,
+        };
+        let stages: Vec<StageLoad> = model.stages.iter().map(|stage| build_stage(stage, &scaled)).collect();
         let plan = Plan {
             unknowns: structure.unknowns() as u64,
-            contacts: contacts.len() as u64,
+            contacts: reported.len() as u64,
             stages: stages.len() as u64,
             displacement_scale: length,
             force_scale: force,
@@ -107,10 +124,44 @@ impl Scene {
         };
         let node_names = model.nodes.keys().map(|name| Arc::from(name.as_str())).collect();
         let analysis = request.analysis.clone();
-        let scene = Self { structure, contacts, contact_names, node_names, stages, analysis, plan };
+        let scene = Self { structure, contacts, contact_names, reported, corners, node_names, stages, analysis, plan };
         scene.refuse_mechanism()?;
         scene.refuse_imbalance()?;
+        scene.refuse_dragged_supports(model)?;
         Ok(scene)
+    }
+
+    /// Refuses friction between a supported component and an obstacle that are driven against each other: the support
+    /// would bear a traction that is no unknown of the path.
+    fn refuse_dragged_supports(&self, model: &Model) -> Result<(), InputErrors> {
+        let structure = &self.structure;
+        let dimension = structure.dimension;
+        for (index, one) in self.reported.iter().enumerate() {
+            let contact = &self.contacts[one.contact];
+            let driven = |component: usize| {
+                let freedom = contact.node * dimension + component;
+                let moves = |stage: &StageLoad| {
+                    let support = stage.pattern.supports.get(freedom).copied().unwrap_or(0.0);
+                    support != stage.pattern.shifts[one.contact][component]
+                };
+                let normal = contact.frame(&[0.0; 3]).normal;
+                structure.unknown_of[freedom].is_none()
+                    && normal[component].abs() < 1.0
+                    && self.stages.iter().any(moves)
+            };
+            if model.contacts[index].friction > 0.0 && (0..dimension).any(driven) {
+                return Err(InputErrors(vec![InputError::new(
+                    format!("/model/contacts/{index}/friction"),
+                    format!(
+                        "\"{}\" is supported in a component in which it and \"{}\" are driven against each other; friction \
+                         on such a support is not available: leave the component free and hold it by a spring, or give \
+                         friction 0",
+                        one.node, one.obstacle
+                    ),
+                )]));
+            }
+        }
+        Ok(())
     }
 
     /// Refuses prestress and rest lengths that do not balance in the undeformed structure: a path starts at rest.
@@ -148,12 +199,12 @@ impl Scene {
         structure.add_tangent(&still, &mut matrix);
         let stiffness = matrix.amax();
         for contact in &self.contacts {
-            if contact.gap(dimension, &still) > CLOSED {
+            let frame = contact.frame(&[0.0; 3]);
+            if frame.gap > CLOSED {
                 continue;
             }
-            let tangents = contact.obstacle.tangents(dimension);
-            let held = 1 + if contact.friction > 0.0 { dimension - 1 } else { 0 };
-            for vector in [contact.obstacle.normal(), tangents[0], tangents[1]].iter().take(held) {
+            let held = 1 + contact.tangents();
+            for vector in [frame.normal, frame.tangents[0], frame.tangents[1]].iter().take(held) {
                 for row in 0..dimension {
                     for column in 0..dimension {
                         let place = |component| structure.unknown_of[contact.node * dimension + component];
@@ -218,10 +269,14 @@ fn scales(model: &Model, analysis: &Analysis) -> (f64, f64) {
     }
     let loads = model.stages.iter().flat_map(|stage| stage.forces.values());
     let largest_load = loads.fold(0.0_f64, |largest, force| largest.max(norm(force)));
+    let motions =
+        model.stages.iter().flat_map(|stage| stage.displacements.values().chain(stage.obstacle_motion.values()));
+    let largest_motion = motions.fold(0.0_f64, |largest, motion| largest.max(norm(motion)));
     let (mut length, mut force) = if longest > 0.0 {
         (longest, softest)
-    } else if spring > 0.0 && largest_load > 0.0 {
-        (largest_load / spring, largest_load)
+    } else if spring > 0.0 && largest_load.max(spring * largest_motion) > 0.0 {
+        let force = largest_load.max(spring * largest_motion);
+        (force / spring, force)
     } else {
         (1.0, 1.0)
     };
@@ -284,6 +339,91 @@ fn build_structure(model: &Model, numbers: &HashMap<&str, usize>, length: f64, f
     Structure::new(dimension, reference, &supported, elements)
 }
 
+/// The contacts that are solved for, and those of the request.
+struct Contacts {
+    contacts: Vec<Contact>,
+    contact_names: Vec<(Arc<str>, Arc<str>)>,
+    reported: Vec<Reported>,
+    corners: Vec<Corner>,
+}
+
+/// Planes whose normals and gaps (dimensionless) differ by less than this are one.
+const COINCIDENT: f64 = 1e-13;
+
+fn build_contacts(
+    model: &Model,
+    numbers: &HashMap<&str, usize>,
+    length: f64,
+    structure: &Structure,
+    left_out: &mut Vec<LeftOut>,
+) -> Contacts {
+    let mut contacts: Vec<Contact> = Vec::new();
+    let mut contact_names: Vec<(Arc<str>, Arc<str>)> = Vec::new();
+    let mut reported: Vec<Reported> = Vec::new();
+    // Which contacts of the request each one stands for.
+    let mut members: Vec<Vec<usize>> = Vec::new();
+    let mut of_node: HashMap<usize, Vec<usize>> = HashMap::new();
+    for (index, contact) in model.contacts.iter().enumerate() {
+        let built = build_contact(model, contact, numbers[contact.node.as_str()], length, structure);
+        if built.friction == 0.0 && contact.friction > 0.0 {
+            left_out.push(LeftOut {
+                what: format!("friction of {} on {}", contact.node, contact.obstacle),
+                why: "the node's supports leave it no motion along the obstacle".to_owned(),
+            });
+        }
+        let (node, obstacle) = (Arc::from(contact.node.as_str()), Arc::from(contact.obstacle.as_str()));
+        let moves_with = |other: &request::Contact| {
+            let motion = |stage: &request::Stage, name: &str| stage.obstacle_motion.get(name).cloned();
+            model.stages.iter().all(|stage| motion(stage, &contact.obstacle) == motion(stage, &other.obstacle))
+        };
+        let neighbours = of_node.entry(built.node).or_default();
+        let twin = neighbours
+            .iter()
+            .copied()
+            .find(|other| coincide(&contacts[*other], &built) && moves_with(&model.contacts[members[*other][0]]));
+        let place = twin.unwrap_or(contacts.len());
+        if twin.is_none() {
+            neighbours.push(place);
+            contacts.push(built);
+            contact_names.push((Arc::clone(&node), Arc::clone(&obstacle)));
+            members.push(Vec::new());
+        }
+        members[place].push(index);
+        reported.push(Reported { node, obstacle, contact: place, normal_share: 1.0, tangential_share: 1.0 });
+    }
+    for (contact, members) in contacts.iter_mut().zip(&members).filter(|(_, members)| members.len() > 1) {
+        // Pressed equally, which is least; each carries of the traction what its friction bears.
+        let number = members.len() as f64;
+        let total: f64 = members.iter().map(|member| model.contacts[*member].friction).sum();
+        for member in members {
+            let part = if total > 0.0 { model.contacts[*member].friction / total } else { 1.0 / number };
+            (reported[*member].normal_share, reported[*member].tangential_share) = (1.0 / number, part);
+        }
+        if contact.sliding.directions() > 0 {
+            contact.friction = total / number;
+        }
+    }
+    // In the order of the contacts, so that the numbering does not depend on a hash.
+    let corners = contacts
+        .iter()
+        .enumerate()
+        .filter_map(|(index, contact)| of_node.get(&contact.node).filter(|all| all.len() > 1 && all[0] == index))
+        .map(|contacts| Corner { contacts: contacts.clone() })
+        .collect();
+    Contacts { contacts, contact_names, reported, corners }
+}
+
+/// Whether two contacts are one: the same node before the same surface.
+fn coincide(first: &Contact, second: &Contact) -> bool {
+    let near = |a: &Vector, b: &Vector| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= COINCIDENT);
+    let surfaces = match (&first.obstacle, &second.obstacle) {
+        (Obstacle::Plane { normal: a }, Obstacle::Plane { normal: b }) => near(a, b),
+        (Obstacle::Ball { offset: a, side: x }, Obstacle::Ball { offset: b, side: y }) => near(a, b) && x == y,
+        (Obstacle::Plane { .. }, Obstacle::Ball { .. }) | (Obstacle::Ball { .. }, Obstacle::Plane { .. }) => false,
+    };
+    first.node == second.node && surfaces && (first.initial_gap - second.initial_gap).abs() <= COINCIDENT
+}
+
 fn build_contact(
     model: &Model,
     contact: &request::Contact,
@@ -292,43 +432,97 @@ fn build_contact(
     structure: &Structure,
 ) -> Contact {
     let dimension = model.dimension;
+    let place = &model.nodes[&contact.node];
+    // What is within the round-off of the coordinates is contact.
+    let snapped = |gap: f64, reach: f64| {
+        let closed = gap.abs() <= PENETRATION_TOLERANCE * length + 4.0 * f64::EPSILON * reach;
+        if closed { 0.0 } else { gap / length }
+    };
+    let reach = |values: &[f64]| place.iter().chain(values).fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let (obstacle, initial_gap) = match &model.obstacles[&contact.obstacle] {
-        request::Obstacle::Ball { .. } => (Obstacle::Plane { normal: [0.0; 3] }, f64::INFINITY),
+        request::Obstacle::Ball { center, radius, side } => {
+            let mut offset = [0.0; 3];
+            (0..dimension).for_each(|k| offset[k] = (place[k] - center[k]) / length);
+            let side = match side {
+                Side::Outside => 1.0,
+                Side::Inside => -1.0,
+            };
+            let gap = side * (size(&offset) * length - radius);
+            (Obstacle::Ball { offset, side }, snapped(gap, reach(center).max(*radius)))
+        }
         request::Obstacle::Plane { point, normal } => {
             let largest = normal.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
             let size = norm(&normal.iter().map(|value| value / largest).collect::<Vec<f64>>()) * largest;
             let mut unit = [0.0; 3];
             normal.iter().enumerate().for_each(|(k, value)| unit[k] = value / size);
-            let place = &model.nodes[&contact.node];
             let gap: f64 = (0..dimension).map(|k| (place[k] - point[k]) * unit[k]).sum();
-            // What is within the round-off of the coordinates is contact.
-            let reach = place.iter().chain(point).fold(0.0_f64, |largest, value| largest.max(value.abs()));
-            let closed = gap.abs() <= PENETRATION_TOLERANCE * length + 4.0 * f64::EPSILON * reach;
-            (Obstacle::Plane { normal: unit }, if closed { 0.0 } else { gap / length })
+            (Obstacle::Plane { normal: unit }, snapped(gap, reach(point)))
         }
     };
-    let free = (0..dimension).filter(|k| structure.unknown_of[node * dimension + k].is_some()).count();
-    Contact { node, obstacle, initial_gap, friction: if free < dimension { 0.0 } else { contact.friction } }
+    let sliding = sliding(structure, node);
+    let friction = if sliding.directions() == 0 { 0.0 } else { contact.friction };
+    Contact { node, obstacle, initial_gap, friction, sliding }
 }
 
-fn build_stage(
-    stage: &request::Stage,
-    numbers: &HashMap<&str, usize>,
-    structure: &Structure,
+/// In which directions a node can slide, by its supports.
+fn sliding(structure: &Structure, node: usize) -> Sliding {
+    let dimension = structure.dimension;
+    let held: Vec<usize> = (0..dimension).filter(|k| structure.unknown_of[node * dimension + k].is_none()).collect();
+    match (dimension, held.as_slice()) {
+        (2, []) => Sliding::Line { across: [0.0, 0.0, 1.0] },
+        (3, []) => Sliding::Plane,
+        (3, [component]) => {
+            let mut across = [0.0; 3];
+            across[*component] = 1.0;
+            Sliding::Line { across }
+        }
+        _ => Sliding::None,
+    }
+}
+
+/// The model made dimensionless, as far as its stages need it.
+struct Scaled<'a> {
+    model: &'a Model,
+    analysis: &'a Analysis,
+    numbers: &'a HashMap<&'a str, usize>,
+    structure: &'a Structure,
+    /// The request's contact of each contact that is solved for.
+    first_contacts: &'a [usize],
     length: f64,
     force: f64,
-    analysis: &Analysis,
-) -> StageLoad {
+}
+
+fn build_stage(stage: &request::Stage, scaled: &Scaled<'_>) -> StageLoad {
+    let &Scaled { model, analysis, numbers, structure, first_contacts, length, force } = scaled;
     let dimension = structure.dimension;
-    let largest = stage.forces.values().fold(0.0_f64, |largest, force| largest.max(norm(force)));
-    let natural = if largest > 0.0 { force / largest } else { 1.0 };
+    let largest = |vectors: &IndexMap<String, Vec<f64>>| vectors.values().map(|v| norm(v)).fold(0.0_f64, f64::max);
+    let by_force = force / largest(&stage.forces);
+    let by_motion = length / largest(&stage.displacements).max(largest(&stage.obstacle_motion));
+    let natural = by_force.min(by_motion);
+    let natural = if natural.is_finite() { natural } else { 1.0 };
     let load_scale = analysis.arc_length.load_scale.unwrap_or(natural);
-    let mut pattern = vec![0.0; structure.freedoms()];
-    for (name, values) in &stage.forces {
-        for (component, value) in values.iter().enumerate() {
-            pattern[numbers[name.as_str()] * dimension + component] = value * load_scale / force;
+    let over_freedoms = |vectors: &IndexMap<String, Vec<f64>>, unit: f64| {
+        let mut values = vec![0.0; structure.freedoms()];
+        for (name, vector) in vectors {
+            for (component, value) in vector.iter().enumerate() {
+                values[numbers[name.as_str()] * dimension + component] = value * load_scale / unit;
+            }
         }
-    }
+        values
+    };
+    let shift = |contact: &request::Contact| {
+        let mut shift: Vector = [0.0; 3];
+        if let Some(motion) = stage.obstacle_motion.get(&contact.obstacle) {
+            motion.iter().enumerate().for_each(|(k, value)| shift[k] = value * load_scale / length);
+        }
+        shift
+    };
+    let supports_move = model.stages.iter().any(|stage| largest(&stage.displacements) > 0.0);
+    let pattern = LoadPattern {
+        forces: over_freedoms(&stage.forces, force),
+        supports: if supports_move { over_freedoms(&stage.displacements, length) } else { Vec::new() },
+        shifts: first_contacts.iter().map(|contact| shift(&model.contacts[*contact])).collect(),
+    };
     let mut ends = Vec::new();
     if let Some(until) = &stage.until {
         let load = |bound: f64, sign: f64| End::Load { bound: bound / load_scale, sign };

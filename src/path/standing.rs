@@ -1,8 +1,11 @@
 //! Which contacts could change at a point, and between what.
 
+use super::corner;
+use super::loading::Loading;
 use super::state::State;
-use crate::contact::{Contact, Mode, Tangential};
-use crate::structure::Structure;
+use super::track::direction_of;
+use crate::contact::vector::{Vector, dot, scaled, size};
+use crate::contact::{Mode, Sliding};
 
 /// How a contact stands at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -10,39 +13,69 @@ pub enum Standing {
     /// Strictly inside its mode: that mode is the only one near by.
     Settled(Mode),
     /// Pressed, with the traction on the cone: it sticks, or slips along `direction`.
-    OnCone { direction: Tangential },
+    OnCone { direction: Vector },
     /// At zero gap with zero reaction: anything may follow.
     Touching,
+    /// One of several closed contacts of a node whose force lies on a bound of the sum of their cones, or is zero: the
+    /// node may slide along one of them or leave.
+    Cornered {
+        /// Which of the two bounds.
+        facets: [bool; 2],
+        unloaded: bool,
+    },
 }
 
 /// A gap (dimensionless) or a reaction (over the force scale) of this size is zero.
 pub const ZERO: f64 = 1e-10;
 
 /// Standing of every contact.
-pub fn standings(structure: &Structure, contacts: &[Contact], state: &State, force_scale: f64) -> Vec<Standing> {
-    contacts
-        .iter()
-        .enumerate()
-        .map(|(index, contact)| standing(structure, contact, state, index, force_scale))
-        .collect()
+pub fn standings(loading: Loading<'_>, state: &State, force_scale: f64) -> Vec<Standing> {
+    let mut standings: Vec<Standing> =
+        (0..loading.contacts.len()).map(|contact| standing(loading, state, contact, force_scale)).collect();
+    if loading.structure.dimension == 2 {
+        for corner in loading.corners {
+            let closed: Vec<usize> =
+                corner.contacts.iter().copied().filter(|contact| loading.gap(*contact, state) <= ZERO).collect();
+            if closed.len() > 1 {
+                let together = standing_of_corner(loading, state, &closed, force_scale);
+                closed.iter().for_each(|contact| standings[*contact] = together);
+            }
+        }
+    }
+    standings
 }
 
-fn standing(structure: &Structure, contact: &Contact, state: &State, index: usize, force_scale: f64) -> Standing {
-    let reaction = &state.reactions[index];
+fn standing_of_corner(loading: Loading<'_>, state: &State, closed: &[usize], force_scale: f64) -> Standing {
+    let force = corner::total_force(loading, closed.iter().copied(), state);
+    let zero = ZERO * force_scale;
+    let unloaded = size(&force) <= zero;
+    let inward = corner::sector(loading, closed, state).inward;
+    let facets = inward.map_or([false; 2], |inward| inward.map(|inward| dot(&inward, &force) <= zero));
+    if unloaded || facets != [false; 2] {
+        Standing::Cornered { facets, unloaded }
+    } else {
+        Standing::Settled(Mode::Stick)
+    }
+}
+
+fn standing(loading: Loading<'_>, state: &State, index: usize, force_scale: f64) -> Standing {
+    let (contact, reaction) = (&loading.contacts[index], &state.reactions[index]);
     let zero = ZERO * force_scale;
     if reaction.normal <= zero {
-        return if contact.gap(structure.dimension, &state.displacement) <= ZERO {
-            Standing::Touching
-        } else {
-            Standing::Settled(Mode::Free)
-        };
+        return if loading.gap(index, state) <= ZERO { Standing::Touching } else { Standing::Settled(Mode::Free) };
     }
-    if contact.friction == 0.0 {
-        return Standing::Settled(Mode::Slip { direction: [0.0; 2] });
+    if contact.tangents() == 0 {
+        return Standing::Settled(Mode::Slip { direction: [0.0; 3] });
     }
-    let size = reaction.tangential_size();
-    if contact.friction * reaction.normal - size > zero {
+    if contact.friction * reaction.normal - reaction.tangential_size() > zero {
         return Standing::Settled(Mode::Stick);
     }
-    Standing::OnCone { direction: [-reaction.tangential[0] / size, -reaction.tangential[1] / size] }
+    let direction = match contact.sliding {
+        Sliding::Plane => direction_of(&reaction.tangential, &[0.0; 3]),
+        Sliding::None | Sliding::Line { .. } => {
+            let tangent = loading.frame(index, state).tangents[0];
+            scaled(&tangent, if dot(&tangent, &reaction.tangential) > 0.0 { -1.0 } else { 1.0 })
+        }
+    };
+    Standing::OnCone { direction }
 }

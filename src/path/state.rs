@@ -37,11 +37,18 @@ impl State {
         }
         state.load += step * rate.load;
         for (reaction, rate) in state.reactions.iter_mut().zip(&rate.reactions) {
-            reaction.normal += step * rate.normal;
-            reaction.tangential[0] += step * rate.tangential[0];
-            reaction.tangential[1] += step * rate.tangential[1];
+            reaction.add(step, rate);
         }
         state
+    }
+
+    /// The change to another state.
+    pub fn chord(&self, other: &Self) -> Rate {
+        let mut chord =
+            Rate { displacement: other.displacement.clone(), load: other.load, reactions: other.reactions.clone() };
+        let own = Rate { displacement: self.displacement.clone(), load: self.load, reactions: self.reactions.clone() };
+        chord.add(&own, -1.0);
+        chord
     }
 
     /// `‖(Δu, Δs)‖` to another state.
@@ -83,8 +90,17 @@ impl Rate {
         self.load *= factor;
         for reaction in &mut self.reactions {
             reaction.normal *= factor;
-            reaction.tangential[0] *= factor;
-            reaction.tangential[1] *= factor;
+            reaction.tangential.iter_mut().for_each(|value| *value *= factor);
+        }
+    }
+
+    /// Adds a multiple of another rate.
+    pub fn add(&mut self, other: &Self, factor: f64) {
+        self.displacement.iter_mut().zip(&other.displacement).for_each(|(sum, value)| *sum += factor * value);
+        self.load += factor * other.load;
+        for (sum, value) in self.reactions.iter_mut().zip(&other.reactions) {
+            sum.normal += factor * value.normal;
+            sum.tangential.iter_mut().zip(&value.tangential).for_each(|(sum, value)| *sum += factor * value);
         }
     }
 
@@ -97,9 +113,4 @@ impl Rate {
 /// `a·b`
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// `a·b` of the first `dimension` components of a node's vector and a direction.
-pub fn along(node_values: &[f64], direction: &[f64; 3]) -> f64 {
-    node_values.iter().zip(direction).map(|(a, b)| a * b).sum()
 }

@@ -1,11 +1,16 @@
 //! Choosing the step: by the path's turn, by Newton's work and by the energy balance of the increment.
 
-use super::advance::{Reached, Refused, Start};
+use super::advance::{Reached, Refused, Start, Work};
+use super::arrival::SAME_STATE;
+use super::critical::{self, Crossing};
 use super::decide::{self, Before};
 use super::energy;
-use super::state::Rate;
+use super::root::find_root;
+use super::singular::{self, Change, Signature};
+use super::state::{Rate, State};
 use super::stop::StopReason;
 use super::tracer::Path;
+use super::watch::Watch;
 use crate::model::request::Method;
 
 /// The turn of the path (radians) that a step aims at.
@@ -22,6 +27,9 @@ pub(super) const NO_ENERGY: f64 = 1e-12;
 /// A step after which the next would have to be shorter than this fraction of it is taken again, shorter.
 const REJECTED: f64 = 0.55;
 
+/// Shorter steps that are tried where a change of signs cannot be made out.
+const MOST_UNRESOLVED: u64 = 4;
+
 /// A point reached, with the energies of the way there.
 pub(super) struct Accepted {
     pub reached: Reached,
@@ -31,6 +39,12 @@ pub(super) struct Accepted {
     pub strain: f64,
     /// Whether the increment's program named the mode; `None` where it was not asked.
     pub mode_named: Option<bool>,
+    /// The point is the one where the stage began.
+    pub returned: bool,
+    /// The smooth bifurcation at the point, if it is one.
+    pub crossing: Option<Crossing>,
+    /// Signs just past the point, in the mode that led there.
+    pub signature: Option<Signature>,
 }
 
 /// The next smaller of eight values an octave: what the factor is computed from is a difference of nearly equal
@@ -39,12 +53,48 @@ fn quantised(factor: f64) -> f64 {
     ((factor.log2() * 8.0).floor() / 8.0).exp2()
 }
 
+/// Ends a step at the first smooth bifurcation in it; with the signs past its end.
+fn first_crossing(
+    start: &Start<'_>,
+    before: Option<Signature>,
+    reached: Reached,
+    may_refuse: bool,
+    work: &mut Work,
+) -> Result<(Reached, Option<Crossing>, Option<Signature>), Refused> {
+    let Some(before) = before else {
+        // The start is singular: signs are known from the end on.
+        let state = &reached.corrected.state;
+        let regular = reached.determinant.filter(|_| !matches!(reached.event, Some(Watch::LoadRate { .. })));
+        let after =
+            regular.and_then(|sign| Signature::with_determinant(start.loading, start.modes, start.state, state, sign));
+        return Ok((reached, None, after));
+    };
+    let (after, change) = singular::compare(start, before, &reached);
+    if after.is_none() && reached.event.is_none() && may_refuse {
+        return Err(Refused::Unresolved);
+    }
+    if change == Change::None {
+        return Ok((reached, None, after));
+    }
+    match critical::locate(start, change, &reached, work) {
+        Some((mut point, crossing)) if point.step < reached.step => {
+            point.corrected.iterations_to_small = reached.corrected.iterations_to_small;
+            Ok((point, Some(crossing), crossing.after))
+        }
+        Some(_) => Ok((reached, None, Some(before))),
+        None if may_refuse => Err(Refused::Unresolved),
+        None => Ok((reached, None, after)),
+    }
+}
+
 impl Path<'_> {
     /// Steps until a point is accepted.
     pub(super) fn step(&mut self) -> Result<Accepted, StopReason> {
         let (least, most) = (self.scene.analysis.arc_length.min, self.scene.analysis.arc_length.max);
         let mut step = self.step.min(most);
         let mut changes_here = 0;
+        let mut unresolved = 0;
+        let mut known = self.here.signature;
         loop {
             if self.cancel.is_cancelled() {
                 return Err(StopReason::Cancelled);
@@ -59,15 +109,29 @@ impl Path<'_> {
                 state: &self.here.state,
                 rate: &rate,
                 modes: &self.here.modes,
+                drift: self.here.drift.as_ref(),
                 force_scale: self.force_scale,
             };
             let mut work = self.work;
             let ends = &self.scene.stages[self.stage].ends;
             let outcome = start.advance(step, ends, self.here.load_sign, &mut work);
+            let back = outcome.as_ref().ok().and_then(|reached| self.way_back(&start, reached, &mut work));
+            let outcome = match (outcome, back) {
+                (Ok(_), Some(back)) => Ok((back, None, None, true)),
+                (Ok(reached), None) => {
+                    let before =
+                        known.or_else(|| Signature::at(start.loading, start.modes, start.state, &rate, &mut work));
+                    known = before;
+                    first_crossing(&start, before, reached, unresolved < MOST_UNRESOLVED, &mut work)
+                        .map(|(reached, crossing, signature)| (reached, crossing, signature, false))
+                }
+                (Err(refused), _) => Err(refused),
+            };
             self.work = work;
             match outcome {
-                Ok(reached) => {
+                Ok((reached, crossing, signature, returned)) => {
                     let mut accepted = self.balance(&rate, reached);
+                    (accepted.crossing, accepted.signature, accepted.returned) = (crossing, signature, returned);
                     // Where the mode ends inside the step, the program names the next one, from there.
                     accepted.mode_named = named_as_kept.map(|kept| kept || accepted.reached.event.is_some());
                     let factor = self.next_step_factor(&rate, &accepted, step);
@@ -88,12 +152,17 @@ impl Path<'_> {
                         return Err(reason);
                     }
                     self.take(&decision);
+                    known = None;
+                }
+                Err(Refused::Unresolved) => {
+                    unresolved += 1;
+                    step *= 0.7;
                 }
                 Err(refused) => {
                     step *= match refused {
                         Refused::Turned(angle) => (0.5 * TURN_SOUGHT / angle).clamp(0.1, 0.5),
                         Refused::Newton(_) => 0.5,
-                        Refused::AtStart(_) => 0.25,
+                        Refused::AtStart(_) | Refused::Unresolved => 0.25,
                     };
                     if step < least {
                         return Err(self.reason_of_underflow());
@@ -101,6 +170,34 @@ impl Path<'_> {
                 }
             }
         }
+    }
+
+    /// The point at which the stage began, where a step without event passes it again in the same sense.
+    fn way_back(&self, start: &Start<'_>, reached: &Reached, work: &mut Work) -> Option<Reached> {
+        let (origin, sense) = self.begun.as_ref()?;
+        // How far a state lies past the origin.
+        let past = |state: &State| {
+            let chord = state.displacement.iter().zip(&origin.displacement).zip(&sense.displacement);
+            chord.map(|((to, from), rate)| (to - from) * rate).sum::<f64>() + (state.load - origin.load) * sense.load
+        };
+        let (first, last) = (past(start.state), past(&reached.corrected.state));
+        let near = start.state.distance(origin).min(reached.corrected.state.distance(origin)) <= reached.step;
+        let passes = reached.event.is_none() && near && first < -SAME_STATE && last >= 0.0;
+        if !passes || reached.rate.product(sense) <= 0.0 {
+            return None;
+        }
+        let at = |place: f64| start.reach(place, work).ok().map(|near| -past(&near.corrected.state));
+        let place = find_root(at, (0.0, -first), (reached.step, -last), 1e-14)?;
+        let back = start.reach(place, work).ok()?;
+        let same = back.corrected.state.distance(origin) < SAME_STATE
+            && back
+                .corrected
+                .state
+                .reactions
+                .iter()
+                .zip(&origin.reactions)
+                .all(|(a, b)| a.difference(b) < SAME_STATE * self.force_scale);
+        same.then_some(back)
     }
 
     /// Why steps became too short.
@@ -115,7 +212,16 @@ impl Path<'_> {
         let end = (&reached.corrected.state, &reached.rate);
         let (work, dissipation) = energy::work_and_dissipation(self.loading(), &self.here.modes, start, end);
         let strain = self.scene.structure.strain_energy(&reached.corrected.state.displacement) - self.initial_strain;
-        Accepted { reached, work, dissipation, strain, mode_named: None }
+        Accepted {
+            reached,
+            work,
+            dissipation,
+            strain,
+            mode_named: None,
+            returned: false,
+            crossing: None,
+            signature: None,
+        }
     }
 
     /// How the next step should compare with this one: by the path's turn, Newton's work and the energy balance.

@@ -4,20 +4,23 @@
 //! directions are listed and one is taken. The step follows the turn of the path and the work of Newton's method.
 
 use super::advance::{AT_END, Work};
+use super::corner::total_force;
 use super::decide::{self, Before, Choice, Decision, Rules};
 use super::follow::{Arriving, Followed, Listed};
 use super::increment::{Energy, Increment, Point, PointKind};
-use super::mode_system::Loading;
+use super::loading::{LoadPattern, Loading};
 use super::name_event::describe_start;
 use super::record::{self, Row};
 use super::report::Report;
 use super::scene::{End, Scene};
+use super::singular::Signature;
 use super::standing::{Standing, standings};
 use super::state::{Rate, State};
 use super::stepping::{Accepted, NO_ENERGY};
 use super::stop::{Outcome, StopReason};
 use super::watch::Watch;
 use crate::cancel::CancelFlag;
+use crate::contact::vector::{add, dot};
 use crate::contact::{Mode, Reaction};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -34,7 +37,7 @@ pub struct Path<'a> {
     pub(super) stage: usize,
     /// The stage ended at the present point; the next one begins with the next increment.
     pub(super) stage_over: bool,
-    pub(super) held: Vec<f64>,
+    pub(super) held: LoadPattern,
     pub(super) here: Here,
     /// Arc length that the next step tries.
     pub(super) step: f64,
@@ -50,6 +53,8 @@ pub struct Path<'a> {
     pub(super) report: Report,
     /// States at which a direction was taken, for telling a cycle.
     pub(super) visited: Vec<Arc<Visited>>,
+    /// Where the stage began and the direction it took.
+    pub(super) begun: Option<(State, Rate)>,
     /// Directions listed with the present point.
     pub(super) listed: Option<Listed>,
     /// Where a path that follows another's direction begins.
@@ -64,6 +69,10 @@ pub(super) struct Here {
     /// Direction in `modes`; `None` before the stage's first decision.
     pub rate: Option<Rate>,
     pub load_sign: f64,
+    /// Error of the path up to here, where it has one.
+    pub drift: Option<Rate>,
+    /// Signs that tell smooth bifurcations; `None` until known in these modes.
+    pub signature: Option<Signature>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -98,12 +107,14 @@ impl<'a> Path<'a> {
             phase: Phase::NotStarted,
             stage: 0,
             stage_over: false,
-            held: vec![0.0; scene.structure.freedoms()],
+            held: scene.stages[0].pattern.zeroed(),
             here: Here {
                 state: state.clone(),
                 modes: vec![Mode::Free; scene.contacts.len()],
                 rate: None,
                 load_sign: 0.0,
+                drift: None,
+                signature: None,
             },
             step,
             index: 0,
@@ -116,6 +127,7 @@ impl<'a> Path<'a> {
             work: Work::default(),
             report: Report::begun(),
             visited: Vec::new(),
+            begun: None,
             listed: None,
             followed: None,
             scene,
@@ -135,6 +147,7 @@ impl<'a> Path<'a> {
         Loading {
             structure: &self.scene.structure,
             contacts: &self.scene.contacts,
+            corners: &self.scene.corners,
             pattern: &self.scene.stages[self.stage].pattern,
             held: &self.held,
         }
@@ -142,8 +155,8 @@ impl<'a> Path<'a> {
 
     pub(super) fn rules(&self) -> Rules<'_> {
         let analysis = &self.scene.analysis;
-        let loads = self.scene.stages[self.stage].pattern.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-        let force_scale = if self.force_scale > 0.0 { self.force_scale } else { loads };
+        let loads = self.scene.stages[self.stage].pattern.forces.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        let force_scale = if self.force_scale > 0.0 { self.force_scale } else { loads.max(f64::MIN_POSITIVE) };
         Rules { selection: analysis.selection, most_modes: analysis.max_modes, force_scale, cancel: &self.cancel }
     }
 
@@ -163,7 +176,7 @@ impl<'a> Path<'a> {
 
     pub(super) fn standings(&self, state: &State) -> Vec<Standing> {
         let scale = self.rules().force_scale;
-        standings(&self.scene.structure, &self.scene.contacts, state, scale)
+        standings(self.loading(), state, scale)
     }
 
     /// Decides how the stage begins and takes its first direction.
@@ -171,6 +184,7 @@ impl<'a> Path<'a> {
         let standings = self.standings(&self.here.state);
         let decision = decide::decide(self.loading(), &self.here.state, &standings, Before::StageStart, self.rules());
         self.take(&decision);
+        self.begun = self.here.rate.clone().map(|rate| (self.here.state.clone(), rate));
         self.step = self.step.min(self.scene.analysis.arc_length.initial);
         decision
     }
@@ -183,8 +197,24 @@ impl<'a> Path<'a> {
 
     pub(super) fn go(&mut self, choice: &Choice) {
         self.here.modes.clone_from(&choice.modes);
+        self.here.signature = None;
         self.here.load_sign = choice.load_sign;
         self.here.rate = Some(choice.rate.clone());
+        // A node that leaves a corner along one of its obstacles takes the whole force there.
+        let (loading, state) = (self.loading(), &self.here.state);
+        let mut moved: Vec<(usize, Reaction)> = Vec::new();
+        for corner in loading.corners {
+            let mut active = corner.contacts.iter().copied().filter(|contact| choice.modes[*contact].is_active());
+            if let (Some(only), None) = (active.next(), active.next()) {
+                let force = total_force(loading, corner.contacts.iter().copied(), state);
+                let normal = loading.frame(only, state).normal;
+                let along = dot(&force, &normal);
+                moved.push((only, Reaction { normal: along, tangential: add(&force, -along, &normal) }));
+            }
+        }
+        for (contact, reaction) in moved {
+            self.here.state.reactions[contact] = reaction;
+        }
         for (reaction, mode) in self.here.state.reactions.iter_mut().zip(&choice.modes) {
             if *mode == Mode::Free {
                 *reaction = Reaction::default();
@@ -262,12 +292,11 @@ impl<'a> Path<'a> {
             self.end(StopReason::StagesCompleted);
             return false;
         }
-        for (held, pattern) in self.held.iter_mut().zip(&self.scene.stages[self.stage].pattern) {
-            *held += self.here.state.load * pattern;
-        }
+        self.held.add(self.here.state.load, &self.scene.stages[self.stage].pattern);
         self.stage += 1;
         self.here.state.load = 0.0;
         self.here.rate = None;
+        self.here.signature = None;
         self.counts = StageCounts::default();
         self.visited.clear();
         true
@@ -286,9 +315,15 @@ impl<'a> Path<'a> {
         self.index += 1;
         self.counts.increments += 1;
         self.here.state = reached.corrected.state;
-        let arriving = Arriving { modes: modes.clone(), load_sign: self.here.load_sign, counts: self.counts };
+        self.here.modes = reached.corrected.modes;
+        self.here.drift = reached.drift;
+        self.here.signature = accepted.signature;
+        let arriving = Arriving { modes: self.here.modes.clone(), load_sign: self.here.load_sign, counts: self.counts };
         let at_bound = self.at_bound(&reached.rate);
-        let arrival = self.classify(reached.event, &reached.rate);
+        let mut arrival = self.classify(reached.event, accepted.crossing, &reached.rate);
+        if accepted.returned {
+            arrival.stop = Some(StopReason::Cycle);
+        }
         let stage_ends = arrival.stage_ends || at_bound || self.counts_end_stage(&self.counts);
         let mut point = arrival.point;
         if let Some(reason) = arrival.stop {
@@ -352,6 +387,7 @@ impl<'a> Path<'a> {
             &Row {
                 index: self.index,
                 stage: self.stage,
+                loading: self.loading(),
                 state: &self.here.state,
                 before: emitted.before,
                 modes: emitted.modes,

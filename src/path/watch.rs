@@ -1,38 +1,64 @@
 //! What is watched along a mode: quantities that must not become negative while the mode lasts, and ends of the stage.
 //!
 //! ```text
-//! free: g         stick: μ r_n ± r_t         slip: r_n and d·ẋ_t         the load rate's sign         bounds of a stage
+//! free: g      stick: μ r_n ± r_t, or μ r_n - |r_t|      slip: r_n and d·ẋ_t      load rate's sign      bounds of a stage
 //! ```
 //!
 //! Between two points each quantity is also followed by its cubic Hermite interpolant, so that a dip inside the step
 //! is seen.
 
-use super::mode_system::Loading;
+use super::corner;
+use super::loading::Loading;
 use super::scene::End;
-use super::state::{Rate, State, along};
-use crate::contact::Mode;
+use super::state::{Rate, State};
+use super::track::direction_of;
+use crate::contact::vector::{Vector, add, dot, scaled};
+use crate::contact::{Mode, Sliding};
 
 /// A quantity that is watched; negative means that it was passed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Watch {
     Gap(usize),
     Normal(usize),
-    Cone { contact: usize, side: f64 },
+    /// `μ r_n + side r_t` along a line, `μ r_n - |r_t|` in a plane (side 0).
+    Cone {
+        contact: usize,
+        side: f64,
+    },
     Sliding(usize),
-    LoadRate { sign: f64 },
+    /// The force on a node that several contacts hold, off a bound of the sum of their cones.
+    Facet {
+        corner: usize,
+        side: usize,
+    },
+    LoadRate {
+        sign: f64,
+    },
     End(End),
 }
 
 /// Everything that ends a mode.
 pub fn of_mode(loading: Loading<'_>, modes: &[Mode]) -> Vec<Watch> {
     let mut watches = Vec::new();
+    let mut together = Vec::new();
+    for (corner, data) in loading.corners.iter().enumerate() {
+        let before = together.len();
+        together.extend(data.holding(modes));
+        if together.len() > before {
+            watches.extend([0, 1].map(|side| Watch::Facet { corner, side }));
+        }
+    }
     for (contact, mode) in modes.iter().enumerate() {
         match mode {
+            Mode::Stick if together.contains(&contact) => {}
             Mode::Free => watches.push(Watch::Gap(contact)),
+            Mode::Stick if loading.contacts[contact].sliding == Sliding::Plane => {
+                watches.push(Watch::Cone { contact, side: 0.0 });
+            }
             Mode::Stick => watches.extend([1.0, -1.0].map(|side| Watch::Cone { contact, side })),
             Mode::Slip { .. } => {
                 watches.push(Watch::Normal(contact));
-                if loading.contacts[contact].friction > 0.0 {
+                if loading.contacts[contact].tangents() > 0 {
                     watches.push(Watch::Sliding(contact));
                 }
             }
@@ -45,25 +71,34 @@ impl Watch {
     /// Whether a contact's mode ends where the quantity is zero.
     pub fn is_of_contact(self) -> bool {
         match self {
-            Self::Gap(_) | Self::Normal(_) | Self::Cone { .. } | Self::Sliding(_) => true,
+            Self::Gap(_) | Self::Normal(_) | Self::Cone { .. } | Self::Sliding(_) | Self::Facet { .. } => true,
             Self::LoadRate { .. } | Self::End(_) => false,
         }
     }
 
     /// The quantity at a point with its direction.
     pub fn value(self, loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate) -> f64 {
-        let structure = loading.structure;
         match self {
-            Self::Gap(contact) => {
-                let contact = &loading.contacts[contact];
-                contact.gap(structure.dimension, &state.displacement)
-            }
+            Self::Gap(contact) => loading.gap(contact, state),
             Self::Normal(contact) => state.reactions[contact].normal,
             Self::Cone { contact, side } => {
                 let reaction = &state.reactions[contact];
-                loading.contacts[contact].friction * reaction.normal + side * reaction.tangential[0]
+                let traction = if side == 0.0 {
+                    -reaction.tangential_size()
+                } else {
+                    side * dot(&reaction.tangential, &loading.frame(contact, state).tangents[0])
+                };
+                loading.contacts[contact].friction * reaction.normal + traction
             }
-            Self::Sliding(contact) => self.sliding(loading, modes, contact, &rate.displacement),
+            Self::Sliding(contact) => {
+                dot(&direction(loading, modes, contact, state), &loading.relative_rate(contact, rate))
+            }
+            Self::Facet { corner, side } => {
+                let holding: Vec<usize> = loading.corners[corner].holding(modes).collect();
+                // No bound: the node is jammed.
+                let Some(inward) = corner::sector(loading, &holding, state).inward else { return f64::INFINITY };
+                dot(&inward[side], &corner::total_force(loading, holding.into_iter(), state))
+            }
             Self::LoadRate { sign } => sign * rate.load,
             Self::End(End::Load { bound, sign }) => sign * (bound - state.load),
             Self::End(End::Displacement { freedom, bound, sign }) => sign * (bound - state.displacement[freedom]),
@@ -71,50 +106,47 @@ impl Watch {
         }
     }
 
-    fn sliding(self, loading: Loading<'_>, modes: &[Mode], contact: usize, motion: &[f64]) -> f64 {
-        let Mode::Slip { direction } = modes[contact] else { return 0.0 };
-        let dimension = loading.structure.dimension;
-        let contact = &loading.contacts[contact];
-        let first = contact.node * dimension;
-        let tangents = contact.obstacle.tangents(dimension);
-        let node = &motion[first..first + dimension];
-        direction[0] * along(node, &tangents[0]) + direction[1] * along(node, &tangents[1])
-    }
-
     /// Derivative by arc length; `None` for quantities that are themselves rates.
-    fn slope(self, loading: Loading<'_>, rate: &Rate) -> Option<f64> {
+    fn slope(self, loading: Loading<'_>, state: &State, rate: &Rate) -> Option<f64> {
         match self {
             Self::Gap(contact) => {
-                let contact = &loading.contacts[contact];
-                let dimension = loading.structure.dimension;
-                let first = contact.node * dimension;
-                Some(along(&rate.displacement[first..first + dimension], &contact.obstacle.normal()))
+                Some(dot(&loading.frame(contact, state).normal, &loading.relative_rate(contact, rate)))
             }
             Self::Normal(contact) => Some(rate.reactions[contact].normal),
             Self::Cone { contact, side } => {
-                let reaction = &rate.reactions[contact];
-                Some(loading.contacts[contact].friction * reaction.normal + side * reaction.tangential[0])
+                let (reaction, change) = (&state.reactions[contact], &rate.reactions[contact]);
+                let traction = if side == 0.0 {
+                    dot(&direction_of(&reaction.tangential, &[0.0; 3]), &change.tangential)
+                } else {
+                    side * dot(&change.tangential, &loading.frame(contact, state).tangents[0])
+                };
+                Some(loading.contacts[contact].friction * change.normal + traction)
             }
-            Self::Sliding(_) | Self::LoadRate { .. } => None,
+            Self::Sliding(_) | Self::LoadRate { .. } | Self::Facet { .. } => None,
             Self::End(End::Load { sign, .. }) => Some(-sign * rate.load),
             Self::End(End::Displacement { freedom, sign, .. }) => Some(-sign * rate.displacement[freedom]),
             Self::End(End::LimitPoints(_) | End::ContactChanges(_) | End::Increments(_)) => None,
         }
     }
 
-    /// What a rate is the rate of: `s`, or the tangential position.
-    fn primitive(self, loading: Loading<'_>, modes: &[Mode], state: &State) -> Option<f64> {
+    /// Change over an increment of what a rate is the rate of: `s`, or the way slid.
+    fn change(self, loading: Loading<'_>, modes: &[Mode], start: &State, end: &State) -> Option<f64> {
         match self {
-            Self::Sliding(contact) => Some(self.sliding(loading, modes, contact, &state.displacement)),
-            Self::LoadRate { sign } => Some(sign * state.load),
-            Self::Gap(_) | Self::Normal(_) | Self::Cone { .. } | Self::End(_) => None,
+            Self::Sliding(contact) => {
+                let chord = add(&loading.relative(contact, end), -1.0, &loading.relative(contact, start));
+                let directions =
+                    add(&direction(loading, modes, contact, start), 1.0, &direction(loading, modes, contact, end));
+                Some(dot(&scaled(&directions, 0.5), &chord))
+            }
+            Self::LoadRate { sign } => Some(sign * (end.load - start.load)),
+            Self::Gap(_) | Self::Normal(_) | Self::Cone { .. } | Self::Facet { .. } | Self::End(_) => None,
         }
     }
 
     /// The size against which the quantity is zero.
     pub fn scale(self, force_scale: f64) -> f64 {
         match self {
-            Self::Normal(_) | Self::Cone { .. } => force_scale,
+            Self::Normal(_) | Self::Cone { .. } | Self::Facet { .. } => force_scale,
             Self::Gap(_) | Self::Sliding(_) | Self::LoadRate { .. } | Self::End(_) => 1.0,
         }
     }
@@ -130,13 +162,27 @@ impl Watch {
         zero: f64,
     ) -> Option<f64> {
         let (first, last) = (self.value(loading, modes, start.0, start.1), self.value(loading, modes, end.0, end.1));
-        if let (Some(first_slope), Some(last_slope)) = (self.slope(loading, start.1), self.slope(loading, end.1)) {
+        let slopes = (self.slope(loading, start.0, start.1), self.slope(loading, end.0, end.1));
+        if let (Some(first_slope), Some(last_slope)) = slopes {
             return dip_of_cubic(first, first_slope * step, last, last_slope * step, zero).map(|place| place * step);
         }
-        let from = self.primitive(loading, modes, start.0)?;
-        let to = self.primitive(loading, modes, end.0)?;
-        dip_of_slope((to - from) / step, first, last, zero).map(|place| place * step)
+        let change = self.change(loading, modes, start.0, end.0)?;
+        dip_of_slope(change / step, first, last, zero).map(|place| place * step)
     }
+}
+
+/// The direction of a slip at a state.
+fn direction(loading: Loading<'_>, modes: &[Mode], contact: usize, state: &State) -> Vector {
+    let Mode::Slip { direction } = modes[contact] else { return [0.0; 3] };
+    let data = &loading.contacts[contact];
+    if data.sliding == Sliding::Plane {
+        return direction_of(&state.reactions[contact].tangential, &direction);
+    }
+    if !data.obstacle.is_curved() {
+        return direction;
+    }
+    let tangent = loading.frame(contact, state).tangents[0];
+    if dot(&direction, &tangent) < 0.0 { scaled(&tangent, -1.0) } else { tangent }
 }
 
 /// Where on `(0, 1)` the cubic with these end values and slopes has a minimum below `-zero`.

@@ -28,6 +28,25 @@ pub const ALL: &[BuiltIn] = &[
     scene!("arch-type-truss", "smooth limit point, bifurcation points, and a crown that lands on the floor"),
     scene!("two-snapping-bars", "bars that snap one after another (row of two)"),
     scene!("three-snapping-bars", "bars that snap one after another (row of three)"),
+    scene!(
+        "four-snapping-bars",
+        "a bar that snaps alone and a path that ends with no direction to go on (row of four)"
+    ),
+    scene!(
+        "slider-chain",
+        "blocks that begin to slip one after another, each at an exact load, until all of them slide"
+    ),
+    scene!("closed-loop", "a path that is a closed curve and ends as a cycle, without contact"),
+    scene!("curving-slip", "slip that turns in space: a tip that draws a tractrix on the floor"),
+    scene!("turning-drag", "a floor that moves and then turns drags a block around: slip that turns at a given load"),
+    scene!("capstan", "a chain over a drum, pulled until all of it slides: tensions grow as exp(friction x angle)"),
+    scene!("hump", "the one-bar truss over a round hump: two smooth limit points on a curved obstacle"),
+    scene!("bowl", "a node pushed up the inside of a bowl"),
+    scene!("groove", "a node between two flanks at once, whose reactions are not unique, until it leaves one of them"),
+    scene!("doubled-floor", "the one-bar truss on two coincident floors that share the reaction"),
+    scene!("dragged-block", "a moving floor that takes a block along until the block's spring holds it back"),
+    scene!("rising-floor", "the one-bar truss on a floor that rises, then pushed"),
+    scene!("lowered-pin", "the same with the pin lowered in place of the floor raised: the same reactions"),
     scene!("von-mises-truss", "snap-through without contact"),
 ];
 

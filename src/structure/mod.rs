@@ -60,15 +60,21 @@ impl Structure {
         largest
     }
 
+    /// Calls `add(row, column, value)` for every entry of every element's tangent; rows and columns are degrees of
+    /// freedom, supported ones included.
+    pub fn each_stiffness(&self, displacement: &[f64], add: &mut dyn FnMut(usize, usize, f64)) {
+        for element in &self.elements {
+            element.add_stiffness(self, displacement, add);
+        }
+    }
+
     /// Adds `K(u)` into the leading `unknowns x unknowns` block.
     pub fn add_tangent(&self, displacement: &[f64], matrix: &mut DMatrix<f64>) {
-        for element in &self.elements {
-            element.add_stiffness(self, displacement, &mut |row, column, value| {
-                if let (Some(row), Some(column)) = (self.unknown_of[row], self.unknown_of[column]) {
-                    matrix[(row, column)] += value;
-                }
-            });
-        }
+        self.each_stiffness(displacement, &mut |row, column, value| {
+            if let (Some(row), Some(column)) = (self.unknown_of[row], self.unknown_of[column]) {
+                matrix[(row, column)] += value;
+            }
+        });
     }
 
     /// The smallest stretch `L/L0` of any bar; infinite without bars.

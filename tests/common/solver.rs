@@ -117,6 +117,7 @@ fn increment(index: u64, run: u64) -> Increment {
             normal_reaction: along,
             tangential_reaction: vec![-0.3 * along],
             slip: vec![0.1],
+            indeterminate: false,
         }],
         point: Point {
             kind: if index == 0 { PointKind::Start } else { PointKind::Regular },

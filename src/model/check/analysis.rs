@@ -1,7 +1,7 @@
 //! How the path is to be traced.
 
 use super::numbers;
-use crate::model::limits::{MAX_DEPTH, MAX_INCREMENTS, MAX_JOBS, MAX_MODES};
+use crate::model::limits::{MAX_EXPLORE_DEPTH, MAX_EXPLORE_JOBS, MAX_INCREMENTS, MAX_MODES};
 use crate::model::mistakes::{Mistakes, Place};
 use crate::model::request::{Analysis, ArcLength};
 
@@ -11,8 +11,8 @@ pub(super) fn analysis(analysis: &Analysis, at: &Place, mistakes: &mut Mistakes)
     numbers::count(analysis.max_modes, MAX_MODES, &at.member("max_modes"), mistakes);
     if let Some(explore) = analysis.explore {
         let at = at.member("explore");
-        numbers::count(explore.depth, MAX_DEPTH, &at.member("depth"), mistakes);
-        numbers::count(explore.max_jobs, MAX_JOBS, &at.member("max_jobs"), mistakes);
+        numbers::count(explore.depth, MAX_EXPLORE_DEPTH, &at.member("depth"), mistakes);
+        numbers::count(explore.max_jobs, MAX_EXPLORE_JOBS, &at.member("max_jobs"), mistakes);
     }
 }
 

@@ -1,37 +1,20 @@
-//! Obstacles, contacts and the gaps between them at the start.
+//! Contacts: who they join, and the gaps at the start.
 
 use std::collections::{HashMap, HashSet};
 
-use super::numbers::{self, difference, dot, largest, norm};
-use super::{Scope, proper_name};
+use super::Scope;
+use super::numbers::{self, dot};
+use super::obstacles::{Facing, facing};
 use crate::model::mistakes::{Mistakes, Place};
-use crate::model::names::{quoted, suggestion};
-use crate::model::request::{Contact, Obstacle};
+use crate::model::names::quoted;
+use crate::model::request::{Contact, Obstacle, Side};
 
 /// Unit normals whose product is this near -1 are opposed.
 const OPPOSED: f64 = 1e-12;
 
-pub(super) fn obstacles(scope: &Scope, mistakes: &mut Mistakes) {
-    let at = scope.at.member("obstacles");
-    for (name, obstacle) in &scope.model.obstacles {
-        let at = at.member(name);
-        proper_name(name, &at, mistakes);
-        match obstacle {
-            Obstacle::Plane { point, normal } => {
-                numbers::vector(point, scope.model.dimension, &at.member("point"), mistakes);
-                let at = at.member("normal");
-                if numbers::vector(normal, scope.model.dimension, &at, mistakes) && largest(normal) == 0.0 {
-                    mistakes.add(&at, || "the normal is zero; a vector into the free side is expected");
-                }
-            }
-            Obstacle::Ball { .. } => mistakes.add(&at, || "balls are not available in this version"),
-        }
-    }
-}
-
-/// A node's distance from a plane at the start.
-struct Gap {
-    contact: usize,
+/// A node before a plane at the start.
+struct Gap<'a> {
+    obstacle: &'a str,
     gap: f64,
     normal: Vec<f64>,
     tolerance: f64,
@@ -43,97 +26,96 @@ pub(super) fn contacts(scope: &Scope, mistakes: &mut Mistakes) {
     let mut gaps: HashMap<usize, Vec<Gap>> = HashMap::new();
     for (index, contact) in scope.model.contacts.iter().enumerate() {
         let at = at.index(index);
-        friction(scope, contact, &at.member("friction"), mistakes);
+        friction(contact, &at.member("friction"), mistakes);
         let node = scope.node(&contact.node, &at.member("node"), mistakes);
-        let obstacle = obstacle(scope, &contact.obstacle, &at.member("obstacle"), mistakes);
+        let obstacle = scope.obstacle(&contact.obstacle, &at.member("obstacle"), mistakes);
         let (Some(node), Some((number, obstacle))) = (node, obstacle) else { continue };
-        if !seen.insert((node, number)) {
-            mistakes.add(&at, || {
-                let pair = format!("{} against {}", quoted(&contact.node), quoted(&contact.obstacle));
-                format!("the contact of {pair} stands twice, which this version does not take; once would do")
-            });
+        let Some(facing) = facing(scope, node, obstacle) else { continue };
+        if !useful(scope, contact, node, obstacle, &facing, &at, mistakes) {
             continue;
         }
-        let Some(gap) = gap(scope, index, node, obstacle) else { continue };
-        if useful(scope, contact, node, &gap, &at, mistakes) {
-            penetration(contact, &gap, &at, mistakes);
+        start(contact, obstacle, &facing, &at, mistakes);
+        // A second contact with one obstacle leaves no less room than the first.
+        if !seen.insert((node, number)) {
+            continue;
+        }
+        if let (Obstacle::Plane { .. }, Some(normal)) = (obstacle, facing.normal) {
+            let gap = Gap { obstacle: &contact.obstacle, gap: facing.gap, normal, tolerance: facing.tolerance };
             let others = gaps.entry(node).or_default();
-            room(scope, contact, &gap, others, &at, mistakes);
+            room(contact, &gap, others, &at, mistakes);
             others.push(gap);
         }
     }
 }
 
-fn friction(scope: &Scope, contact: &Contact, at: &Place, mistakes: &mut Mistakes) {
+fn friction(contact: &Contact, at: &Place, mistakes: &mut Mistakes) {
     let friction = contact.friction;
-    if !numbers::number(friction, at, mistakes) {
-        return;
-    }
-    if friction < 0.0 {
+    if numbers::number(friction, at, mistakes) && friction < 0.0 {
         mistakes.add(at, || format!("found {friction:?}; a coefficient of 0 or more is expected"));
-    } else if friction > 0.0 && scope.model.dimension == 3 {
+    }
+}
+
+/// Notes a contact whose reaction can move nothing, because no free component of its node has a part along the normal.
+///
+/// A ball's normal turns as the node moves, so there it matters only while the two touch, and where the node cannot
+/// move freely at all.
+fn useful(
+    scope: &Scope,
+    contact: &Contact,
+    node: usize,
+    obstacle: &Obstacle,
+    facing: &Facing,
+    at: &Place,
+    mistakes: &mut Mistakes,
+) -> bool {
+    let Facing { gap, normal, tolerance } = facing;
+    let along = |negligible: f64| {
+        let parts = normal.iter().flatten().enumerate();
+        normal.is_none() || parts.into_iter().any(|(k, part)| scope.is_free(node, k) && part.abs() > negligible)
+    };
+    let why = match obstacle {
+        _ if !scope.has_free_component(node) => "cannot move freely; leave the contact out",
+        Obstacle::Plane { .. } if !along(0.0) => {
+            "cannot move freely along the obstacle's normal; leave the contact out"
+        }
+        Obstacle::Ball { radius, .. } if gap.abs() <= *tolerance && !along(tolerance / radius) => {
+            "touches the ball where it cannot move freely along the normal; move it, or leave the contact out"
+        }
+        Obstacle::Plane { .. } | Obstacle::Ball { .. } => return true,
+    };
+    mistakes.add(&at.member("node"), || format!("the node {} is supported and {why}", quoted(&contact.node)));
+    false
+}
+
+/// Notes a node on the wrong side of an obstacle, or where the obstacle has no normal.
+fn start(contact: &Contact, obstacle: &Obstacle, facing: &Facing, at: &Place, mistakes: &mut Mistakes) {
+    let names = || (quoted(&contact.node), quoted(&contact.obstacle));
+    if facing.gap < -facing.tolerance {
         mistakes.add(at, || {
-            format!("found {friction:?}; friction in 3 dimensions is not available in this version, 0 would do")
+            let (node, name) = names();
+            let side = match obstacle {
+                Obstacle::Plane { .. } => "behind",
+                Obstacle::Ball { side: Side::Outside, .. } => "inside the ball",
+                Obstacle::Ball { side: Side::Inside, .. } => "outside the ball",
+            };
+            format!("{node} is {side} {name} at the start, gap {:?}; a gap of 0 or more is expected", facing.gap)
         });
-    }
-}
-
-fn obstacle<'a>(scope: &Scope<'a>, name: &str, at: &Place, mistakes: &mut Mistakes) -> Option<(usize, &'a Obstacle)> {
-    let found = scope.model.obstacles.get_full(name);
-    if found.is_none() {
-        let known = || suggestion(name, scope.model.obstacles.keys().map(String::as_str));
-        mistakes.add(at, || format!("there is no obstacle {}{}", quoted(name), known()));
-    }
-    found.map(|(number, _, obstacle)| (number, obstacle))
-}
-
-fn gap(scope: &Scope, contact: usize, node: usize, obstacle: &Obstacle) -> Option<Gap> {
-    let Obstacle::Plane { point, normal } = obstacle else { return None };
-    let dimension = scope.model.dimension;
-    let well_formed = numbers::well_formed(point, dimension) && numbers::well_formed(normal, dimension);
-    if !well_formed || largest(normal) == 0.0 {
-        return None;
-    }
-    let position = scope.position(node)?;
-    let length = norm(normal);
-    let normal: Vec<f64> = normal.iter().map(|component| component / length).collect();
-    let gap = dot(&difference(position, point), &normal);
-    let tolerance = scope.penetration_tolerance(largest(position).max(largest(point)));
-    Some(Gap { contact, gap, normal, tolerance })
-}
-
-/// Notes a contact that can neither open nor close, because no free component of its node has a part along the normal.
-fn useful(scope: &Scope, contact: &Contact, node: usize, gap: &Gap, at: &Place, mistakes: &mut Mistakes) -> bool {
-    let moves = |(component, &along): (usize, &f64)| scope.is_free(node, component) && along != 0.0;
-    let useful = gap.normal.iter().enumerate().any(moves);
-    if !useful {
-        mistakes.add(&at.member("node"), || {
-            let why =
-                if scope.has_free_component(node) { "cannot move along the obstacle's normal" } else { "cannot move" };
-            format!("the node {} is supported and {why}; leave the contact out", quoted(&contact.node))
-        });
-    }
-    useful
-}
-
-fn penetration(contact: &Contact, gap: &Gap, at: &Place, mistakes: &mut Mistakes) {
-    if gap.gap < -gap.tolerance {
+    } else if facing.normal.is_none() {
         mistakes.add(at, || {
-            let pair = format!("{} is behind {}", quoted(&contact.node), quoted(&contact.obstacle));
-            format!("{pair} at the start, gap {:?}; a gap of 0 or more is expected", gap.gap)
+            let (node, name) = names();
+            format!("{node} is at the centre of the ball {name}, where the ball has no normal; move it off the centre")
         });
     }
 }
 
 /// Notes a second plane that faces one before it with no room between.
-fn room(scope: &Scope, contact: &Contact, gap: &Gap, others: &[Gap], at: &Place, mistakes: &mut Mistakes) {
+fn room(contact: &Contact, gap: &Gap, others: &[Gap], at: &Place, mistakes: &mut Mistakes) {
     let faces = |other: &&Gap| dot(&gap.normal, &other.normal) <= OPPOSED - 1.0;
     for other in others.iter().filter(faces) {
         let room = gap.gap + other.gap;
         if room <= gap.tolerance.max(other.tolerance) {
             mistakes.add(at, || {
-                let opposite = scope.model.contacts.get(other.contact).map_or("", |contact| &contact.obstacle);
-                let pair = format!("{} and {}", quoted(opposite), quoted(&contact.obstacle));
+                let pair = format!("{} and {}", quoted(other.obstacle), quoted(&contact.obstacle));
                 format!("{pair} leave {room:?} between them for {}; room is expected", quoted(&contact.node))
             });
         }

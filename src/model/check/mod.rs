@@ -5,8 +5,10 @@
 
 mod analysis;
 mod contacts;
+mod loads;
 mod mechanism;
 mod numbers;
+mod obstacles;
 mod stages;
 mod structure;
 
@@ -16,6 +18,7 @@ use super::limits::{
 };
 use super::mistakes::{Mistakes, Place};
 use super::names::{quoted, suggestion};
+use super::request::Obstacle;
 use super::{InputErrors, JobRequest, Model};
 
 /// Refuses what cannot be solved; every mistake that can be told apart is listed.
@@ -69,7 +72,7 @@ fn model(model: &Model, at: &Place, mistakes: &mut Mistakes) {
     structure::nodes(&scope, mistakes);
     structure::supports(&scope, mistakes);
     structure::elements(&scope, mistakes);
-    contacts::obstacles(&scope, mistakes);
+    obstacles::obstacles(&scope, mistakes);
     contacts::contacts(&scope, mistakes);
     mechanism::mechanism(&scope, mistakes);
     stages::stages(&scope, mistakes);
@@ -122,6 +125,16 @@ impl<'a> Scope<'a> {
         found
     }
 
+    /// The obstacle and its number; an unknown name is noted.
+    fn obstacle(&self, name: &str, at: &Place, mistakes: &mut Mistakes) -> Option<(usize, &'a Obstacle)> {
+        let found = self.model.obstacles.get_full(name);
+        if found.is_none() {
+            let known = || suggestion(name, self.model.obstacles.keys().map(String::as_str));
+            mistakes.add(at, || format!("there is no obstacle {}{}", quoted(name), known()));
+        }
+        found.map(|(number, _, obstacle)| (number, obstacle))
+    }
+
     /// The coordinates of a node if they are well formed.
     fn position(&self, node: usize) -> Option<&'a [f64]> {
         let (_, position) = self.model.nodes.get_index(node)?;
@@ -136,7 +149,7 @@ impl<'a> Scope<'a> {
         (0..self.model.dimension).any(|component| self.is_free(node, component))
     }
 
-    /// How far behind an obstacle rounding alone can put a node, given the largest coordinate involved.
+    /// How far behind an obstacle rounding alone can put a node, given the largest coordinate or radius involved.
     fn penetration_tolerance(&self, reach: f64) -> f64 {
         PENETRATION_TOLERANCE * self.size + 4.0 * f64::EPSILON * reach
     }

@@ -1,7 +1,8 @@
-//! Stages: their names, loads and ends.
+//! Stages: their names and ends.
 
 use std::collections::HashSet;
 
+use super::loads::{Surroundings, loads};
 use super::structure::{component, component_name};
 use super::{Scope, numbers, proper_name};
 use crate::model::mistakes::{Mistakes, Place};
@@ -13,6 +14,7 @@ pub(super) fn stages(scope: &Scope, mistakes: &mut Mistakes) {
     if scope.model.stages.is_empty() {
         mistakes.add(&at, || "there are no stages; at least one is expected");
     }
+    let around = Surroundings::new(scope);
     let mut names = HashSet::new();
     for (index, stage) in scope.model.stages.iter().enumerate() {
         let at = at.index(index);
@@ -21,33 +23,14 @@ pub(super) fn stages(scope: &Scope, mistakes: &mut Mistakes) {
             let name = quoted(&stage.name);
             mistakes.add(&at.member("name"), || format!("the name {name} stands twice; each stage has its own"));
         }
-        forces(scope, stage, &at, mistakes);
+        loads(scope, &around, stage, &at, mistakes);
         if let Some(ends) = &stage.until {
-            until(scope, ends, index == 0, &at.member("until"), mistakes);
+            until(scope, stage, ends, index == 0, &at.member("until"), mistakes);
         }
     }
 }
 
-/// A force on a supported component goes into the support; a pattern that goes there as a whole moves nothing.
-fn forces(scope: &Scope, stage: &Stage, at: &Place, mistakes: &mut Mistakes) {
-    let before = mistakes.count();
-    let forces_at = at.member("forces");
-    let mut loaded = false;
-    for (name, force) in &stage.forces {
-        let at = forces_at.member(name);
-        let node = scope.node(name, &at, mistakes);
-        if numbers::vector(force, scope.model.dimension, &at, mistakes) {
-            let moves = |node| force.iter().enumerate().any(|(index, &part)| part != 0.0 && scope.is_free(node, index));
-            loaded |= node.is_some_and(moves);
-        }
-    }
-    if !loaded && mistakes.count() == before {
-        let at = if stage.forces.is_empty() { at } else { &forces_at };
-        mistakes.add(at, || "the stage has no load; a force that is not zero on a free component is expected");
-    }
-}
-
-fn until(scope: &Scope, until: &Until, first: bool, at: &Place, mistakes: &mut Mistakes) {
+fn until(scope: &Scope, stage: &Stage, until: &Until, first: bool, at: &Place, mistakes: &mut Mistakes) {
     if *until == Until::default() {
         mistakes.add(at, || {
             let known = "`load_above`, `load_below`, `displacement`, `limit_points`, `contact_change`, `increments`";
@@ -56,7 +39,7 @@ fn until(scope: &Scope, until: &Until, first: bool, at: &Place, mistakes: &mut M
     }
     load_bounds(until, at, mistakes);
     if let Some(bound) = &until.displacement {
-        displacement_bound(scope, bound, first, &at.member("displacement"), mistakes);
+        displacement_bound(scope, stage, bound, first, &at.member("displacement"), mistakes);
     }
     let counts = [
         ("limit_points", until.limit_points),
@@ -83,16 +66,27 @@ fn load_bounds(until: &Until, at: &Place, mistakes: &mut Mistakes) {
     }
 }
 
-fn displacement_bound(scope: &Scope, bound: &DisplacementBound, first: bool, at: &Place, mistakes: &mut Mistakes) {
+/// A supported component moves only in a stage that prescribes its displacement.
+fn displacement_bound(
+    scope: &Scope,
+    stage: &Stage,
+    bound: &DisplacementBound,
+    first: bool,
+    at: &Place,
+    mistakes: &mut Mistakes,
+) {
     let node = scope.node(&bound.node, &at.member("node"), mistakes);
     let component_at = at.member("component");
     let known = component(bound.component, scope.model.dimension, &component_at, mistakes);
-    let held = |node| !scope.is_free(node, bound.component.index());
-    if known && node.is_some_and(held) {
+    let index = bound.component.index();
+    let prescribed = stage.displacements.get(&bound.node).and_then(|displacement| displacement.get(index));
+    let moves = |node| scope.is_free(node, index) || prescribed.is_some_and(|&displacement| displacement != 0.0);
+    if known && node.is_some_and(|node| !moves(node)) {
         mistakes.add(&component_at, || {
             let component = component_name(bound.component);
             format!(
-                "the component {component} of {} is supported and never moves; a free one would do",
+                "the component {component} of {} is supported and never moves in this stage; a free one would do, or \
+                 one that the stage's `displacements` move",
                 quoted(&bound.node)
             )
         });

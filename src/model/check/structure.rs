@@ -47,12 +47,11 @@ pub(super) fn component(component: Component, dimension: usize, at: &Place, mist
     known
 }
 
+/// By index of the component.
+pub(super) const COMPONENT_NAMES: [&str; 3] = ["`x`", "`y`", "`z`"];
+
 pub(super) fn component_name(component: Component) -> &'static str {
-    match component {
-        Component::X => "`x`",
-        Component::Y => "`y`",
-        Component::Z => "`z`",
-    }
+    COMPONENT_NAMES[component.index()]
 }
 
 pub(super) fn elements(scope: &Scope, mistakes: &mut Mistakes) {

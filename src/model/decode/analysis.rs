@@ -10,18 +10,22 @@ const ANALYSIS: Fields = Fields {
     later: &[("record", "leave it out: everything is recorded"), ("keep_all", "leave it out: every increment is kept")],
 };
 
-const EXPLORE: Fields = Fields { what: "an exploration", known: &["depth", "max_jobs"], later: &[] };
-
 const ARC_LENGTH: Fields =
     Fields { what: "an arc length", known: &["initial", "min", "max", "displacement_scale", "load_scale"], later: &[] };
+
+const EXPLORE: Fields = Fields { what: "an exploration", known: &["depth", "max_jobs"], later: &[] };
 
 const METHOD: Choices<Method> =
     Choices { what: "a method", known: &[("auto", Method::Auto), ("mpec", Method::Mpec)], later: &["regularised"] };
 
 const SELECTION: Choices<Selection> = Choices {
     what: "a selection",
-    known: &[("max_dissipation", Selection::MaxDissipation), ("straightest", Selection::Straightest)],
-    later: &["min_potential_energy"],
+    known: &[
+        ("max_dissipation", Selection::MaxDissipation),
+        ("min_potential_energy", Selection::MinPotentialEnergy),
+        ("straightest", Selection::Straightest),
+    ],
+    later: &[],
 };
 
 const EVENTS: Choices<Events> =
@@ -51,13 +55,6 @@ pub(super) fn analysis(input: &Input, mistakes: &mut Mistakes) -> Option<Analysi
     })
 }
 
-fn explore(input: &Input, mistakes: &mut Mistakes) -> Option<Explore> {
-    let object = input.object(&EXPLORE, mistakes)?;
-    let depth = object.required("depth", mistakes, count);
-    let max_jobs = object.required("max_jobs", mistakes, count);
-    Some(Explore { depth: depth?, max_jobs: max_jobs? })
-}
-
 fn arc_length(input: &Input, mistakes: &mut Mistakes) -> Option<ArcLength> {
     let object = input.object(&ARC_LENGTH, mistakes)?;
     let initial = object.optional("initial", mistakes, number);
@@ -67,4 +64,11 @@ fn arc_length(input: &Input, mistakes: &mut Mistakes) -> Option<ArcLength> {
     let load_scale = object.optional("load_scale", mistakes, number);
     let bounds = ArcLength::with_defaults(initial?, min?, max?);
     Some(ArcLength { displacement_scale: displacement_scale?, load_scale: load_scale?, ..bounds })
+}
+
+fn explore(input: &Input, mistakes: &mut Mistakes) -> Option<Explore> {
+    let object = input.object(&EXPLORE, mistakes)?;
+    let depth = object.required("depth", mistakes, count);
+    let max_jobs = object.required("max_jobs", mistakes, count);
+    Some(Explore { depth: depth?, max_jobs: max_jobs? })
 }

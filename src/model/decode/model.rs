@@ -1,8 +1,12 @@
 //! Reads the model: nodes, supports, elements, obstacles, contacts, stages.
 
+use indexmap::IndexMap;
+
 use super::reader::{Choices, Fields, Input, count, number, numbers, text};
 use crate::model::mistakes::Mistakes;
-use crate::model::request::{Component, Contact, DisplacementBound, Element, Model, Obstacle, Stage, Strain, Until};
+use crate::model::request::{
+    Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Strain, Until,
+};
 
 const MODEL: Fields = Fields {
     what: "a model",
@@ -20,13 +24,12 @@ const SPRING: Fields = Fields { what: "a spring", known: &["kind", "nodes", "sti
 
 const PLANE: Fields = Fields { what: "a plane", known: &["kind", "point", "normal"], later: &[] };
 
+const BALL: Fields = Fields { what: "a ball", known: &["kind", "center", "radius", "side"], later: &[] };
+
 const CONTACT: Fields = Fields { what: "a contact", known: &["node", "obstacle", "friction"], later: &[] };
 
-const STAGE: Fields = Fields {
-    what: "a stage",
-    known: &["name", "forces", "until"],
-    later: &[("displacements", "`forces` would do"), ("obstacle_motion", "`forces` would do: obstacles stand still")],
-};
+const STAGE: Fields =
+    Fields { what: "a stage", known: &["name", "forces", "displacements", "obstacle_motion", "until"], later: &[] };
 
 const UNTIL: Fields = Fields {
     what: "an end of a stage",
@@ -52,13 +55,17 @@ const ELEMENT_KIND: Choices<ElementKind> = Choices {
 #[derive(Debug, Clone, Copy)]
 enum ObstacleKind {
     Plane,
+    Ball,
 }
 
 const OBSTACLE_KIND: Choices<ObstacleKind> = Choices {
     what: "a kind of obstacle",
-    known: &[("plane", ObstacleKind::Plane)],
-    later: &["ball", "segment", "box"],
+    known: &[("plane", ObstacleKind::Plane), ("ball", ObstacleKind::Ball)],
+    later: &["segment", "box"],
 };
+
+const SIDE: Choices<Side> =
+    Choices { what: "a side of a ball", known: &[("outside", Side::Outside), ("inside", Side::Inside)], later: &[] };
 
 const STRAIN: Choices<Strain> = Choices {
     what: "a measure of strain",
@@ -76,7 +83,7 @@ pub(super) fn model(input: &Input, mistakes: &mut Mistakes) -> Option<Model> {
     let object = input.object(&MODEL, mistakes)?;
     let name = object.optional("name", mistakes, text);
     let dimension = object.required("dimension", mistakes, count);
-    let nodes = object.required("nodes", mistakes, |input, mistakes| input.map(mistakes, numbers));
+    let nodes = object.required("nodes", mistakes, vectors);
     let supports = object
         .with_default("supports", Default::default(), mistakes, |input, mistakes| input.map(mistakes, components));
     let elements = object.required("elements", mistakes, |input, mistakes| input.list(mistakes, element));
@@ -108,6 +115,11 @@ fn components(input: &Input, mistakes: &mut Mistakes) -> Option<Vec<Component>> 
 
 fn strings(input: &Input, mistakes: &mut Mistakes) -> Option<Vec<String>> {
     input.list(mistakes, text)
+}
+
+/// Vectors by name.
+fn vectors(input: &Input, mistakes: &mut Mistakes) -> Option<IndexMap<String, Vec<f64>>> {
+    input.map(mistakes, numbers)
 }
 
 fn element(input: &Input, mistakes: &mut Mistakes) -> Option<Element> {
@@ -144,6 +156,7 @@ fn spring(input: &Input, mistakes: &mut Mistakes) -> Option<Element> {
 fn obstacle(input: &Input, mistakes: &mut Mistakes) -> Option<Obstacle> {
     match input.kind(&OBSTACLE_KIND, mistakes)? {
         ObstacleKind::Plane => plane(input, mistakes),
+        ObstacleKind::Ball => ball(input, mistakes),
     }
 }
 
@@ -152,6 +165,14 @@ fn plane(input: &Input, mistakes: &mut Mistakes) -> Option<Obstacle> {
     let point = object.required("point", mistakes, numbers);
     let normal = object.required("normal", mistakes, numbers);
     Some(Obstacle::Plane { point: point?, normal: normal? })
+}
+
+fn ball(input: &Input, mistakes: &mut Mistakes) -> Option<Obstacle> {
+    let object = input.object(&BALL, mistakes)?;
+    let center = object.required("center", mistakes, numbers);
+    let radius = object.required("radius", mistakes, number);
+    let side = object.with_default("side", Side::default(), mistakes, |input, mistakes| input.choice(&SIDE, mistakes));
+    Some(Obstacle::Ball { center: center?, radius: radius?, side: side? })
 }
 
 fn contact(input: &Input, mistakes: &mut Mistakes) -> Option<Contact> {
@@ -165,14 +186,15 @@ fn contact(input: &Input, mistakes: &mut Mistakes) -> Option<Contact> {
 fn stage(input: &Input, mistakes: &mut Mistakes) -> Option<Stage> {
     let object = input.object(&STAGE, mistakes)?;
     let name = object.required("name", mistakes, text);
-    let forces =
-        object.with_default("forces", Default::default(), mistakes, |input, mistakes| input.map(mistakes, numbers));
+    let forces = object.with_default("forces", Default::default(), mistakes, vectors);
+    let displacements = object.with_default("displacements", Default::default(), mistakes, vectors);
+    let obstacle_motion = object.with_default("obstacle_motion", Default::default(), mistakes, vectors);
     let until = object.optional("until", mistakes, until);
     Some(Stage {
         name: name?,
         forces: forces?,
-        displacements: Default::default(),
-        obstacle_motion: Default::default(),
+        displacements: displacements?,
+        obstacle_motion: obstacle_motion?,
         until: until?,
     })
 }

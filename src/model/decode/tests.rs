@@ -55,7 +55,10 @@ fn element() -> impl Strategy<Value = Element> {
 }
 
 fn obstacle() -> impl Strategy<Value = Obstacle> {
-    (numbers(), numbers()).prop_map(|(point, normal)| Obstacle::Plane { point, normal })
+    let plane = (numbers(), numbers()).prop_map(|(point, normal)| Obstacle::Plane { point, normal });
+    let side = one_of([Side::Outside, Side::Inside]);
+    let ball = (numbers(), number(), side).prop_map(|(center, radius, side)| Obstacle::Ball { center, radius, side });
+    prop_oneof![plane, ball]
 }
 
 fn contact() -> impl Strategy<Value = Contact> {
@@ -78,13 +81,15 @@ fn until() -> impl Strategy<Value = Until> {
 }
 
 fn stage() -> impl Strategy<Value = Stage> {
-    (name(), map(numbers()), of(until())).prop_map(|(name, forces, until)| Stage {
-        name,
-        forces,
-        displacements: Default::default(),
-        obstacle_motion: Default::default(),
-        until,
-    })
+    (name(), map(numbers()), map(numbers()), map(numbers()), of(until())).prop_map(
+        |(name, forces, displacements, obstacle_motion, until)| Stage {
+            name,
+            forces,
+            displacements,
+            obstacle_motion,
+            until,
+        },
+    )
 }
 
 fn model() -> impl Strategy<Value = Model> {
@@ -113,17 +118,18 @@ fn analysis() -> impl Strategy<Value = Analysis> {
         },
     );
     let method = one_of([Method::Auto, Method::Mpec]);
-    let selection = one_of([Selection::MaxDissipation, Selection::Straightest]);
+    let selection = one_of([Selection::MaxDissipation, Selection::MinPotentialEnergy, Selection::Straightest]);
     let events = one_of([Events::Auto, Events::All]);
-    (method, selection, events, arc_length, any::<u64>(), any::<u64>()).prop_map(
-        |(method, selection, events, arc_length, max_increments, max_modes)| Analysis {
+    let explore = of((any::<u64>(), any::<u64>()).prop_map(|(depth, max_jobs)| Explore { depth, max_jobs }));
+    (method, selection, events, arc_length, any::<u64>(), any::<u64>(), explore).prop_map(
+        |(method, selection, events, arc_length, max_increments, max_modes, explore)| Analysis {
             method,
             selection,
             events,
             arc_length,
             max_increments,
             max_modes,
-            explore: None,
+            explore,
         },
     )
 }
@@ -146,6 +152,7 @@ fn errors(text: &str) -> InputErrors {
 fn defaults_are_those_of_the_types() {
     let text = br#"{"model": {"dimension": 2, "nodes": {}, "elements": [
         {"kind": "bar", "nodes": ["a", "b"], "axial_stiffness": 1}],
+        "obstacles": {"o": {"kind": "ball", "center": [], "radius": 1}},
         "contacts": [{"node": "a", "obstacle": "o"}], "stages": [{"name": "s", "until": {}}]}}"#;
     assert_eq!(decode(text).unwrap(), serde_json::from_slice(text).unwrap());
 }

@@ -2,6 +2,8 @@
 
 use super::InReach;
 use super::IncrementProgram;
+use crate::contact::Frame;
+use crate::contact::vector::{Vector, add, dot, scaled};
 use crate::mpec::Problem;
 use nalgebra::{DMatrix, DVector};
 
@@ -70,17 +72,19 @@ impl Problem for IncrementProgram<'_> {
         let mut force = vec![0.0; structure.freedoms()];
         structure.internal_force(&state.displacement, &mut force);
         for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
-            let load = state.load * self.loading.pattern[*freedom] + self.loading.held[*freedom];
+            let load = state.load * self.loading.pattern.forces[*freedom] + self.loading.held.forces[*freedom];
             values[unknown] = (force[*freedom] - load) / self.force;
         }
-        let mut row = structure.unknowns();
+        let load = structure.unknowns();
+        let mut row = load;
         for entry in &self.reach {
-            let mut motion = 0.0;
-            for (unknown, normal, tangent) in self.node_of(entry) {
-                values[unknown] -= x[entry.first] * normal;
+            let frame = self.loading.frame(entry.contact, &state);
+            let mut motion = x[load] * dot(&self.driven(entry), &entry.tangent);
+            for (unknown, k) in self.node_of(entry) {
+                values[unknown] -= x[entry.first] * frame.normal[k];
                 if entry.friction > 0.0 {
-                    values[unknown] -= x[entry.first + 1] * tangent;
-                    motion += tangent * x[unknown];
+                    values[unknown] -= x[entry.first + 1] * frame.tangents[0][k];
+                    motion += entry.tangent[k] * x[unknown];
                 }
             }
             if entry.friction > 0.0 {
@@ -93,20 +97,33 @@ impl Problem for IncrementProgram<'_> {
     fn equality_jacobian(&self, x: &DVector<f64>, jacobian: &mut DMatrix<f64>) {
         let structure = self.loading.structure;
         let state = self.state(x);
-        structure.add_tangent(&state.displacement, jacobian);
         let unknowns = structure.unknowns();
-        jacobian.view_mut((0, 0), (unknowns, unknowns)).scale_mut(self.step / self.force);
+        let scale = self.step / self.force;
+        structure.each_stiffness(&state.displacement, &mut |row, column, value| {
+            let Some(row) = structure.unknown_of[row] else { return };
+            match structure.unknown_of[column] {
+                Some(column) => jacobian[(row, column)] += scale * value,
+                None => jacobian[(row, unknowns)] += scale * value * self.loading.support_rate(column),
+            }
+        });
         for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
-            jacobian[(unknown, unknowns)] = -self.loading.pattern[*freedom] * self.step / self.force;
+            jacobian[(unknown, unknowns)] -= self.loading.pattern.forces[*freedom] * scale;
         }
         let mut row = unknowns;
         for entry in &self.reach {
-            for (unknown, normal, tangent) in self.node_of(entry) {
-                jacobian[(unknown, entry.first)] = -normal;
+            let frame = self.loading.frame(entry.contact, &state);
+            for (unknown, k) in self.node_of(entry) {
+                jacobian[(unknown, entry.first)] = -frame.normal[k];
                 if entry.friction > 0.0 {
-                    jacobian[(unknown, entry.first + 1)] = -tangent;
-                    jacobian[(row, unknown)] = tangent;
+                    jacobian[(unknown, entry.first + 1)] = -frame.tangents[0][k];
+                    jacobian[(row, unknown)] = entry.tangent[k];
                 }
+            }
+            if entry.friction > 0.0 {
+                jacobian[(row, unknowns)] = dot(&self.driven(entry), &entry.tangent);
+            }
+            if frame.curvature != 0.0 {
+                self.add_turn_of_reaction(entry, &frame, x, jacobian);
             }
             if entry.friction > 0.0 {
                 jacobian[(row, entry.first + 2)] = -1.0;
@@ -117,12 +134,10 @@ impl Problem for IncrementProgram<'_> {
     }
 
     fn pair_values(&self, x: &DVector<f64>, first: &mut DVector<f64>, second: &mut DVector<f64>) {
-        let structure = self.loading.structure;
         let state = self.state(x);
         let mut pair = 0;
         for entry in &self.reach {
-            let contact = &self.loading.contacts[entry.contact];
-            first[pair] = contact.gap(structure.dimension, &state.displacement) / self.step;
+            first[pair] = self.loading.gap(entry.contact, &state) / self.step;
             second[pair] = x[entry.first];
             pair += 1;
             if entry.friction > 0.0 {
@@ -136,12 +151,16 @@ impl Problem for IncrementProgram<'_> {
         }
     }
 
-    fn pair_jacobians(&self, _x: &DVector<f64>, first: &mut DMatrix<f64>, second: &mut DMatrix<f64>) {
+    fn pair_jacobians(&self, x: &DVector<f64>, first: &mut DMatrix<f64>, second: &mut DMatrix<f64>) {
+        let state = self.state(x);
+        let load = self.loading.structure.unknowns();
         let mut pair = 0;
         for entry in &self.reach {
-            for (unknown, normal, _) in self.node_of(entry) {
-                first[(pair, unknown)] = normal;
+            let normal = self.loading.frame(entry.contact, &state).normal;
+            for (unknown, k) in self.node_of(entry) {
+                first[(pair, unknown)] = normal[k];
             }
+            first[(pair, load)] = dot(&self.driven(entry), &normal);
             second[(pair, entry.first)] = 1.0;
             pair += 1;
             if entry.friction > 0.0 {
@@ -161,5 +180,27 @@ impl Problem for IncrementProgram<'_> {
             model[(unknown, unknown)] = self.arc_weight;
         }
         Some(model)
+    }
+}
+
+impl IncrementProgram<'_> {
+    /// On a curved obstacle the reaction turns with the node's place.
+    fn add_turn_of_reaction(&self, entry: &InReach, frame: &Frame, x: &DVector<f64>, jacobian: &mut DMatrix<f64>) {
+        let normal = x[entry.first];
+        let tangential = if entry.friction > 0.0 { x[entry.first + 1] } else { 0.0 };
+        let turn = |motion: &Vector| {
+            let of_normal = scaled(&frame.normal_change(motion), normal * self.step);
+            add(&of_normal, tangential * self.step, &frame.tangent_change(motion))
+        };
+        let load = self.loading.structure.unknowns();
+        let driven = turn(&self.driven(entry));
+        for (row, k) in self.node_of(entry) {
+            jacobian[(row, load)] -= driven[k];
+            for (column, l) in self.node_of(entry) {
+                let mut motion = [0.0; 3];
+                motion[l] = 1.0;
+                jacobian[(row, column)] -= turn(&motion)[k];
+            }
+        }
     }
 }

@@ -19,10 +19,11 @@ mod functions;
 #[cfg(test)]
 mod tests;
 
-use super::mode_system::Loading;
-use super::state::{Rate, State, along};
+use super::loading::Loading;
+use super::state::{Rate, State};
 use crate::cancel::CancelFlag;
 use crate::contact::Mode;
+use crate::contact::vector::{Vector, dot, scaled};
 use crate::mpec::{self, Finish, PairActivity, Settings};
 use nalgebra::DVector;
 
@@ -55,6 +56,8 @@ struct InReach {
     friction: f64,
     /// `r_t⁽ᵏ⁾/F`
     traction: f64,
+    /// The tangent at the start of the increment, along which slip is counted.
+    tangent: Vector,
 }
 
 /// What the program says of an increment.
@@ -78,12 +81,14 @@ impl<'a> IncrementProgram<'a> {
         let mut next = structure.unknowns() + 1;
         let mut reach = Vec::new();
         for (contact, data) in loading.contacts.iter().enumerate() {
-            if data.gap(structure.dimension, &base.displacement) > REACH * step {
+            if loading.gap(contact, base) > REACH * step {
                 continue;
             }
-            let traction = base.reactions[contact].tangential[0] / force;
-            reach.push(InReach { contact, first: next, friction: data.friction, traction });
-            next += if data.friction > 0.0 { 4 } else { 1 };
+            let tangent = loading.frame(contact, base).tangents[0];
+            let traction = dot(&base.reactions[contact].tangential, &tangent) / force;
+            let friction = if data.tangents() > 0 { data.friction } else { 0.0 };
+            reach.push(InReach { contact, first: next, friction, traction, tangent });
+            next += if data.tangents() > 0 { 4 } else { 1 };
         }
         let mut program =
             Self { loading, base, step, forward, force, arc_weight: 1.0, forward_weight: 1.0, reach, variables: next };
@@ -97,14 +102,11 @@ impl<'a> IncrementProgram<'a> {
 
     /// `-r_t⁽ᵏ⁾·u̇_t / F`
     fn dissipation_along(&self, rate: &Rate) -> f64 {
-        self.reach.iter().map(|entry| -entry.traction * self.tangential(entry.contact, &rate.displacement)).sum()
+        self.reach.iter().map(|entry| -entry.traction * self.tangential(entry, rate)).sum()
     }
 
-    fn tangential(&self, contact: usize, motion: &[f64]) -> f64 {
-        let dimension = self.loading.structure.dimension;
-        let contact = &self.loading.contacts[contact];
-        let first = contact.node * dimension;
-        along(&motion[first..first + dimension], &contact.obstacle.tangents(dimension)[0])
+    fn tangential(&self, entry: &InReach, rate: &Rate) -> f64 {
+        dot(&self.loading.relative_rate(entry.contact, rate), &entry.tangent)
     }
 
     /// The variables of a state on the way, for a start.
@@ -119,8 +121,10 @@ impl<'a> IncrementProgram<'a> {
             let (reaction, change) = (self.base.reactions[entry.contact], rate.reactions[entry.contact]);
             x[entry.first] = (reaction.normal + self.step * change.normal) / self.force;
             if entry.friction > 0.0 {
-                x[entry.first + 1] = (reaction.tangential[0] + self.step * change.tangential[0]) / self.force;
-                let slip = self.tangential(entry.contact, &rate.displacement);
+                x[entry.first + 1] = (dot(&reaction.tangential, &entry.tangent)
+                    + self.step * dot(&change.tangential, &entry.tangent))
+                    / self.force;
+                let slip = self.tangential(entry, rate);
                 x[entry.first + 2] = slip.max(0.0);
                 x[entry.first + 3] = (-slip).max(0.0);
             }
@@ -135,6 +139,7 @@ impl<'a> IncrementProgram<'a> {
             state.displacement[*freedom] += self.step * x[unknown];
         }
         state.load += self.step * x[structure.unknowns()];
+        self.loading.place_supports(&mut state);
         state
     }
 
@@ -181,13 +186,13 @@ impl<'a> IncrementProgram<'a> {
             let normal = next();
             let closed = if entry.friction > 0.0 {
                 match (next(), next()) {
-                    (PairActivity::FirstZero, _) => Mode::Slip { direction: [1.0, 0.0] },
-                    (_, PairActivity::FirstZero) => Mode::Slip { direction: [-1.0, 0.0] },
+                    (PairActivity::FirstZero, _) => Mode::Slip { direction: entry.tangent },
+                    (_, PairActivity::FirstZero) => Mode::Slip { direction: scaled(&entry.tangent, -1.0) },
                     (PairActivity::BothZero, _) | (_, PairActivity::BothZero) if present.is_active() => present,
                     _ => Mode::Stick,
                 }
             } else {
-                Mode::Slip { direction: [0.0; 2] }
+                Mode::Slip { direction: [0.0; 3] }
             };
             modes[entry.contact] = match normal {
                 PairActivity::FirstZero => closed,
@@ -198,13 +203,24 @@ impl<'a> IncrementProgram<'a> {
         Named { modes }
     }
 
-    /// Rows and directions of the contact's node: `(unknown, normal component, tangent component)`.
-    fn node_of(&self, entry: &InReach) -> impl Iterator<Item = (usize, f64, f64)> {
+    /// Unknowns of the contact's node with their components.
+    fn node_of(&self, entry: &InReach) -> impl Iterator<Item = (usize, usize)> {
         let structure = self.loading.structure;
-        let contact = &self.loading.contacts[entry.contact];
-        let (normal, tangents) = (contact.obstacle.normal(), contact.obstacle.tangents(structure.dimension));
-        let first = contact.node * structure.dimension;
-        (0..structure.dimension)
-            .filter_map(move |k| structure.unknown_of[first + k].map(|unknown| (unknown, normal[k], tangents[0][k])))
+        let first = self.loading.contacts[entry.contact].node * structure.dimension;
+        (0..structure.dimension).filter_map(move |k| structure.unknown_of[first + k].map(|unknown| (unknown, k)))
+    }
+
+    /// How fast a contact's node moves against its obstacle with the load factor alone: by what drives the supports and
+    /// the obstacle.
+    fn driven(&self, entry: &InReach) -> Vector {
+        let structure = self.loading.structure;
+        let first = self.loading.contacts[entry.contact].node * structure.dimension;
+        let mut motion = scaled(&self.loading.pattern.shifts[entry.contact], -1.0);
+        for k in 0..structure.dimension {
+            if structure.unknown_of[first + k].is_none() {
+                motion[k] += self.loading.support_rate(first + k);
+            }
+        }
+        motion
     }
 }

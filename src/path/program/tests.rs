@@ -11,10 +11,11 @@ fn kkt_holds(name: &str, forward: impl Fn(&Scene) -> Rate) {
     let text = crate::scenes::find(name).unwrap().request;
     let request = crate::model::decode::decode(text.as_bytes()).unwrap();
     let scene = Scene::new(&request).unwrap();
-    let held = vec![0.0; scene.structure.freedoms()];
+    let held = scene.stages[0].pattern.zeroed();
     let loading = Loading {
         structure: &scene.structure,
         contacts: &scene.contacts,
+        corners: &scene.corners,
         pattern: &scene.stages[0].pattern,
         held: &held,
     };
@@ -63,11 +64,11 @@ fn kkt_holds(name: &str, forward: impl Fn(&Scene) -> Rate) {
 }
 
 fn towards_the_load(scene: &Scene) -> Rate {
-    let pattern = scene.stages[0].pattern.clone();
+    let pattern = scene.stages[0].pattern.forces.clone();
     // A guess of slip, so that the start names the branch.
     let pressed = |contact: &crate::contact::Contact| crate::contact::Reaction {
         normal: 0.4,
-        tangential: [-0.4 * contact.friction, 0.0],
+        tangential: [-0.4 * contact.friction, 0.0, 0.0],
     };
     let reactions = scene.contacts.iter().map(pressed).collect();
     Rate { displacement: pattern, load: 0.3, reactions }

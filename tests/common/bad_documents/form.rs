@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::{BadDocument, at, elsewhere, good_request, raw, without};
+use super::{BadDocument, at, ball_with, good_request, raw, without};
 
 pub fn broken_text() -> Vec<BadDocument> {
     let good = serde_json::to_string(&good_request()).expect("JSON");
@@ -44,6 +44,7 @@ pub fn broken_text() -> Vec<BadDocument> {
 }
 
 pub fn wrong_form() -> Vec<BadDocument> {
+    let ball = "/model/obstacles/floor";
     let missing = |name, removed, pointer, detail| BadDocument { name, text: without(removed), pointer, detail };
     vec![
         missing("no model", "/model", "", "the field `model` is missing"),
@@ -81,30 +82,43 @@ pub fn wrong_form() -> Vec<BadDocument> {
         at("negative count", "/analysis/max_increments", json!(-1), "found the number `-1`; a whole number"),
         at("boolean friction", "/model/contacts/0/friction", json!(true), "found the boolean `true`; a number"),
         at("friction null", "/model/contacts/0/friction", json!(null), "found null; a number"),
-        at("explore as a boolean", "/analysis/explore", json!(true), "an exploration, an object,"),
-        at("explore without jobs", "/analysis/explore", json!({"depth": 1}), "`max_jobs` is missing"),
-        elsewhere(
-            "explore to no depth",
-            &[("/analysis/explore", json!({"depth": 0, "max_jobs": 1}))],
-            "/analysis/explore/depth",
-            "1 or more",
-        ),
+        at("ball without center", ball, json!({"kind": "ball", "radius": 1}), "the field `center` is missing"),
+        at("ball without radius", ball, json!({"kind": "ball", "center": [0, 0]}), "the field `radius` is missing"),
+        ball_with(
+            "ball with a point",
+            json!({"point": [0, 0]}),
+            "unknown field `point` of a ball; known: `kind`, `center`",
+        )
+        .told("/model/obstacles/floor/point"),
+        ball_with("unknown side", json!({"side": "inner"}), "not a side of a ball; known: `outside`, `inside`")
+            .told("/model/obstacles/floor/side"),
+        ball_with("radius as a string", json!({"radius": "1"}), "found the string `1`; a number")
+            .told("/model/obstacles/floor/radius"),
+        ball_with("center as an object", json!({"center": {}}), "found an object; an array")
+            .told("/model/obstacles/floor/center"),
+        at("displacements as an array", "/model/stages/0/displacements", json!([]), "an object is expected"),
+        at("motion as a number", "/model/stages/0/obstacle_motion", json!({"floor": 1}), "an array is expected")
+            .told("/model/stages/0/obstacle_motion/floor"),
+        at("unknown field of a stage", "/model/stages/0/displacement", json!({}), "did you mean `displacements`?"),
+        at("unknown selection", "/analysis/selection", json!("max_potential_energy"), "did you mean `min_potential"),
+        at("explore as a flag", "/analysis/explore", json!(true), "an exploration, an object, is expected"),
+        at("explore without depth", "/analysis/explore", json!({"max_jobs": 1}), "the field `depth` is missing"),
+        at("explore without bound", "/analysis/explore", json!({"depth": 1}), "the field `max_jobs` is missing"),
+        at("explore by fractions", "/analysis/explore", json!({"depth": 0.5, "max_jobs": 1}), "a whole number")
+            .told("/analysis/explore/depth"),
+        at("unknown field of explore", "/analysis/explore", json!({"depht": 1}), "did you mean `depth`?")
+            .told("/analysis/explore/depht"),
         at("analysis as a string", "/analysis", json!("mpec"), "an analysis, an object, is expected"),
     ]
 }
 
 pub fn not_available() -> Vec<BadDocument> {
-    let ball = json!({"kind": "ball", "center": [0, 0], "radius": 1, "side": "outside"});
     let later = "is not available in this version";
     vec![
         at("method regularised", "/analysis/method", json!("regularised"), later),
-        at("selection by energy", "/analysis/selection", json!("min_potential_energy"), later),
         at("record", "/analysis/record", json!([]), later),
         at("keep all", "/analysis/keep_all", json!(true), later),
-        elsewhere("ball", &[("/model/obstacles/floor", ball)], "/model/obstacles/floor/kind", later),
-        at("segment", "/model/obstacles/floor/kind", json!("segment"), "`plane` would do"),
-        at("box", "/model/obstacles/floor/kind", json!("box"), "`plane` would do"),
-        at("prescribed displacements", "/model/stages/0/displacements", json!({}), "`forces` would do"),
-        at("moving obstacle", "/model/stages/0/obstacle_motion", json!({}), "obstacles stand still"),
+        at("segment", "/model/obstacles/floor/kind", json!("segment"), "`plane`, `ball` would do"),
+        at("box", "/model/obstacles/floor/kind", json!("box"), "`plane`, `ball` would do"),
     ]
 }

@@ -19,6 +19,45 @@ pub fn stages() -> Vec<BadDocument> {
     ]
 }
 
+pub fn motions() -> Vec<BadDocument> {
+    let stage = "/model/stages/0";
+    let forces = "/model/stages/0/forces";
+    let displacements = "/model/stages/0/displacements";
+    let motion = "/model/stages/0/obstacle_motion";
+    let block = json!({"kind": "plane", "point": [5, 0], "normal": [-1, 0]});
+    let none = (forces, json!({}));
+    let post = [none.clone(), ("/model/nodes/post", json!([9, 9])), ("/model/supports/post", json!(["x", "y"]))];
+    let alone = [post.as_slice(), &[(displacements, json!({"post": [1, 0]}))]].concat();
+    let along = [none.clone(), ("/model/contacts/0/friction", json!(0)), (motion, json!({"floor": [1, 0]}))];
+    let still = [none, (displacements, json!({"pin": [0, 0]})), (motion, json!({"floor": [0, 0]}))];
+    let unused = [("/model/obstacles/block", block), (motion, json!({"block": [-1, 0]}))];
+    vec![
+        at("displacement of an unknown node", displacements, json!({"pit": [1, 0]}), "did you mean `pin`?")
+            .told("/model/stages/0/displacements/pit"),
+        at("displacement with a long vector", displacements, json!({"pin": [1, 0, 0]}), "found 3 numbers")
+            .told("/model/stages/0/displacements/pin"),
+        at("huge displacement", displacements, json!({"pin": [1e80, 0]}), "choose other units")
+            .told("/model/stages/0/displacements/pin/0"),
+        at(
+            "displacement of a free node",
+            displacements,
+            json!({"tip": [0, 1]}),
+            "`y` of `tip` is free; support it, or",
+        )
+        .told("/model/stages/0/displacements/tip/1"),
+        at("motion of an unknown obstacle", motion, json!({"flor": [1, 0]}), "did you mean `floor`?")
+            .told("/model/stages/0/obstacle_motion/flor"),
+        at("motion with a short vector", motion, json!({"floor": [1]}), "found 1 numbers")
+            .told("/model/stages/0/obstacle_motion/floor"),
+        at("huge motion", motion, json!({"floor": [0, -1e80]}), "choose other units")
+            .told("/model/stages/0/obstacle_motion/floor/1"),
+        elsewhere("motion without contact", &unused, "/model/stages/0/obstacle_motion/block", "does nothing; add one"),
+        elsewhere("no load: a support apart", &alone, stage, "no load"),
+        elsewhere("no load: a plane along itself", &along, stage, "no load"),
+        elsewhere("no load: nothing moves", &still, stage, "no load"),
+    ]
+}
+
 pub fn ends() -> Vec<BadDocument> {
     let until = "/model/stages/0/until";
     let bound = |members: Value| {
@@ -59,6 +98,16 @@ pub fn ends() -> Vec<BadDocument> {
             "never moves",
         ),
         elsewhere(
+            "bound on the other component of a moving support",
+            &[
+                bound(json!({"node": "pin", "above": 1})).as_slice(),
+                &[("/model/stages/0/displacements", json!({"pin": [0, 1]}))],
+            ]
+            .concat(),
+            "/model/stages/0/until/displacement/component",
+            "`displacements` move",
+        ),
+        elsewhere(
             "bound out of the plane",
             &bound(json!({"component": "z", "above": 1})),
             "/model/stages/0/until/displacement/component",
@@ -78,6 +127,14 @@ pub fn analysis() -> Vec<BadDocument> {
         at("negative load scale", "/analysis/arc_length/load_scale", json!(-1), "above 0"),
         at("no increments", "/analysis/max_increments", json!(0), "1 or more"),
         at("absurd increments", "/analysis/max_increments", json!(u64::MAX), "at most 10000000"),
+        at("explore no depth", "/analysis/explore", json!({"depth": 0, "max_jobs": 9}), "1 or more")
+            .told("/analysis/explore/depth"),
+        at("explore too deep", "/analysis/explore", json!({"depth": 101, "max_jobs": 9}), "at most 100")
+            .told("/analysis/explore/depth"),
+        at("explore no jobs", "/analysis/explore", json!({"depth": 9, "max_jobs": 0}), "1 or more")
+            .told("/analysis/explore/max_jobs"),
+        at("explore many jobs", "/analysis/explore", json!({"depth": 9, "max_jobs": 10_001}), "at most 10000")
+            .told("/analysis/explore/max_jobs"),
         at("no modes", "/analysis/max_modes", json!(0), "1 or more"),
     ]
 }

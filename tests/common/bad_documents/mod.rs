@@ -37,7 +37,9 @@ pub fn bad_documents() -> Vec<BadDocument> {
         model::structure(),
         model::mechanisms(),
         model::contacts(),
+        model::balls(),
         loading::stages(),
+        loading::motions(),
         loading::ends(),
         loading::analysis(),
         model::sizes(),
@@ -61,6 +63,43 @@ pub fn good_request() -> Value {
             "stages": [{"name": "push", "forces": {"tip": [1, 0]}, "until": {"load_above": 1}}],
         },
         "analysis": {"arc_length": {"initial": 0.05, "min": 1e-6, "max": 0.2}, "max_increments": 500},
+    })
+}
+
+/// A request with every feature that the good one lacks: it is accepted too.
+pub fn full_request() -> Value {
+    json!({
+        "model": {
+            "name": "full",
+            "dimension": 3,
+            "nodes": {"pin": [0, 0, 1], "tip": [-1.5, 0, 0], "ring": [3, 0, 0]},
+            "supports": {"pin": ["x", "y", "z"], "ring": ["x"]},
+            "elements": [
+                {"kind": "bar", "nodes": ["pin", "tip"], "axial_stiffness": 1, "rest_length": 2, "strain": "log"},
+                {"kind": "spring", "nodes": ["tip", "ring"], "stiffness": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]},
+            ],
+            "obstacles": {
+                "floor": {"kind": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]},
+                "drum": {"kind": "ball", "center": [-1.5, 0, -2], "radius": 2},
+                "bowl": {"kind": "ball", "center": [3, 0, 0], "radius": 0.5, "side": "inside"},
+            },
+            "contacts": [
+                {"node": "tip", "obstacle": "floor", "friction": 0.3},
+                {"node": "tip", "obstacle": "floor", "friction": 0.2},
+                {"node": "tip", "obstacle": "drum", "friction": 0.3},
+            ],
+            "stages": [
+                {"name": "sink", "displacements": {"pin": [0, 0, -0.1], "ring": [0.1, 0, 0]},
+                 "until": {"displacement": {"node": "ring", "component": "x", "above": 0.05}}},
+                {"name": "drag", "obstacle_motion": {"floor": [1, 0, 0], "drum": [1, 0, 0], "bowl": [0, 0, 0]},
+                 "forces": {"tip": [1, 0, 0]}, "until": {"load_above": 1}},
+            ],
+        },
+        "analysis": {
+            "selection": "min_potential_energy",
+            "explore": {"depth": 2, "max_jobs": 10},
+            "max_increments": 500,
+        },
     })
 }
 
@@ -96,6 +135,15 @@ fn raw(name: &'static str, text: impl Into<Vec<u8>>, detail: &'static str) -> Ba
 /// One value put in, and the mistake at that very place.
 fn at(name: &'static str, pointer: &'static str, value: Value, detail: &'static str) -> BadDocument {
     BadDocument { name, text: with(&[(pointer, value)]), pointer, detail }
+}
+
+/// The floor replaced by a ball around the origin, of radius 1, with these members put in.
+fn ball_with(name: &'static str, members: Value, detail: &'static str) -> BadDocument {
+    let mut ball = json!({"kind": "ball", "center": [0, 0], "radius": 1});
+    if let (Value::Object(ball), Value::Object(members)) = (&mut ball, members) {
+        ball.extend(members);
+    }
+    at(name, "/model/obstacles/floor", ball, detail)
 }
 
 /// One value put in, and the mistake somewhere else.

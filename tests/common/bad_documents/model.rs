@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{BadDocument, at, elsewhere, raw};
+use super::{BadDocument, at, ball_with, elsewhere, raw};
 
 pub fn structure() -> Vec<BadDocument> {
     let unsymmetric = json!([[1, 0.5], [0.4, 2]]);
@@ -60,15 +60,6 @@ pub fn contacts() -> Vec<BadDocument> {
     let low_ceiling = json!({"kind": "plane", "point": [0, -1], "normal": [0, -1]});
     let against = |obstacle: &str| json!({"node": "tip", "obstacle": obstacle});
     let both = |plane| [("/model/obstacles/ceiling", plane), ("/model/contacts/-", against("ceiling"))];
-    let upright = json!({"kind": "bar", "nodes": ["pin", "tip"], "axial_stiffness": 1});
-    let space = [
-        ("/model/dimension", json!(3)),
-        ("/model/nodes", json!({"pin": [0, 1, 0], "tip": [0, 0, 0]})),
-        ("/model/supports", json!({"pin": ["x", "y", "z"]})),
-        ("/model/elements", json!([upright])),
-        ("/model/obstacles/floor", json!({"kind": "plane", "point": [0, 0, 0], "normal": [0, 1, 0]})),
-        ("/model/stages/0/forces/tip", json!([1, 0, 0])),
-    ];
     let behind = [("/model/nodes/tip", json!([-1.5, -0.25]))];
     let held = [("/model/supports/tip", json!(["y"]))];
     vec![
@@ -79,18 +70,45 @@ pub fn contacts() -> Vec<BadDocument> {
         at("contact with an unknown obstacle", "/model/contacts/0/obstacle", json!("flor"), "did you mean `floor`?"),
         at("negative friction", "/model/contacts/0/friction", json!(-0.3), "a coefficient of 0 or more"),
         at("huge friction", "/model/contacts/0/friction", json!(1e100), "at most 1e75"),
-        elsewhere("friction in space", &space, "/model/contacts/0/friction", "3 dimensions is not available"),
-        at("contact twice", "/model/contacts/-", against("floor"), "stands twice").told("/model/contacts/1"),
         elsewhere(
             "contact of a support",
             &[("/model/contacts/0/node", json!("pin"))],
             "/model/contacts/0/node",
-            "cannot move",
+            "cannot move freely; leave",
         ),
-        elsewhere("contact across a support", &held, "/model/contacts/0/node", "cannot move along"),
+        elsewhere("contact across a support", &held, "/model/contacts/0/node", "cannot move freely along"),
         elsewhere("initial penetration", &behind, "/model/contacts/0", "gap -0.25"),
         elsewhere("no room", &both(ceiling), "/model/contacts/1", "`floor` and `ceiling` leave 0.0 between them"),
         elsewhere("less than no room", &both(low_ceiling), "/model/contacts/1", "leave -1.0 between them"),
+    ]
+}
+
+/// The floor replaced by a ball; the tip is at (-1.5, 0).
+pub fn balls() -> Vec<BadDocument> {
+    let floor = "/model/obstacles/floor";
+    let contact = "/model/contacts/0";
+    let node = "/model/contacts/0/node";
+    let around_tip = |radius: f64, side: &str| json!({"center": [-1.5, 0], "radius": radius, "side": side});
+    let below = json!({"kind": "ball", "center": [-1.5, -1], "radius": 1});
+    let sideways = [(floor, below.clone()), ("/model/supports/tip", json!(["y"]))];
+    let held = [(floor, below), ("/model/supports/tip", json!(["x", "y"]))];
+    vec![
+        ball_with("ball with a short center", json!({"center": [0]}), "found 1 numbers; 2 are expected")
+            .told("/model/obstacles/floor/center"),
+        ball_with("ball with a huge center", json!({"center": [0, 1e90]}), "choose other units")
+            .told("/model/obstacles/floor/center/1"),
+        ball_with("ball of no radius", json!({"radius": 0}), "above 0").told("/model/obstacles/floor/radius"),
+        ball_with("ball of negative radius", json!({"radius": -1}), "above 0").told("/model/obstacles/floor/radius"),
+        ball_with("ball of huge radius", json!({"radius": 1e90}), "other units").told("/model/obstacles/floor/radius"),
+        ball_with("node inside a ball", json!({"radius": 2}), "inside the ball `floor` at the start, gap -0.5")
+            .told(contact),
+        ball_with("node outside a ball", json!({"side": "inside"}), "outside the ball `floor` at the start, gap -0.5")
+            .told(contact),
+        ball_with("node at the centre", around_tip(1.0, "inside"), "move it off the centre").told(contact),
+        ball_with("node at the centre of a solid ball", around_tip(1.0, "outside"), "gap -1.0").told(contact),
+        ball_with("node at a ball that is a point", around_tip(1e-14, "outside"), "off the centre").told(contact),
+        elsewhere("ball against a support", &held, node, "cannot move freely; leave the contact out"),
+        elsewhere("ball touched sideways", &sideways, node, "touches the ball where it cannot move freely"),
     ]
 }
 

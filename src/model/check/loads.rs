@@ -1,0 +1,146 @@
+//! What a stage multiplies by its load factor: forces, displacements of supports, motions of obstacles.
+
+use super::Scope;
+use super::numbers::{self, dot, largest, norm};
+use super::structure::COMPONENT_NAMES;
+use crate::model::mistakes::{Mistakes, Place};
+use crate::model::names::quoted;
+use crate::model::request::{Element, Obstacle, Stage};
+
+/// A motion whose part along a normal is this small, in units of its length, runs along the plane.
+const ALONG: f64 = 8.0 * f64::EPSILON;
+
+/// What a moving support or obstacle acts on, looked up once for all stages.
+pub(super) struct Surroundings {
+    /// For each node, whether an element joins it to a free component.
+    driving: Vec<bool>,
+    /// For each obstacle, its contacts.
+    used: Vec<Use>,
+}
+
+/// The contacts of an obstacle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Use {
+    None,
+    Frictionless,
+    Frictional,
+}
+
+impl Surroundings {
+    pub fn new(scope: &Scope) -> Self {
+        Self { driving: driving(scope), used: used(scope) }
+    }
+}
+
+fn driving(scope: &Scope) -> Vec<bool> {
+    let mut driving = vec![false; scope.model.nodes.len()];
+    for element in &scope.model.elements {
+        let (Element::Bar { nodes, .. } | Element::Spring { nodes, .. }) = element;
+        let numbers = nodes.iter().filter_map(|name| scope.model.nodes.get_index_of(name));
+        if numbers.clone().any(|node| scope.has_free_component(node)) {
+            numbers.for_each(|node| driving[node] = true);
+        }
+    }
+    driving
+}
+
+fn used(scope: &Scope) -> Vec<Use> {
+    let mut used = vec![Use::None; scope.model.obstacles.len()];
+    for contact in &scope.model.contacts {
+        let found = if contact.friction > 0.0 { Use::Frictional } else { Use::Frictionless };
+        match scope.model.obstacles.get_index_of(&contact.obstacle) {
+            Some(obstacle) => used[obstacle] = used[obstacle].max(found),
+            // A misspelt name, which is noted already, may mean any of them.
+            None => return vec![Use::Frictional; used.len()],
+        }
+    }
+    used
+}
+
+pub(super) fn loads(scope: &Scope, around: &Surroundings, stage: &Stage, at: &Place, mistakes: &mut Mistakes) {
+    let before = mistakes.count();
+    let forces_at = at.member("forces");
+    let mut loaded = forces(scope, stage, &forces_at, mistakes);
+    loaded |= displacements(scope, around, stage, &at.member("displacements"), mistakes);
+    loaded |= motions(scope, around, stage, &at.member("obstacle_motion"), mistakes);
+    if !loaded && mistakes.count() == before {
+        let only_forces = stage.displacements.is_empty() && stage.obstacle_motion.is_empty();
+        let at = if only_forces && !stage.forces.is_empty() { &forces_at } else { at };
+        mistakes.add(at, || {
+            "the stage has no load; a force that is not zero on a free component, a displacement of a support that an \
+             element joins to one, or a motion of an obstacle against a contact is expected"
+        });
+    }
+}
+
+/// A force on a supported component goes into the support; forces that go there as a whole move nothing.
+fn forces(scope: &Scope, stage: &Stage, at: &Place, mistakes: &mut Mistakes) -> bool {
+    let mut loaded = false;
+    for (name, force) in &stage.forces {
+        let at = at.member(name);
+        let node = scope.node(name, &at, mistakes);
+        if numbers::vector(force, scope.model.dimension, &at, mistakes) {
+            let moves = |node| force.iter().enumerate().any(|(index, &part)| part != 0.0 && scope.is_free(node, index));
+            loaded |= node.is_some_and(moves);
+        }
+    }
+    loaded
+}
+
+fn displacements(scope: &Scope, around: &Surroundings, stage: &Stage, at: &Place, mistakes: &mut Mistakes) -> bool {
+    let mut loaded = false;
+    for (name, displacement) in &stage.displacements {
+        let at = at.member(name);
+        let node = scope.node(name, &at, mistakes);
+        if !numbers::vector(displacement, scope.model.dimension, &at, mistakes) {
+            continue;
+        }
+        let Some(node) = node else { continue };
+        for (index, &part) in displacement.iter().enumerate().filter(|(_, part)| **part != 0.0) {
+            if scope.is_free(node, index) {
+                mistakes.add(&at.index(index), || {
+                    let component = COMPONENT_NAMES[index];
+                    let name = quoted(name);
+                    format!(
+                        "found {part:?}, but the component {component} of {name} is free; support it, or leave this 0"
+                    )
+                });
+            } else {
+                loaded |= around.driving[node];
+            }
+        }
+    }
+    loaded
+}
+
+fn motions(scope: &Scope, around: &Surroundings, stage: &Stage, at: &Place, mistakes: &mut Mistakes) -> bool {
+    let mut loaded = false;
+    for (name, motion) in &stage.obstacle_motion {
+        let at = at.member(name);
+        let found = scope.obstacle(name, &at, mistakes);
+        let sane = numbers::vector(motion, scope.model.dimension, &at, mistakes);
+        let Some((number, obstacle)) = found else { continue };
+        if !sane || largest(motion) == 0.0 {
+            continue;
+        }
+        match around.used[number] {
+            Use::None => mistakes.add(&at, || {
+                let name = quoted(name);
+                format!(
+                    "no node has a contact with {name}, so its motion does nothing; add one, or leave the motion out"
+                )
+            }),
+            Use::Frictionless => loaded |= !slides_along(obstacle, motion),
+            Use::Frictional => loaded = true,
+        }
+    }
+    loaded
+}
+
+/// Whether the obstacle stays the same set of points: a plane that moves along itself does nothing without friction.
+fn slides_along(obstacle: &Obstacle, motion: &[f64]) -> bool {
+    match obstacle {
+        Obstacle::Plane { normal, .. } => dot(normal, motion).abs() <= ALONG * norm(normal) * norm(motion),
+        Obstacle::Ball { .. } => false,
+    }
+}

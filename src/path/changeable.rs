@@ -1,0 +1,317 @@
+//! A contact that can change, or the contacts of a corner that change together: its velocities, and what it may do next
+//! as equations and inequalities of the rate problem.
+
+use super::corner::{self, rays};
+use super::loading::Loading;
+use super::rates::{Choice, Entity, Signed};
+use super::standing::Standing;
+use super::state::{Rate, State};
+use crate::contact::vector::{Vector, add, dot, scaled};
+use crate::contact::{Frame, Mode, Reaction, Sliding};
+use nalgebra::DVector;
+
+/// Contacts that change together.
+pub(super) struct Changeable {
+    /// One, or the closed ones of a corner; the first has the node's whole force in the held system.
+    pub contacts: Vec<usize>,
+    standing: Standing,
+    frames: Vec<Frame>,
+    /// Columns and directions of the node's velocities.
+    pub velocities: Vec<(usize, Vector)>,
+    /// The present reaction of the first contact.
+    reaction: Reaction,
+    /// The present force on the node.
+    force: Vector,
+}
+
+/// The modes of an option.
+#[derive(Debug, Clone)]
+pub(super) struct Outcome {
+    pub modes: Vec<(usize, Mode)>,
+}
+
+/// Sine below which a ray lies on the bound of a corner's cone.
+const ON_BOUND: f64 = 1e-9;
+
+impl Changeable {
+    /// `next` is the first free column.
+    pub fn new(loading: Loading<'_>, state: &State, contacts: Vec<usize>, standing: Standing, next: usize) -> Self {
+        let frames: Vec<Frame> = contacts.iter().map(|contact| loading.frame(*contact, state)).collect();
+        let frame = &frames[0];
+        let contact = &loading.contacts[contacts[0]];
+        let directions: Vec<Vector> = match standing {
+            Standing::Settled(_) => Vec::new(),
+            Standing::OnCone { direction } => vec![direction],
+            Standing::Touching => {
+                let tangents = frame.tangents.iter().take(contact.tangents());
+                std::iter::once(frame.normal).chain(tangents.copied()).collect()
+            }
+            Standing::Cornered { .. } => vec![frame.normal, frame.tangents[0]],
+        };
+        let velocities = directions.into_iter().enumerate().map(|(k, direction)| (next + k, direction)).collect();
+        let force = corner::total_force(loading, contacts.iter().copied(), state);
+        let reaction = state.reactions[contacts[0]];
+        Self { contacts, standing, frames, velocities, reaction, force }
+    }
+
+    /// Rate of the dissipation when the node moves while one of the contacts, if any, slips.
+    pub fn dissipation(&self, loading: Loading<'_>, modes: &[Mode], rate: &Rate) -> f64 {
+        let slips = |(contact, _): &(&usize, &Frame)| matches!(modes[**contact], Mode::Slip { .. });
+        let Some((contact, frame)) = self.contacts.iter().zip(&self.frames).find(slips) else { return 0.0 };
+        if loading.contacts[*contact].tangents() == 0 {
+            return 0.0;
+        }
+        let traction = add(&self.force, -dot(&self.force, &frame.normal), &frame.normal);
+        -dot(&traction, &loading.relative_rate(*contact, rate))
+    }
+
+    /// On a curved obstacle: from the rate of the whole force to the rates of normal and tangential reaction.
+    pub fn take_reaction_apart(&self, loading: Loading<'_>, rate: &mut Rate) {
+        let frame = &self.frames[0];
+        if frame.curvature == 0.0 || self.contacts.len() > 1 {
+            return;
+        }
+        let motion = loading.relative_rate(self.contacts[0], rate);
+        let slid = add(&motion, -dot(&motion, &frame.normal), &frame.normal);
+        let across = frame.curvature * dot(&self.reaction.tangential, &slid);
+        let reaction = &mut rate.reactions[self.contacts[0]];
+        reaction.normal += across;
+        reaction.tangential = add(&reaction.tangential, -frame.curvature * self.reaction.normal, &slid);
+        reaction.tangential = add(&reaction.tangential, -across, &frame.normal);
+    }
+
+    /// Where the node of a corner slides along one obstacle, that one has the whole force.
+    pub fn move_to_slider(&self, loading: Loading<'_>, modes: &[Mode], rate: &mut Rate) {
+        let slips = |(contact, _): &(&usize, &Frame)| matches!(modes[**contact], Mode::Slip { .. });
+        let slider = self.contacts.iter().zip(&self.frames).find(slips);
+        let (Some((contact, frame)), true) = (slider, self.contacts.len() > 1) else { return };
+        let force = corner::force(&self.frames[0], &rate.reactions[self.contacts[0]]);
+        let normal = dot(&force, &frame.normal);
+        rate.reactions[self.contacts[0]] = Reaction::default();
+        let mut tangential = add(&force, -normal, &frame.normal);
+        if frame.curvature != 0.0 {
+            // The normal reaction turns with the place on the obstacle.
+            let motion = loading.relative_rate(*contact, rate);
+            let pressed = dot(&self.force, &frame.normal);
+            tangential = add(&tangential, -pressed, &frame.normal_change(&motion));
+        }
+        rate.reactions[*contact] = Reaction { normal, tangential };
+    }
+
+    /// Whether a stick at a touch in space keeps within the circular cone, which linear forms do not say.
+    pub fn is_in_cone(&self, loading: Loading<'_>, modes: &[Mode], rate: &Rate, tolerance: f64) -> bool {
+        let contact = self.contacts[0];
+        let circular = loading.contacts[contact].sliding == Sliding::Plane;
+        if !circular || self.standing != Standing::Touching || modes[contact] != Mode::Stick {
+            return true;
+        }
+        let reaction = &rate.reactions[contact];
+        loading.contacts[contact].friction * reaction.normal - reaction.tangential_size() >= -tolerance
+    }
+
+    /// The options, holding first, and the modes of each.
+    pub fn options(&self, loading: Loading<'_>, state: &State, forms: &mut Forms<'_>) -> (Entity, Vec<Outcome>) {
+        let contact = self.contacts[0];
+        let friction = loading.contacts[contact].friction;
+        let single = |mode: Mode| Outcome { modes: vec![(contact, mode)] };
+        let frame = &self.frames[0];
+        match (self.standing, &self.velocities[..]) {
+            (Standing::OnCone { direction }, _) => {
+                let along = forms.velocity(self, &direction);
+                // μ ṙ_n + d·ṙ_t; the reaction turns with the place on a curved obstacle.
+                let mut slack = forms.force_rate(self, &add(&direction, friction, &frame.normal));
+                let (column, _) = self.velocities[0];
+                slack[column] -= frame.curvature * self.reaction.normal * (1.0 + friction * friction);
+                let slack = forms.force(slack);
+                (Entity::complementary(slack, along), vec![single(Mode::Stick), single(Mode::Slip { direction })])
+            }
+            (Standing::Touching, [_]) => {
+                let gap = forms.velocity(self, &frame.normal);
+                let pressing = forms.force_along(self, &frame.normal);
+                let closed = Mode::Slip { direction: [0.0; 3] };
+                (Entity::complementary(pressing, gap), vec![single(closed), single(Mode::Free)])
+            }
+            (Standing::Touching, [_, _]) => {
+                let tangent = frame.tangents[0];
+                let directions = [tangent, scaled(&tangent, -1.0)];
+                let outcomes = vec![
+                    single(Mode::Stick),
+                    single(Mode::Slip { direction: directions[0] }),
+                    single(Mode::Slip { direction: directions[1] }),
+                    single(Mode::Free),
+                ];
+                (self.touching_on_a_line(friction, forms), outcomes)
+            }
+            (Standing::Touching, _) => {
+                let zero: Vec<usize> =
+                    self.velocities.iter().map(|(_, direction)| forms.velocity(self, direction)).collect();
+                let forces: Vec<usize> =
+                    self.velocities.iter().map(|(_, direction)| forms.force_along(self, direction)).collect();
+                let stick =
+                    Choice { zero: zero.clone(), nonnegative: vec![Signed::plus(forces[0])], implied: Vec::new() };
+                let free = Choice { zero: forces, nonnegative: vec![Signed::plus(zero[0])], implied: Vec::new() };
+                (Entity { options: vec![stick, free] }, vec![single(Mode::Stick), single(Mode::Free)])
+            }
+            (Standing::Cornered { facets, unloaded }, _) => {
+                self.options_of_corner(loading, state, facets, unloaded, forms)
+            }
+            (Standing::Settled(mode), _) => (Entity { options: vec![Choice::default()] }, vec![single(mode)]),
+        }
+    }
+
+    fn touching_on_a_line(&self, friction: f64, forms: &mut Forms<'_>) -> Entity {
+        let (normal, tangent) = (self.frames[0].normal, self.frames[0].tangents[0]);
+        let both = |form: usize| [Signed::plus(form), Signed::minus(form)];
+        let gap = forms.velocity(self, &normal);
+        let along = forms.velocity(self, &tangent);
+        let pressing = forms.force_along(self, &normal);
+        let traction = forms.force_along(self, &tangent);
+        let forward = forms.force_along(self, &add(&tangent, friction, &normal));
+        let backward = forms.force_along(self, &add(&scaled(&tangent, -1.0), friction, &normal));
+        let stick = Choice {
+            zero: vec![gap, along],
+            nonnegative: vec![Signed::plus(forward), Signed::plus(backward)],
+            implied: vec![Signed::plus(pressing)],
+        };
+        let slip = |along: Signed, cone: usize, other: usize| Choice {
+            zero: vec![gap, cone],
+            nonnegative: vec![along, Signed::plus(pressing)],
+            implied: vec![Signed::plus(other)],
+        };
+        let free = Choice {
+            zero: vec![pressing, traction],
+            nonnegative: vec![Signed::plus(gap)],
+            implied: [both(forward), both(backward)].concat(),
+        };
+        let (plus, minus) = (Signed::plus(along), Signed::minus(along));
+        Entity { options: vec![stick, slip(plus, forward, backward), slip(minus, backward, forward), free] }
+    }
+
+    /// The node is held, slides along one of its obstacles while the others open, or leaves them all.
+    fn options_of_corner(
+        &self,
+        loading: Loading<'_>,
+        state: &State,
+        facets: [bool; 2],
+        unloaded: bool,
+        forms: &mut Forms<'_>,
+    ) -> (Entity, Vec<Outcome>) {
+        let inward = corner::sector(loading, &self.contacts, state).inward;
+        let gaps: Vec<usize> = self.frames.iter().map(|frame| forms.velocity(self, &frame.normal)).collect();
+        let outcome = |slipping: Option<(usize, Vector)>, others: Mode| Outcome {
+            modes: self
+                .contacts
+                .iter()
+                .map(|contact| match slipping {
+                    Some((slipping, direction)) if slipping == *contact => (*contact, Mode::Slip { direction }),
+                    _ => (*contact, others),
+                })
+                .collect(),
+        };
+        let bounds = inward.iter().flatten().zip(facets).filter(|(_, active)| *active);
+        let held = Choice {
+            zero: self.velocities.iter().map(|(_, direction)| forms.velocity(self, direction)).collect(),
+            nonnegative: bounds.map(|(inward, _)| Signed::plus(forms.force_along(self, inward))).collect(),
+            implied: Vec::new(),
+        };
+        let mut options = vec![held];
+        let mut outcomes = vec![outcome(None, Mode::Stick)];
+        for (place, (contact, frame)) in self.contacts.iter().zip(&self.frames).enumerate() {
+            let friction = loading.contacts[*contact].friction;
+            let tangent = frame.tangents[0];
+            let senses: &[f64] = if friction > 0.0 { &[1.0, -1.0] } else { &[0.0] };
+            for &sense in senses {
+                let ray = rays(frame, friction)[usize::from(sense < 0.0)];
+                let on_bound = inward
+                    .iter()
+                    .flatten()
+                    .zip(facets)
+                    .any(|(inward, active)| active && dot(inward, &ray).abs() <= ON_BOUND);
+                if !unloaded && !on_bound {
+                    continue;
+                }
+                let across = [-ray[1], ray[0], 0.0];
+                let mut off_ray = forms.force_rate(self, &across);
+                if frame.curvature != 0.0 {
+                    let pressed = dot(&self.force, &frame.normal);
+                    let turn = frame.curvature * pressed * dot(&ray, &ray);
+                    // The ray turns clockwise as the node goes along the tangent of a convex obstacle.
+                    for (column, direction) in &self.velocities {
+                        off_ray[*column] += turn * dot(direction, &tangent);
+                    }
+                }
+                let mut nonnegative: Vec<Signed> = gaps
+                    .iter()
+                    .enumerate()
+                    .filter(|(other, _)| *other != place)
+                    .map(|(_, gap)| Signed::plus(*gap))
+                    .collect();
+                if sense != 0.0 {
+                    let along = forms.velocity(self, &tangent);
+                    nonnegative.push(Signed { form: along, sign: sense });
+                }
+                if unloaded {
+                    nonnegative.push(Signed::plus(forms.force_along(self, &ray)));
+                }
+                options.push(Choice {
+                    zero: vec![gaps[place], forms.force(off_ray)],
+                    nonnegative,
+                    implied: Vec::new(),
+                });
+                outcomes.push(outcome(Some((*contact, scaled(&tangent, sense))), Mode::Free));
+            }
+        }
+        if unloaded {
+            let zero = self.velocities.iter().map(|(_, direction)| forms.force_along(self, direction)).collect();
+            let nonnegative = gaps.iter().map(|gap| Signed::plus(*gap)).collect();
+            options.push(Choice { zero, nonnegative, implied: Vec::new() });
+            outcomes.push(outcome(None, Mode::Free));
+        }
+        (Entity { options }, outcomes)
+    }
+}
+
+/// Linear forms of the rate problem as they are made.
+pub(super) struct Forms<'a> {
+    /// The rate of each weight.
+    pub columns: &'a [Rate],
+    /// Normal and tangential parts in space of what the first contact of a group has.
+    pub normals: &'a dyn Fn(usize) -> Vector,
+    pub rows: Vec<DVector<f64>>,
+    pub is_force: Vec<bool>,
+}
+
+impl Forms<'_> {
+    /// Velocity of the node along a direction.
+    fn velocity(&mut self, entry: &Changeable, direction: &Vector) -> usize {
+        let mut row = DVector::zeros(self.columns.len());
+        for (column, velocity) in &entry.velocities {
+            row[*column] = dot(velocity, direction);
+        }
+        self.rows.push(row);
+        self.is_force.push(false);
+        self.rows.len() - 1
+    }
+
+    /// Rate of the whole force on the node along a direction.
+    fn force_rate(&self, entry: &Changeable, direction: &Vector) -> DVector<f64> {
+        let contact = entry.contacts[0];
+        let normal = (self.normals)(contact);
+        let along = |rate: &Rate| {
+            let reaction = &rate.reactions[contact];
+            reaction.normal * dot(&normal, direction) + dot(&reaction.tangential, direction)
+        };
+        DVector::from_iterator(self.columns.len(), self.columns.iter().map(along))
+    }
+
+    fn force_along(&mut self, entry: &Changeable, direction: &Vector) -> usize {
+        let rate = self.force_rate(entry, direction);
+        self.force(rate)
+    }
+
+    fn force(&mut self, rate: DVector<f64>) -> usize {
+        self.rows.push(rate);
+        self.is_force.push(true);
+        self.rows.len() - 1
+    }
+}

@@ -1,0 +1,114 @@
+//! How far the path may have drifted from the exact one: the error of slip tracks, carried along.
+//!
+//! Slip along any tangent is the only place where an increment has an error of discretisation (`track`). With
+//! `y = computed - exact` at the end of an increment, `y₀` at its start and the rule's defect
+//! `τ = h⁵ (θ'''' - κ² κ')/720`, the linearised equations of the increment give
+//!
+//! ```text
+//! J y = (0, 0, t·y₀ at sticking contacts, m·y₀ + ½ h θ(y₀) - τ at tracks, 0 along the path)
+//! ```
+//!
+//! `θ''''` comes from a point half way: what the cubic through both ends' `θ` and `κ` misses there.
+
+use super::mode_system::{Kind, ModeSystem, Role};
+use super::newton::Corrected;
+use super::state::{Rate, State};
+use super::track::{self, Rule};
+use crate::contact::Mode;
+use crate::contact::vector::{Vector, add, cross, dot, size};
+use crate::linear_algebra::Factorisation;
+use nalgebra::DVector;
+
+/// A point of the path with its direction.
+#[derive(Clone, Copy)]
+pub struct Pointed<'a> {
+    pub corrected: &'a Corrected,
+    pub rate: &'a Rate,
+}
+
+impl ModeSystem<'_> {
+    /// The drift at the end of an increment, from that at its start (`None`: none yet) and the point half way.
+    pub fn drift(&self, start: &Rate, before: Option<&Rate>, middle: Pointed<'_>, end: Pointed<'_>) -> Option<Rate> {
+        let iterate = self.iterate_of(end.corrected);
+        let mut matrix = self.assemble(&iterate, Kind::Increment);
+        self.border(&mut matrix, end.rate);
+        let mut values = DVector::zeros(self.size);
+        for (contact, role) in self.roles.iter().enumerate() {
+            let moved = before.map_or([0.0; 3], |before| self.loading.relative_rate(contact, before));
+            let row = self.row_of(contact);
+            match role {
+                Role::Free | Role::Frictionless | Role::Line { .. } | Role::HeldBy => {}
+                Role::Stick | Role::Held => {
+                    let frame = self.loading.frame(contact, self.anchor);
+                    for (k, tangent) in
+                        frame.tangents.iter().enumerate().take(self.loading.contacts[contact].tangents())
+                    {
+                        values[row + 1 + k] = dot(tangent, &moved);
+                    }
+                }
+                Role::Plane { start: begun, turn } => {
+                    let frame = self.loading.frame(contact, &end.corrected.state);
+                    let direction = iterate.directions[contact];
+                    let chord = self.chord(contact, &end.corrected.state);
+                    let rule = Rule::new(&frame, begun, turn, &direction, &chord);
+                    let pressed = self.loading.contacts[contact].friction * self.anchor.reactions[contact].normal;
+                    let turned = before.map_or(0.0, |before| {
+                        let across = cross(&begun.normal, &begun.direction);
+                        -dot(&before.reactions[contact].tangential, &across) / pressed
+                    });
+                    let half = -rule.by_turn;
+                    let defect = self.defect(contact, start, middle, end).unwrap_or(0.0);
+                    values[row + 1] = dot(&rule.across, &moved) + half * turned - defect;
+                }
+            }
+        }
+        let factorisation = Factorisation::new(matrix)?;
+        if !factorisation.solve(&mut values) {
+            return None;
+        }
+        Some(self.rate_at(&iterate, &values))
+    }
+
+    /// `τ`
+    fn defect(&self, contact: usize, start: &Rate, middle: Pointed<'_>, end: Pointed<'_>) -> Option<f64> {
+        let Role::Plane { start: begun, .. } = &self.roles[contact] else { return None };
+        let direction_at = |corrected: &Corrected| match corrected.modes[contact] {
+            Mode::Slip { direction } => Some(direction),
+            Mode::Free | Mode::Stick => None,
+        };
+        let turn = |state: &State, rate: &Rate, direction: &Vector| {
+            track::turn_rate(self.loading, contact, state, rate, direction)
+        };
+        let (last, half) = (direction_at(end.corrected)?, direction_at(middle.corrected)?);
+        let first_turn = turn(self.anchor, start, &begun.direction);
+        let last_turn = turn(&end.corrected.state, end.rate, &last)?;
+        let angle = |corrected: &Corrected, direction: &Vector| {
+            let normal = self.loading.frame(contact, &corrected.state).normal;
+            let carried = begun.carried_to(&normal);
+            dot(&cross(&carried, direction), &normal).atan2(dot(&carried, direction))
+        };
+        let (last_angle, half_angle) = (angle(end.corrected, &last), angle(middle.corrected, &half));
+        let to_end = self.chord(contact, &end.corrected.state);
+        let to_half = self.chord(contact, &middle.corrected.state);
+        let from_half = add(&to_end, -1.0, &to_half);
+        let first_part = track::arc(size(&to_half), &begun.direction, &half);
+        let length = first_part + track::arc(size(&from_half), &half, &last);
+        if length <= 0.0 {
+            return None;
+        }
+        let x = first_part / length;
+        let y = 1.0 - x;
+        let Some(first_turn) = first_turn else {
+            // The quadratic through the end's turn misses what the rule has 2/3 of.
+            let square = last_turn * length - last_angle;
+            let quadratic = x * (last_angle - square) + x * x * square;
+            let scale = x * y * y / 0.125;
+            return Some(length * (half_angle - quadratic) / (1.5 * scale));
+        };
+        let cubic = y * y * x * length * first_turn + x * x * ((1.0 + 2.0 * y) * last_angle - y * length * last_turn);
+        // The cubic misses x² y² h⁴ θ''''/24.
+        let fourth = 24.0 * (half_angle - cubic) / (x * x * y * y);
+        let (mean, change) = (0.5 * (first_turn + last_turn) * length, (last_turn - first_turn) * length);
+        Some(length * (fourth - mean * mean * change) / 720.0)
+    }
+}

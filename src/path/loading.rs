@@ -1,0 +1,101 @@
+//! The structure under a load pattern, with what earlier stages hold.
+
+use super::corner::Corner;
+use super::state::{Rate, State};
+use crate::contact::vector::{Vector, add};
+use crate::contact::{Contact, Frame};
+use crate::structure::Structure;
+use serde::{Deserialize, Serialize};
+
+/// What a load factor multiplies, dimensionless.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct LoadPattern {
+    /// Forces; all degrees of freedom.
+    pub forces: Vec<f64>,
+    /// Displacements of supports; all degrees of freedom, or empty where no support moves in any stage.
+    pub supports: Vec<f64>,
+    /// Translation of each contact's obstacle.
+    pub shifts: Vec<Vector>,
+}
+
+impl LoadPattern {
+    /// Adds a multiple of another.
+    pub fn add(&mut self, factor: f64, other: &Self) {
+        self.forces.iter_mut().zip(&other.forces).for_each(|(sum, value)| *sum += factor * value);
+        self.supports.iter_mut().zip(&other.supports).for_each(|(sum, value)| *sum += factor * value);
+        self.shifts.iter_mut().zip(&other.shifts).for_each(|(sum, value)| *sum = add(sum, factor, value));
+    }
+
+    /// Whether supports or obstacles move.
+    pub fn moves_boundary(&self) -> bool {
+        self.supports.iter().any(|value| *value != 0.0) || self.shifts.iter().any(|shift| *shift != [0.0; 3])
+    }
+
+    /// The same shape, all zero.
+    pub fn zeroed(&self) -> Self {
+        Self {
+            forces: vec![0.0; self.forces.len()],
+            supports: vec![0.0; self.supports.len()],
+            shifts: vec![[0.0; 3]; self.shifts.len()],
+        }
+    }
+}
+
+/// The structure under a load pattern, with what is held from before.
+#[derive(Clone, Copy)]
+pub struct Loading<'a> {
+    pub structure: &'a Structure,
+    pub contacts: &'a [Contact],
+    /// Nodes with several contacts.
+    pub corners: &'a [Corner],
+    /// Multiplied by the load factor.
+    pub pattern: &'a LoadPattern,
+    /// Held by earlier stages.
+    pub held: &'a LoadPattern,
+}
+
+/// A node's components of a vector over all degrees of freedom.
+pub fn of_node(dimension: usize, node: usize, values: &[f64]) -> Vector {
+    let mut vector = [0.0; 3];
+    vector[..dimension].copy_from_slice(&values[node * dimension..(node + 1) * dimension]);
+    vector
+}
+
+impl Loading<'_> {
+    /// Displacement of a contact's node less its obstacle's.
+    pub fn relative(&self, contact: usize, state: &State) -> Vector {
+        let moved = of_node(self.structure.dimension, self.contacts[contact].node, &state.displacement);
+        let shifted = add(&moved, -1.0, &self.held.shifts[contact]);
+        add(&shifted, -state.load, &self.pattern.shifts[contact])
+    }
+
+    /// Velocity of a contact's node less its obstacle's.
+    pub fn relative_rate(&self, contact: usize, rate: &Rate) -> Vector {
+        let moved = of_node(self.structure.dimension, self.contacts[contact].node, &rate.displacement);
+        add(&moved, -rate.load, &self.pattern.shifts[contact])
+    }
+
+    /// Gap, normal and tangents of a contact.
+    pub fn frame(&self, contact: usize, state: &State) -> Frame {
+        self.contacts[contact].frame(&self.relative(contact, state))
+    }
+
+    /// Gap of a contact.
+    pub fn gap(&self, contact: usize, state: &State) -> f64 {
+        self.contacts[contact].gap(&self.relative(contact, state))
+    }
+
+    /// Displacement of a supported degree of freedom per load factor.
+    pub fn support_rate(&self, freedom: usize) -> f64 {
+        self.pattern.supports.get(freedom).copied().unwrap_or(0.0)
+    }
+
+    /// Puts the supports where the load factor has them.
+    pub fn place_supports(&self, state: &mut State) {
+        for (freedom, (held, pattern)) in self.held.supports.iter().zip(&self.pattern.supports).enumerate() {
+            if self.structure.unknown_of[freedom].is_none() {
+                state.displacement[freedom] = held + state.load * pattern;
+            }
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! Newton's method on the equations of a mode, and the path's direction at the point found.
+
+use super::mode_system::{Iterate, Kind, ModeSystem};
+use super::singular::UNCERTAIN;
+use super::state::{Rate, State};
+use crate::contact::Mode;
+use crate::contact::vector::Vector;
+use crate::linear_algebra::Factorisation;
+use nalgebra::DVector;
+
+/// The last equation: where on the branch the point is to be.
+#[derive(Debug, Clone, Copy)]
+pub enum Place<'a> {
+    /// `‖(Δu, Δs)‖ = step` from a state, on the side of the predictor.
+    ArcLength { from: &'a State, step: f64 },
+    /// `s = value`
+    Load(f64),
+    /// `u = value` at a degree of freedom.
+    Displacement { freedom: usize, value: f64 },
+}
+
+/// A converged point and what it took.
+#[derive(Debug, Clone)]
+pub struct Corrected {
+    pub state: State,
+    /// The modes with the directions of slip as they are at the point.
+    pub modes: Vec<Mode>,
+    pub iterations: u64,
+    /// Iterations until the error was small; those after it polish, and their number is round-off's.
+    pub iterations_to_small: u64,
+    /// Equilibrium residual over the force scale.
+    pub residual: f64,
+    /// Equilibrium and contact equations left over, one a row.
+    left_over: DVector<f64>,
+    /// Largest force in the structure, its loads and its contacts.
+    pub force_scale: f64,
+    pub(super) directions: Vec<Vector>,
+}
+
+/// Why no point was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Failure {
+    Singular,
+    NotConverged,
+}
+
+/// Newton iterations before a step is given up.
+const MOST_ITERATIONS: u64 = 16;
+/// Relative residual that an accepted point must have.
+pub const ACCEPTED_RESIDUAL: f64 = 1e-11;
+/// Relative residual below which iterating on gains nothing.
+const ROUND_OFF: f64 = 1e-15;
+/// Error below which Newton's method is as good as converged.
+const SMALL: f64 = 1e-6;
+
+impl ModeSystem<'_> {
+    /// Newton's method from a guess, to round-off.
+    ///
+    /// `force_scale` is the largest force met so far on the path; residuals are relative to it or to the present
+    /// forces, whichever is larger.
+    pub fn correct(&self, guess: State, place: Place<'_>, force_scale: f64) -> Result<Corrected, Failure> {
+        self.correct_from(self.iterate(guess), place, force_scale)
+    }
+
+    pub(super) fn correct_from(
+        &self,
+        guess: Iterate,
+        place: Place<'_>,
+        force_scale: f64,
+    ) -> Result<Corrected, Failure> {
+        let mut iterate = guess;
+        self.make_consistent(&mut iterate);
+        let mut values = DVector::zeros(self.size);
+        let mut force = vec![0.0; self.loading.structure.freedoms()];
+        let mut iterations = 0;
+        let mut iterations_to_small = None;
+        let mut best: Option<(f64, Iterate, Figures)> = None;
+        loop {
+            let (largest, forces) = self.residual(&iterate, &mut values, &mut force);
+            let scale = forces.max(force_scale).max(f64::MIN_POSITIVE);
+            let residual = largest / scale;
+            let last = self.size - 1;
+            values[last] = self.place(&iterate.state, place, None);
+            let geometric = values.iter().skip(self.loading.structure.unknowns()).fold(0.0_f64, |m, v| m.max(v.abs()));
+            let error = residual.max(geometric);
+            if !error.is_finite() {
+                return Err(Failure::NotConverged);
+            }
+            if error <= SMALL {
+                iterations_to_small.get_or_insert(iterations);
+            }
+            let improved = best.as_ref().is_none_or(|(least, ..)| error < 0.5 * least);
+            if best.as_ref().is_none_or(|(least, ..)| error <= *least) {
+                let figures = Figures { iterations, residual, left_over: values.clone(), force_scale: forces };
+                best = Some((error, iterate.clone(), figures));
+            }
+            let least = best.as_ref().map_or(f64::INFINITY, |(least, ..)| *least);
+            let settled = least <= ROUND_OFF || (!improved && least <= ACCEPTED_RESIDUAL);
+            if settled && iterations > 0 {
+                break;
+            }
+            if iterations == MOST_ITERATIONS {
+                if least <= ACCEPTED_RESIDUAL {
+                    break;
+                }
+                return Err(Failure::NotConverged);
+            }
+            let mut matrix = self.assemble(&iterate, Kind::Increment);
+            self.place(&iterate.state, place, Some(&mut matrix));
+            let factorisation = Factorisation::new(matrix).ok_or(Failure::Singular)?;
+            if !factorisation.solve(&mut values) {
+                return Err(Failure::Singular);
+            }
+            iterate = self.corrected_by(&iterate, &values);
+            iterations += 1;
+        }
+        let Some((_, mut iterate, figures)) = best else { return Err(Failure::NotConverged) };
+        let wrong_side = match place {
+            Place::ArcLength { from, step } => iterate.state.distance(from) < 0.5 * step,
+            Place::Load(_) | Place::Displacement { .. } => false,
+        };
+        if wrong_side {
+            return Err(Failure::NotConverged);
+        }
+        self.share(&mut iterate.state);
+        Ok(Corrected {
+            modes: self.modes_at(&iterate),
+            state: iterate.state,
+            directions: iterate.directions,
+            iterations: figures.iterations,
+            iterations_to_small: iterations_to_small.unwrap_or(figures.iterations).min(figures.iterations),
+            residual: figures.residual,
+            left_over: figures.left_over,
+            force_scale: figures.force_scale,
+        })
+    }
+
+    /// The path's direction at a converged point, and an estimate of the point's error: the size of one more Newton
+    /// correction across the path. With them the sign of the bordered determinant, where it is certain.
+    pub fn tangent_and_error(&self, corrected: &Corrected, towards: &Rate) -> Option<(Rate, f64, Option<f64>)> {
+        let iterate = self.iterate_of(corrected);
+        let factorisation = self.bordered(&iterate, towards)?;
+        let rate = self.tangent_by(&factorisation, &iterate)?;
+        let mut values = corrected.left_over.clone();
+        values[self.size - 1] = 0.0;
+        let error =
+            if factorisation.solve(&mut values) { self.rate_at(&iterate, &values).size() } else { return None };
+        let certain = factorisation.pivot_ratio() > UNCERTAIN && !self.has_tracks();
+        Some((rate, error, certain.then(|| factorisation.determinant_sign())))
+    }
+
+    /// A point as it is, with its residual.
+    pub fn judged(&self, state: State, force_scale: f64) -> Corrected {
+        let mut iterate = self.iterate(state);
+        self.make_consistent(&mut iterate);
+        let mut left_over = DVector::zeros(self.size);
+        let mut force = vec![0.0; self.loading.structure.freedoms()];
+        let (largest, forces) = self.residual(&iterate, &mut left_over, &mut force);
+        let geometric = left_over.iter().skip(self.loading.structure.unknowns()).fold(0.0_f64, |m, v| m.max(v.abs()));
+        let residual = (largest / forces.max(force_scale).max(f64::MIN_POSITIVE)).max(geometric);
+        self.share(&mut iterate.state);
+        Corrected {
+            modes: self.modes_at(&iterate),
+            state: iterate.state,
+            directions: iterate.directions,
+            iterations: 0,
+            iterations_to_small: 0,
+            residual,
+            left_over,
+            force_scale: forces,
+        }
+    }
+}
+
+/// What Newton's method says of its best iterate.
+struct Figures {
+    iterations: u64,
+    residual: f64,
+    left_over: DVector<f64>,
+    force_scale: f64,
+}

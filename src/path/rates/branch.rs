@@ -1,0 +1,375 @@
+//! Branch and bound over the entities.
+//!
+//! A node has some entities decided; what is left is the cone of their options' forms and of what the options of every
+//! other entity have in common. The node is done where that cone holds nothing but zero, where it is one line (whatever
+//! fits that line is examined), or where the open entities are certified to have one ray for each sign of the load rate.
+//! Otherwise the entity that fits the cone's present point worst is decided, best option first. The first branching is
+//! on the sign of the load rate. Every ray comes from the exact equations of its combination, so that the search decides
+//! only where to look.
+
+use super::certificate::{Certified, options_of, reduce};
+use super::dictionary::{Dictionary, Feasibility};
+use super::line::Line;
+use super::problem::{Choice, RateProblem};
+use crate::cancel::CancelFlag;
+use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeSet;
+use std::rc::Rc;
+
+/// A feasible direction under one combination of options.
+#[derive(Debug, Clone)]
+pub struct Ray {
+    /// Of unit arc length.
+    pub weights: DVector<f64>,
+    /// The option of each entity.
+    pub chosen: Vec<usize>,
+    /// Some inequality holds with equality.
+    pub weak: bool,
+}
+
+/// What was found.
+#[derive(Debug, Clone, Default)]
+pub struct Findings {
+    /// In the order of their combinations, the first entity counting fastest.
+    pub rays: Vec<Ray>,
+    /// Combinations that were not examined, saturating; an upper bound.
+    pub unexplored: u64,
+    /// Some combination has more than one independent vector, or one along which nothing moves.
+    pub degenerate: bool,
+    /// Bases of such sets, one vector a column.
+    pub planes: Vec<DMatrix<f64>>,
+    /// One ray for each sign of the load rate, by the certificate, without any branching.
+    pub certified: bool,
+    /// Nodes and combinations looked at.
+    pub examined: u64,
+}
+
+/// Combinations tried on one line: more are possible only where many inequalities hold with equality at once.
+const MOST_ON_LINE: usize = 64;
+/// Nodes spent inside sets of solutions of more than one dimension, whose edges are rays like any other.
+const MOST_IN_SETS: u64 = 512;
+/// Bases kept of such sets.
+const MOST_PLANES: usize = 256;
+/// A form this small at a node's point is zero as far as the search is concerned.
+const FITS: f64 = 1e-7;
+
+/// All rays, after at most so many nodes and combinations; `first` are combinations to examine before the others.
+pub fn explore(problem: &RateProblem, first: &[Vec<usize>], most: u64, cancel: &CancelFlag) -> Findings {
+    let mut search = Search { problem, findings: Findings::default(), seen: BTreeSet::new(), most };
+    if !search.certified_at_once() {
+        first.iter().for_each(|chosen| search.examine(chosen));
+        search.branch(cancel);
+    }
+    let mut findings = search.findings;
+    findings.unexplored = findings.unexplored.min(problem.combinations());
+    findings.rays.sort_by(|a, b| a.chosen.iter().rev().cmp(b.chosen.iter().rev()));
+    findings
+}
+
+/// Decided entities and the cone that is left.
+struct Node {
+    chosen: Vec<Option<usize>>,
+    dictionary: Dictionary,
+    /// Sign of the load rate.
+    sign: f64,
+    /// Inside a set of solutions.
+    in_set: bool,
+}
+
+/// A child that has not been looked at.
+struct Task {
+    parent: Rc<Node>,
+    decision: Option<(usize, usize)>,
+}
+
+struct Search<'a> {
+    problem: &'a RateProblem,
+    findings: Findings,
+    seen: BTreeSet<Vec<usize>>,
+    most: u64,
+}
+
+impl Search<'_> {
+    fn examine(&mut self, chosen: &[usize]) {
+        if !self.seen.insert(chosen.to_vec()) {
+            return;
+        }
+        self.findings.examined += 1;
+        match self.problem.line(chosen) {
+            Line::Rays(rays) => {
+                let rays = rays.into_iter().map(|(weights, weak)| Ray { weights, chosen: chosen.to_vec(), weak });
+                self.findings.rays.extend(rays);
+            }
+            Line::Plane(basis) => {
+                self.findings.degenerate = true;
+                if self.findings.planes.len() < MOST_PLANES {
+                    self.findings.planes.push(basis);
+                }
+            }
+            Line::Still | Line::NotFinite => self.findings.degenerate = true,
+        }
+    }
+
+    /// Examines every combination of the options given for each entity, hold first.
+    fn examine_all(&mut self, options: &[Vec<usize>]) {
+        let total = options.iter().fold(1u64, |total, options| total.saturating_mul(options.len() as u64));
+        let number = total.min(MOST_ON_LINE as u64);
+        self.findings.unexplored = self.findings.unexplored.saturating_add(total - number);
+        for number in 0..number {
+            let mut rest = number;
+            let chosen: Vec<usize> = options
+                .iter()
+                .map(|options| {
+                    let choice = options[(rest % options.len() as u64) as usize];
+                    rest /= options.len() as u64;
+                    choice
+                })
+                .collect();
+            self.examine(&chosen);
+        }
+    }
+
+    /// The certificate on the whole problem.
+    fn certified_at_once(&mut self) -> bool {
+        let Some(pairs) = self.problem.entities.iter().map(|entity| entity.pair()).collect::<Option<Vec<_>>>() else {
+            return false;
+        };
+        let motion = &self.problem.motion;
+        let scales = DVector::from_iterator(motion.ncols(), motion.column_iter().map(|column| 1.0 / column.norm()));
+        let rows = |side: usize| {
+            DMatrix::from_fn(pairs.len(), scales.len(), |row, column| {
+                pairs[row][side].sign * self.problem.forms[(pairs[row][side].form, column)] * scales[column]
+            })
+        };
+        let load: Vec<f64> = motion.row(motion.nrows() - 1).iter().zip(scales.iter()).map(|(a, b)| a * b).collect();
+        let open: Vec<usize> = (0..pairs.len()).collect();
+        let chosen = vec![None; pairs.len()];
+        let done = self.examine_certified(rows(0), rows(1), &load, &open, &chosen, &[1.0, -1.0]);
+        self.findings.certified = done;
+        done
+    }
+
+    /// Examines the one combination for each load rate given, if there is a certificate that it is the only one.
+    fn examine_certified(
+        &mut self,
+        a: DMatrix<f64>,
+        b: DMatrix<f64>,
+        load: &[f64],
+        open: &[usize],
+        chosen: &[Option<usize>],
+        signs: &[f64],
+    ) -> bool {
+        let Some((matrix, constant)) = reduce(&a, &b, load) else { return false };
+        let Some(certified) = Certified::new(matrix, constant) else { return false };
+        let Some(solutions) = signs.iter().map(|sign| certified.solve(*sign)).collect::<Option<Vec<_>>>() else {
+            return false;
+        };
+        for pairs in solutions {
+            let mut options: Vec<Vec<usize>> = chosen.iter().map(|choice| choice.iter().copied().collect()).collect();
+            for (&entity, fitting) in open.iter().zip(options_of(&pairs)) {
+                options[entity] = fitting;
+            }
+            self.examine_all(&options);
+        }
+        true
+    }
+
+    fn branch(&mut self, cancel: &CancelFlag) {
+        let Some(dictionary) = Dictionary::new(self.problem) else {
+            self.findings.degenerate = true;
+            return;
+        };
+        let root = |sign: f64| {
+            let mut dictionary = dictionary.clone();
+            dictionary.require(None, sign);
+            let chosen = vec![None; self.problem.entities.len()];
+            Task { parent: Rc::new(Node { chosen, dictionary, sign, in_set: false }), decision: None }
+        };
+        let mut tasks = vec![root(-1.0), root(1.0)];
+        let mut in_sets = Vec::new();
+        let mut left_in_sets = MOST_IN_SETS;
+        loop {
+            let task = match tasks.pop() {
+                Some(task) => task,
+                None if left_in_sets > 0 => match in_sets.pop() {
+                    Some(task) => {
+                        left_in_sets -= 1;
+                        task
+                    }
+                    None => return,
+                },
+                None => break,
+            };
+            if cancel.is_cancelled() || self.findings.examined >= self.most {
+                tasks.push(task);
+                break;
+            }
+            self.findings.examined += 1;
+            for child in self.look_at(task) {
+                if child.parent.in_set { in_sets.push(child) } else { tasks.push(child) }
+            }
+        }
+        for task in tasks.iter().chain(&in_sets) {
+            let left = self.combinations_of(task);
+            self.findings.unexplored = self.findings.unexplored.saturating_add(left);
+        }
+    }
+
+    /// Combinations under a task.
+    fn combinations_of(&self, task: &Task) -> u64 {
+        let decided = task.decision.map(|(entity, _)| entity);
+        self.problem
+            .entities
+            .iter()
+            .enumerate()
+            .filter(|(index, _)| task.parent.chosen[*index].is_none() && decided != Some(*index))
+            .fold(1, |total, (_, entity)| total.saturating_mul(entity.options.len() as u64))
+    }
+
+    /// Closes a node or gives its children, the most promising last.
+    fn look_at(&mut self, task: Task) -> Vec<Task> {
+        let Some(mut node) = decide(self.problem, task) else { return Vec::new() };
+        if node.dictionary.feasibility() == Feasibility::OnlyLines
+            && !node.dictionary.is_lines_only()
+            && !node.dictionary.leave_lines()
+        {
+            return Vec::new();
+        }
+        let open: Vec<usize> = (0..node.chosen.len()).filter(|&index| node.chosen[index].is_none()).collect();
+        if open.is_empty() {
+            let chosen: Vec<usize> = node.chosen.iter().flatten().copied().collect();
+            self.examine(&chosen);
+            return Vec::new();
+        }
+        node.dictionary.drop_forced();
+        let dictionary = &node.dictionary;
+        let dimension = dictionary.dimension() + usize::from(!dictionary.is_lines_only());
+        if dimension == 0 {
+            return Vec::new();
+        }
+        if dimension == 1 {
+            let mut options: Vec<Vec<usize>> =
+                node.chosen.iter().map(|choice| choice.iter().copied().collect()).collect();
+            for &entity in &open {
+                let choices = &self.problem.entities[entity].options;
+                options[entity] = (0..choices.len()).filter(|&index| fits(dictionary, &choices[index])).collect();
+            }
+            if options.iter().all(|options| !options.is_empty()) {
+                self.examine_all(&options);
+            }
+            return Vec::new();
+        }
+        if self.certified_below(&node, &open) {
+            return Vec::new();
+        }
+        if !node.in_set
+            && let Some(filled) = self.filled(&node)
+        {
+            // Whatever is left solves the problem: a set of more than one dimension.
+            self.examine(&filled);
+            node.in_set = true;
+        }
+        let entity = self.worst(&node, &open);
+        let choices = &self.problem.entities[entity].options;
+        let mut order: Vec<(f64, usize)> =
+            choices.iter().enumerate().map(|(index, choice)| (misfit(dictionary, choice), index)).collect();
+        order.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
+        let parent = Rc::new(node);
+        order
+            .into_iter()
+            .map(|(_, choice)| Task { parent: Rc::clone(&parent), decision: Some((entity, choice)) })
+            .collect()
+    }
+
+    /// The entity that fits the node's point worst; the first that still decides something where all fit.
+    fn worst(&self, node: &Node, open: &[usize]) -> usize {
+        let mut worst = (FITS, None);
+        for &entity in open {
+            let fit = self.problem.entities[entity]
+                .options
+                .iter()
+                .map(|choice| misfit(&node.dictionary, choice))
+                .fold(f64::INFINITY, f64::min);
+            if fit > worst.0 {
+                worst = (fit, Some(entity));
+            }
+        }
+        let decides = |entity: &&usize| {
+            let choices = &self.problem.entities[**entity].options;
+            choices.iter().any(|choice| choice.zero.iter().any(|form| !node.dictionary.vanishes(*form)))
+        };
+        worst.1.or_else(|| open.iter().find(decides).copied()).unwrap_or(open[0])
+    }
+
+    /// A combination under which everything left is a solution, if there is one.
+    fn filled(&self, node: &Node) -> Option<Vec<usize>> {
+        node.chosen
+            .iter()
+            .zip(&self.problem.entities)
+            .map(|(chosen, entity)| {
+                let common = entity.common();
+                chosen.or_else(|| {
+                    entity.options.iter().position(|choice| {
+                        choice.zero.iter().all(|form| node.dictionary.vanishes(*form))
+                            && choice.nonnegative.iter().all(|signed| common.contains(signed))
+                    })
+                })
+            })
+            .collect()
+    }
+
+    /// The certificate on what is left at a node.
+    fn certified_below(&mut self, node: &Node, open: &[usize]) -> bool {
+        let dictionary = &node.dictionary;
+        if dictionary.is_lines_only() || dictionary.lines() > 0 || dictionary.dimension() != open.len() || node.in_set {
+            return false;
+        }
+        let pairs = open.iter().map(|&entity| self.problem.entities[entity].pair());
+        let Some(pairs) = pairs.collect::<Option<Vec<_>>>() else { return false };
+        let rows = |side: usize| {
+            let mut rows = DMatrix::zeros(pairs.len(), pairs.len() + 1);
+            for (row, pair) in pairs.iter().enumerate() {
+                rows.row_mut(row).copy_from_slice(&dictionary.coefficients(Some(pair[side].form), pair[side].sign));
+            }
+            rows
+        };
+        let load = dictionary.coefficients(None, 1.0);
+        self.examine_certified(rows(0), rows(1), &load, open, &node.chosen, &[node.sign])
+    }
+}
+
+/// How far a node's point is from an option.
+fn misfit(dictionary: &Dictionary, choice: &Choice) -> f64 {
+    let zero = choice.zero.iter().map(|form| dictionary.value(super::Signed::plus(*form)).abs());
+    let negative = choice.nonnegative.iter().map(|signed| -dictionary.value(*signed));
+    zero.chain(negative).fold(0.0, f64::max)
+}
+
+/// Whether an option holds on the one line or ray that is left.
+fn fits(dictionary: &Dictionary, choice: &Choice) -> bool {
+    misfit(dictionary, choice) <= FITS
+        && (!dictionary.is_lines_only() || choice.zero.iter().all(|form| dictionary.vanishes(*form)))
+}
+
+/// The node of a task; `None` where nothing but zero is left.
+fn decide(problem: &RateProblem, task: Task) -> Option<Node> {
+    let parent = &task.parent;
+    let mut node = Node {
+        chosen: parent.chosen.clone(),
+        dictionary: parent.dictionary.clone(),
+        sign: parent.sign,
+        in_set: parent.in_set,
+    };
+    let Some((entity, choice)) = task.decision else { return Some(node) };
+    node.chosen[entity] = Some(choice);
+    let choice = &problem.entities[entity].options[choice];
+    for form in &choice.zero {
+        if !node.dictionary.make_zero(*form) {
+            return None;
+        }
+    }
+    for signed in choice.nonnegative.iter().chain(&choice.implied) {
+        node.dictionary.require(Some(signed.form), signed.sign);
+    }
+    Some(node)
+}

@@ -1,0 +1,243 @@
+//! The search against plain enumeration of every combination, which exists for this comparison only.
+
+use super::line::Line;
+use super::*;
+use crate::cancel::CancelFlag;
+use nalgebra::{DMatrix, DVector};
+
+/// Whether a plane (two vectors) holds a vector other than zero that satisfies a combination's inequalities. The edges of
+/// what satisfies them lie on the zeros of the inequalities.
+fn plane_is_feasible(problem: &RateProblem, chosen: &[usize], basis: &DMatrix<f64>) -> bool {
+    let inequalities: Vec<[f64; 2]> = problem
+        .entities
+        .iter()
+        .zip(chosen)
+        .flat_map(|(entity, choice)| &entity.options[*choice].nonnegative)
+        .map(|signed| {
+            let row = problem.forms.row(signed.form) * basis * signed.sign;
+            [row[0], row[1]]
+        })
+        .filter(|row| row[0].abs().max(row[1].abs()) > 1e-9)
+        .collect();
+    let holds = |x: f64, y: f64| inequalities.iter().all(|row| row[0] * x + row[1] * y >= -1e-9);
+    inequalities.is_empty() || inequalities.iter().any(|row| holds(-row[1], row[0]) || holds(row[1], -row[0]))
+}
+
+/// Every combination, one after another.
+fn enumerate(problem: &RateProblem) -> Findings {
+    let mut findings = Findings::default();
+    let total = problem.combinations();
+    for number in 0..total {
+        let mut rest = number;
+        let chosen: Vec<usize> = problem
+            .entities
+            .iter()
+            .map(|entity| {
+                let choice = rest % entity.options.len() as u64;
+                rest /= entity.options.len() as u64;
+                choice as usize
+            })
+            .collect();
+        match problem.line(&chosen) {
+            Line::Rays(rays) => findings.rays.extend(rays.into_iter().map(|(weights, weak)| Ray {
+                weights,
+                chosen: chosen.clone(),
+                weak,
+            })),
+            Line::Plane(basis) => {
+                if basis.ncols() > 2 || plane_is_feasible(problem, &chosen, &basis) {
+                    findings.degenerate = true;
+                    findings.planes.push(basis);
+                }
+            }
+            Line::Still | Line::NotFinite => findings.degenerate = true,
+        }
+    }
+    findings
+}
+
+/// xorshift64*: the same problems on every machine.
+pub(super) struct Random(u64);
+
+impl Random {
+    pub(super) fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1)
+    }
+
+    fn next(&mut self) -> u64 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        self.0.wrapping_mul(0x2545_F491_4F6C_DD1D)
+    }
+
+    /// Between -1 and 1.
+    pub(super) fn value(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    pub(super) fn below(&mut self, bound: u64) -> u64 {
+        (self.next() >> 33) % bound
+    }
+}
+
+/// What kind of numbers a problem is made of.
+#[derive(Clone, Copy, Debug)]
+enum Numbers {
+    Real,
+    /// -1, 0 or 1: many inequalities hold with equality.
+    Small,
+    /// A symmetric positive definite stiffness plus friction coupling of this size.
+    Stiffness(f64),
+}
+
+/// Contacts on the cone (`false`) or touching with friction (`true`), with random reaction rates.
+fn random_problem(random: &mut Random, kinds: &[bool], numbers: Numbers) -> RateProblem {
+    let velocities: usize = kinds.iter().map(|touching| 1 + usize::from(*touching)).sum();
+    let weights = velocities + 1;
+    let number = |random: &mut Random| match numbers {
+        Numbers::Small => random.below(3) as f64 - 1.0,
+        Numbers::Real | Numbers::Stiffness(_) => random.value(),
+    };
+    let mut stiffness = DMatrix::from_fn(velocities, velocities, |_, _| number(random));
+    if let Numbers::Stiffness(coupling) = numbers {
+        let friction = DMatrix::from_fn(velocities, velocities, |_, _| coupling * random.value());
+        stiffness = &stiffness * stiffness.transpose() + friction;
+    }
+    let load: Vec<f64> = (0..velocities).map(|_| number(random)).collect();
+    let row = |velocity: usize| {
+        let mut row = DVector::zeros(weights);
+        (0..velocities).for_each(|column| row[column] = stiffness[(velocity, column)]);
+        row[velocities] = -load[velocity];
+        row
+    };
+    let unit = |column: usize| DVector::from_fn(weights, |index, _| f64::from(u8::from(index == column)));
+    let (mut forms, mut is_force, mut entities, mut reactions) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut add = |form: DVector<f64>, force: bool| {
+        forms.push(form);
+        is_force.push(force);
+        forms.len() - 1
+    };
+    let mut velocity = 0;
+    for touching in kinds {
+        if *touching {
+            let friction = match numbers {
+                Numbers::Small => 1.0,
+                Numbers::Real | Numbers::Stiffness(_) => 0.2 + 0.5 * (random.value() + 1.0),
+            };
+            let (normal, tangential) = (row(velocity), row(velocity + 1));
+            let gap = add(unit(velocity), false);
+            let along = add(unit(velocity + 1), false);
+            let pressing = add(normal.clone(), true);
+            let traction = add(tangential.clone(), true);
+            let up = add(&normal * friction + &tangential, true);
+            let down = add(&normal * friction - &tangential, true);
+            entities.push(touching_entity(gap, along, pressing, traction, [up, down]));
+            reactions.extend([normal, tangential]);
+            velocity += 2;
+        } else {
+            let b = add(unit(velocity), false);
+            let a = add(row(velocity), true);
+            entities.push(Entity {
+                options: vec![
+                    Choice { zero: vec![b], nonnegative: vec![Signed::plus(a)], implied: vec![] },
+                    Choice { zero: vec![a], nonnegative: vec![Signed::plus(b)], implied: vec![] },
+                ],
+            });
+            reactions.push(row(velocity));
+            velocity += 1;
+        }
+    }
+    let matrix = |rows: &[DVector<f64>]| DMatrix::from_fn(rows.len(), weights, |row, column| rows[row][column]);
+    RateProblem {
+        forms: matrix(&forms),
+        is_force,
+        entities,
+        motion: DMatrix::identity(weights, weights),
+        reactions: matrix(&reactions),
+    }
+}
+
+fn touching_entity(gap: usize, along: usize, pressing: usize, traction: usize, cone: [usize; 2]) -> Entity {
+    let plus = Signed::plus;
+    let both = |form: usize| [plus(form), Signed::minus(form)];
+    Entity {
+        options: vec![
+            Choice {
+                zero: vec![gap, along],
+                nonnegative: vec![plus(cone[0]), plus(cone[1])],
+                implied: vec![plus(pressing)],
+            },
+            Choice {
+                zero: vec![gap, cone[0]],
+                nonnegative: vec![plus(along), plus(pressing)],
+                implied: vec![plus(cone[1])],
+            },
+            Choice {
+                zero: vec![gap, cone[1]],
+                nonnegative: vec![Signed::minus(along), plus(pressing)],
+                implied: vec![plus(cone[0])],
+            },
+            Choice {
+                zero: vec![pressing, traction],
+                nonnegative: vec![plus(gap)],
+                implied: [both(cone[0]), both(cone[1])].concat(),
+            },
+        ],
+    }
+}
+
+/// Every ray of one list is in the other; a list may name one motion under several combinations.
+fn compare(found: &Findings, exact: &Findings, what: &str) {
+    assert_eq!(found.unexplored, 0, "{what}");
+    let near = |a: &Ray, b: &Ray| (&a.weights - &b.weights).norm() <= 1e-7;
+    for ray in &exact.rays {
+        assert!(
+            found.rays.iter().any(|other| other.chosen == ray.chosen && near(ray, other) && other.weak == ray.weak),
+            "{what}: missed {:?} {:?}",
+            ray.chosen,
+            ray.weights
+        );
+    }
+    assert_eq!(found.rays.len(), exact.rays.len(), "{what}");
+    // Sets of three dimensions and more are not judged here.
+    if exact.planes.iter().all(|basis| basis.ncols() == 2) {
+        assert_eq!(found.degenerate, exact.degenerate, "{what}");
+    }
+}
+
+fn check(seeds: std::ops::Range<u64>, contacts: u64, numbers: Numbers, touching: bool) -> (usize, usize) {
+    let (mut certified, mut rays) = (0, 0);
+    for seed in seeds {
+        let mut random = Random::new(seed);
+        let count = 1 + random.below(contacts) as usize;
+        let kinds: Vec<bool> = (0..count).map(|_| touching && random.below(2) == 0).collect();
+        let problem = random_problem(&mut random, &kinds, numbers);
+        let exact = enumerate(&problem);
+        let found = explore(&problem, &[], 1_000_000, &CancelFlag::default());
+        certified += usize::from(found.certified);
+        rays += exact.rays.len();
+        compare(&found, &exact, &format!("seed {seed}, {kinds:?}, {numbers:?}"));
+    }
+    (certified, rays)
+}
+
+#[test]
+fn contacts_on_the_cone_as_by_enumeration() {
+    let (_, rays) = check(0..1500, 8, Numbers::Real, false);
+    assert!(rays > 1500);
+    let (certified, _) = check(0..700, 8, Numbers::Stiffness(0.3), false);
+    assert!(certified > 100, "{certified}");
+}
+
+#[test]
+fn touching_contacts_as_by_enumeration() {
+    check(0..700, 5, Numbers::Real, true);
+    check(0..500, 5, Numbers::Stiffness(0.3), true);
+}
+
+#[test]
+fn inequalities_that_hold_with_equality_as_by_enumeration() {
+    check(0..1000, 5, Numbers::Small, false);
+    check(0..400, 3, Numbers::Small, true);
+}

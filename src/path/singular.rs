@@ -1,0 +1,193 @@
+//! Whether the path passes a smooth bifurcation point within a step.
+//!
+//! Two signs are carried along the path:
+//!
+//! * the determinant of the equations of the mode, bordered by the path's own direction. It is regular at limit points
+//!   and changes sign exactly where an odd number of branches' null vectors joins (H. B. Keller, in: Applications of
+//!   Bifurcation Theory, Academic Press 1977, 359). It comes with the factorisation that gives the direction, and holds
+//!   for unsymmetric matrices (frictional slip) as well.
+//! * where the mode has no frictional slip, the number of negative eigenvalues of the tangent reduced to the motions
+//!   that the mode allows, `Zᵀ K Z` with `Z` a basis of the null space of the closed contacts' equations (Sylvester's
+//!   law: any basis will do). It sees two eigenvalues cross together, where the determinant keeps its sign. At a limit
+//!   point it changes by one; the determinant tells that change from a bifurcation's.
+//!
+//! In a mode with frictional slip two eigenvalues that cross at once are not seen. Nor are, in any mode, eigenvalues
+//! that cross one step to and fro, nor those within the first step from a singular start. Modes with slip in a plane,
+//! whose direction is an unknown of the increment, are not watched.
+
+use super::advance::{Reached, Start, Work};
+use super::directions::RANK;
+use super::loading::Loading;
+use super::mode_system::ModeSystem;
+use super::state::{Rate, State};
+use super::watch::Watch;
+use crate::contact::Mode;
+use crate::linear_algebra::{Determinant, determinant, inertia, null_space};
+use crate::structure::element::Element;
+use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+
+/// What is carried along the path.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Signature {
+    /// Sign of the bordered determinant.
+    pub determinant: f64,
+    /// Negative eigenvalues of the reduced tangent; `None` where they are not counted.
+    pub negative: Option<usize>,
+}
+
+/// How the signature changed over a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Change {
+    None,
+    /// So many more eigenvalues are negative (fewer, if below 0).
+    Count {
+        before: usize,
+        net: isize,
+    },
+    /// An odd number of real eigenvalues crossed zero.
+    Odd,
+}
+
+/// Pivots below this fraction of the largest say nothing of the determinant's sign.
+pub const UNCERTAIN: f64 = 1e-10;
+/// Pivots below this fraction of the largest entry count as zero.
+const ZERO_PIVOT: f64 = 1e-13;
+
+/// The tangent reduced to the motions that the mode allows. `None` where the mode's matrix is unsymmetric, where fewer
+/// than two motions remain (the determinant says all), and where the tangent cannot change.
+pub fn reduced_tangent(
+    system: &ModeSystem<'_>,
+    loading: Loading<'_>,
+    modes: &[Mode],
+    state: &State,
+) -> Option<DMatrix<f64>> {
+    let slips = |(mode, contact): (&Mode, &crate::contact::Contact)| {
+        matches!(mode, Mode::Slip { .. }) && contact.tangents() > 0
+    };
+    let unknowns = loading.structure.unknowns();
+    if unknowns < 2
+        || (loading.structure.elements.iter().all(Element::is_linear)
+            && !loading.contacts.iter().any(|contact| contact.obstacle.is_curved()))
+        || modes.iter().zip(loading.contacts).any(slips)
+    {
+        return None;
+    }
+    let constraints = system.size() - 1 - unknowns;
+    let matrix = system.matrix(state);
+    let tangent = matrix.view((0, 0), (unknowns, unknowns));
+    if constraints == 0 {
+        return Some(tangent.into_owned());
+    }
+    let basis = null_space(&matrix.view((unknowns, 0), (constraints, unknowns)).into_owned(), RANK)?;
+    let basis = if basis.ncols() < 2 { return None } else { basis.qr().q() };
+    let reduced = basis.transpose() * (tangent * &basis);
+    Some((&reduced + reduced.transpose()) * 0.5)
+}
+
+impl Signature {
+    /// At a point whose bordered determinant's sign is known; `None` where the reduced tangent is singular.
+    pub fn with_determinant(
+        loading: Loading<'_>,
+        modes: &[Mode],
+        start: &State,
+        state: &State,
+        sign: f64,
+    ) -> Option<Self> {
+        let system = ModeSystem::new(loading, modes, start);
+        let negative = match reduced_tangent(&system, loading, modes, state) {
+            Some(tangent) => Some(inertia(tangent, ZERO_PIVOT)?.negative),
+            None => None,
+        };
+        Some(Self { determinant: sign, negative })
+    }
+
+    /// At a point from which a step is to start; `None` where the equations are singular.
+    pub fn at(loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate, work: &mut Work) -> Option<Self> {
+        let system = ModeSystem::new(loading, modes, state);
+        if system.has_tracks() {
+            return None;
+        }
+        work.factorisations += 1;
+        let determinant = bordered_determinant(&system, loading, state, rate)?;
+        if determinant.pivot_ratio <= UNCERTAIN {
+            return None;
+        }
+        Self::with_determinant(loading, modes, state, state, determinant.sign)
+    }
+}
+
+/// The mode's equations without the last, each row over the largest entry that any element has in it: where the
+/// elements' stiffnesses cancel, at a singular point, what is left over stays small. With the sizes of the rows.
+pub fn scaled_rows(system: &ModeSystem<'_>, loading: Loading<'_>, state: &State) -> (DMatrix<f64>, DVector<f64>) {
+    let structure = loading.structure;
+    let rows = system.size() - 1;
+    let mut matrix = system.matrix(state).rows(0, rows).into_owned();
+    let mut sizes = DVector::from_fn(rows, |row, _| matrix.row(row).amax());
+    for element in &structure.elements {
+        element.add_stiffness(structure, &state.displacement, &mut |row, _, value| {
+            if let Some(row) = structure.unknown_of[row] {
+                sizes[row] = sizes[row].max(value.abs());
+            }
+        });
+    }
+    for (mut row, size) in matrix.row_iter_mut().zip(sizes.iter_mut()) {
+        if *size <= 0.0 {
+            *size = 1.0;
+        }
+        row /= *size;
+    }
+    (matrix, sizes)
+}
+
+/// The determinant of the scaled equations bordered by a direction.
+pub fn bordered_determinant(
+    system: &ModeSystem<'_>,
+    loading: Loading<'_>,
+    state: &State,
+    rate: &Rate,
+) -> Option<Determinant> {
+    let (matrix, _) = scaled_rows(system, loading, state);
+    let mut matrix = matrix.insert_row(system.size() - 1, 0.0);
+    system.border(&mut matrix, rate);
+    determinant(matrix)
+}
+
+/// The signature at the end of a step, and how it changed.
+pub fn compare(start: &Start<'_>, before: Signature, reached: &Reached) -> (Option<Signature>, Change) {
+    let Some(sign) = reached.determinant else { return (None, Change::None) };
+    let state = &reached.corrected.state;
+    let Some(mut after) = Signature::with_determinant(start.loading, start.modes, start.state, state, sign) else {
+        return (None, Change::None);
+    };
+    let odd = sign != before.determinant;
+    let (Some(first), Some(last)) = (before.negative, after.negative) else {
+        return (Some(after), if odd { Change::Odd } else { Change::None });
+    };
+    let mut net = last as isize - first as isize;
+    if let Some(Watch::LoadRate { sign }) = reached.event {
+        // K u̇ = ṡ f: the eigenvalue that vanishes at the limit point goes the way of the load, times the sign of f·u̇.
+        let system = ModeSystem::new(start.loading, start.modes, start.state);
+        let matrix = system.matrix(state);
+        let structure = start.loading.structure;
+        let column =
+            structure.freedom_of.iter().enumerate().map(|(unknown, freedom)| {
+                -matrix[(unknown, structure.unknowns())] * reached.rate.displacement[*freedom]
+            });
+        let work: f64 = column.sum();
+        let own = if sign * work > 0.0 { 1 } else { -1 };
+        // Which side of zero it has at the point itself is chance.
+        if (net % 2 != 0) != odd {
+            net -= own;
+        }
+        after.negative = first.checked_add_signed(net + own);
+    }
+    let change = match (net, (net % 2 != 0) == odd) {
+        (0, true) => Change::None,
+        (_, true) => Change::Count { before: first, net },
+        // A count at the edge of a limit point; the determinant is regular there.
+        (_, false) if odd => Change::Odd,
+        (_, false) => Change::None,
+    };
+    (Some(after), change)
+}

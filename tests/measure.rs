@@ -1,0 +1,206 @@
+//! The measure of error finds nothing in exact states and finds each thing that is wrong. Increments are written by
+//! hand from exact solutions: no solver is asked.
+
+mod common;
+
+use arcslip::measure::{Errors, Judge};
+use arcslip::model::JobRequest;
+use arcslip::path::Increment;
+use common::exact::{Hump, Tractrix};
+use common::paths::{scene_file, typed};
+use serde_json::{Map, Value, json};
+
+/// A contact's row: status, gap, normal reaction, tangential reaction, slip.
+type Row<'a> = (&'a str, f64, f64, Vec<f64>, Vec<f64>);
+
+fn increment(request: &JobRequest, stage: &str, load: f64, moved: &[(&str, Vec<f64>)], rows: &[Row<'_>]) -> Increment {
+    let still = vec![0.0; request.model.dimension];
+    let displacements: Map<String, Value> = request
+        .model
+        .nodes
+        .keys()
+        .map(|name| (name.clone(), json!(moved.iter().find(|(node, _)| node == name).map_or(&still, |(_, u)| u))))
+        .collect();
+    let contacts: Vec<Value> = request
+        .model
+        .contacts
+        .iter()
+        .zip(rows)
+        .map(|(contact, (status, gap, normal, tangential, slip))| {
+            json!({"node": contact.node, "obstacle": contact.obstacle, "status": status, "gap": gap,
+                   "normal_reaction": normal, "tangential_reaction": tangential, "slip": slip})
+        })
+        .collect();
+    serde_json::from_value(json!({
+        "index": 0, "stage": stage, "load_factor": load, "arc_length": 0, "step": 0, "displacements": displacements,
+        "contacts": contacts, "point": {"kind": "regular", "bifurcation": false, "event": null},
+        "energy": {"external_work": 0, "strain": 0, "dissipated": 0},
+        "diagnostics": {"elapsed_s": 0, "residual": 0, "complementarity": 0, "energy_error": 0, "error_estimate": 0,
+                        "factorisations": 0, "newton_iterations": 0, "qp_solves": 0, "mpec_solves": 0}
+    }))
+    .expect("an increment")
+}
+
+/// The last of these increments' errors.
+fn last(request: &JobRequest, increments: &[Increment]) -> Errors {
+    let mut judge = Judge::new(request, 1.0);
+    increments.iter().map(|increment| judge.judge(increment)).last().expect("an increment")
+}
+
+/// Sliding over the hump between two angles.
+fn hump(request: &JobRequest, from: f64, to: f64) -> [Increment; 2] {
+    let exact = Hump::BUILT_IN;
+    let place = |angle: f64| [f64::sin(angle), f64::cos(angle)];
+    let at = |angle: f64, before: f64| {
+        let (here, there, start) = (place(angle), place(before), &request.model.nodes["tip"]);
+        let slip = (here[0] - there[0]) * here[1] - (here[1] - there[1]) * here[0];
+        let normal = exact.normal_reaction(angle);
+        let row = ("slip", 0.0, normal, vec![-exact.friction * normal], vec![slip]);
+        increment(request, "push", exact.load(angle), &[("tip", vec![here[0] - start[0], here[1] - start[1]])], &[row])
+    };
+    [at(from, exact.start), at(to, from)]
+}
+
+#[test]
+fn an_exact_slide_over_a_ball_has_no_error() {
+    let request = scene_file("hump");
+    for (from, to) in [(-0.8, -0.5), (-0.5, 0.1), (0.1, 0.65), (0.65, 0.2)] {
+        let increments = hump(&request, from, to);
+        let errors = last(&request, &increments);
+        // Backwards the traction would have to turn.
+        if to > from {
+            assert!(errors.largest_of_state() < 1e-14, "{errors:?}");
+        } else {
+            assert!(errors.friction > 0.1, "{errors:?}");
+        }
+    }
+}
+
+#[test]
+fn each_fault_shows_in_its_figure() {
+    let request = scene_file("hump");
+    let spoiled = |spoil: &dyn Fn(&mut Increment)| {
+        let [first, mut second] = hump(&request, -0.6, -0.4);
+        spoil(&mut second);
+        last(&request, &[first, second])
+    };
+    let big = 1e-4;
+    assert!(spoiled(&|i| i.load_factor += 1e-3).equilibrium > big);
+    assert!(spoiled(&|i| i.contacts[0].normal_reaction += 1e-3).equilibrium > big);
+    assert!(spoiled(&|i| i.contacts[0].tangential_reaction[0] -= 1e-3).cone > big);
+    assert!(spoiled(&|i| i.contacts[0].tangential_reaction[0] += 1e-3).friction > big);
+    assert!(spoiled(&|i| i.contacts[0].gap += 1e-3).contact > big);
+    assert!(spoiled(&|i| i.contacts[0].gap += 1e-3).reported > big);
+    assert!(spoiled(&|i| i.contacts[0].slip[0] += 1e-3).reported > big);
+    assert!(spoiled(&|i| i.displacements["pin"][1] += 1e-3).support > big);
+    assert!(spoiled(&|i| i.displacements["tip"][1] += 1e-3).reported > big);
+    assert!(spoiled(&|i| i.energy.strain += 1e-3).energy > big);
+    assert!(spoiled(&|i| i.contacts[0].gap = f64::NAN).largest_of_state().is_infinite());
+    assert!(spoiled(&|i| i.load_factor = f64::NAN).largest_of_state().is_infinite());
+}
+
+/// Tangents of a floor with the normal (0, 0, 1): x and y. Slip is the chord between two places of the exact track.
+fn tractrix(request: &JobRequest, from: f64, to: f64) -> [Increment; 2] {
+    let exact = Tractrix::BUILT_IN;
+    let place = |w: f64| [exact.track(w), exact.offset - w];
+    let at = |w: f64, before: f64| {
+        let (here, there) = (place(w), place(before));
+        let slip = vec![here[0] - there[0], here[1] - there[1]];
+        let normal = exact.normal_reaction(here[0], here[1]);
+        let row = ("slip", 0.0, normal, exact.traction(here[0], here[1]).to_vec(), slip);
+        let moved = vec![here[0] - exact.start, here[1], 0.0];
+        increment(request, "push", exact.load(here[0], here[1]), &[("tip", moved)], &[row])
+    };
+    [at(from, exact.offset), at(to, from)]
+}
+
+#[test]
+fn a_curving_slip_is_judged_to_second_order() {
+    let request = scene_file("curving-slip");
+    let errors = |step: f64| last(&request, &tractrix(&request, 0.2, 0.2 + step));
+    let (coarse, fine) = (errors(0.04), errors(0.02));
+    for errors in [&coarse, &fine] {
+        assert!(errors.largest_of_state() < 1e-14, "{errors:?}");
+    }
+    assert!(coarse.slip_direction < 1e-2 && coarse.slip_direction > 0.0);
+    let order = (coarse.slip_direction / fine.slip_direction).log2();
+    assert!((1.9..2.1).contains(&order), "{coarse:?} {fine:?}");
+}
+
+/// Backward Euler slips along the last direction only: the chord is off by a first-order angle.
+#[test]
+fn a_slip_of_first_order_is_told_from_one_of_second() {
+    let request = scene_file("curving-slip");
+    let angle = |step: f64| {
+        let [first, mut second] = tractrix(&request, 0.2, 0.2 + step);
+        let exact = Tractrix::BUILT_IN;
+        // The same end, reached from a place that makes the chord parallel to the last direction.
+        let (x, y) = (exact.track(0.2 + step), exact.offset - 0.2 - step);
+        let along = exact.traction(x, y);
+        let size = step / 0.25 / along[0].hypot(along[1]);
+        let slip = [-along[0] * size, -along[1] * size];
+        let start = &first.displacements["tip"];
+        second.displacements["tip"][0] = start[0] + slip[0];
+        second.displacements["tip"][1] = start[1] + slip[1];
+        last(&request, &[first, second]).slip_direction
+    };
+    let order = (angle(0.04) / angle(0.02)).log2();
+    assert!((0.8..1.2).contains(&order), "{order}");
+}
+
+#[test]
+fn a_traction_along_the_slip_is_an_error() {
+    let request = scene_file("curving-slip");
+    let [first, mut second] = tractrix(&request, 0.2, 0.24);
+    second.contacts[0].tangential_reaction.iter_mut().for_each(|value| *value = -*value);
+    assert!(last(&request, &[first, second]).friction > 1e-2);
+}
+
+/// The tangent frame of a slanting plane in 3D, written out: n = (1, 2, 2)/3, the smallest component is x, so
+/// t1 = (8, -2, -2)/(6 √2), t2 = n x t1 = (0, 1, -1)/√2.
+#[test]
+fn tangents_in_space_are_the_documented_ones() {
+    let request = typed(json!({"model": {
+        "dimension": 3, "nodes": {"node": [0, 0, 0]},
+        "elements": [{"kind": "spring", "nodes": ["node"], "stiffness": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}],
+        "obstacles": {"slope": {"kind": "plane", "point": [0, 0, 0], "normal": [1, 2, 2]}},
+        "contacts": [{"node": "node", "obstacle": "slope", "friction": 1}],
+        "stages": [{"name": "press", "forces": {"node": [-0.6, -1.9, -1.0]}}]
+    }}));
+    let half = 0.5_f64.sqrt();
+    let (first, second) = ([8.0 * half / 6.0, -half / 3.0, -half / 3.0], [0.0, half, -half]);
+    let force = [0.6, 1.9, 1.0];
+    let along = |t: [f64; 3]| t.iter().zip(force).map(|(t, f)| t * f).sum::<f64>();
+    let normal = (0.6 + 3.8 + 2.0) / 3.0;
+    let row = ("stick", 0.0, normal, vec![along(first), along(second)], vec![0.0, 0.0]);
+    let errors = last(&request, &[increment(&request, "press", 1.0, &[], &[row])]);
+    assert!(errors.largest_of_state() < 1e-15, "{errors:?}");
+}
+
+/// A block dragged by its floor, and one whose support moves: both exact, both wrong where the motion is left out.
+#[test]
+fn motions_of_obstacles_and_supports_are_followed() {
+    let request = scene_file("dragged-block");
+    let pressed = || increment(&request, "press", 1.0, &[], &[("stick", 0.0, 1.0, vec![0.0], vec![0.0])]);
+    let stuck = |u: f64| {
+        increment(&request, "drag", 0.1, &[("block", vec![u, 0.0])], &[("stick", 0.0, 1.0, vec![2.0 * u], vec![0.0])])
+    };
+    assert!(last(&request, &[pressed(), stuck(0.1)]).largest_of_state() < 1e-15);
+    assert!(last(&request, &[pressed(), stuck(0.0)]).friction > 1e-2, "left behind");
+    let sliding = |slip: f64| {
+        let row = ("slip", 0.0, 1.0, vec![0.3], vec![slip]);
+        increment(&request, "drag", 0.4, &[("block", vec![0.15, 0.0])], &[row])
+    };
+    assert!(last(&request, &[pressed(), stuck(0.1), sliding(-0.25)]).largest_of_state() < 1e-15);
+    assert!(last(&request, &[pressed(), stuck(0.1), sliding(0.05)]).reported > 1e-2, "slip without the floor's motion");
+
+    let request = scene_file("lowered-pin");
+    let lowered = |y: f64| {
+        let normal = 1.0 / 0.9_f64.hypot(1.5) - 1.0 / 1.0_f64.hypot(1.5);
+        let row = ("stick", 0.0, 0.9 * normal, vec![1.5 * normal], vec![0.0]);
+        increment(&request, "lower", 0.1, &[("pin", vec![0.0, y])], &[row])
+    };
+    assert!(last(&request, &[lowered(-0.1)]).support == 0.0);
+    assert!(last(&request, &[lowered(-0.1)]).equilibrium < 1e-13);
+    assert!(last(&request, &[lowered(-0.2)]).support > 1e-2);
+}

@@ -1,0 +1,143 @@
+//! A node against several obstacles at once: a groove, a corner, two coincident floors.
+
+mod common;
+
+use arcslip::model::JobRequest;
+use arcslip::model::request::Method;
+use arcslip::path::StopReason;
+use arcslip::path::increment::Status;
+use common::paths::{close, place, scene_file, trace, typed};
+use serde_json::json;
+
+const METHODS: [Method; 2] = [Method::Auto, Method::Mpec];
+
+fn with(mut request: JobRequest, method: Method) -> JobRequest {
+    request.analysis.method = method;
+    request
+}
+
+/// A node (springs k = 1/2) pressed by 1 into a groove of two flanks at 45° and pushed to the right. In the groove the
+/// reactions of the two flanks are not unique with friction; the load at which it leaves is: the left flank carries
+/// nothing and the right one is on its cone, `s = tan(45° + arctan μ) = (1 + μ)/(1 - μ)`. On the flank, at the distance
+/// ξ from the bottom: `s (1 - μ) = 1 + μ + √2 k ξ`.
+#[test]
+fn a_groove() {
+    for friction in [0.0, 0.25, 0.6] {
+        for method in METHODS {
+            let mut request = with(scene_file("groove"), method);
+            request.model.contacts.iter_mut().for_each(|contact| contact.friction = friction);
+            let (increments, report) = trace(&request);
+            assert_eq!(report.stop_reason, StopReason::StagesCompleted, "friction {friction}");
+            let leaves = (1.0 + friction) / (1.0 - friction);
+            for increment in &increments {
+                let what = format!("friction {friction}, increment {}", increment.index);
+                let u = &increment.displacements["node"];
+                if &*increment.stage == "press" || increment.load_factor <= leaves + 1e-9 {
+                    close(u[0].hypot(u[1]), 0.0, 1e-12, &what);
+                } else {
+                    close(u[0], u[1], 1e-12, &what);
+                    let exact = (leaves * (1.0 - friction) + u[0]) / (1.0 - friction);
+                    close(increment.load_factor, exact, 1e-11, &what);
+                    assert_eq!(
+                        (increment.contacts[0].status, increment.contacts[1].status),
+                        (Status::Free, Status::Slip)
+                    );
+                    let normal = (1.0 + increment.load_factor) * 0.5_f64.sqrt();
+                    close(increment.contacts[1].normal_reaction, normal, 1e-11, &what);
+                }
+            }
+            let left = increments.iter().any(|increment| (increment.load_factor - leaves).abs() < 1e-9);
+            assert!(left, "leaving the groove at {leaves} is a point of the path");
+        }
+    }
+}
+
+/// A node on the floor (pressed by 1) pushed against a wall half a unit away, springs k = 1: it slips at μ, touches at
+/// μ + 1/2 and stays in the corner. The wall is smooth, so the floor carries the press alone.
+#[test]
+fn a_corner() {
+    for friction in [0.0, 0.3] {
+        for method in METHODS {
+            let request = typed(json!({
+                "model": {
+                    "name": "node in a corner", "dimension": 2, "nodes": {"node": [0, 0]},
+                    "elements": [{"kind": "spring", "nodes": ["node"], "stiffness": [[1, 0], [0, 1]]}],
+                    "obstacles": {"floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]},
+                                  "wall": {"kind": "plane", "point": [0.5, 0], "normal": [-1, 0]}},
+                    "contacts": [{"node": "node", "obstacle": "floor", "friction": friction},
+                                 {"node": "node", "obstacle": "wall", "friction": 0}],
+                    "stages": [
+                        {"name": "press", "forces": {"node": [0, -1]}, "until": {"load_above": 1}},
+                        {"name": "push", "forces": {"node": [1, 0]}, "until": {"load_above": 2}}
+                    ]
+                }
+            }));
+            let (increments, report) = trace(&with(request, method));
+            assert_eq!(report.stop_reason, StopReason::StagesCompleted);
+            let touches = friction + 0.5;
+            assert!(increments.iter().any(|increment| (increment.load_factor - touches).abs() < 1e-10));
+            for increment in increments.iter().filter(|increment| &*increment.stage == "push") {
+                let s = increment.load_factor;
+                let what = format!("friction {friction}, s = {s}");
+                close(increment.displacements["node"][0], (s - friction).clamp(0.0, 0.5), 1e-11, &what);
+                close(increment.displacements["node"][1], 0.0, 1e-14, &what);
+                let [floor, wall] = [&increment.contacts[0], &increment.contacts[1]];
+                close(floor.normal_reaction, 1.0, 1e-11, &what);
+                // The floor's friction and the wall share what the springs leave.
+                if s >= touches {
+                    close(wall.normal_reaction - floor.tangential_reaction[0], s - 0.5, 1e-10, &what);
+                }
+            }
+        }
+    }
+}
+
+/// Two coincident floors are one: the path is that of the one-bar truss, each floor carries half of `r_n = P h/L`, the
+/// share of least norm.
+#[test]
+fn coincident_floors_share_the_reaction() {
+    for method in METHODS {
+        let request = with(scene_file("doubled-floor"), method);
+        let (increments, report) = trace(&request);
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted);
+        for increment in &increments[1..] {
+            let x = place(&request, increment, "tip")[0];
+            let by_length = 1.0 / x.hypot(1.0) - 1.0 / 1.5_f64.hypot(1.0);
+            let what = format!("at x = {x}");
+            close(increment.load_factor, by_length * (0.3 - x), 1e-11, &what);
+            for contact in &increment.contacts {
+                close(contact.normal_reaction, 0.5 * by_length, 1e-10, &what);
+                close(contact.tangential_reaction[0], -0.15 * by_length, 1e-10, &what);
+            }
+        }
+    }
+}
+
+/// One, two or three coincident floors: the same stick, the same load of slip, the same slip.
+#[test]
+fn copies_of_a_floor_leave_a_stuck_node_stuck() {
+    for copies in 1..4 {
+        let planes: serde_json::Map<String, serde_json::Value> = (0..copies)
+            .map(|k| (format!("floor{k}"), json!({"kind": "plane", "point": [k, 0], "normal": [0, 1 + k]})))
+            .collect();
+        let contacts: Vec<_> =
+            (0..copies).map(|k| json!({"node": "node", "obstacle": format!("floor{k}"), "friction": 0.5})).collect();
+        let request = typed(json!({
+            "model": {
+                "name": "node on copies of a floor", "dimension": 2, "nodes": {"node": [0, 0]},
+                "elements": [{"kind": "spring", "nodes": ["node"], "stiffness": [[1, 0], [0, 1]]}],
+                "obstacles": planes, "contacts": contacts,
+                "stages": [
+                    {"name": "press", "forces": {"node": [0, -1]}, "until": {"load_above": 1}},
+                    {"name": "push", "forces": {"node": [1, 0]}, "until": {"load_above": 1}}
+                ]
+            }
+        }));
+        let (increments, report) = trace(&request);
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{copies} copies");
+        for increment in increments.iter().filter(|increment| &*increment.stage == "push") {
+            let exact = (increment.load_factor - 0.5).max(0.0);
+            close(increment.displacements["node"][0], exact, 1e-11, &format!("{copies} copies"));
+        }
+    }
+}
