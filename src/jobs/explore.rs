@@ -86,3 +86,67 @@ pub(super) async fn queue(jobs: &Jobs) {
         Err(error) => tracing::warn!(%error, "directions not taken could not be queued"),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Alternatives;
+    use crate::path::increment::{Diagnostics, Direction, Energy, Increment, Point, PointKind, Status};
+
+    fn direction(contacts: Status, load_rate: f64) -> Direction {
+        let contacts = vec![contacts];
+        Direction { contacts, load_rate, dissipation_rate: 0.0, taken: false, retrace: false, mechanism: false }
+    }
+
+    fn increment(index: u64, kind: PointKind, bifurcation: bool, mut directions: Vec<Direction>) -> Increment {
+        directions.insert(0, Direction { taken: true, ..direction(Status::Slip, -0.1) });
+        let (event, better_direction, unexplored_modes, degenerate) = (None, false, 0, false);
+        Increment {
+            index,
+            stage: "push".into(),
+            load_factor: 1.0,
+            arc_length: 0.0,
+            step: 0.1,
+            displacements: indexmap::IndexMap::new(),
+            contacts: Vec::new(),
+            point: Point { kind, bifurcation, event, better_direction, unexplored_modes, degenerate },
+            directions: Some(directions),
+            energy: Energy::default(),
+            diagnostics: Diagnostics::default(),
+        }
+    }
+
+    #[test]
+    fn an_alternative_is_followed_once_a_stretch_and_at_every_event() {
+        let mut alternatives = Alternatives::of(false);
+        let stuck = || direction(Status::Stick, -1.0);
+        let mut at = |index, kind, bifurcation, directions| {
+            let increment = increment(index, kind, bifurcation, directions);
+            alternatives.at(&increment, &[true; 4][..increment.directions.as_ref().map_or(0, Vec::len)])
+        };
+        let regular = PointKind::Regular;
+        assert_eq!(at(0, PointKind::Start, false, vec![stuck()]), [1]);
+        assert!(at(1, regular, false, vec![stuck()]).is_empty());
+        // A second one appears, of the same statuses; then the points become bifurcations; then a contact changes.
+        assert_eq!(at(2, regular, false, vec![stuck(), stuck()]), [2]);
+        assert_eq!(at(3, regular, true, vec![stuck(), stuck()]), [1, 2]);
+        assert!(at(4, regular, true, vec![stuck(), stuck()]).is_empty());
+        assert_eq!(at(5, PointKind::ContactChange, true, vec![stuck()]), [1]);
+        // The other sign of the load rate is another alternative; one that was away is a new one.
+        assert_eq!(at(6, regular, true, vec![direction(Status::Stick, 1.0)]), [1]);
+        assert_eq!(at(7, regular, true, vec![stuck()]), [1]);
+        let retrace = Direction { retrace: true, ..direction(Status::Free, 1.0) };
+        assert!(at(8, regular, true, vec![stuck(), retrace]).is_empty());
+    }
+
+    #[test]
+    fn what_is_closed_or_the_parents_is_left() {
+        let mut alternatives = Alternatives::of(true);
+        let start = increment(0, PointKind::Start, true, vec![direction(Status::Stick, -1.0)]);
+        assert!(alternatives.at(&start, &[true, true]).is_empty());
+        let both = vec![direction(Status::Stick, -1.0), direction(Status::Free, -1.0)];
+        let next = increment(1, PointKind::Regular, true, both.clone());
+        assert!(alternatives.at(&next, &[true, true, false]).is_empty());
+        let open = increment(2, PointKind::Regular, true, both);
+        assert_eq!(alternatives.at(&open, &[true, true, true]), [2]);
+    }
+}

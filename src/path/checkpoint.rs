@@ -1,20 +1,20 @@
 //! A path put down at a point: everything that decides how it goes on, so that it can be taken up there again with the
-//! same bits, or followed along another of the directions listed there.
+//! same bits, or followed along another of the directions listed there (`follow`).
 //!
 //! Written as JSON, a checkpoint reads back to the same bits: serde_json writes the shortest digits that do, and reads
 //! them exactly (`float_roundtrip`). What a scene says (structure, loads, settings) is not in it: a checkpoint is taken
 //! up with the scene that it was made with, or with one that differs in `max_increments` alone.
 
 use super::advance::Work;
-use super::decide::Choice;
-use super::increment::{Energy, Increment, Point, PointKind};
+use super::follow::{Followed, Listed};
+use super::increment::Energy;
 use super::loading::LoadPattern;
 use super::report::Report;
-use super::scene::{End, Scene};
+use super::scene::Scene;
 use super::state::{Rate, State};
-use super::tracer::{Emitted, Here, Path, Phase, StageCounts, Visited};
+use super::tracer::{Here, Path, Phase, StageCounts, Visited};
 use crate::cancel::CancelFlag;
-use crate::contact::{Mode, all_continue};
+use crate::contact::Mode;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -56,38 +56,6 @@ impl Trail {
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
-}
-
-/// The directions listed at a point, and what was true before one of them was taken.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Listed {
-    pub options: Vec<Choice>,
-    pub taken: Option<usize>,
-    /// `None` where the path begins.
-    pub arriving: Option<Arriving>,
-    pub point: Point,
-    pub residual: f64,
-    pub error_estimate: f64,
-}
-
-/// How a path came to a point.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Arriving {
-    pub modes: Vec<Mode>,
-    pub load_sign: f64,
-    /// The increment that led here counted, its events not.
-    pub counts: StageCounts,
-}
-
-/// The beginning of a path that follows a direction of another.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Followed {
-    listed: Listed,
-    direction: usize,
-    event: String,
 }
 
 /// Why a checkpoint cannot be taken up, or a direction not followed.
@@ -227,11 +195,6 @@ impl<'a> Path<'a> {
         }
     }
 
-    /// How many directions are listed at the present point; 0 where there is one way on.
-    pub fn listed_directions(&self) -> usize {
-        self.listed.as_ref().map_or(0, |listed| listed.options.len())
-    }
-
     /// Takes a path up where it was put down; its increments are the same, bit for bit, as if it had not been.
     ///
     /// # Errors
@@ -281,118 +244,5 @@ impl<'a> Path<'a> {
         path.visited = visited;
         path.begun = begun;
         Ok(path)
-    }
-
-    /// A path of its own from a checkpoint along one of the directions listed there.
-    ///
-    /// Its first increment, of index 0, is the point itself with `event` as its event; loads, energies, arc length and
-    /// the counts of the stage are carried on. Work and time are its own. Along the direction that was taken, the
-    /// increments are those of the path that was put down.
-    ///
-    /// # Errors
-    /// A checkpoint that does not fit, and a direction along which there is no path.
-    pub fn follow(
-        scene: &'a Scene,
-        checkpoint: Checkpoint,
-        direction: usize,
-        event: String,
-        cancel: CancelFlag,
-    ) -> Result<Self, CheckpointError> {
-        let mut path = Self::resume(scene, checkpoint, cancel)?;
-        let counts = path.counts_along(direction)?;
-        let listed = path.listed.take().ok_or(CheckpointError::NothingListed)?;
-        if listed.taken != Some(direction)
-            && let Some(choice) = listed.options.get(direction)
-        {
-            path.turn(choice);
-        }
-        path.counts = counts;
-        path.begun = path.here.rate.clone().map(|rate| (path.here.state.clone(), rate));
-        path.phase = Phase::NotStarted;
-        path.stage_over = false;
-        path.index = 0;
-        path.work = Work::default();
-        path.report = Report::begun();
-        path.elapsed_before = 0.0;
-        path.followed = Some(Followed { listed, direction, event });
-        Ok(path)
-    }
-
-    /// Whether a path goes along this one of the directions listed at the present point.
-    pub fn can_be_followed(&self, direction: usize) -> bool {
-        self.counts_along(direction).is_ok()
-    }
-
-    /// The stage's counts at the present point if the path leaves it along that direction, or why it cannot.
-    fn counts_along(&self, direction: usize) -> Result<StageCounts, CheckpointError> {
-        let listed = self.listed.as_ref().ok_or(CheckpointError::NothingListed)?;
-        let options = listed.options.len();
-        let choice = listed
-            .options
-            .get(direction)
-            .ok_or(CheckpointError::NoSuchDirection { found: direction, listed: options })?;
-        if choice.mechanism {
-            return Err(CheckpointError::Mechanism { direction });
-        }
-        let mut counts = self.counts;
-        if listed.taken != Some(direction)
-            && let Some(arriving) = &listed.arriving
-        {
-            // What this point counts as depends on how the path leaves it.
-            let changed = arriving.counts.contact_changes < counts.contact_changes
-                || !all_continue(&arriving.modes, &choice.modes);
-            let turned = arriving.load_sign * choice.load_sign < 0.0;
-            counts = arriving.counts;
-            counts.contact_changes += u64::from(changed);
-            counts.limit_points += u64::from(turned);
-        }
-        if self.counts_end_stage(&counts) || self.stage_over && self.goes_past_end(choice) {
-            let stage = self.scene.stages[self.stage].name.to_string();
-            return Err(CheckpointError::StageEnds { stage, direction });
-        }
-        Ok(counts)
-    }
-
-    /// Leaves the present point along another direction than the one taken there.
-    fn turn(&mut self, choice: &Choice) {
-        self.go(choice);
-        let (state, modes) = (self.here.state.clone(), choice.modes.clone());
-        let visited = Visited { stage: self.stage, state, modes };
-        if !self.visited.iter().any(|known| **known == visited) {
-            self.visited.push(Arc::new(visited));
-        }
-    }
-
-    /// Whether a direction leads out of the running stage at a bound that is reached here.
-    fn goes_past_end(&self, choice: &Choice) -> bool {
-        self.scene.stages[self.stage].ends.iter().any(|end| match *end {
-            End::Load { bound, sign } => sign * (self.here.state.load - bound) >= 0.0 && sign * choice.load_sign > 0.0,
-            End::Displacement { freedom, bound, sign } => {
-                sign * (self.here.state.displacement[freedom] - bound) >= 0.0
-                    && sign * choice.rate.displacement[freedom] > 0.0
-            }
-            End::LimitPoints(_) | End::ContactChanges(_) | End::Increments(_) => false,
-        })
-    }
-
-    /// The first increment of a path that follows another's direction.
-    pub(super) fn followed_row(&mut self, followed: Followed) -> Increment {
-        self.phase = Phase::Running;
-        let Followed { listed, direction, event } = followed;
-        let point = Point { kind: PointKind::Start, event: Some(event), better_direction: false, ..listed.point };
-        let state = self.here.state.clone();
-        let modes = self.here.modes.clone();
-        self.emit(Emitted {
-            before: &state,
-            modes: &modes,
-            step: 0.0,
-            point,
-            options: listed.options,
-            taken: Some(direction),
-            residual: listed.residual,
-            error_estimate: listed.error_estimate,
-            mode_named: None,
-            arriving: listed.arriving,
-        })
     }
 }

@@ -15,7 +15,7 @@
 //! | `program`, `naming` | the MPEC of an increment; where it names the mode |
 //! | `energy`, `record`, `increment`, `report`, `stop` | balances, rows, totals, reasons |
 //! | `tracer`, `stepping`, `arrival` | the iterator; how far a step goes; what a point turned out to be |
-//! | `checkpoint` | a path put down at a point, to be taken up there again or followed in another direction |
+//! | `checkpoint`, `follow` | a path put down at a point and taken up again; along another direction |
 //! | `regularised`, `traced` | the rival method; the path by whichever method is named |
 
 mod advance;
@@ -30,6 +30,7 @@ mod decide;
 mod directions;
 mod drift;
 mod energy;
+mod follow;
 pub mod increment;
 mod loading;
 mod mode_system;

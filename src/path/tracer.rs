@@ -4,9 +4,9 @@
 //! directions are listed and one is taken. The step follows the turn of the path and the work of Newton's method.
 
 use super::advance::{AT_END, Work};
-use super::checkpoint::{Arriving, Followed, Listed};
 use super::corner::total_force;
 use super::decide::{self, Before, Choice, Decision, Rules};
+use super::follow::{Arriving, Followed, Listed};
 use super::increment::{Energy, Increment, Point, PointKind};
 use super::loading::{LoadPattern, Loading};
 use super::name_event::describe_start;
