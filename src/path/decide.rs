@@ -52,8 +52,12 @@ pub enum Before<'a> {
 pub const STATIONARY: f64 = 1e-9;
 /// Dissipations closer than this, relative to the largest force, tie.
 const TIE: f64 = 1e-8;
-/// Arc length of the step by which a direction of first order is tried.
-const TRIAL_STEP: f64 = 1e-3;
+/// Arc lengths of the steps by which a direction of first order is tried, one after another until it is clear.
+const TRIAL_STEPS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
+/// Quantities and slopes below this are zero at first order.
+const IN_DOUBT: f64 = 1e-8;
+/// Slopes beyond this after a trial step have a sign (their round-off is a thousand times smaller).
+const CLEAR: f64 = 1e-9;
 /// How far a watched quantity may be negative after a trial step (second order in the step where it is real).
 const TRIAL_TOLERANCE: f64 = 1e-11;
 
@@ -108,24 +112,69 @@ pub fn sign_of(load: f64) -> f64 {
     if load.abs() <= STATIONARY { 0.0 } else { load.signum() }
 }
 
+/// What a small step says of a direction that holds only at first order.
+enum Verdict {
+    Holds(f64),
+    Fails,
+    /// What is in doubt stays zero to second order, too.
+    Unclear(f64),
+}
+
 /// The label under which a small step along the direction is feasible, and the load rate after that step.
 fn confirm(loading: Loading<'_>, state: &State, candidate: &Candidate, force_scale: f64) -> Option<(Vec<Mode>, f64)> {
-    let later_load = |modes: &Vec<Mode>| {
-        let system = ModeSystem::new(loading, modes, state);
-        let guess = state.advanced(&candidate.rate, TRIAL_STEP);
-        let place = Place::ArcLength { from: state, step: TRIAL_STEP };
-        let corrected = system.correct(guess, place, force_scale).ok()?;
-        if state.angle_of_chord(&corrected.state, &candidate.rate) > MOST_TURN {
-            return None;
+    candidate.labels.iter().find_map(|modes| {
+        let mut later_load = None;
+        for step in TRIAL_STEPS {
+            match try_step(loading, state, candidate, modes, step, force_scale) {
+                Verdict::Holds(load) => return Some((modes.clone(), load)),
+                Verdict::Fails => return None,
+                Verdict::Unclear(load) => later_load = Some(load),
+            }
         }
-        let rate = system.tangent(&corrected.state, &candidate.rate)?;
-        let feasible = watch::of_mode(loading, modes).iter().all(|watch| {
-            let value = watch.value(loading, modes, &corrected.state, &rate);
-            value >= -TRIAL_TOLERANCE * watch.scale(force_scale.max(corrected.force_scale))
-        });
-        feasible.then_some(rate.load)
-    };
-    candidate.labels.iter().find_map(|modes| later_load(modes).map(|load| (modes.clone(), load)))
+        later_load.map(|load| (modes.clone(), load))
+    })
+}
+
+/// Follows only what is zero at first order: whatever else ends the mode within the step is an event to come. The
+/// step is short, so that such events come after it as a rule: where many contacts change close together, a long one
+/// would judge a motion that does not happen.
+fn try_step(
+    loading: Loading<'_>,
+    state: &State,
+    candidate: &Candidate,
+    modes: &[Mode],
+    step: f64,
+    force_scale: f64,
+) -> Verdict {
+    let system = ModeSystem::new(loading, modes, state);
+    let guess = state.advanced(&candidate.rate, step);
+    let place = Place::ArcLength { from: state, step };
+    let Ok(corrected) = system.correct(guess, place, force_scale) else { return Verdict::Fails };
+    if state.angle_of_chord(&corrected.state, &candidate.rate) > MOST_TURN {
+        return Verdict::Fails;
+    }
+    let Some(rate) = system.tangent(&corrected.state, &candidate.rate) else { return Verdict::Fails };
+    let forces = force_scale.max(corrected.force_scale);
+    let rates = candidate.rate.largest_reaction().max(rate.largest_reaction()).max(f64::MIN_POSITIVE);
+    let mut unclear = false;
+    for watch in watch::of_mode(loading, modes) {
+        let scale = watch.scale(forces);
+        let first = watch.value(loading, modes, state, &candidate.rate);
+        let (tendency, size) = match watch.slope(loading, &candidate.rate) {
+            None => (0.0, 1.0),
+            Some(slope) => (slope, watch.scale(rates)),
+        };
+        if first > IN_DOUBT * scale || tendency > IN_DOUBT * size {
+            continue;
+        }
+        let last = watch.value(loading, modes, &corrected.state, &rate) / scale;
+        let grown = watch.slope(loading, &rate).map_or(last, |slope| slope / size);
+        if last < -TRIAL_TOLERANCE || grown < -CLEAR {
+            return Verdict::Fails;
+        }
+        unclear |= grown <= CLEAR;
+    }
+    if unclear { Verdict::Unclear(rate.load) } else { Verdict::Holds(rate.load) }
 }
 
 /// Whether a direction is the incoming one reversed, reactions included.

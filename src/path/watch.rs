@@ -82,7 +82,7 @@ impl Watch {
     }
 
     /// Derivative by arc length; `None` for quantities that are themselves rates.
-    fn slope(self, loading: Loading<'_>, rate: &Rate) -> Option<f64> {
+    pub fn slope(self, loading: Loading<'_>, rate: &Rate) -> Option<f64> {
         match self {
             Self::Gap(contact) => {
                 let contact = &loading.contacts[contact];

@@ -44,12 +44,14 @@ pub struct Findings {
     pub examined: u64,
 }
 
-/// Combinations tried on one line: more are possible only where many inequalities hold with equality at once.
-const MOST_ON_LINE: usize = 64;
+/// Combinations kept as labels of one line: there are more only where many inequalities hold with equality at once.
+const MOST_LABELS: u64 = 64;
 /// Nodes spent inside sets of solutions of more than one dimension, whose edges are rays like any other.
 const MOST_IN_SETS: u64 = 512;
 /// Bases kept of such sets.
 const MOST_PLANES: usize = 256;
+/// Rays closer than this, relative to their largest weight, are one.
+const SAME: f64 = 1e-9;
 /// A form this small at a node's point is zero as far as the search is concerned.
 const FITS: f64 = 1e-7;
 
@@ -85,6 +87,7 @@ struct Task {
 struct Search<'a> {
     problem: &'a RateProblem,
     findings: Findings,
+    /// Combinations whose equations were solved.
     seen: BTreeSet<Vec<usize>>,
     most: u64,
 }
@@ -110,12 +113,13 @@ impl Search<'_> {
         }
     }
 
-    /// Examines every combination of the options given for each entity, hold first.
+    /// Examines the combinations of the options given for each entity, which all fit one line, hold first.
+    ///
+    /// The line is that of the first; the others are further labels of its rays, and no more than a few are kept.
     fn examine_all(&mut self, options: &[Vec<usize>]) {
         let total = options.iter().fold(1u64, |total, options| total.saturating_mul(options.len() as u64));
-        let number = total.min(MOST_ON_LINE as u64);
-        self.findings.unexplored = self.findings.unexplored.saturating_add(total - number);
-        for number in 0..number {
+        let mut lines: Vec<DVector<f64>> = Vec::new();
+        for number in 0..total.min(MOST_LABELS) {
             let mut rest = number;
             let chosen: Vec<usize> = options
                 .iter()
@@ -125,8 +129,25 @@ impl Search<'_> {
                     choice
                 })
                 .collect();
-            self.examine(&chosen);
+            let known: Vec<DVector<f64>> =
+                lines.iter().filter(|weights| self.problem.is_on(&chosen, weights)).cloned().collect();
+            if known.is_empty() {
+                let before = self.findings.rays.len();
+                self.examine(&chosen);
+                lines.extend(self.findings.rays[before..].iter().map(|ray| ray.weights.clone()));
+            } else {
+                for weights in known {
+                    if !self.is_known(&chosen, &weights) && self.problem.holds(&chosen, &weights).is_some() {
+                        self.findings.rays.push(Ray { weights, chosen: chosen.clone(), weak: true });
+                    }
+                }
+            }
         }
+    }
+
+    fn is_known(&self, chosen: &[usize], weights: &DVector<f64>) -> bool {
+        let size = weights.amax();
+        self.findings.rays.iter().any(|ray| ray.chosen == chosen && (&ray.weights - weights).amax() <= SAME * size)
     }
 
     /// The certificate on the whole problem.
