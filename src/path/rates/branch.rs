@@ -136,7 +136,7 @@ impl Search<'_> {
                 self.examine(&chosen);
                 lines.extend(self.findings.rays[before..].iter().map(|ray| ray.weights.clone()));
             } else {
-                for weights in known {
+                for weights in known.into_iter().flat_map(|weights| [-&weights, weights]) {
                     if !self.is_known(&chosen, &weights) && self.problem.holds(&chosen, &weights).is_some() {
                         self.findings.rays.push(Ray { weights, chosen: chosen.clone(), weak: true });
                     }
