@@ -2,11 +2,12 @@
 //!
 //! With `v` the velocities of those contacts and `τ` the coordinate along the held structure's own direction `z₀`,
 //! `(u̇, ṡ, ṙ) = Z v + z₀ τ`; a mode picks one linear equation for each velocity and leaves a line, taken in both senses.
-//! The inequalities are those listed in `directions`.
+//! The inequalities are those listed in `directions`. Here they become the forms and entities of a rate problem, and
+//! `rates` finds its rays.
 
 use super::directions::{Candidate, Found, RANK, WEAK, is_mechanism, merge};
 use super::mode_system::{Loading, ModeSystem};
-use super::rates::{self, Choice, Entity, RateProblem, Ray, Signed};
+use super::rates::{self, Choice, Entity, RateProblem, Ray, Touching};
 use super::standing::Standing;
 use super::state::{Rate, State, along};
 use crate::cancel::CancelFlag;
@@ -121,7 +122,7 @@ impl<'a> Condensed<'a> {
     }
 
     /// The rate problem of these contacts, with options in the order of [`Self::options`].
-    fn problem(&self) -> RateProblem {
+    pub(super) fn problem(&self) -> RateProblem {
         let mut forms = Forms { columns: self.columns.len(), rows: Vec::new(), is_force: Vec::new() };
         let entities = self.changeable.iter().map(|entry| forms.add_contact(entry)).collect();
         let freedoms = self.columns[0].displacement.len();
@@ -218,7 +219,7 @@ impl<'a> Condensed<'a> {
 
     /// The rate of unit arc length for weights of the columns, and the weights that give it; of no size where the
     /// weights move nothing.
-    fn combine(&self, weights: &DVector<f64>) -> (Rate, DVector<f64>) {
+    pub(super) fn combine(&self, weights: &DVector<f64>) -> (Rate, DVector<f64>) {
         let mut rate = self.columns[0].clone();
         rate.scale(weights[0]);
         for (column, weight) in self.columns.iter().zip(weights.iter()).skip(1) {
@@ -275,9 +276,10 @@ impl Forms {
 
     /// The options of one contact as equations and inequalities on the weights.
     fn add_contact(&mut self, entry: &Changeable) -> Entity {
-        let both = |form: usize| [Signed::plus(form), Signed::minus(form)];
         match (entry.standing, entry.normal_column, entry.tangential_column) {
-            (Standing::Settled(_), _, _) | (_, None, None) => Entity { options: vec![Choice::default()] },
+            (Standing::Settled(_), _, _) | (_, None, None) => {
+                Entity { options: vec![Choice::default()], touching: None }
+            }
             (Standing::OnCone { direction }, _, Some(column)) => {
                 let along = self.velocity(column, direction[0]);
                 let slack = self.force(&entry.normal_rate * entry.friction + &entry.tangential_rate * direction[0]);
@@ -295,25 +297,7 @@ impl Forms {
                 let traction = self.force(entry.tangential_rate.clone());
                 let forward = self.force(&entry.normal_rate * entry.friction + &entry.tangential_rate);
                 let backward = self.force(&entry.normal_rate * entry.friction - &entry.tangential_rate);
-                let stick = Choice {
-                    zero: vec![gap, along],
-                    nonnegative: vec![Signed::plus(forward), Signed::plus(backward)],
-                    implied: vec![Signed::plus(pressing)],
-                };
-                let slip = |along: Signed, cone: usize, other: usize| Choice {
-                    zero: vec![gap, cone],
-                    nonnegative: vec![along, Signed::plus(pressing)],
-                    implied: vec![Signed::plus(other)],
-                };
-                let free = Choice {
-                    zero: vec![pressing, traction],
-                    nonnegative: vec![Signed::plus(gap)],
-                    implied: [both(forward), both(backward)].concat(),
-                };
-                let slips =
-                    [slip(Signed::plus(along), forward, backward), slip(Signed::minus(along), backward, forward)];
-                let [forward, backward] = slips;
-                Entity { options: vec![stick, forward, backward, free] }
+                Entity::touching(Touching { gap, along, pressing, traction, cone: [forward, backward] })
             }
         }
     }

@@ -1,8 +1,13 @@
 //! Which direction the path takes.
 //!
 //! Directions that hold only at first order are tried with a small step; the way the path came is never a candidate.
-//! Then the rule: the largest dissipation per arc length (Kanno and Martins), or the straightest. Ties go to the
-//! straightest in displacement, `u̇·u̇_prev` alone: a rule in which the load enters would depend on its units.
+//! Then the rule: the largest dissipation per arc length (Kanno and Martins), the smallest rate of potential energy
+//! (Hilding 2000), or the straightest. Ties go to the straightest in
+//! displacement, `u̇·u̇_prev` alone: a rule in which the load enters would depend on its units.
+//!
+//! The potential energy is that of structure and loads, `Π = W(u) - f_held·u - s f·u`. Along a direction
+//! `Π̇ = (f_int - f_held - s f)·u̇ - ṡ f·u`, and by equilibrium the bracket is the reactions, whose power is `-D` with the
+//! dissipation `D = -Σ r_t·u̇_t`: so `Π̇ = -D - ṡ f·u`, per unit arc length.
 
 use super::advance::MOST_TURN;
 use super::directions::{Candidate, Found, directions, is_mechanism};
@@ -33,6 +38,8 @@ pub struct Choice {
     pub rate: Rate,
     pub modes: Vec<Mode>,
     pub dissipation: f64,
+    /// Rate of the potential energy of structure and loads, `Π̇ = -D - ṡ f·u`.
+    pub potential_rate: f64,
     /// Sign of the load rate; where that is zero at first order, of the load rate that follows, if it was looked for.
     pub load_sign: f64,
     pub retrace: bool,
@@ -95,10 +102,12 @@ pub fn list(
         let Some((modes, later_load)) = confirmed else { continue };
         let load_sign = sign_of(if sign_of(candidate.rate.load) == 0.0 { later_load } else { candidate.rate.load });
         let retrace = incoming.is_some_and(|incoming| is_reverse(&candidate.rate, incoming));
+        let potential_rate = -candidate.dissipation - candidate.rate.load * dot(loading.pattern, &state.displacement);
         options.push(Choice {
             rate: candidate.rate,
             modes,
             dissipation: candidate.dissipation,
+            potential_rate,
             load_sign,
             retrace,
             mechanism,
@@ -253,7 +262,10 @@ fn is_preferred(first: &Choice, second: &Choice, previous: &Rate, rules: Rules<'
     match rules.selection {
         Selection::Straightest => cosine(first) > cosine(second),
         Selection::MaxDissipation | Selection::MinPotentialEnergy => {
-            let difference = first.dissipation - second.dissipation;
+            let difference = match rules.selection {
+                Selection::MinPotentialEnergy => second.potential_rate - first.potential_rate,
+                Selection::MaxDissipation | Selection::Straightest => first.dissipation - second.dissipation,
+            };
             if difference.abs() > TIE * rules.force_scale {
                 difference > 0.0
             } else {
@@ -288,5 +300,30 @@ pub fn is_worth_listing(options: &[Choice]) -> bool {
         [] | [_] => false,
         [first, second] => first.rate.product(&second.rate) > -1.0 + 1e-9 || first.modes != second.modes,
         _ => true,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn choice(displacement: [f64; 2], dissipation: f64, potential_rate: f64) -> Choice {
+        let rate = Rate { displacement: displacement.to_vec(), load: 0.0, reactions: Vec::new() };
+        let (modes, load_sign) = (Vec::new(), 1.0);
+        Choice { rate, modes, dissipation, potential_rate, load_sign, retrace: false, mechanism: false }
+    }
+
+    #[test]
+    fn each_rule_takes_its_own_direction_and_ties_go_straight_on() {
+        let options = [choice([0.6, 0.8], 3.0, -1.0), choice([0.8, 0.6], 2.0, -4.0), choice([1.0, 0.0], 3.0, -4.0)];
+        let previous = choice([0.0, 1.0], 0.0, 0.0).rate;
+        let cancel = CancelFlag::default();
+        let taken = |selection| {
+            let rules = Rules { selection, most_modes: 1, force_scale: 1.0, cancel: &cancel };
+            preferred(&options, &previous, rules, |_| true)
+        };
+        assert_eq!(taken(Selection::MaxDissipation), Some(0));
+        assert_eq!(taken(Selection::MinPotentialEnergy), Some(1));
+        assert_eq!(taken(Selection::Straightest), Some(0));
     }
 }

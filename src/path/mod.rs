@@ -8,6 +8,7 @@
 //! | `state`, `mode_system` | a point; the equations of one contact mode and Newton's method on them |
 //! | `watch`, `root`, `advance` | what ends a mode; one step, ended exactly at the first event |
 //! | `standing`, `directions`, `condensed`, `decide` | which contacts can change; every direction; which one is taken |
+//! | `rates` | all rays of a rate problem, complete: linear forms only |
 //! | `program`, `naming` | the MPEC of an increment; where it names the mode |
 //! | `energy`, `record`, `increment`, `report`, `stop` | balances, rows, totals, reasons |
 //! | `tracer`, `stepping`, `arrival` | the iterator; how far a step goes; what a point turned out to be |
@@ -18,6 +19,8 @@ mod condensed;
 mod decide;
 mod directions;
 mod energy;
+#[cfg(test)]
+mod exhaustive;
 pub mod increment;
 mod mode_system;
 mod name_event;

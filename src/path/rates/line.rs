@@ -59,9 +59,10 @@ impl RateProblem {
     pub(super) fn is_on(&self, chosen: &[usize], weights: &DVector<f64>) -> bool {
         let force = self.force_tolerance(weights);
         self.entities.iter().zip(chosen).all(|(entity, &choice)| {
-            entity.options[choice].zero.iter().all(|&form| {
-                self.value(form, weights).abs() <= if self.is_force[form] { force } else { WEAK }
-            })
+            entity.options[choice]
+                .zero
+                .iter()
+                .all(|&form| self.value(form, weights).abs() <= if self.is_force[form] { force } else { WEAK })
         })
     }
 
