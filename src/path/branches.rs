@@ -16,7 +16,7 @@
 
 use super::advance::MOST_TURN;
 use super::critical::SINGULAR;
-use super::decide::{Choice, sign_of};
+use super::decide::{Choice, potential_rate, sign_of};
 use super::loading::Loading;
 use super::mode_system::ModeSystem;
 use super::newton::Place;
@@ -109,7 +109,9 @@ impl Point<'_> {
                     * self.sliding(contact, &rate)
             })
             .sum();
-        Choice { rate, modes: self.modes.to_vec(), dissipation, load_sign, retrace, mechanism: false }
+        let potential_rate = potential_rate(self.loading, self.state, &rate, dissipation);
+        let modes = self.modes.to_vec();
+        Choice { rate, modes, dissipation, potential_rate, load_sign, retrace, mechanism: false }
     }
 
     fn sliding(&self, contact: usize, rate: &Rate) -> f64 {

@@ -3,7 +3,7 @@
 
 use super::corner::{self, rays};
 use super::loading::Loading;
-use super::rates::{Choice, Entity, Signed};
+use super::rates::{Choice, Entity, Signed, Touching};
 use super::standing::Standing;
 use super::state::{Rate, State};
 use crate::contact::vector::{Vector, add, dot, scaled};
@@ -150,41 +150,29 @@ impl Changeable {
                 let stick =
                     Choice { zero: zero.clone(), nonnegative: vec![Signed::plus(forces[0])], implied: Vec::new() };
                 let free = Choice { zero: forces, nonnegative: vec![Signed::plus(zero[0])], implied: Vec::new() };
-                (Entity { options: vec![stick, free] }, vec![single(Mode::Stick), single(Mode::Free)])
+                (Entity { options: vec![stick, free], touching: None }, vec![single(Mode::Stick), single(Mode::Free)])
             }
             (Standing::Cornered { facets, unloaded }, _) => {
                 self.options_of_corner(loading, state, facets, unloaded, forms)
             }
-            (Standing::Settled(mode), _) => (Entity { options: vec![Choice::default()] }, vec![single(mode)]),
+            (Standing::Settled(mode), _) => {
+                (Entity { options: vec![Choice::default()], touching: None }, vec![single(mode)])
+            }
         }
     }
 
     fn touching_on_a_line(&self, friction: f64, forms: &mut Forms<'_>) -> Entity {
         let (normal, tangent) = (self.frames[0].normal, self.frames[0].tangents[0]);
-        let both = |form: usize| [Signed::plus(form), Signed::minus(form)];
-        let gap = forms.velocity(self, &normal);
-        let along = forms.velocity(self, &tangent);
-        let pressing = forms.force_along(self, &normal);
-        let traction = forms.force_along(self, &tangent);
-        let forward = forms.force_along(self, &add(&tangent, friction, &normal));
-        let backward = forms.force_along(self, &add(&scaled(&tangent, -1.0), friction, &normal));
-        let stick = Choice {
-            zero: vec![gap, along],
-            nonnegative: vec![Signed::plus(forward), Signed::plus(backward)],
-            implied: vec![Signed::plus(pressing)],
-        };
-        let slip = |along: Signed, cone: usize, other: usize| Choice {
-            zero: vec![gap, cone],
-            nonnegative: vec![along, Signed::plus(pressing)],
-            implied: vec![Signed::plus(other)],
-        };
-        let free = Choice {
-            zero: vec![pressing, traction],
-            nonnegative: vec![Signed::plus(gap)],
-            implied: [both(forward), both(backward)].concat(),
-        };
-        let (plus, minus) = (Signed::plus(along), Signed::minus(along));
-        Entity { options: vec![stick, slip(plus, forward, backward), slip(minus, backward, forward), free] }
+        Entity::touching(Touching {
+            gap: forms.velocity(self, &normal),
+            along: forms.velocity(self, &tangent),
+            pressing: forms.force_along(self, &normal),
+            traction: forms.force_along(self, &tangent),
+            cone: [
+                forms.force_along(self, &add(&tangent, friction, &normal)),
+                forms.force_along(self, &add(&scaled(&tangent, -1.0), friction, &normal)),
+            ],
+        })
     }
 
     /// The node is held, slides along one of its obstacles while the others open, or leaves them all.
@@ -267,7 +255,7 @@ impl Changeable {
             options.push(Choice { zero, nonnegative, implied: Vec::new() });
             outcomes.push(outcome(None, Mode::Free));
         }
-        (Entity { options }, outcomes)
+        (Entity { options, touching: None }, outcomes)
     }
 }
 

@@ -83,6 +83,12 @@ impl<'a> Condensed<'a> {
         Some(Self { loading, columns, changeable, problem, outcomes })
     }
 
+    /// The rate problem, for those who try every combination.
+    #[cfg(test)]
+    pub(super) fn problem(&self) -> &RateProblem {
+        &self.problem
+    }
+
     /// Lists the directions, by branch and bound over the contacts' options.
     pub(super) fn enumerate(
         &self,
@@ -163,7 +169,7 @@ impl<'a> Condensed<'a> {
 
     /// The rate of unit arc length for weights of the columns, and the weights that give it; of no size where the
     /// weights move nothing.
-    fn combine(&self, weights: &DVector<f64>) -> (Rate, DVector<f64>) {
+    pub(super) fn combine(&self, weights: &DVector<f64>) -> (Rate, DVector<f64>) {
         let mut rate = self.columns[0].clone();
         rate.scale(weights[0]);
         for (column, weight) in self.columns.iter().zip(weights.iter()).skip(1) {

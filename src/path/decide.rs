@@ -1,11 +1,17 @@
 //! Which direction the path takes.
 //!
 //! Directions that hold only at first order are tried with a small step; the way the path came is never a candidate.
-//! Then the rule: the largest dissipation per arc length (Kanno and Martins), or the straightest. Ties go to the
-//! straightest in displacement, `u̇·u̇_prev` alone: a rule in which the load enters would depend on its units.
+//! Then the rule: the largest dissipation per arc length (Kanno and Martins), the smallest rate of potential energy
+//! (Hilding 2000), or the straightest. Ties go to the straightest in
+//! displacement, `u̇·u̇_prev` alone: a rule in which the load enters would depend on its units.
+//!
+//! The potential energy is that of structure and loads, `Π = W(u) - f_held·u - s f·u`. Along a direction
+//! `Π̇ = (f_int - f_held - s f)·u̇ - ṡ f·u`, and by equilibrium the bracket is the reactions, whose power is `-D` with the
+//! dissipation `D = -Σ r_t·u̇_t`: so `Π̇ = -D - ṡ f·u`, per unit arc length.
 
 use super::advance::MOST_TURN;
 use super::directions::{Candidate, Found, directions, is_mechanism};
+use super::energy;
 use super::loading::Loading;
 use super::mode_system::ModeSystem;
 use super::newton::Place;
@@ -36,6 +42,8 @@ pub struct Choice {
     pub rate: Rate,
     pub modes: Vec<Mode>,
     pub dissipation: f64,
+    /// Rate of the potential energy of structure and loads, `Π̇ = -D - ṡ f·u`.
+    pub potential_rate: f64,
     /// Sign of the load rate; where that is zero at first order, of the load rate that follows, if it was looked for.
     pub load_sign: f64,
     pub retrace: bool,
@@ -55,8 +63,12 @@ pub enum Before<'a> {
 pub const STATIONARY: f64 = 1e-9;
 /// Dissipations closer than this, relative to the largest force, tie.
 const TIE: f64 = 1e-8;
-/// Arc length of the step by which a direction of first order is tried.
-const TRIAL_STEP: f64 = 1e-3;
+/// Arc lengths of the steps by which a direction of first order is tried, one after another until it is clear.
+const TRIAL_STEPS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
+/// Quantities and slopes below this are zero at first order.
+const IN_DOUBT: f64 = 1e-8;
+/// Slopes beyond this after a trial step have a sign (their round-off is a thousand times smaller).
+const CLEAR: f64 = 1e-9;
 /// How far a watched quantity may be negative after a trial step (second order in the step where it is real).
 const TRIAL_TOLERANCE: f64 = 1e-11;
 
@@ -94,10 +106,12 @@ pub fn list(
         let Some((modes, later_load)) = confirmed else { continue };
         let load_sign = sign_of(if sign_of(candidate.rate.load) == 0.0 { later_load } else { candidate.rate.load });
         let retrace = incoming.is_some_and(|incoming| is_reverse(&candidate.rate, incoming));
+        let potential_rate = potential_rate(loading, state, &candidate.rate, candidate.dissipation);
         options.push(Choice {
             rate: candidate.rate,
             modes,
             dissipation: candidate.dissipation,
+            potential_rate,
             load_sign,
             retrace,
             mechanism,
@@ -106,29 +120,85 @@ pub fn list(
     (options, found)
 }
 
+/// Rate of the potential energy of structure and loads, `Π̇ = -D - ṡ f·u`; what supports and obstacles that move put in
+/// comes on top.
+pub fn potential_rate(loading: Loading<'_>, state: &State, rate: &Rate, dissipation: f64) -> f64 {
+    let driven = if loading.pattern.moves_boundary() {
+        energy::boundary_force(loading, (state, rate)).0 * rate.load
+    } else {
+        0.0
+    };
+    driven - dissipation - rate.load * dot(&loading.pattern.forces, &state.displacement)
+}
+
 /// The sign of a load rate; 0 where it is stationary.
 pub fn sign_of(load: f64) -> f64 {
     if load.abs() <= STATIONARY { 0.0 } else { load.signum() }
 }
 
+/// What a small step says of a direction that holds only at first order.
+enum Verdict {
+    Holds(f64),
+    Fails,
+    /// What is in doubt stays zero to second order, too.
+    Unclear(f64),
+}
+
 /// The label under which a small step along the direction is feasible, and the load rate after that step.
 fn confirm(loading: Loading<'_>, state: &State, candidate: &Candidate, force_scale: f64) -> Option<(Vec<Mode>, f64)> {
-    let later_load = |modes: &Vec<Mode>| {
-        let system = ModeSystem::new(loading, modes, state);
-        let guess = state.advanced(&candidate.rate, TRIAL_STEP);
-        let place = Place::ArcLength { from: state, step: TRIAL_STEP };
-        let corrected = system.correct(guess, place, force_scale).ok()?;
-        if state.angle_of_chord(&corrected.state, &candidate.rate) > MOST_TURN {
-            return None;
+    candidate.labels.iter().find_map(|modes| {
+        let mut later_load = None;
+        for step in TRIAL_STEPS {
+            match try_step(loading, state, candidate, modes, step, force_scale) {
+                Verdict::Holds(load) => return Some((modes.clone(), load)),
+                Verdict::Fails => return None,
+                Verdict::Unclear(load) => later_load = Some(load),
+            }
         }
-        let rate = system.tangent(&corrected, &candidate.rate)?;
-        let feasible = watch::of_mode(loading, modes).iter().all(|watch| {
-            let value = watch.value(loading, modes, &corrected.state, &rate);
-            value >= -TRIAL_TOLERANCE * watch.scale(force_scale.max(corrected.force_scale))
-        });
-        feasible.then_some(rate.load)
-    };
-    candidate.labels.iter().find_map(|modes| later_load(modes).map(|load| (modes.clone(), load)))
+        later_load.map(|load| (modes.clone(), load))
+    })
+}
+
+/// Follows only what is zero at first order: whatever else ends the mode within the step is an event to come. The
+/// step is short, so that such events come after it as a rule: where many contacts change close together, a long one
+/// would judge a motion that does not happen.
+fn try_step(
+    loading: Loading<'_>,
+    state: &State,
+    candidate: &Candidate,
+    modes: &[Mode],
+    step: f64,
+    force_scale: f64,
+) -> Verdict {
+    let system = ModeSystem::new(loading, modes, state);
+    let guess = state.advanced(&candidate.rate, step);
+    let place = Place::ArcLength { from: state, step };
+    let Ok(corrected) = system.correct(guess, place, force_scale) else { return Verdict::Fails };
+    if state.angle_of_chord(&corrected.state, &candidate.rate) > MOST_TURN {
+        return Verdict::Fails;
+    }
+    let Some(rate) = system.tangent(&corrected, &candidate.rate) else { return Verdict::Fails };
+    let forces = force_scale.max(corrected.force_scale);
+    let rates = candidate.rate.largest_reaction().max(rate.largest_reaction()).max(f64::MIN_POSITIVE);
+    let mut unclear = false;
+    for watch in watch::of_mode(loading, modes) {
+        let scale = watch.scale(forces);
+        let first = watch.value(loading, modes, state, &candidate.rate);
+        let (tendency, size) = match watch.slope(loading, state, &candidate.rate) {
+            None => (0.0, 1.0),
+            Some(slope) => (slope, watch.scale(rates)),
+        };
+        if first > IN_DOUBT * scale || tendency > IN_DOUBT * size {
+            continue;
+        }
+        let last = watch.value(loading, modes, &corrected.state, &rate) / scale;
+        let grown = watch.slope(loading, &corrected.state, &rate).map_or(last, |slope| slope / size);
+        if last < -TRIAL_TOLERANCE || grown < -CLEAR {
+            return Verdict::Fails;
+        }
+        unclear |= grown <= CLEAR;
+    }
+    if unclear { Verdict::Unclear(rate.load) } else { Verdict::Holds(rate.load) }
 }
 
 /// Whether a direction is the incoming one reversed, reactions included.
@@ -209,7 +279,10 @@ fn is_preferred(first: &Choice, second: &Choice, previous: &Rate, rules: Rules<'
     match rules.selection {
         Selection::Straightest => cosine(first) > cosine(second),
         Selection::MaxDissipation | Selection::MinPotentialEnergy => {
-            let difference = first.dissipation - second.dissipation;
+            let difference = match rules.selection {
+                Selection::MinPotentialEnergy => second.potential_rate - first.potential_rate,
+                Selection::MaxDissipation | Selection::Straightest => first.dissipation - second.dissipation,
+            };
             if difference.abs() > TIE * rules.force_scale {
                 difference > 0.0
             } else {
@@ -244,5 +317,30 @@ pub fn is_worth_listing(options: &[Choice]) -> bool {
         [] | [_] => false,
         [first, second] => first.rate.product(&second.rate) > -1.0 + 1e-9 || first.modes != second.modes,
         _ => true,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn choice(displacement: [f64; 2], dissipation: f64, potential_rate: f64) -> Choice {
+        let rate = Rate { displacement: displacement.to_vec(), load: 0.0, reactions: Vec::new() };
+        let (modes, load_sign) = (Vec::new(), 1.0);
+        Choice { rate, modes, dissipation, potential_rate, load_sign, retrace: false, mechanism: false }
+    }
+
+    #[test]
+    fn each_rule_takes_its_own_direction_and_ties_go_straight_on() {
+        let options = [choice([0.6, 0.8], 3.0, -1.0), choice([0.8, 0.6], 2.0, -4.0), choice([1.0, 0.0], 3.0, -4.0)];
+        let previous = choice([0.0, 1.0], 0.0, 0.0).rate;
+        let cancel = CancelFlag::default();
+        let taken = |selection| {
+            let rules = Rules { selection, most_modes: 1, force_scale: 1.0, cancel: &cancel };
+            preferred(&options, &previous, rules, |_| true)
+        };
+        assert_eq!(taken(Selection::MaxDissipation), Some(0));
+        assert_eq!(taken(Selection::MinPotentialEnergy), Some(1));
+        assert_eq!(taken(Selection::Straightest), Some(0));
     }
 }

@@ -71,7 +71,7 @@ pub fn work_and_dissipation(loading: Loading<'_>, modes: &[Mode], start: Placed<
 }
 
 /// `Q` and its derivative by arc length.
-fn boundary_force(loading: Loading<'_>, at: Placed<'_>) -> (f64, f64) {
+pub fn boundary_force(loading: Loading<'_>, at: Placed<'_>) -> (f64, f64) {
     let (state, rate) = at;
     let structure = loading.structure;
     let mut force = vec![0.0; structure.freedoms()];

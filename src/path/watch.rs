@@ -107,7 +107,7 @@ impl Watch {
     }
 
     /// Derivative by arc length; `None` for quantities that are themselves rates.
-    fn slope(self, loading: Loading<'_>, state: &State, rate: &Rate) -> Option<f64> {
+    pub fn slope(self, loading: Loading<'_>, state: &State, rate: &Rate) -> Option<f64> {
         match self {
             Self::Gap(contact) => {
                 Some(dot(&loading.frame(contact, state).normal, &loading.relative_rate(contact, rate)))

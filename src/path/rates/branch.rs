@@ -7,10 +7,10 @@
 //! on the sign of the load rate. Every ray comes from the exact equations of its combination, so that the search decides
 //! only where to look.
 
-use super::certificate::{Certified, options_of, reduce};
+use super::certificate::{Certified, is_monotone, options_of, reduce};
 use super::dictionary::{Dictionary, Feasibility};
 use super::line::Line;
-use super::problem::{Choice, RateProblem};
+use super::problem::{Choice, Entity, RateProblem, Signed};
 use crate::cancel::CancelFlag;
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeSet;
@@ -40,22 +40,34 @@ pub struct Findings {
     pub planes: Vec<DMatrix<f64>>,
     /// One ray for each sign of the load rate, by the certificate, without any branching.
     pub certified: bool,
-    /// Nodes and combinations looked at.
+    /// Nodes and combinations looked at, large ones counted as several.
     pub examined: u64,
 }
 
-/// Combinations tried on one line: more are possible only where many inequalities hold with equality at once.
-const MOST_ON_LINE: usize = 64;
+/// Combinations kept as labels of one line: there are more only where many inequalities hold with equality at once.
+const MOST_LABELS: u64 = 64;
+/// Entries of a dictionary that make a node count as one; a larger node counts as several.
+const UNIT_OF_WORK: u64 = 4096;
 /// Nodes spent inside sets of solutions of more than one dimension, whose edges are rays like any other.
 const MOST_IN_SETS: u64 = 512;
 /// Bases kept of such sets.
 const MOST_PLANES: usize = 256;
+/// Rays closer than this, relative to their largest weight, are one.
+const SAME: f64 = 1e-9;
 /// A form this small at a node's point is zero as far as the search is concerned.
 const FITS: f64 = 1e-7;
 
 /// All rays, after at most so many nodes and combinations; `first` are combinations to examine before the others.
 pub fn explore(problem: &RateProblem, first: &[Vec<usize>], most: u64, cancel: &CancelFlag) -> Findings {
-    let mut search = Search { problem, findings: Findings::default(), seen: BTreeSet::new(), most };
+    let mut search = Search {
+        problem,
+        findings: Findings::default(),
+        seen: BTreeSet::new(),
+        most,
+        common: problem.entities.iter().map(Entity::common).collect(),
+        coupling: problem.coupling(),
+        cost: 1 + (problem.forms.nrows() * problem.weights()) as u64 / UNIT_OF_WORK,
+    };
     if !search.certified_at_once() {
         first.iter().for_each(|chosen| search.examine(chosen));
         search.branch(cancel);
@@ -74,6 +86,8 @@ struct Node {
     sign: f64,
     /// Inside a set of solutions.
     in_set: bool,
+    /// The entity decided last.
+    last: Option<usize>,
 }
 
 /// A child that has not been looked at.
@@ -85,8 +99,14 @@ struct Task {
 struct Search<'a> {
     problem: &'a RateProblem,
     findings: Findings,
+    /// Combinations whose equations were solved.
     seen: BTreeSet<Vec<usize>>,
     most: u64,
+    /// What all options of each entity have in common.
+    common: Vec<Vec<Signed>>,
+    coupling: DMatrix<f64>,
+    /// What a node counts: large problems take longer over each.
+    cost: u64,
 }
 
 impl Search<'_> {
@@ -94,7 +114,7 @@ impl Search<'_> {
         if !self.seen.insert(chosen.to_vec()) {
             return;
         }
-        self.findings.examined += 1;
+        self.findings.examined += self.cost;
         match self.problem.line(chosen) {
             Line::Rays(rays) => {
                 let rays = rays.into_iter().map(|(weights, weak)| Ray { weights, chosen: chosen.to_vec(), weak });
@@ -110,12 +130,13 @@ impl Search<'_> {
         }
     }
 
-    /// Examines every combination of the options given for each entity, hold first.
+    /// Examines the combinations of the options given for each entity, which all fit one line, hold first.
+    ///
+    /// The line is that of the first; the others are further labels of its rays, and no more than a few are kept.
     fn examine_all(&mut self, options: &[Vec<usize>]) {
         let total = options.iter().fold(1u64, |total, options| total.saturating_mul(options.len() as u64));
-        let number = total.min(MOST_ON_LINE as u64);
-        self.findings.unexplored = self.findings.unexplored.saturating_add(total - number);
-        for number in 0..number {
+        let mut lines: Vec<DVector<f64>> = Vec::new();
+        for number in 0..total.min(MOST_LABELS) {
             let mut rest = number;
             let chosen: Vec<usize> = options
                 .iter()
@@ -125,15 +146,42 @@ impl Search<'_> {
                     choice
                 })
                 .collect();
-            self.examine(&chosen);
+            let known: Vec<DVector<f64>> =
+                lines.iter().filter(|weights| self.problem.is_on(&chosen, weights)).cloned().collect();
+            if known.is_empty() {
+                let before = self.findings.rays.len();
+                self.examine(&chosen);
+                lines.extend(self.findings.rays[before..].iter().map(|ray| ray.weights.clone()));
+            } else {
+                for weights in known.into_iter().flat_map(|weights| [-&weights, weights]) {
+                    if !self.is_known(&chosen, &weights) && self.problem.holds(&chosen, &weights).is_some() {
+                        self.findings.rays.push(Ray { weights, chosen: chosen.clone(), weak: true });
+                    }
+                }
+            }
         }
+    }
+
+    fn is_known(&self, chosen: &[usize], weights: &DVector<f64>) -> bool {
+        let size = weights.amax();
+        self.findings.rays.iter().any(|ray| ray.chosen == chosen && (&ray.weights - weights).amax() <= SAME * size)
     }
 
     /// The certificate on the whole problem.
     fn certified_at_once(&mut self) -> bool {
-        let Some(pairs) = self.problem.entities.iter().map(|entity| entity.pair()).collect::<Option<Vec<_>>>() else {
+        let Some(pairs) = self.problem.entities.iter().map(Entity::pair).collect::<Option<Vec<_>>>() else {
             return false;
         };
+        let (a, b, load) = self.coordinates(&pairs);
+        let open: Vec<usize> = (0..pairs.len()).collect();
+        let chosen = vec![None; pairs.len()];
+        let done = self.examine_certified(a, b, &load, &open, &chosen, &[1.0, -1.0]);
+        self.findings.certified = done;
+        done
+    }
+
+    /// Forces, velocities and load rate over weights that each move by one.
+    fn coordinates(&self, pairs: &[[Signed; 2]]) -> (DMatrix<f64>, DMatrix<f64>, Vec<f64>) {
         let motion = &self.problem.motion;
         let scales = DVector::from_iterator(motion.ncols(), motion.column_iter().map(|column| 1.0 / column.norm()));
         let rows = |side: usize| {
@@ -141,12 +189,29 @@ impl Search<'_> {
                 pairs[row][side].sign * self.problem.forms[(pairs[row][side].form, column)] * scales[column]
             })
         };
-        let load: Vec<f64> = motion.row(motion.nrows() - 1).iter().zip(scales.iter()).map(|(a, b)| a * b).collect();
-        let open: Vec<usize> = (0..pairs.len()).collect();
-        let chosen = vec![None; pairs.len()];
-        let done = self.examine_certified(rows(0), rows(1), &load, &open, &chosen, &[1.0, -1.0]);
-        self.findings.certified = done;
-        done
+        let load = motion.row(motion.nrows() - 1).iter().zip(scales.iter()).map(|(a, b)| a * b).collect();
+        (rows(0), rows(1), load)
+    }
+
+    /// Signs of the load rate for which the problem is monotone and a ray is known that must then be the only one.
+    fn settled_signs(&self) -> Vec<f64> {
+        let conjugates: Option<Vec<_>> = self.problem.entities.iter().map(Entity::conjugates).collect();
+        let Some(conjugates) = conjugates else { return Vec::new() };
+        let mut bounds = Vec::new();
+        let mut next = 0;
+        for (entity, pairs) in self.problem.entities.iter().zip(&conjugates) {
+            bounds.extend(entity.touching.map(|_| next));
+            next += pairs.len();
+        }
+        let (a, b, load) = self.coordinates(&conjugates.concat());
+        let Some((matrix, _)) = reduce(&a, &b, &load) else { return Vec::new() };
+        if !is_monotone(&matrix, &bounds) {
+            return Vec::new();
+        }
+        let motion = &self.problem.motion;
+        let load_of = |ray: &Ray| (motion.row(motion.nrows() - 1) * &ray.weights)[0];
+        let strict = |sign: f64| self.findings.rays.iter().any(|ray| !ray.weak && sign * load_of(ray) > FITS);
+        [1.0, -1.0].into_iter().filter(|sign| strict(*sign)).collect()
     }
 
     /// Examines the one combination for each load rate given, if there is a certificate that it is the only one.
@@ -183,9 +248,19 @@ impl Search<'_> {
             let mut dictionary = dictionary.clone();
             dictionary.require(None, sign);
             let chosen = vec![None; self.problem.entities.len()];
-            Task { parent: Rc::new(Node { chosen, dictionary, sign, in_set: false }), decision: None }
+            Task { parent: Rc::new(Node { chosen, dictionary, sign, in_set: false, last: None }), decision: None }
         };
-        let mut tasks = vec![root(-1.0), root(1.0)];
+        let settled = self.settled_signs();
+        let mut tasks: Vec<Task> = [-1.0, 1.0].into_iter().filter(|sign| !settled.contains(sign)).map(root).collect();
+        if tasks.is_empty() {
+            // Rays along which the load rests are left.
+            let mut dictionary = dictionary.clone();
+            if dictionary.rest_load() {
+                let chosen = vec![None; self.problem.entities.len()];
+                let node = Node { chosen, dictionary, sign: 1.0, in_set: false, last: None };
+                tasks.push(Task { parent: Rc::new(node), decision: None });
+            }
+        }
         let mut in_sets = Vec::new();
         let mut left_in_sets = MOST_IN_SETS;
         loop {
@@ -193,7 +268,7 @@ impl Search<'_> {
                 Some(task) => task,
                 None if left_in_sets > 0 => match in_sets.pop() {
                     Some(task) => {
-                        left_in_sets -= 1;
+                        left_in_sets = left_in_sets.saturating_sub(self.cost);
                         task
                     }
                     None => return,
@@ -204,7 +279,7 @@ impl Search<'_> {
                 tasks.push(task);
                 break;
             }
-            self.findings.examined += 1;
+            self.findings.examined += self.cost;
             for child in self.look_at(task) {
                 if child.parent.in_set { in_sets.push(child) } else { tasks.push(child) }
             }
@@ -269,7 +344,7 @@ impl Search<'_> {
             self.examine(&filled);
             node.in_set = true;
         }
-        let entity = self.worst(&node, &open);
+        let entity = self.next(&node, &open);
         let choices = &self.problem.entities[entity].options;
         let mut order: Vec<(f64, usize)> =
             choices.iter().enumerate().map(|(index, choice)| (misfit(dictionary, choice), index)).collect();
@@ -281,33 +356,38 @@ impl Search<'_> {
             .collect()
     }
 
-    /// The entity that fits the node's point worst; the first that still decides something where all fit.
-    fn worst(&self, node: &Node, open: &[usize]) -> usize {
-        let mut worst = (FITS, None);
+    /// The entity to decide next. Of those that do not fit the node's point, the one that feels the last decision most:
+    /// a decision that cannot be is then refuted near by, in a few nodes. Where all fit, the first that still decides
+    /// something.
+    fn next(&self, node: &Node, open: &[usize]) -> usize {
+        let mut next: Option<((f64, f64), usize)> = None;
         for &entity in open {
             let fit = self.problem.entities[entity]
                 .options
                 .iter()
                 .map(|choice| misfit(&node.dictionary, choice))
                 .fold(f64::INFINITY, f64::min);
-            if fit > worst.0 {
-                worst = (fit, Some(entity));
+            if fit <= FITS {
+                continue;
+            }
+            let score = (node.last.map_or(0.0, |last| self.coupling[(last, entity)]), fit);
+            if next.is_none_or(|(best, _)| score > best) {
+                next = Some((score, entity));
             }
         }
         let decides = |entity: &&usize| {
             let choices = &self.problem.entities[**entity].options;
             choices.iter().any(|choice| choice.zero.iter().any(|form| !node.dictionary.vanishes(*form)))
         };
-        worst.1.or_else(|| open.iter().find(decides).copied()).unwrap_or(open[0])
+        next.map(|(_, entity)| entity).or_else(|| open.iter().find(decides).copied()).unwrap_or(open[0])
     }
 
     /// A combination under which everything left is a solution, if there is one.
     fn filled(&self, node: &Node) -> Option<Vec<usize>> {
         node.chosen
             .iter()
-            .zip(&self.problem.entities)
-            .map(|(chosen, entity)| {
-                let common = entity.common();
+            .zip(self.problem.entities.iter().zip(&self.common))
+            .map(|(chosen, (entity, common))| {
                 chosen.or_else(|| {
                     entity.options.iter().position(|choice| {
                         choice.zero.iter().all(|form| node.dictionary.vanishes(*form))
@@ -359,6 +439,7 @@ fn decide(problem: &RateProblem, task: Task) -> Option<Node> {
         dictionary: parent.dictionary.clone(),
         sign: parent.sign,
         in_set: parent.in_set,
+        last: task.decision.map(|(entity, _)| entity),
     };
     let Some((entity, choice)) = task.decision else { return Some(node) };
     node.chosen[entity] = Some(choice);

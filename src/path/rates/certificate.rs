@@ -26,6 +26,8 @@ use nalgebra::{DMatrix, DVector};
 const PATIENCE: usize = 8;
 /// Margin by which a matrix has to be positive definite or dominant, relative to its size: beyond round-off.
 const MARGIN: f64 = 1e-10;
+/// Entries below this fraction of the largest are round-off.
+const ROUND_OFF: f64 = 1e-12;
 /// Coefficients below this are round-off.
 const VANISHING: f64 = 1e-9;
 /// Values below this fraction of the largest are zero.
@@ -94,6 +96,24 @@ impl Certified {
         let constant = &self.load * load_rate;
         solve_complementarity(&self.matrix, &constant)
     }
+}
+
+/// Whether `a = M b + q ṡ` is monotone where friction's bounds do not depend on `b`: symmetric part positive semidefinite
+/// to round-off, and no entry in the rows of pressing forces that bound friction.
+///
+/// For a given `ṡ` the contacts' rate problem is then a monotone variational inequality on a fixed polyhedron, and its
+/// solutions form a convex set (D. Kinderlehrer and G. Stampacchia, *An Introduction to Variational Inequalities*, 1980,
+/// chapter III): one that is isolated, with every inequality strict and its equations regular, is the only one.
+pub fn is_monotone(matrix: &DMatrix<f64>, bounds: &[usize]) -> bool {
+    let size = matrix.amax();
+    if !size.is_finite() || bounds.iter().any(|&row| matrix.row(row).amax() > ROUND_OFF * size) {
+        return false;
+    }
+    let mut symmetric = (matrix + matrix.transpose()) * 0.5;
+    for index in 0..symmetric.nrows() {
+        symmetric[(index, index)] += ROUND_OFF * size;
+    }
+    size == 0.0 || symmetric.cholesky().is_some()
 }
 
 /// Symmetric part positive definite, with a margin.

@@ -308,6 +308,11 @@ impl Dictionary {
         self.count_rays_in();
     }
 
+    /// Makes the load rate zero; `false` where that leaves nothing but zero.
+    pub fn rest_load(&mut self) -> bool {
+        self.make_zero(self.place.len() - 1)
+    }
+
     /// Makes a form zero; `false` where that leaves nothing but zero.
     pub fn make_zero(&mut self, form: usize) -> bool {
         let column = match self.place[form] {

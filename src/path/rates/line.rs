@@ -48,24 +48,43 @@ impl RateProblem {
         }
         for sense in [1.0, -1.0] {
             let weights = &weights * (sense / size);
-            if let Some(weak) = self.holds(chosen, &weights, largest / size) {
+            if let Some(weak) = self.holds(chosen, &weights) {
                 rays.push((weights, weak));
             }
         }
         Line::Rays(rays)
     }
 
-    /// Whether the inequalities hold; `Some(true)` where one of them holds with equality.
-    fn holds(&self, chosen: &[usize], weights: &DVector<f64>, reaction_size: f64) -> Option<bool> {
+    /// Whether a ray of unit arc length satisfies a combination's equations.
+    pub(super) fn is_on(&self, chosen: &[usize], weights: &DVector<f64>) -> bool {
+        let force = self.force_tolerance(weights);
+        self.entities.iter().zip(chosen).all(|(entity, &choice)| {
+            entity.options[choice]
+                .zero
+                .iter()
+                .all(|&form| self.value(form, weights).abs() <= if self.is_force[form] { force } else { WEAK })
+        })
+    }
+
+    fn force_tolerance(&self, weights: &DVector<f64>) -> f64 {
+        WEAK * (&self.reactions * weights).amax().max(f64::MIN_POSITIVE)
+    }
+
+    fn value(&self, form: usize, weights: &DVector<f64>) -> f64 {
+        self.forms.row(form).iter().zip(weights.iter()).map(|(a, b)| a * b).sum()
+    }
+
+    /// Whether a ray of unit arc length satisfies a combination's inequalities; `Some(true)` where one of them holds with
+    /// equality.
+    pub(super) fn holds(&self, chosen: &[usize], weights: &DVector<f64>) -> Option<bool> {
         if !weights.iter().all(|weight| weight.is_finite()) {
             return None;
         }
-        let force = WEAK * reaction_size.max(f64::MIN_POSITIVE);
+        let force = self.force_tolerance(weights);
         let mut weak = false;
         for (entity, &choice) in self.entities.iter().zip(chosen) {
             for signed in &entity.options[choice].nonnegative {
-                let value: f64 = signed.sign
-                    * self.forms.row(signed.form).iter().zip(weights.iter()).map(|(a, b)| a * b).sum::<f64>();
+                let value = signed.sign * self.value(signed.form, weights);
                 let tolerance = if self.is_force[signed.form] { force } else { WEAK };
                 if value.is_nan() || value < -tolerance {
                     return None;

@@ -21,8 +21,6 @@
 //! | `certificate` | a cheap sufficient test that each sign of the load rate has exactly one ray, and those rays |
 //! | `near` | combinations that a known vector of weights points to |
 //! | `branch` | branch and bound over the entities with both |
-//! | `lemke` | rays of sets too large for that |
-//! | `turning` | slip whose direction is itself unknown, with a circular friction cone |
 //!
 //! Knows linear forms only: nothing of structures, contacts or states.
 
@@ -36,7 +34,8 @@ mod problem;
 mod tests;
 
 #[cfg(test)]
-use branch::Findings;
+pub(super) use tests::every_combination;
+
 pub use branch::{Ray, explore};
 pub use near::near;
-pub use problem::{Choice, Entity, RateProblem, Signed};
+pub use problem::{Choice, Entity, RateProblem, Signed, Touching};

@@ -35,6 +35,18 @@ pub struct Choice {
 #[derive(Debug, Clone)]
 pub struct Entity {
     pub options: Vec<Choice>,
+    /// Present for a contact that touches without reaction, with Coulomb friction in the plane.
+    pub touching: Option<Touching>,
+}
+
+/// The forms of a contact that touches without reaction: `ġ`, `v_t`, `ṙ_n`, `ṙ_t`, `μ ṙ_n + ṙ_t` and `μ ṙ_n - ṙ_t`.
+#[derive(Debug, Clone, Copy)]
+pub struct Touching {
+    pub gap: usize,
+    pub along: usize,
+    pub pressing: usize,
+    pub traction: usize,
+    pub cone: [usize; 2],
 }
 
 /// Forms over the weights, and the entities.
@@ -57,6 +69,22 @@ impl RateProblem {
         self.forms.ncols()
     }
 
+    /// How strongly entities feel each other: products of the sizes of their forms' coefficients, forms of unit size.
+    pub(super) fn coupling(&self) -> DMatrix<f64> {
+        let mut footprints: DMatrix<f64> = DMatrix::zeros(self.entities.len(), self.weights());
+        for (row, entity) in self.entities.iter().enumerate() {
+            for form in entity.options.iter().flat_map(|choice| &choice.zero) {
+                let values = self.forms.row(*form);
+                let size = values.amax().max(f64::MIN_POSITIVE);
+                // The last weight, the held structure's own, couples everything.
+                for column in 0..self.weights().saturating_sub(1) {
+                    footprints[(row, column)] += values[column].abs() / size;
+                }
+            }
+        }
+        &footprints * footprints.transpose()
+    }
+
     /// Number of combinations of options, saturating.
     pub fn combinations(&self) -> u64 {
         self.entities.iter().fold(1, |total: u64, entity| total.saturating_mul(entity.options.len() as u64))
@@ -71,7 +99,43 @@ impl Entity {
             nonnegative: vec![Signed::plus(other)],
             implied: vec![],
         };
-        Self { options: vec![option(b, a), option(a, b)] }
+        Self { options: vec![option(b, a), option(a, b)], touching: None }
+    }
+
+    /// Stick, slip forward, slip backward, free.
+    pub fn touching(forms: Touching) -> Self {
+        let plus = Signed::plus;
+        let both = |form: usize| [plus(form), Signed::minus(form)];
+        let Touching { gap, along, pressing, traction, cone: [forward, backward] } = forms;
+        let stick = Choice {
+            zero: vec![gap, along],
+            nonnegative: vec![plus(forward), plus(backward)],
+            implied: vec![plus(pressing)],
+        };
+        let slip = |along: Signed, cone: usize, other: usize| Choice {
+            zero: vec![gap, cone],
+            nonnegative: vec![along, plus(pressing)],
+            implied: vec![plus(other)],
+        };
+        let free = Choice {
+            zero: vec![pressing, traction],
+            nonnegative: vec![plus(gap)],
+            implied: [both(forward), both(backward)].concat(),
+        };
+        let options =
+            vec![stick, slip(plus(along), forward, backward), slip(Signed::minus(along), backward, forward), free];
+        Self { options, touching: Some(forms) }
+    }
+
+    /// Velocities and the forces that work on them, `(force, velocity)`, where the entity is one of the two kinds above.
+    pub(super) fn conjugates(&self) -> Option<Vec<[Signed; 2]>> {
+        match self.touching {
+            Some(forms) => Some(vec![
+                [Signed::plus(forms.pressing), Signed::plus(forms.gap)],
+                [Signed::plus(forms.traction), Signed::plus(forms.along)],
+            ]),
+            None => self.pair().map(|pair| vec![pair]),
+        }
     }
 
     /// A complementary pair `0 <= a ⊥ b >= 0`, if that is what the entity is: `b` vanishes in the first option (held),

@@ -1,13 +1,13 @@
 //! The search against plain enumeration of every combination, which exists for this comparison only.
 
+use super::branch::Findings;
 use super::line::Line;
 use super::*;
 use crate::cancel::CancelFlag;
 use nalgebra::{DMatrix, DVector};
 
-/// Whether a plane (two vectors) holds a vector other than zero that satisfies a combination's inequalities. The edges of
-/// what satisfies them lie on the zeros of the inequalities.
-fn plane_is_feasible(problem: &RateProblem, chosen: &[usize], basis: &DMatrix<f64>) -> bool {
+/// Whether the vectors of a plane (two columns) that satisfy a combination's inequalities fill more than a line.
+fn plane_is_wide(problem: &RateProblem, chosen: &[usize], basis: &DMatrix<f64>) -> bool {
     let inequalities: Vec<[f64; 2]> = problem
         .entities
         .iter()
@@ -19,12 +19,14 @@ fn plane_is_feasible(problem: &RateProblem, chosen: &[usize], basis: &DMatrix<f6
         })
         .filter(|row| row[0].abs().max(row[1].abs()) > 1e-9)
         .collect();
-    let holds = |x: f64, y: f64| inequalities.iter().all(|row| row[0] * x + row[1] * y >= -1e-9);
-    inequalities.is_empty() || inequalities.iter().any(|row| holds(-row[1], row[0]) || holds(row[1], -row[0]))
+    let candidates = inequalities.iter().flat_map(|&[x, y]| [[x, y], [-y, x], [y, -x]]);
+    let inside: Vec<[f64; 2]> =
+        candidates.filter(|c| inequalities.iter().all(|row| row[0] * c[0] + row[1] * c[1] >= -1e-9)).collect();
+    inequalities.is_empty() || inside.iter().any(|a| inside.iter().any(|b| (a[0] * b[1] - a[1] * b[0]).abs() > 1e-6))
 }
 
 /// Every combination, one after another.
-fn enumerate(problem: &RateProblem) -> Findings {
+pub(in crate::path) fn every_combination(problem: &RateProblem) -> Findings {
     let mut findings = Findings::default();
     let total = problem.combinations();
     for number in 0..total {
@@ -45,8 +47,8 @@ fn enumerate(problem: &RateProblem) -> Findings {
                 weak,
             })),
             Line::Plane(basis) => {
-                if basis.ncols() > 2 || plane_is_feasible(problem, &chosen, &basis) {
-                    findings.degenerate = true;
+                findings.degenerate = true;
+                if basis.ncols() == 2 && plane_is_wide(problem, &chosen, &basis) {
                     findings.planes.push(basis);
                 }
             }
@@ -132,18 +134,14 @@ fn random_problem(random: &mut Random, kinds: &[bool], numbers: Numbers) -> Rate
             let traction = add(tangential.clone(), true);
             let up = add(&normal * friction + &tangential, true);
             let down = add(&normal * friction - &tangential, true);
-            entities.push(touching_entity(gap, along, pressing, traction, [up, down]));
+            let cone = [up, down];
+            entities.push(Entity::touching(Touching { gap, along, pressing, traction, cone }));
             reactions.extend([normal, tangential]);
             velocity += 2;
         } else {
             let b = add(unit(velocity), false);
             let a = add(row(velocity), true);
-            entities.push(Entity {
-                options: vec![
-                    Choice { zero: vec![b], nonnegative: vec![Signed::plus(a)], implied: vec![] },
-                    Choice { zero: vec![a], nonnegative: vec![Signed::plus(b)], implied: vec![] },
-                ],
-            });
+            entities.push(Entity::complementary(a, b));
             reactions.push(row(velocity));
             velocity += 1;
         }
@@ -158,37 +156,8 @@ fn random_problem(random: &mut Random, kinds: &[bool], numbers: Numbers) -> Rate
     }
 }
 
-fn touching_entity(gap: usize, along: usize, pressing: usize, traction: usize, cone: [usize; 2]) -> Entity {
-    let plus = Signed::plus;
-    let both = |form: usize| [plus(form), Signed::minus(form)];
-    Entity {
-        options: vec![
-            Choice {
-                zero: vec![gap, along],
-                nonnegative: vec![plus(cone[0]), plus(cone[1])],
-                implied: vec![plus(pressing)],
-            },
-            Choice {
-                zero: vec![gap, cone[0]],
-                nonnegative: vec![plus(along), plus(pressing)],
-                implied: vec![plus(cone[1])],
-            },
-            Choice {
-                zero: vec![gap, cone[1]],
-                nonnegative: vec![Signed::minus(along), plus(pressing)],
-                implied: vec![plus(cone[0])],
-            },
-            Choice {
-                zero: vec![pressing, traction],
-                nonnegative: vec![plus(gap)],
-                implied: [both(cone[0]), both(cone[1])].concat(),
-            },
-        ],
-    }
-}
-
 /// Every ray of one list is in the other; a list may name one motion under several combinations.
-fn compare(found: &Findings, exact: &Findings, what: &str) {
+fn compare(problem: &RateProblem, found: &Findings, exact: &Findings, what: &str) {
     assert_eq!(found.unexplored, 0, "{what}");
     let near = |a: &Ray, b: &Ray| (&a.weights - &b.weights).norm() <= 1e-7;
     for ray in &exact.rays {
@@ -199,11 +168,14 @@ fn compare(found: &Findings, exact: &Findings, what: &str) {
             ray.weights
         );
     }
-    assert_eq!(found.rays.len(), exact.rays.len(), "{what}");
-    // Sets of three dimensions and more are not judged here.
-    if exact.planes.iter().all(|basis| basis.ncols() == 2) {
-        assert_eq!(found.degenerate, exact.degenerate, "{what}");
+    for ray in &found.rays {
+        // A combination whose equations leave more than a line may still be a further label of a ray.
+        let is_plane = || matches!(problem.line(&ray.chosen), Line::Plane(_));
+        let known = exact.rays.iter().any(|other| other.chosen == ray.chosen && near(ray, other));
+        assert!(known || is_plane(), "{what}: {:?} {:?} is none", ray.chosen, ray.weights);
     }
+    assert!(exact.degenerate || !found.degenerate, "{what}");
+    assert!(found.degenerate || exact.planes.is_empty(), "{what}");
 }
 
 fn check(seeds: std::ops::Range<u64>, contacts: u64, numbers: Numbers, touching: bool) -> (usize, usize) {
@@ -213,27 +185,27 @@ fn check(seeds: std::ops::Range<u64>, contacts: u64, numbers: Numbers, touching:
         let count = 1 + random.below(contacts) as usize;
         let kinds: Vec<bool> = (0..count).map(|_| touching && random.below(2) == 0).collect();
         let problem = random_problem(&mut random, &kinds, numbers);
-        let exact = enumerate(&problem);
+        let exact = every_combination(&problem);
         let found = explore(&problem, &[], 1_000_000, &CancelFlag::default());
         certified += usize::from(found.certified);
         rays += exact.rays.len();
-        compare(&found, &exact, &format!("seed {seed}, {kinds:?}, {numbers:?}"));
+        compare(&problem, &found, &exact, &format!("seed {seed}, {kinds:?}, {numbers:?}"));
     }
     (certified, rays)
 }
 
 #[test]
 fn contacts_on_the_cone_as_by_enumeration() {
-    let (_, rays) = check(0..1500, 8, Numbers::Real, false);
-    assert!(rays > 1500);
-    let (certified, _) = check(0..700, 8, Numbers::Stiffness(0.3), false);
-    assert!(certified > 100, "{certified}");
+    let (_, rays) = check(0..600, 8, Numbers::Real, false);
+    assert!(rays > 600);
+    let (certified, _) = check(0..400, 8, Numbers::Stiffness(0.3), false);
+    assert!(certified > 50, "{certified}");
 }
 
 #[test]
 fn touching_contacts_as_by_enumeration() {
-    check(0..700, 5, Numbers::Real, true);
-    check(0..500, 5, Numbers::Stiffness(0.3), true);
+    check(0..200, 5, Numbers::Real, true);
+    check(0..150, 5, Numbers::Stiffness(0.3), true);
 }
 
 #[test]
