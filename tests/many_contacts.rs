@@ -2,8 +2,9 @@
 
 mod common;
 
+use arcslip::cancel::CancelFlag;
 use arcslip::path::increment::PointKind;
-use arcslip::path::{Increment, StopReason};
+use arcslip::path::{Increment, Path, Scene, StopReason};
 use common::generated::{row_of_bars, slider_chain};
 use common::paths::trace;
 
@@ -56,4 +57,23 @@ fn a_row_of_twenty_bars_to_its_end() {
         assert_eq!(increment.point.unexplored_modes, 0);
         assert!(!increment.point.degenerate);
     }
+}
+
+/// Long: to be run by name, in a release build. Prints the events as they come.
+#[test]
+#[ignore = "minutes"]
+fn a_row_of_a_hundred_bars() {
+    let request = row_of_bars(100);
+    let scene = Scene::new(&request).expect("a scene");
+    let mut path = Path::new(&scene, CancelFlag::default());
+    for i in path.by_ref() {
+        if i.point.kind != PointKind::Regular {
+            let event = i.point.event.as_deref().unwrap_or_default();
+            println!(
+                "{} s {:.12} {:?} {event} [{:.1} s]",
+                i.index, i.load_factor, i.point.kind, i.diagnostics.elapsed_s
+            );
+        }
+    }
+    assert_eq!(path.report().map(|report| report.stop_reason), Some(StopReason::NoDirection));
 }

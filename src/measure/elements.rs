@@ -2,32 +2,41 @@
 
 use crate::model::request::{Element, Model, Strain};
 
-/// `L`, `L0` and the unit direction of a bar.
-fn bar_geometry(
-    model: &Model,
-    nodes: &[String],
-    rest: Option<f64>,
-    u: &[Vec<f64>],
-) -> (f64, f64, Vec<f64>, [usize; 2]) {
+/// A bar as it is deformed.
+struct Bar {
+    /// `L/L0`
+    stretch: f64,
+    /// `L - L0` and `(L - L0)/L0`, without the cancellation of two lengths.
+    elongation: f64,
+    strain: f64,
+    rest: f64,
+    direction: Vec<f64>,
+    ends: [usize; 2],
+}
+
+fn bar(model: &Model, nodes: &[String], rest: Option<f64>, u: &[Vec<f64>]) -> Bar {
     let index = |name: &String| model.nodes.get_index_of(name).unwrap_or(0);
     let ends = [index(&nodes[0]), index(&nodes[1])];
     let reference: Vec<f64> = (0..model.dimension).map(|k| model.nodes[ends[1]][k] - model.nodes[ends[0]][k]).collect();
-    let deformed: Vec<f64> = (0..model.dimension).map(|k| reference[k] + u[ends[1]][k] - u[ends[0]][k]).collect();
+    let change: Vec<f64> = (0..model.dimension).map(|k| u[ends[1]][k] - u[ends[0]][k]).collect();
+    let deformed: Vec<f64> = reference.iter().zip(&change).map(|(a, b)| a + b).collect();
     let norm = |vector: &[f64]| vector.iter().map(|value| value * value).sum::<f64>().sqrt();
-    let length = norm(&deformed);
+    let (before, length) = (norm(&reference), norm(&deformed));
+    let rest = rest.unwrap_or(before);
+    let grown: f64 = change.iter().zip(&reference).map(|(d, r)| d * (2.0 * r + d)).sum::<f64>() / (length + before);
+    let elongation = grown + (before - rest);
     let direction = deformed.iter().map(|value| value / length).collect();
-    (length, rest.unwrap_or_else(|| norm(&reference)), direction, ends)
+    Bar { stretch: length / rest, elongation, strain: elongation / rest, rest, direction, ends }
 }
 
 pub(super) fn element_forces(model: &Model, element: &Element, u: &[Vec<f64>]) -> Vec<(usize, Vec<f64>)> {
     match element {
         Element::Bar { nodes, axial_stiffness, rest_length, prestress, strain } => {
-            let (length, rest, direction, ends) = bar_geometry(model, nodes, *rest_length, u);
-            let stretch = length / rest;
+            let Bar { stretch, strain: linear, direction, ends, .. } = bar(model, nodes, *rest_length, u);
             let elastic = match strain {
-                Strain::Engineering => stretch - 1.0,
-                Strain::Green => 0.5 * (stretch * stretch - 1.0) * stretch,
-                Strain::Log => stretch.ln() / stretch,
+                Strain::Engineering => linear,
+                Strain::Green => linear * (1.0 + 0.5 * linear) * stretch,
+                Strain::Log => linear.ln_1p() / stretch,
             };
             let axial = axial_stiffness * elastic + prestress;
             let force: Vec<f64> = direction.iter().map(|value| axial * value).collect();
@@ -52,14 +61,13 @@ pub(super) fn element_forces(model: &Model, element: &Element, u: &[Vec<f64>]) -
 pub(super) fn strain_energy(model: &Model, u: &[Vec<f64>]) -> f64 {
     let energy = |element: &Element| match element {
         Element::Bar { nodes, axial_stiffness, rest_length, prestress, strain } => {
-            let (length, rest, _, _) = bar_geometry(model, nodes, *rest_length, u);
-            let stretch = length / rest;
+            let Bar { elongation, strain: linear, rest, .. } = bar(model, nodes, *rest_length, u);
             let measure = match strain {
-                Strain::Engineering => stretch - 1.0,
-                Strain::Green => 0.5 * (stretch * stretch - 1.0),
-                Strain::Log => stretch.ln(),
+                Strain::Engineering => linear,
+                Strain::Green => linear * (1.0 + 0.5 * linear),
+                Strain::Log => linear.ln_1p(),
             };
-            0.5 * axial_stiffness * rest * measure * measure + prestress * (length - rest)
+            0.5 * axial_stiffness * rest * measure * measure + prestress * elongation
         }
         Element::Spring { .. } => {
             let forces = element_forces(model, element, u);
