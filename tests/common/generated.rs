@@ -65,7 +65,7 @@ pub fn slider_chain(n: usize, weight: f64, stiffness: f64, friction: f64) -> Job
                     {"name": "pull", "forces": {"block1": [1.0, 0.0]}},
                 ],
             },
-            "analysis": {"max_increments": 20000},
+            "analysis": {"max_increments": 20000, "arc_length": {"max": 1000.0}},
         })
         .to_string(),
     )
