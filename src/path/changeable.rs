@@ -98,6 +98,15 @@ impl Changeable {
         rate.reactions[*contact] = Reaction { normal, tangential };
     }
 
+    /// Whether the contact touches in space, so that a slip may begin in any direction.
+    pub fn may_turn(&self, loading: Loading<'_>) -> bool {
+        self.standing == Standing::Touching && loading.contacts[self.contacts[0]].tangents() == 2
+    }
+
+    pub fn tangents(&self) -> [Vector; 2] {
+        self.frames[0].tangents
+    }
+
     /// Whether a stick at a touch in space keeps within the circular cone, which linear forms do not say.
     pub fn is_in_cone(&self, loading: Loading<'_>, modes: &[Mode], rate: &Rate, tolerance: f64) -> bool {
         let contact = self.contacts[0];

@@ -11,8 +11,9 @@ use super::mode_system::ModeSystem;
 use super::rates::{self, RateProblem, Ray};
 use super::standing::Standing;
 use super::state::{Rate, State};
+use super::turning;
 use crate::cancel::CancelFlag;
-use crate::contact::vector::{add, dot};
+use crate::contact::vector::{Vector, add, dot, scaled};
 use crate::contact::{Mode, Reaction};
 use crate::linear_algebra::{Factorisation, null_space};
 use nalgebra::{DMatrix, DVector};
@@ -113,7 +114,22 @@ impl<'a> Condensed<'a> {
             });
         }
         for ray in &findings.rays {
-            self.add(ray, held, found);
+            self.add(ray, None, held, found);
+        }
+        let turning: Vec<usize> =
+            (0..self.changeable.len()).filter(|entry| self.changeable[*entry].may_turn(self.loading)).collect();
+        for &entity in &turning {
+            let contact = self.changeable[entity].contacts[0];
+            let friction = self.loading.contacts[contact].friction;
+            for slip in turning::slips(&self.problem, entity, friction, most_modes, cancel) {
+                let tangents = self.changeable[entity].tangents();
+                let direction = add(&scaled(&tangents[0], slip.direction[0]), slip.direction[1], &tangents[1]);
+                self.add(&slip.ray, Some((contact, direction)), held, found);
+            }
+        }
+        if turning.len() > 1 {
+            // Two or more that begin to slip together.
+            found.unexplored = found.unexplored.saturating_add(turning.len() as u64);
         }
     }
 
@@ -138,12 +154,16 @@ impl<'a> Condensed<'a> {
     }
 
     /// Adds a ray as a candidate direction.
-    fn add(&self, ray: &Ray, held: &[Mode], found: &mut Found) {
+    fn add(&self, ray: &Ray, turning: Option<(usize, Vector)>, held: &[Mode], found: &mut Found) {
         let (mut rate, _) = self.combine(&ray.weights);
         let mut modes = held.to_vec();
         for ((entry, outcomes), &choice) in self.changeable.iter().zip(&self.outcomes).zip(&ray.chosen) {
             entry.take_reaction_apart(self.loading, &mut rate);
             for (contact, mode) in &outcomes[choice].modes {
+                let mode = match turning {
+                    Some((turning, direction)) if turning == *contact => &Mode::Slip { direction },
+                    _ => mode,
+                };
                 modes[*contact] = *mode;
                 let reaction = &mut rate.reactions[*contact];
                 match mode {

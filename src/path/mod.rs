@@ -12,7 +12,7 @@
 //! | `watch`, `root`, `advance` | what ends a mode; one step, ended exactly at the first event |
 //! | `singular`, `critical`, `branches` | whether a step passes a smooth bifurcation; where; which directions leave it |
 //! | `standing`, `directions`, `condensed`, `decide` | which contacts can change; every direction; which one is taken |
-//! | `rates` | all rays of a rate problem, complete: linear forms only |
+//! | `rates`, `turning` | all rays of a rate problem, linear forms only; slip whose direction is unknown |
 //! | `program`, `naming` | the MPEC of an increment; where it names the mode |
 //! | `energy`, `record`, `increment`, `report`, `stop` | balances, rows, totals, reasons |
 //! | `tracer`, `stepping`, `arrival` | the iterator; how far a step goes; what a point turned out to be |
@@ -56,6 +56,7 @@ pub mod stop;
 mod traced;
 pub mod tracer;
 mod track;
+mod turning;
 mod watch;
 
 pub use checkpoint::{Checkpoint, CheckpointError};

@@ -1,0 +1,150 @@
+//! Slip that begins at a touch in space: its direction is unknown.
+//!
+//! With `v` the velocity and `Ṙ` the rate of the force on a node that touches without reaction,
+//!
+//! ```text
+//! v_n = 0,    v_t = λ d,  λ >= 0,    Ṙ_t = -μ Ṙ_n d,  Ṙ_n >= 0,    |d| = 1
+//! ```
+//!
+//! For a given angle of `d` all but `d⊥·Ṙ_t = 0` are linear forms; the rays under them are found as any others, and the
+//! angles at which the remaining form vanishes on one of them by scanning the circle and Chandrupatla's method. With one
+//! such node this finds every slip that a scan of the circle tells apart. Of several, each is taken to begin to slip
+//! while the others stick or leave; that is counted as not explored.
+
+use super::rates::{self, Choice, Entity, RateProblem, Ray, Signed};
+use super::root::find_root;
+use crate::cancel::CancelFlag;
+use nalgebra::{DMatrix, DVector};
+use std::f64::consts::TAU;
+
+/// Angles at which the circle is scanned.
+const SECTORS: usize = 64;
+/// Least cosine between the motions of rays at neighbouring angles that belong together.
+const TOGETHER: f64 = 0.9;
+/// Misfit (over the force rates) at which an angle is a root.
+const ROOT: f64 = 1e-9;
+
+/// A ray whose contact begins to slip.
+pub(super) struct Turning {
+    pub ray: Ray,
+    /// Components of the direction along the two tangents.
+    pub direction: [f64; 2],
+}
+
+/// Forms of the touching entity, as [normal, first tangent, second tangent].
+struct Touch {
+    entity: usize,
+    velocities: [usize; 3],
+    forces: [usize; 3],
+    friction: f64,
+}
+
+/// All rays along which the entity, whose options are stick and free, slips instead.
+pub(super) fn slips(
+    problem: &RateProblem,
+    entity: usize,
+    friction: f64,
+    most: u64,
+    cancel: &CancelFlag,
+) -> Vec<Turning> {
+    let [stick, free] = &problem.entities[entity].options[..] else { return Vec::new() };
+    let three = |forms: &[usize]| <[usize; 3]>::try_from(forms).ok();
+    let (Some(velocities), Some(forces)) = (three(&stick.zero), three(&free.zero)) else { return Vec::new() };
+    let touch = Touch { entity, velocities, forces, friction };
+    let mut found: Vec<Turning> = Vec::new();
+    let mut before: Vec<(Ray, f64)> = Vec::new();
+    for sector in 0..=SECTORS {
+        if cancel.is_cancelled() {
+            return found;
+        }
+        let angle = TAU * sector as f64 / SECTORS as f64;
+        let here = touch.rays(problem, angle, most, cancel);
+        for (ray, misfit) in &here {
+            if misfit.abs() <= ROOT {
+                touch.keep(&mut found, problem, ray.clone(), angle);
+                continue;
+            }
+            let partner = before.iter().find(|(other, other_misfit)| {
+                other.chosen == ray.chosen
+                    && misfit * other_misfit < 0.0
+                    && other_misfit.abs() > ROOT
+                    && cosine(problem, other, ray) > TOGETHER
+            });
+            let Some((other, other_misfit)) = partner else { continue };
+            let first = TAU * (sector as f64 - 1.0) / SECTORS as f64;
+            let mut last_ray = other.clone();
+            let evaluate = |angle: f64| {
+                let rays = touch.rays(problem, angle, most, cancel);
+                let near = rays.into_iter().filter(|(one, _)| one.chosen == ray.chosen);
+                let (one, value) =
+                    near.max_by(|a, b| cosine(problem, &a.0, ray).total_cmp(&cosine(problem, &b.0, ray)))?;
+                last_ray = one;
+                Some(value)
+            };
+            if let Some(root) = find_root(evaluate, (first, *other_misfit), (angle, *misfit), 1e-15) {
+                touch.keep(&mut found, problem, last_ray, root);
+            }
+        }
+        before = here;
+    }
+    found
+}
+
+fn cosine(problem: &RateProblem, first: &Ray, second: &Ray) -> f64 {
+    (&problem.motion * &first.weights).dot(&(&problem.motion * &second.weights))
+}
+
+impl Touch {
+    /// The rays for one angle, and how far the traction is from the direction, over the size of the force rates.
+    fn rays(&self, problem: &RateProblem, angle: f64, most: u64, cancel: &CancelFlag) -> Vec<(Ray, f64)> {
+        let (sine, cosine) = angle.sin_cos();
+        let row = |forms: [usize; 3], parts: [f64; 3]| {
+            (0..3).fold(DVector::zeros(problem.weights()), |sum, k| {
+                sum + problem.forms.row(forms[k]).transpose() * parts[k]
+            })
+        };
+        let along = row(self.velocities, [0.0, cosine, sine]);
+        let across = row(self.velocities, [0.0, -sine, cosine]);
+        let cone = row(self.forces, [self.friction, cosine, sine]);
+        let misfit = row(self.forces, [0.0, -sine, cosine]);
+        let base = problem.forms.nrows();
+        let mut forms = problem.forms.clone().resize_vertically(base + 3, 0.0);
+        for (place, values) in [along, across, cone].iter().enumerate() {
+            forms.set_row(base + place, &values.transpose());
+        }
+        let mut is_force = problem.is_force.clone();
+        is_force.extend([false, false, true]);
+        let mut entities = problem.entities.clone();
+        let slip = Choice {
+            zero: vec![self.velocities[0], base + 1, base + 2],
+            nonnegative: vec![Signed::plus(base), Signed::plus(self.forces[0])],
+            implied: Vec::new(),
+        };
+        entities[self.entity] = Entity { options: vec![slip], touching: None };
+        let turned = RateProblem {
+            forms,
+            is_force,
+            entities,
+            motion: problem.motion.clone(),
+            reactions: problem.reactions.clone(),
+        };
+        let findings = rates::explore(&turned, &[], most, cancel);
+        let judged = |ray: Ray| {
+            let size = (&problem.reactions * &ray.weights).amax().max(f64::MIN_POSITIVE);
+            let misfit = misfit.dot(&ray.weights) / size;
+            // A node that does not move along the direction sticks, and one that is not pressed is free.
+            let forms: &DMatrix<f64> = &turned.forms;
+            let slides = forms.row(base).transpose().dot(&ray.weights) > ROOT;
+            let pressed = forms.row(self.forces[0]).transpose().dot(&ray.weights) > ROOT * size;
+            (slides && pressed).then_some((ray, misfit))
+        };
+        findings.rays.into_iter().filter_map(judged).collect()
+    }
+
+    fn keep(&self, found: &mut Vec<Turning>, problem: &RateProblem, ray: Ray, angle: f64) {
+        let known = |one: &Turning| one.ray.chosen == ray.chosen && cosine(problem, &one.ray, &ray) > 1.0 - 1e-12;
+        if !found.iter().any(known) {
+            found.push(Turning { ray, direction: [angle.cos(), angle.sin()] });
+        }
+    }
+}
