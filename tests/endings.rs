@@ -116,7 +116,7 @@ fn a_limit_on_modes_is_told() {
 /// A flag raised inside a long enumeration ends it.
 #[test]
 fn cancelling_ends_an_enumeration() {
-    let mut model = row(12);
+    let mut model = row(80);
     model["analysis"] = json!({"max_modes": 10_000_000});
     let request = request(&model.to_string());
     let scene = Scene::new(&request).expect("a scene");

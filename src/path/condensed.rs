@@ -108,10 +108,11 @@ impl<'a> Condensed<'a> {
         found.unexplored = findings.unexplored;
         found.degenerate |= findings.degenerate;
         for basis in &findings.planes {
-            found.mechanism |= basis.column_iter().any(|column| {
-                let (rate, _) = self.combine(&column.into_owned());
-                is_mechanism(self.loading, state, &rate)
-            });
+            let motions: Vec<Rate> = basis.column_iter().map(|column| self.combine(&column.into_owned()).0).collect();
+            found.mechanism |= motions.iter().any(|rate| is_mechanism(self.loading, state, rate));
+            if let Some(incoming) = incoming {
+                self.add_nearest_mechanism(&motions, incoming, held, state, found);
+            }
         }
         for ray in &findings.rays {
             self.add(ray, None, held, found);
@@ -131,6 +132,43 @@ impl<'a> Condensed<'a> {
             // Two or more that begin to slip together.
             found.unexplored = found.unexplored.saturating_add(turning.len() as u64);
         }
+    }
+
+    /// Of a set of motions that no element resists, the one nearest to the direction in which the path came.
+    fn add_nearest_mechanism(
+        &self,
+        motions: &[Rate],
+        incoming: &Rate,
+        held: &[Mode],
+        state: &State,
+        found: &mut Found,
+    ) {
+        let mut basis: Vec<Rate> = Vec::new();
+        for motion in motions.iter().filter(|rate| is_mechanism(self.loading, state, rate)) {
+            let mut rest = motion.clone();
+            basis.iter().for_each(|known| rest.add(known, -known.product(&rest)));
+            let size = rest.size();
+            if size > WEAK {
+                rest.scale(1.0 / size);
+                basis.push(rest);
+            }
+        }
+        let [first, others @ ..] = &basis[..] else { return };
+        let mut nearest = first.clone();
+        nearest.scale(first.product(incoming));
+        others.iter().for_each(|motion| nearest.add(motion, motion.product(incoming)));
+        let size = nearest.size();
+        let opens = |entry: &Changeable| {
+            let contact = entry.contacts[0];
+            dot(&self.loading.frame(contact, state).normal, &self.loading.relative_rate(contact, &nearest)) >= -WEAK
+        };
+        if size <= WEAK || !self.changeable.iter().all(opens) {
+            return;
+        }
+        nearest.scale(1.0 / size);
+        let mut modes = held.to_vec();
+        self.changeable.iter().flat_map(|entry| &entry.contacts).for_each(|contact| modes[*contact] = Mode::Free);
+        merge(found, Candidate { rate: nearest, labels: vec![modes], weak: true, dissipation: 0.0 });
     }
 
     /// The weights that come nearest to a rate: its velocities, and what it has along `z₀`.

@@ -66,7 +66,7 @@ impl ModeSystem<'_> {
         if !factorisation.solve(&mut values) {
             return None;
         }
-        Some(self.rate_at(&iterate, &values))
+        Some(self.rate_at(&iterate, &values, Kind::Increment))
     }
 
     /// `τ`

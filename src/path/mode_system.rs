@@ -61,6 +61,9 @@ pub(super) struct Iterate {
     pub directions: Vec<Vector>,
 }
 
+/// Friction force (dimensionless) below which Newton's matrix takes it as this.
+const LEAST_PRESSED: f64 = 1e-10;
+
 /// One mode's equations.
 pub struct ModeSystem<'a> {
     pub(super) loading: Loading<'a>,
@@ -274,10 +277,17 @@ impl<'a> ModeSystem<'a> {
         self.put_motion(contact, row, &frame.normal, matrix);
         if let Role::Plane { start, turn } = &self.roles[contact] {
             let across = cross(&frame.normal, &direction);
-            self.put_force(contact, column + 1, &scaled(&across, -friction * normal), matrix);
             match kind {
-                Kind::Rates => self.put_motion(contact, row + 1, &across, matrix),
+                Kind::Rates => {
+                    // The unknown is μ r_n times the turn, so that a node that is hardly pressed makes nothing singular.
+                    self.put_force(contact, column + 1, &scaled(&across, -1.0), matrix);
+                    self.put_motion(contact, row + 1, &across, matrix);
+                }
                 Kind::Increment => {
+                    // Where the node is hardly pressed a turn changes nothing, and the equations would be singular.
+                    let pressed = friction * normal;
+                    let pressed = if pressed.abs() < LEAST_PRESSED { LEAST_PRESSED } else { pressed };
+                    self.put_force(contact, column + 1, &scaled(&across, -pressed), matrix);
                     let chord = self.chord(contact, &iterate.state);
                     let rule = track::Rule::new(&frame, start, turn, &direction, &chord);
                     self.put_motion(contact, row + 1, &rule.across, matrix);
@@ -429,10 +439,11 @@ impl<'a> ModeSystem<'a> {
 
     /// Takes a vector of unknowns apart, at a state.
     pub fn rate_from(&self, state: &State, values: &DVector<f64>) -> Rate {
-        self.rate_at(&self.iterate(state.clone()), values)
+        self.rate_at(&self.iterate(state.clone()), values, Kind::Rates)
     }
 
-    pub(super) fn rate_at(&self, iterate: &Iterate, values: &DVector<f64>) -> Rate {
+    /// `kind` is that of the equations whose solution the values are.
+    pub(super) fn rate_at(&self, iterate: &Iterate, values: &DVector<f64>, kind: Kind) -> Rate {
         let structure = self.loading.structure;
         let load = values[structure.unknowns()];
         let mut displacement = vec![0.0; structure.freedoms()];
@@ -464,7 +475,8 @@ impl<'a> ModeSystem<'a> {
                     let mut tangential = scaled(&direction, -friction * values[column]);
                     if matches!(role, Role::Plane { .. }) {
                         let across = cross(&frame.normal, &direction);
-                        tangential = add(&tangential, -pressed * values[column + 1], &across);
+                        let per_turn = if kind == Kind::Rates { 1.0 } else { pressed };
+                        tangential = add(&tangential, -per_turn * values[column + 1], &across);
                     }
                     if frame.curvature != 0.0 {
                         let motion = self.loading.relative_rate(contact, &rate);
@@ -480,7 +492,7 @@ impl<'a> ModeSystem<'a> {
 
     /// Goes on by minus a Newton correction.
     pub(super) fn corrected_by(&self, iterate: &Iterate, values: &DVector<f64>) -> Iterate {
-        let correction = self.rate_at(iterate, values);
+        let correction = self.rate_at(iterate, values, Kind::Increment);
         let mut state = iterate.state.advanced(&correction, -1.0);
         let mut directions = iterate.directions.clone();
         self.place_exactly(&mut state);
@@ -573,7 +585,7 @@ impl<'a> ModeSystem<'a> {
         if !factorisation.solve(&mut values) {
             return None;
         }
-        let mut rate = self.rate_at(iterate, &values);
+        let mut rate = self.rate_at(iterate, &values, Kind::Rates);
         let size = rate.size();
         if size <= 0.0 || !size.is_finite() {
             return None;

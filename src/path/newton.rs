@@ -143,8 +143,11 @@ impl ModeSystem<'_> {
         let rate = self.tangent_by(&factorisation, &iterate)?;
         let mut values = corrected.left_over.clone();
         values[self.size - 1] = 0.0;
-        let error =
-            if factorisation.solve(&mut values) { self.rate_at(&iterate, &values).size() } else { return None };
+        let error = if factorisation.solve(&mut values) {
+            self.rate_at(&iterate, &values, Kind::Rates).size()
+        } else {
+            return None;
+        };
         let certain = factorisation.pivot_ratio() > UNCERTAIN && !self.has_tracks();
         Some((rate, error, certain.then(|| factorisation.determinant_sign())))
     }

@@ -176,7 +176,9 @@ fn direction(loading: Loading<'_>, modes: &[Mode], contact: usize, state: &State
     let Mode::Slip { direction } = modes[contact] else { return [0.0; 3] };
     let data = &loading.contacts[contact];
     if data.sliding == Sliding::Plane {
-        return direction_of(&state.reactions[contact].tangential, &direction);
+        // Past the end of contact the traction points the other way.
+        let reaction = &state.reactions[contact];
+        return if reaction.normal > 0.0 { direction_of(&reaction.tangential, &direction) } else { direction };
     }
     if !data.obstacle.is_curved() {
         return direction;
