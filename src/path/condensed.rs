@@ -18,6 +18,9 @@ use crate::contact::{Mode, Reaction};
 use crate::linear_algebra::{Factorisation, null_space};
 use nalgebra::{DMatrix, DVector};
 
+/// Up to so many contacts the search finds its way alone.
+const FEW: usize = 6;
+
 /// The rate equations condensed on the changeable contacts: column `j` is the full rate for unit `v_j`, the last one
 /// is `z₀`.
 pub(super) struct Condensed<'a> {
@@ -103,6 +106,9 @@ impl<'a> Condensed<'a> {
         let mut first = vec![vec![0; self.changeable.len()]];
         if let Some(rate) = incoming {
             first.extend(rates::near(&self.problem, &self.weights_of(rate)));
+        }
+        if self.changeable.len() > FEW {
+            first.extend(rates::sweeps(&self.problem, cancel));
         }
         let findings = rates::explore(&self.problem, &first, most_modes, cancel);
         found.unexplored = findings.unexplored;

@@ -6,6 +6,7 @@
 //! The reactions that are reported are those of least norm (`contact::share`).
 
 use super::loading::Loading;
+use super::standing::ZERO;
 use super::state::State;
 use crate::contact::share::{Cone, least_reactions};
 use crate::contact::vector::{Vector, add, dot};
@@ -50,6 +51,15 @@ pub fn agree(loading: Loading<'_>, first: &[Mode], second: &[Mode]) -> bool {
             .any(|corner| corner.contacts.contains(contact) && held(first, corner) && held(second, corner))
     };
     (0..first.len()).filter(free_of_corners).all(|contact| first[contact].continues(second[contact]))
+}
+
+/// Whether a node is closed against obstacles that the running stage moves against each other.
+pub fn is_moving(loading: Loading<'_>, state: &State) -> bool {
+    let shifts = &loading.pattern.shifts;
+    loading.corners.iter().any(|corner| {
+        let mut closed = corner.contacts.iter().filter(|contact| loading.gap(**contact, state) <= ZERO);
+        closed.next().is_some_and(|first| closed.any(|other| shifts[*first] != shifts[*other]))
+    })
 }
 
 /// The whole force of an obstacle on its node.
@@ -111,11 +121,46 @@ pub fn share(loading: Loading<'_>, corners: &[Corner], modes: &[Mode], state: &m
             .zip(&frames)
             .map(|(contact, frame)| Cone { normal: frame.normal, friction: loading.contacts[*contact].friction })
             .collect();
+        // Just at a bound of the cones together the least reactions may not be found: two rays make up the force.
+        let parts = least_reactions(&cones, &force).or_else(|| along_rays(loading, &holding, &force, state));
         // Outside the cones the event that ends the mode was passed; the point is not kept.
-        let Some(parts) = least_reactions(&cones, &force) else { continue };
+        let Some(parts) = parts else { continue };
         for ((contact, frame), part) in holding.iter().zip(&frames).zip(parts) {
             let normal = dot(&part, &frame.normal);
             state.reactions[*contact] = Reaction { normal, tangential: add(&part, -normal, &frame.normal) };
         }
     }
+}
+
+/// Reactions along two of the rays that bound the friction cones in 2D, with the smallest sum of squares.
+fn along_rays(loading: Loading<'_>, holding: &[usize], force: &Vector, state: &State) -> Option<Vec<Vector>> {
+    let all: Vec<(usize, Vector)> = holding
+        .iter()
+        .enumerate()
+        .flat_map(|(place, contact)| {
+            rays(&loading.frame(*contact, state), loading.contacts[*contact].friction).map(|ray| (place, ray))
+        })
+        .collect();
+    let mut best: Option<(f64, Vec<Vector>)> = None;
+    for (index, (first, a)) in all.iter().enumerate() {
+        for (second, b) in &all[index + 1..] {
+            let determinant = turn(a, b);
+            if determinant.abs() <= FLAT {
+                continue;
+            }
+            let (x, y) = (turn(force, b) / determinant, turn(a, force) / determinant);
+            let round_off = -FLAT * dot(force, force).sqrt();
+            if x < round_off || y < round_off {
+                continue;
+            }
+            let mut parts = vec![[0.0; 3]; holding.len()];
+            parts[*first] = add(&parts[*first], x.max(0.0), a);
+            parts[*second] = add(&parts[*second], y.max(0.0), b);
+            let squares = parts.iter().map(|part| dot(part, part)).sum();
+            if best.as_ref().is_none_or(|(least, _)| squares < *least) {
+                best = Some((squares, parts));
+            }
+        }
+    }
+    best.map(|(_, parts)| parts)
 }

@@ -22,6 +22,7 @@
 //! where it is not degenerate: an odd count is reported.
 
 use super::condensed::Condensed;
+use super::corner;
 use super::loading::Loading;
 use super::mode_system::ModeSystem;
 use super::standing::Standing;
@@ -52,6 +53,8 @@ pub struct Found {
     pub degenerate: bool,
     /// Some direction set contains a motion that no element resists.
     pub mechanism: bool,
+    /// A node is closed against obstacles that move against each other, where it can neither be held nor slide on one.
+    pub moving_corner: bool,
 }
 
 /// Inequalities (of rates of unit arc length) that hold within this are weak.
@@ -82,6 +85,10 @@ pub fn directions(
         .collect();
     let system = ModeSystem::new(loading, &held, state);
     let mut found = Found::default();
+    if corner::is_moving(loading, state) {
+        found.moving_corner = true;
+        return found;
+    }
     let Some(condensed) = Condensed::new(&system, loading, state, standings, incoming) else {
         found.degenerate = true;
         found.mechanism = resists_nothing(&system, loading, state);

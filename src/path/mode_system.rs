@@ -226,10 +226,10 @@ impl<'a> ModeSystem<'a> {
         let structure = self.loading.structure;
         let load = structure.unknowns();
         let first = self.loading.contacts[contact].node * structure.dimension;
-        for component in 0..structure.dimension {
+        for (component, part) in vector.iter().enumerate().take(structure.dimension) {
             match structure.unknown_of[first + component] {
-                Some(unknown) => matrix[(row, unknown)] += vector[component],
-                None => matrix[(row, load)] += vector[component] * self.loading.support_rate(first + component),
+                Some(unknown) => matrix[(row, unknown)] += part,
+                None => matrix[(row, load)] += part * self.loading.support_rate(first + component),
             }
         }
         matrix[(row, load)] -= dot(vector, &self.loading.pattern.shifts[contact]);
@@ -239,9 +239,9 @@ impl<'a> ModeSystem<'a> {
     fn put_force(&self, contact: usize, column: usize, force: &Vector, matrix: &mut DMatrix<f64>) {
         let structure = self.loading.structure;
         let first = self.loading.contacts[contact].node * structure.dimension;
-        for component in 0..structure.dimension {
+        for (component, part) in force.iter().enumerate().take(structure.dimension) {
             if let Some(unknown) = structure.unknown_of[first + component] {
-                matrix[(unknown, column)] -= force[component];
+                matrix[(unknown, column)] -= part;
             }
         }
     }
@@ -518,10 +518,9 @@ impl<'a> ModeSystem<'a> {
             }
             let shift = scaled(&self.loading.pattern.shifts[contact], state.load - self.anchor.load);
             let first = self.loading.contacts[contact].node * structure.dimension;
-            for component in 0..structure.dimension {
-                if structure.unknown_of[first + component].is_some() {
-                    state.displacement[first + component] =
-                        self.anchor.displacement[first + component] + shift[component];
+            for (freedom, shift) in (first..first + structure.dimension).zip(shift) {
+                if structure.unknown_of[freedom].is_some() {
+                    state.displacement[freedom] = self.anchor.displacement[freedom] + shift;
                 }
             }
         }

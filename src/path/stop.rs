@@ -23,6 +23,8 @@ pub enum StopReason {
     CollapsedBar,
     /// The directions form a set of more than one dimension, so that none can be named.
     Degenerate,
+    /// A node is caught between obstacles that move against each other.
+    MovingCorner,
     /// More contact modes than `max_modes` would have to be examined to go on.
     ModeLimit,
     /// The caller asked for it.
@@ -49,6 +51,7 @@ impl StopReason {
             | Self::StepUnderflow
             | Self::CollapsedBar
             | Self::Degenerate
+            | Self::MovingCorner
             | Self::ModeLimit => Outcome::Stopped,
         }
     }
@@ -66,6 +69,9 @@ impl StopReason {
             Self::StepUnderflow => "no step of at least arc_length.min converges",
             Self::CollapsedBar => "a bar has shrunk to a point, where its direction is lost",
             Self::Degenerate => "the possible directions form a set of more than one dimension: none can be named",
+            Self::MovingCorner => {
+                "a node is caught between obstacles that move against each other: its slip on both is not available"
+            }
             Self::ModeLimit => "more contact modes than max_modes would have to be examined to go on",
             Self::Cancelled => "cancelled",
         }

@@ -128,7 +128,7 @@ fn off_balance(scene: &OneBar, base: &State, end: &State, step: f64) -> f64 {
     let contact = &scene.contacts[0];
     let (reaction, tangents) = (end.reactions[0], tangents_in_space(&FLOOR));
     let traction = in_plane(&reaction);
-    let mut worst = (base.distance(end) - step).abs().max(scene.loading().gap(0, &end).abs());
+    let mut worst = (base.distance(end) - step).abs().max(scene.loading().gap(0, end).abs());
     let normal = FLOOR;
     for k in 0..3 {
         let tangential = traction[0] * tangents[0][k] + traction[1] * tangents[1][k];

@@ -20,6 +20,7 @@
 //! | `dictionary` | the cone that is left when some entities are decided: is there anything but zero in it? |
 //! | `certificate` | a cheap sufficient test that each sign of the load rate has exactly one ray, and those rays |
 //! | `near` | combinations that a known vector of weights points to |
+//! | `sweeps` | a likely combination for each sign of the load rate |
 //! | `branch` | branch and bound over the entities with both |
 //!
 //! Knows linear forms only: nothing of structures, contacts or states.
@@ -30,6 +31,7 @@ mod dictionary;
 mod line;
 mod near;
 mod problem;
+mod sweeps;
 #[cfg(test)]
 mod tests;
 
@@ -39,3 +41,4 @@ pub(super) use tests::every_combination;
 pub use branch::{Ray, explore};
 pub use near::near;
 pub use problem::{Choice, Entity, RateProblem, Signed, Touching};
+pub use sweeps::sweeps;

@@ -1,0 +1,132 @@
+//! A likely combination by sweeps over the entities, each solved by itself with the others as they are.
+//!
+//! Nonlinear Gauss-Seidel for contact and friction (M. Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235,
+//! doi:10.1016/S0045-7825(98)00383-1), in velocities. Where the structure is stable it comes to the combination that
+//! goes on, however many contacts touch; what it gives is examined exactly like any other combination.
+
+use super::problem::{Entity, RateProblem, Touching};
+use crate::cancel::CancelFlag;
+use nalgebra::{DMatrix, DVector};
+
+/// Products that the sweeps of one sign of the load rate may take.
+const WORK: usize = 400_000_000;
+/// Sweeps without a change of any option after which the combination is taken.
+const SETTLED: usize = 60;
+
+/// A coefficient this small is none.
+const ROUND_OFF: f64 = 1e-12;
+
+/// The combinations that the sweeps settle on, for a rising and a falling load; none where the entities are not plain
+/// contacts or the sweeps do not settle.
+pub fn sweeps(problem: &RateProblem, cancel: &CancelFlag) -> Vec<Vec<usize>> {
+    let last = problem.weights() - 1;
+    let load = problem.motion.row(problem.motion.nrows() - 1);
+    let by_load = load[last] != 0.0 && (0..last).all(|column| load[column].abs() <= 1e-9 * load[last].abs());
+    let Some(locals) = problem.entities.iter().map(|entity| Local::of(problem, entity)).collect::<Option<Vec<_>>>()
+    else {
+        return Vec::new();
+    };
+    if !by_load {
+        return Vec::new();
+    }
+    [1.0, -1.0].into_iter().filter_map(|sign| settle(problem, &locals, sign * load[last].signum(), cancel)).collect()
+}
+
+/// An entity with the columns of its velocities.
+enum Local {
+    Pair { force: usize, velocity: usize },
+    Touching { forms: Touching, normal: usize, tangential: usize },
+}
+
+impl Local {
+    fn of(problem: &RateProblem, entity: &Entity) -> Option<Self> {
+        let own = |form: usize| {
+            let row = problem.forms.row(form);
+            // One up to the rounding of a frame that is not along the axes.
+            let mut filled = (0..row.len()).filter(|column| row[*column].abs() > ROUND_OFF);
+            match (filled.next(), filled.next()) {
+                (Some(column), None) if (row[column] - 1.0).abs() < ROUND_OFF => Some(column),
+                _ => None,
+            }
+        };
+        match entity.touching {
+            Some(forms) => Some(Self::Touching { forms, normal: own(forms.gap)?, tangential: own(forms.along)? }),
+            None => {
+                let [force, velocity] = entity.pair()?;
+                (force.sign == 1.0 && velocity.sign == 1.0)
+                    .then_some(Self::Pair { force: force.form, velocity: own(velocity.form)? })
+            }
+        }
+    }
+
+    /// Puts the entity's velocities where its own conditions hold; its option.
+    fn solve(&self, forms: &DMatrix<f64>, weights: &mut DVector<f64>) -> Option<usize> {
+        let value = |form: usize, weights: &DVector<f64>| -> f64 {
+            (0..weights.len()).map(|column| forms[(form, column)] * weights[column]).sum()
+        };
+        match *self {
+            Self::Pair { force, velocity } => {
+                weights[velocity] = 0.0;
+                let held = value(force, weights);
+                let stiffness = forms[(force, velocity)];
+                if held >= 0.0 {
+                    return Some(0);
+                }
+                (stiffness > 0.0).then(|| {
+                    weights[velocity] = -held / stiffness;
+                    1
+                })
+            }
+            Self::Touching { forms: own, normal, tangential } => {
+                (weights[normal], weights[tangential]) = (0.0, 0.0);
+                let cone = own.cone.map(|form| value(form, weights));
+                if cone[0] >= 0.0 && cone[1] >= 0.0 {
+                    return Some(0);
+                }
+                let (pressing, traction) = (value(own.pressing, weights), value(own.traction, weights));
+                for (side, sense) in [(0, 1.0), (1, -1.0)] {
+                    let stiffness = forms[(own.cone[side], tangential)];
+                    let motion = -cone[side] / stiffness;
+                    let pressed = pressing + forms[(own.pressing, tangential)] * motion;
+                    let rounding = ROUND_OFF * (traction.abs() + pressing.abs());
+                    if sense * motion > 0.0 && pressed >= -rounding {
+                        weights[tangential] = motion;
+                        return Some(1 + side);
+                    }
+                }
+                let entry = |form: usize, column: usize| forms[(form, column)];
+                let (a, b) = (entry(own.pressing, normal), entry(own.pressing, tangential));
+                let (c, d) = (entry(own.traction, normal), entry(own.traction, tangential));
+                let determinant = a * d - b * c;
+                let opening = -(d * pressing - b * traction) / determinant;
+                (determinant > 0.0).then(|| {
+                    weights[normal] = opening.max(0.0);
+                    weights[tangential] = -(a * traction - c * pressing) / determinant;
+                    3
+                })
+            }
+        }
+    }
+}
+
+fn settle(problem: &RateProblem, locals: &[Local], load: f64, cancel: &CancelFlag) -> Option<Vec<usize>> {
+    let forms = &problem.forms;
+    let mut weights = DVector::zeros(problem.weights());
+    weights[problem.weights() - 1] = load;
+    let mut chosen = vec![usize::MAX; locals.len()];
+    let (mut unchanged, mut worked) = (0, 0);
+    while unchanged < SETTLED {
+        if cancel.is_cancelled() || worked > WORK {
+            return None;
+        }
+        worked += 5 * locals.len() * weights.len();
+        let mut same = true;
+        for (local, chosen) in locals.iter().zip(&mut chosen) {
+            let option = local.solve(forms, &mut weights)?;
+            same &= option == *chosen;
+            *chosen = option;
+        }
+        unchanged = if same { unchanged + 1 } else { 0 };
+    }
+    Some(chosen)
+}
