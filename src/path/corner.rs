@@ -53,12 +53,16 @@ pub fn agree(loading: Loading<'_>, first: &[Mode], second: &[Mode]) -> bool {
     (0..first.len()).filter(free_of_corners).all(|contact| first[contact].continues(second[contact]))
 }
 
-/// Whether a node is closed against obstacles that the running stage moves against each other.
-pub fn is_moving(loading: Loading<'_>, state: &State) -> bool {
+/// Whether a node is closed against several obstacles that the running stage moves against each other, or in space with
+/// friction: the bounds of such a hold are not known.
+pub fn is_not_available(loading: Loading<'_>, state: &State) -> bool {
     let shifts = &loading.pattern.shifts;
+    let circular = |contact: &usize| loading.contacts[*contact].tangents() == 2;
     loading.corners.iter().any(|corner| {
-        let mut closed = corner.contacts.iter().filter(|contact| loading.gap(**contact, state) <= ZERO);
-        closed.next().is_some_and(|first| closed.any(|other| shifts[*first] != shifts[*other]))
+        let closed: Vec<usize> =
+            corner.contacts.iter().copied().filter(|contact| loading.gap(*contact, state) <= ZERO).collect();
+        let moving = closed.iter().skip(1).any(|other| shifts[closed[0]] != shifts[*other]);
+        closed.len() > 1 && (moving || closed.iter().any(circular))
     })
 }
 

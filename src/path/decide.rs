@@ -243,7 +243,7 @@ pub fn decide(
     let stop = match taken {
         Some(index) if options[index].mechanism => Some(StopReason::Mechanism),
         Some(_) => None,
-        None if found.moving_corner => Some(StopReason::MovingCorner),
+        None if found.corner_not_available => Some(StopReason::CornerNotAvailable),
         None if found.unexplored > 0 => Some(StopReason::ModeLimit),
         None if found.mechanism => Some(StopReason::Mechanism),
         None if found.degenerate => Some(StopReason::Degenerate),

@@ -53,8 +53,8 @@ pub struct Found {
     pub degenerate: bool,
     /// Some direction set contains a motion that no element resists.
     pub mechanism: bool,
-    /// A node is closed against obstacles that move against each other, where it can neither be held nor slide on one.
-    pub moving_corner: bool,
+    /// A node is closed against several obstacles in a way that is not available.
+    pub corner_not_available: bool,
 }
 
 /// Inequalities (of rates of unit arc length) that hold within this are weak.
@@ -85,8 +85,8 @@ pub fn directions(
         .collect();
     let system = ModeSystem::new(loading, &held, state);
     let mut found = Found::default();
-    if corner::is_moving(loading, state) {
-        found.moving_corner = true;
+    if corner::is_not_available(loading, state) {
+        found.corner_not_available = true;
         return found;
     }
     let Some(condensed) = Condensed::new(&system, loading, state, standings, incoming) else {

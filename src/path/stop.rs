@@ -23,8 +23,9 @@ pub enum StopReason {
     CollapsedBar,
     /// The directions form a set of more than one dimension, so that none can be named.
     Degenerate,
-    /// A node is caught between obstacles that move against each other.
-    MovingCorner,
+    /// A node is closed against several obstacles in a way that is not available: in space with friction, or obstacles that
+    /// move against each other.
+    CornerNotAvailable,
     /// More contact modes than `max_modes` would have to be examined to go on.
     ModeLimit,
     /// The caller asked for it.
@@ -51,7 +52,7 @@ impl StopReason {
             | Self::StepUnderflow
             | Self::CollapsedBar
             | Self::Degenerate
-            | Self::MovingCorner
+            | Self::CornerNotAvailable
             | Self::ModeLimit => Outcome::Stopped,
         }
     }
@@ -69,8 +70,9 @@ impl StopReason {
             Self::StepUnderflow => "no step of at least arc_length.min converges",
             Self::CollapsedBar => "a bar has shrunk to a point, where its direction is lost",
             Self::Degenerate => "the possible directions form a set of more than one dimension: none can be named",
-            Self::MovingCorner => {
-                "a node is caught between obstacles that move against each other: its slip on both is not available"
+            Self::CornerNotAvailable => {
+                "a node is closed against several obstacles at once, in space with friction or while they move against each \
+                 other, which is not available"
             }
             Self::ModeLimit => "more contact modes than max_modes would have to be examined to go on",
             Self::Cancelled => "cancelled",
