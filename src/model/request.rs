@@ -222,7 +222,8 @@ pub struct Analysis {
     pub arc_length: ArcLength,
     /// Counted over the whole job; 1 or more.
     pub max_increments: u64,
-    /// Contact modes that may be tried at one point when its directions are listed; what lies past it is reported.
+    /// Branches and contact modes that may be examined at one point when its directions are searched; what lies past it is
+    /// reported.
     pub max_modes: u64,
     /// Follow the directions not taken by jobs of their own; absent: none is followed.
     #[serde(skip_serializing_if = "Option::is_none")]

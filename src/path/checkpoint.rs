@@ -136,6 +136,7 @@ impl Checkpoint {
         state(&self.here.state)?;
         modes(&self.here.modes)?;
         self.here.rate.iter().try_for_each(rate)?;
+        self.here.drift.iter().try_for_each(rate)?;
         self.visited.iter().try_for_each(|visited| state(&visited.state).and_then(|()| modes(&visited.modes)))?;
         self.listed.iter().try_for_each(listed)?;
         self.followed.iter().try_for_each(|followed| listed(&followed.listed))
