@@ -5,7 +5,7 @@
 //! The inequalities are those listed in `directions`; `changeable` writes them down, `rates` finds the rays.
 
 use super::changeable::{Changeable, Forms, Outcome};
-use super::directions::{Candidate, Found, RANK, WEAK, is_mechanism, merge};
+use super::directions::{Alternative, Candidate, Found, RANK, WEAK, is_mechanism, merge, sort};
 use super::loading::Loading;
 use super::mode_system::ModeSystem;
 use super::rates::{self, RateProblem, Ray};
@@ -174,7 +174,7 @@ impl<'a> Condensed<'a> {
         nearest.scale(1.0 / size);
         let mut modes = held.to_vec();
         self.changeable.iter().flat_map(|entry| &entry.contacts).for_each(|contact| modes[*contact] = Mode::Free);
-        merge(found, Candidate { rate: nearest, labels: vec![modes], weak: true, dissipation: 0.0 });
+        merge(found, Candidate { rate: nearest, modes, alternatives: Vec::new(), weak: true, dissipation: 0.0 });
     }
 
     /// The weights that come nearest to a rate: its velocities, and what it has along `z₀`.
@@ -201,7 +201,7 @@ impl<'a> Condensed<'a> {
     fn add(&self, ray: &Ray, turning: Option<(usize, Vector)>, held: &[Mode], found: &mut Found) {
         let (mut rate, _) = self.combine(&ray.weights);
         let mut modes = held.to_vec();
-        for ((entry, outcomes), &choice) in self.changeable.iter().zip(&self.outcomes).zip(&ray.chosen) {
+        for ((entry, outcomes), choice) in self.changeable.iter().zip(&self.outcomes).zip(ray.chosen()) {
             entry.take_reaction_apart(self.loading, &mut rate);
             for (contact, mode) in &outcomes[choice].modes {
                 let mode = match turning {
@@ -228,7 +228,35 @@ impl<'a> Condensed<'a> {
             return;
         }
         let dissipation = self.changeable.iter().map(|entry| entry.dissipation(self.loading, &modes, &rate)).sum();
-        merge(found, Candidate { rate, labels: vec![modes], weak: ray.weak, dissipation });
+        let alternatives = self.alternatives(ray, turning, &modes, &rate, force);
+        merge(found, Candidate { rate, modes, alternatives, weak: ray.weak, dissipation });
+    }
+
+    /// What each contact may do along a ray.
+    fn alternatives(
+        &self,
+        ray: &Ray,
+        turning: Option<(usize, Vector)>,
+        modes: &[Mode],
+        rate: &Rate,
+        force: f64,
+    ) -> Vec<Vec<Alternative>> {
+        let of_entity = |((entry, outcomes), in_doubt): ((&Changeable, &Vec<Outcome>), &Vec<usize>)| {
+            let contact = entry.contacts[0];
+            if turning.is_some_and(|(turning, _)| turning == contact) {
+                return vec![vec![(contact, modes[contact])]];
+            }
+            let mut alternatives: Vec<Alternative> =
+                in_doubt.iter().map(|&choice| outcomes[choice].modes.clone()).collect();
+            alternatives.retain(|alternative| {
+                let mut modes = modes.to_vec();
+                alternative.iter().for_each(|(contact, mode)| modes[*contact] = *mode);
+                entry.is_in_cone(self.loading, &modes, rate, force)
+            });
+            sort(&mut alternatives);
+            alternatives
+        };
+        self.changeable.iter().zip(&self.outcomes).zip(&ray.in_doubt).map(of_entity).collect()
     }
 
     /// The rate of unit arc length for weights of the columns, and the weights that give it; of no size where the

@@ -9,16 +9,13 @@
 //! `Π̇ = (f_int - f_held - s f)·u̇ - ṡ f·u`, and by equilibrium the bracket is the reactions, whose power is `-D` with the
 //! dissipation `D = -Σ r_t·u̇_t`: so `Π̇ = -D - ṡ f·u`, per unit arc length.
 
-use super::advance::MOST_TURN;
-use super::directions::{Candidate, Found, directions, is_mechanism};
+use super::confirm::confirm;
+use super::directions::{Found, directions, is_mechanism};
 use super::energy;
 use super::loading::Loading;
-use super::mode_system::ModeSystem;
-use super::newton::Place;
 use super::standing::Standing;
 use super::state::{Rate, State, dot};
 use super::stop::StopReason;
-use super::watch;
 use crate::cancel::CancelFlag;
 use crate::contact::{Mode, Reaction};
 use crate::model::request::Selection;
@@ -63,15 +60,6 @@ pub enum Before<'a> {
 pub const STATIONARY: f64 = 1e-9;
 /// Dissipations closer than this, relative to the largest force, tie.
 const TIE: f64 = 1e-8;
-/// Arc lengths of the steps by which a direction of first order is tried, one after another until it is clear.
-const TRIAL_STEPS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
-/// Quantities and slopes below this are zero at first order.
-const IN_DOUBT: f64 = 1e-8;
-/// Slopes beyond this after a trial step have a sign (their round-off is a thousand times smaller).
-const CLEAR: f64 = 1e-9;
-/// How far a watched quantity may be negative after a trial step (second order in the step where it is real).
-const TRIAL_TOLERANCE: f64 = 1e-11;
-
 /// Settings and scales of a decision.
 #[derive(Debug, Clone, Copy)]
 pub struct Rules<'a> {
@@ -101,7 +89,7 @@ pub fn list(
         let confirmed = if candidate.weak && !mechanism {
             confirm(loading, state, &candidate, rules.force_scale)
         } else {
-            candidate.labels.first().map(|modes| (modes.clone(), 0.0))
+            Some((candidate.modes.clone(), 0.0))
         };
         let Some((modes, later_load)) = confirmed else { continue };
         let load_sign = sign_of(if sign_of(candidate.rate.load) == 0.0 { later_load } else { candidate.rate.load });
@@ -134,71 +122,6 @@ pub fn potential_rate(loading: Loading<'_>, state: &State, rate: &Rate, dissipat
 /// The sign of a load rate; 0 where it is stationary.
 pub fn sign_of(load: f64) -> f64 {
     if load.abs() <= STATIONARY { 0.0 } else { load.signum() }
-}
-
-/// What a small step says of a direction that holds only at first order.
-enum Verdict {
-    Holds(f64),
-    Fails,
-    /// What is in doubt stays zero to second order, too.
-    Unclear(f64),
-}
-
-/// The label under which a small step along the direction is feasible, and the load rate after that step.
-fn confirm(loading: Loading<'_>, state: &State, candidate: &Candidate, force_scale: f64) -> Option<(Vec<Mode>, f64)> {
-    candidate.labels.iter().find_map(|modes| {
-        let mut later_load = None;
-        for step in TRIAL_STEPS {
-            match try_step(loading, state, candidate, modes, step, force_scale) {
-                Verdict::Holds(load) => return Some((modes.clone(), load)),
-                Verdict::Fails => return None,
-                Verdict::Unclear(load) => later_load = Some(load),
-            }
-        }
-        later_load.map(|load| (modes.clone(), load))
-    })
-}
-
-/// Follows only what is zero at first order: whatever else ends the mode within the step is an event to come. The
-/// step is short, so that such events come after it as a rule: where many contacts change close together, a long one
-/// would judge a motion that does not happen.
-fn try_step(
-    loading: Loading<'_>,
-    state: &State,
-    candidate: &Candidate,
-    modes: &[Mode],
-    step: f64,
-    force_scale: f64,
-) -> Verdict {
-    let system = ModeSystem::new(loading, modes, state);
-    let guess = state.advanced(&candidate.rate, step);
-    let place = Place::ArcLength { from: state, step };
-    let Ok(corrected) = system.correct(guess, place, force_scale) else { return Verdict::Fails };
-    if state.angle_of_chord(&corrected.state, &candidate.rate) > MOST_TURN {
-        return Verdict::Fails;
-    }
-    let Some(rate) = system.tangent(&corrected, &candidate.rate) else { return Verdict::Fails };
-    let forces = force_scale.max(corrected.force_scale);
-    let rates = candidate.rate.largest_reaction().max(rate.largest_reaction()).max(f64::MIN_POSITIVE);
-    let mut unclear = false;
-    for watch in watch::of_mode(loading, modes) {
-        let scale = watch.scale(forces);
-        let first = watch.value(loading, modes, state, &candidate.rate);
-        let (tendency, size) = match watch.slope(loading, state, &candidate.rate) {
-            None => (0.0, 1.0),
-            Some(slope) => (slope, watch.scale(rates)),
-        };
-        if first > IN_DOUBT * scale || tendency > IN_DOUBT * size {
-            continue;
-        }
-        let last = watch.value(loading, modes, &corrected.state, &rate) / scale;
-        let grown = watch.slope(loading, &corrected.state, &rate).map_or(last, |slope| slope / size);
-        if last < -TRIAL_TOLERANCE || grown < -CLEAR {
-            return Verdict::Fails;
-        }
-        unclear |= grown <= CLEAR;
-    }
-    if unclear { Verdict::Unclear(rate.load) } else { Verdict::Holds(rate.load) }
 }
 
 /// Whether a direction is the incoming one reversed, reactions included.

@@ -35,13 +35,20 @@ use crate::linear_algebra::null_space;
 #[derive(Debug, Clone)]
 pub struct Candidate {
     pub rate: Rate,
-    /// The modes under which it is feasible at first order; more than one where an inequality holds with equality.
-    pub labels: Vec<Vec<Mode>>,
+    /// Modes under which it is feasible at first order: stuck where a contact can be.
+    pub modes: Vec<Mode>,
+    /// What the contacts that change together may do under it at first order, or nearly so, one entry for each that can
+    /// change; more than one alternative where an inequality holds with equality. Every combination of those that hold
+    /// is feasible.
+    pub alternatives: Vec<Vec<Alternative>>,
     /// Some inequality holds with equality: only a finite step can tell whether the direction exists.
     pub weak: bool,
     /// `-r_t·u̇_t` summed over the contacts.
     pub dissipation: f64,
 }
+
+/// Modes of contacts that change together.
+pub type Alternative = Vec<(usize, Mode)>;
 
 /// What was found at a point.
 #[derive(Debug, Clone, Default)]
@@ -117,7 +124,7 @@ pub fn is_mechanism(loading: Loading<'_>, state: &State, rate: &Rate) -> bool {
         && loading.structure.resistance(&state.displacement, &rate.displacement) < WEAK
 }
 
-/// Keeps one entry for one motion, whatever its labels; labels with more sticking contacts come first.
+/// Keeps one entry for one motion, whatever its modes.
 pub(super) fn merge(found: &mut Found, candidate: Candidate) {
     for known in &mut found.candidates {
         let size = known.rate.largest_reaction().max(candidate.rate.largest_reaction()).max(f64::MIN_POSITIVE);
@@ -125,11 +132,22 @@ pub(super) fn merge(found: &mut Found, candidate: Candidate) {
         let same_reactions =
             known.rate.reactions.iter().zip(&candidate.rate.reactions).all(|(a, b)| a.difference(b) <= SAME * size);
         if same_motion && same_reactions {
-            known.labels.extend(candidate.labels);
-            known.labels.sort_by_key(|modes| modes.iter().filter(|mode| **mode != Mode::Stick).count());
+            for (alternatives, others) in known.alternatives.iter_mut().zip(candidate.alternatives) {
+                for other in others {
+                    if !alternatives.contains(&other) {
+                        alternatives.push(other);
+                    }
+                }
+                sort(alternatives);
+            }
             known.weak = true;
             return;
         }
     }
     found.candidates.push(candidate);
+}
+
+/// More sticking contacts first.
+pub(super) fn sort(alternatives: &mut [Alternative]) {
+    alternatives.sort_by_key(|modes| modes.iter().filter(|(_, mode)| *mode != Mode::Stick).count());
 }

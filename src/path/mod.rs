@@ -11,7 +11,8 @@
 //! | `track`, `drift` | slip in a plane: its rule of fourth order; the error that is left |
 //! | `watch`, `root`, `advance` | what ends a mode; one step, ended exactly at the first event |
 //! | `singular`, `critical`, `branches` | whether a step passes a smooth bifurcation; where; which directions leave it |
-//! | `standing`, `directions`, `condensed`, `decide` | which contacts can change; every direction; which one is taken |
+//! | `standing`, `directions`, `condensed` | which contacts can change; every direction |
+//! | `confirm`, `decide` | those that hold beyond first order; which one is taken |
 //! | `rates`, `turning` | all rays of a rate problem, linear forms only; slip whose direction is unknown |
 //! | `program`, `naming` | the MPEC of an increment; where it names the mode |
 //! | `energy`, `record`, `increment`, `report`, `stop` | balances, rows, totals, reasons |
@@ -25,6 +26,7 @@ mod branches;
 mod changeable;
 pub mod checkpoint;
 mod condensed;
+mod confirm;
 mod corner;
 mod critical;
 mod decide;

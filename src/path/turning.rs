@@ -65,7 +65,7 @@ pub(super) fn slips(
                 continue;
             }
             let partner = before.iter().find(|(other, other_misfit)| {
-                other.chosen == ray.chosen
+                other.chosen() == ray.chosen()
                     && misfit * other_misfit < 0.0
                     && other_misfit.abs() > ROOT
                     && cosine(problem, other, ray) > TOGETHER
@@ -75,7 +75,7 @@ pub(super) fn slips(
             let mut last_ray = other.clone();
             let evaluate = |angle: f64| {
                 let rays = touch.rays(problem, angle, most, cancel);
-                let near = rays.into_iter().filter(|(one, _)| one.chosen == ray.chosen);
+                let near = rays.into_iter().filter(|(one, _)| one.chosen() == ray.chosen());
                 let (one, value) =
                     near.max_by(|a, b| cosine(problem, &a.0, ray).total_cmp(&cosine(problem, &b.0, ray)))?;
                 last_ray = one;
@@ -142,7 +142,7 @@ impl Touch {
     }
 
     fn keep(&self, found: &mut Vec<Turning>, problem: &RateProblem, ray: Ray, angle: f64) {
-        let known = |one: &Turning| one.ray.chosen == ray.chosen && cosine(problem, &one.ray, &ray) > 1.0 - 1e-12;
+        let known = |one: &Turning| one.ray.chosen() == ray.chosen() && cosine(problem, &one.ray, &ray) > 1.0 - 1e-12;
         if !found.iter().any(known) {
             found.push(Turning { ray, direction: [angle.cos(), angle.sin()] });
         }

@@ -21,16 +21,29 @@ use std::rc::Rc;
 pub struct Ray {
     /// Of unit arc length.
     pub weights: DVector<f64>,
-    /// The option of each entity.
-    pub chosen: Vec<usize>,
+    /// The options of each entity that hold; under every combination of them the ray is feasible.
+    pub fitting: Vec<Vec<usize>>,
+    /// Those and the ones that nearly hold.
+    pub in_doubt: Vec<Vec<usize>>,
     /// Some inequality holds with equality.
     pub weak: bool,
+}
+
+impl Ray {
+    /// The first combination under which it is feasible: held where it can be.
+    pub fn chosen(&self) -> Vec<usize> {
+        self.fitting.iter().map(|options| options[0]).collect()
+    }
+
+    pub(super) fn is_under(&self, chosen: &[usize]) -> bool {
+        self.fitting.iter().zip(chosen).all(|(options, choice)| options.contains(choice))
+    }
 }
 
 /// What was found.
 #[derive(Debug, Clone, Default)]
 pub struct Findings {
-    /// In the order of their combinations, the first entity counting fastest.
+    /// Each motion once, in the order of their first combinations, the first entity counting fastest.
     pub rays: Vec<Ray>,
     /// Combinations that were not examined, saturating; an upper bound.
     pub unexplored: u64,
@@ -44,7 +57,7 @@ pub struct Findings {
     pub examined: u64,
 }
 
-/// Combinations kept as labels of one line: there are more only where many inequalities hold with equality at once.
+/// Combinations of options in doubt that are tried on one line, beside those that violations lead to.
 const MOST_LABELS: u64 = 64;
 /// Entries of a dictionary that make a node count as one; a larger node counts as several.
 const UNIT_OF_WORK: u64 = 4096;
@@ -69,12 +82,14 @@ pub fn explore(problem: &RateProblem, first: &[Vec<usize>], most: u64, cancel: &
         cost: 1 + (problem.forms.nrows() * problem.weights()) as u64 / UNIT_OF_WORK,
     };
     if !search.certified_at_once() {
-        first.iter().for_each(|chosen| search.examine(chosen));
+        for chosen in first {
+            search.examine(chosen);
+        }
         search.branch(cancel);
     }
     let mut findings = search.findings;
     findings.unexplored = findings.unexplored.min(problem.combinations());
-    findings.rays.sort_by(|a, b| a.chosen.iter().rev().cmp(b.chosen.iter().rev()));
+    findings.rays.sort_by_cached_key(|ray| ray.chosen().into_iter().rev().collect::<Vec<_>>());
     findings
 }
 
@@ -110,32 +125,71 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    fn examine(&mut self, chosen: &[usize]) {
+    /// The rays of one combination. Where its equations leave a line that is feasible in neither sense, the entities
+    /// that are violated, in the sense that violates fewer.
+    fn examine(&mut self, chosen: &[usize]) -> Option<Vec<usize>> {
         if !self.seen.insert(chosen.to_vec()) {
-            return;
+            return None;
         }
         self.findings.examined += self.cost;
         match self.problem.line(chosen) {
-            Line::Rays(rays) => {
-                let rays = rays.into_iter().map(|(weights, weak)| Ray { weights, chosen: chosen.to_vec(), weak });
-                self.findings.rays.extend(rays);
+            Line::Nothing => None,
+            Line::Along(weights) => {
+                let mut fewest: Option<Vec<usize>> = None;
+                let mut is_ray = false;
+                for weights in [-&weights, weights] {
+                    let violated = self.problem.violated(chosen, &weights);
+                    if violated.is_empty() {
+                        is_ray = true;
+                        self.keep(chosen, weights);
+                    } else if fewest.as_ref().is_none_or(|fewest| violated.len() <= fewest.len()) {
+                        fewest = Some(violated);
+                    }
+                }
+                fewest.filter(|_| !is_ray)
             }
             Line::Plane(basis) => {
                 self.findings.degenerate = true;
                 if self.findings.planes.len() < MOST_PLANES {
                     self.findings.planes.push(basis);
                 }
+                None
             }
-            Line::Still | Line::NotFinite => self.findings.degenerate = true,
+            Line::Still | Line::NotFinite => {
+                self.findings.degenerate = true;
+                None
+            }
+        }
+    }
+
+    fn keep(&mut self, chosen: &[usize], weights: DVector<f64>) {
+        let size = weights.amax();
+        if !self.findings.rays.iter().any(|ray| (&ray.weights - &weights).amax() <= SAME * size) {
+            let fitting = self.problem.fitting(chosen, &weights);
+            let weak = self.problem.is_weak(&fitting, &weights);
+            let in_doubt = self.problem.in_doubt(chosen, &weights);
+            self.findings.rays.push(Ray { weights, fitting, in_doubt, weak });
         }
     }
 
     /// Examines the combinations of the options given for each entity, which all fit one line, hold first.
     ///
-    /// The line is that of the first; the others are further labels of its rays, and no more than a few are kept.
+    /// Where many options are in doubt there are too many combinations to try: what the first one violates is changed,
+    /// and so on until a combination holds.
     fn examine_all(&mut self, options: &[Vec<usize>]) {
+        let before = self.findings.rays.len();
+        let mut places = vec![0; options.len()];
+        let mut refuted = false;
+        for _ in 0..MOST_LABELS as usize + options.len() {
+            let chosen: Vec<usize> = options.iter().zip(&places).map(|(options, &place)| options[place]).collect();
+            let Some(violated) = self.examine(&chosen) else { break };
+            refuted = violated.iter().any(|&entity| options[entity].len() == 1);
+            if refuted {
+                break;
+            }
+            violated.iter().for_each(|&entity| places[entity] = (places[entity] + 1) % options[entity].len());
+        }
         let total = options.iter().fold(1u64, |total, options| total.saturating_mul(options.len() as u64));
-        let mut lines: Vec<DVector<f64>> = Vec::new();
         for number in 0..total.min(MOST_LABELS) {
             let mut rest = number;
             let chosen: Vec<usize> = options
@@ -146,25 +200,19 @@ impl Search<'_> {
                     choice
                 })
                 .collect();
-            let known: Vec<DVector<f64>> =
-                lines.iter().filter(|weights| self.problem.is_on(&chosen, weights)).cloned().collect();
-            if known.is_empty() {
-                let before = self.findings.rays.len();
-                self.examine(&chosen);
-                lines.extend(self.findings.rays[before..].iter().map(|ray| ray.weights.clone()));
-            } else {
-                for weights in known.into_iter().flat_map(|weights| [-&weights, weights]) {
-                    if !self.is_known(&chosen, &weights) && self.problem.holds(&chosen, &weights).is_some() {
-                        self.findings.rays.push(Ray { weights, chosen: chosen.clone(), weak: true });
-                    }
+            let known = self.findings.rays[before..].iter().find(|ray| ray.is_under(&chosen));
+            match known.map(|ray| -&ray.weights) {
+                None => {
+                    self.examine(&chosen);
                 }
+                // Its line is the known one; the other sense may be feasible under this combination only.
+                Some(reversed) if self.problem.violated(&chosen, &reversed).is_empty() => self.keep(&chosen, reversed),
+                Some(_) => {}
             }
         }
-    }
-
-    fn is_known(&self, chosen: &[usize], weights: &DVector<f64>) -> bool {
-        let size = weights.amax();
-        self.findings.rays.iter().any(|ray| ray.chosen == chosen && (&ray.weights - weights).amax() <= SAME * size)
+        if total > MOST_LABELS && !refuted && self.findings.rays.len() == before {
+            self.findings.unexplored = self.findings.unexplored.saturating_add(total - MOST_LABELS);
+        }
     }
 
     /// The certificate on the whole problem.

@@ -1,18 +1,24 @@
 //! The ray of one combination of options, exactly: the null vector of its equations in both senses.
 
-use super::problem::RateProblem;
+use super::problem::{Choice, Entity, RateProblem};
 use crate::linear_algebra::null_space;
 use nalgebra::{DMatrix, DVector};
 
 /// Inequalities (of rates of unit arc length) that hold within this are weak.
 pub const WEAK: f64 = 1e-9;
+/// What is below this may change its sign within the small steps by which weak rays are tried.
+const IN_DOUBT: f64 = 1e-7;
+/// Rounding of a sum against the sum of its terms' sizes.
+const ROUNDING: f64 = 1e-14;
 /// Relative pivot that decides the rank of a combination's equations.
 pub const RANK: f64 = 1e-11;
 
 /// What the equations of one combination leave.
 pub enum Line {
-    /// Rays of unit arc length whose inequalities hold, none to two; `true` where one of them holds with equality.
-    Rays(Vec<(DVector<f64>, bool)>),
+    /// Nothing but zero.
+    Nothing,
+    /// A vector of unit arc length and its multiples.
+    Along(DVector<f64>),
     /// More than one independent vector, one a column.
     Plane(DMatrix<f64>),
     /// A vector along which reactions change and nothing moves.
@@ -35,63 +41,78 @@ impl RateProblem {
         if basis.ncols() > 1 {
             return Line::Plane(basis);
         }
-        let mut rays = Vec::new();
         if basis.ncols() == 0 {
-            return Line::Rays(rays);
+            return Line::Nothing;
         }
         let weights: DVector<f64> = basis.column(0).into_owned();
         let size = self.size(&weights);
-        let reactions = &self.reactions * &weights;
-        let largest = reactions.amax();
+        let largest = (&self.reactions * &weights).amax();
         if size.is_nan() || size <= WEAK * largest {
             return Line::Still;
         }
-        for sense in [1.0, -1.0] {
-            let weights = &weights * (sense / size);
-            if let Some(weak) = self.holds(chosen, &weights) {
-                rays.push((weights, weak));
-            }
-        }
-        Line::Rays(rays)
-    }
-
-    /// Whether a ray of unit arc length satisfies a combination's equations.
-    pub(super) fn is_on(&self, chosen: &[usize], weights: &DVector<f64>) -> bool {
-        let force = self.force_tolerance(weights);
-        self.entities.iter().zip(chosen).all(|(entity, &choice)| {
-            entity.options[choice]
-                .zero
-                .iter()
-                .all(|&form| self.value(form, weights).abs() <= if self.is_force[form] { force } else { WEAK })
-        })
+        let weights = weights / size;
+        if weights.iter().all(|weight| weight.is_finite()) { Line::Along(weights) } else { Line::NotFinite }
     }
 
     fn force_tolerance(&self, weights: &DVector<f64>) -> f64 {
-        WEAK * (&self.reactions * weights).amax().max(f64::MIN_POSITIVE)
+        let largest = (&self.reactions * weights).amax();
+        // Where no force changes, what is left is the rounding of the sums.
+        let terms =
+            self.reactions.row_iter().map(|row| row.iter().zip(weights.iter()).map(|(a, b)| (a * b).abs()).sum());
+        let rounding = ROUNDING * terms.fold(0.0, f64::max);
+        (WEAK * largest).max(rounding).max(f64::MIN_POSITIVE)
     }
 
     fn value(&self, form: usize, weights: &DVector<f64>) -> f64 {
         self.forms.row(form).iter().zip(weights.iter()).map(|(a, b)| a * b).sum()
     }
 
-    /// Whether a ray of unit arc length satisfies a combination's inequalities; `Some(true)` where one of them holds with
-    /// equality.
-    pub(super) fn holds(&self, chosen: &[usize], weights: &DVector<f64>) -> Option<bool> {
-        if !weights.iter().all(|weight| weight.is_finite()) {
-            return None;
-        }
+    /// The options of each entity under which a ray of unit arc length, found under the chosen ones, is feasible. As
+    /// every option speaks of its own entity only, the ray is feasible under every combination of them.
+    pub(super) fn fitting(&self, chosen: &[usize], weights: &DVector<f64>) -> Vec<Vec<usize>> {
+        self.within(WEAK, chosen, weights)
+    }
+
+    /// The same where what is small counts as zero.
+    pub(super) fn in_doubt(&self, chosen: &[usize], weights: &DVector<f64>) -> Vec<Vec<usize>> {
+        self.within(IN_DOUBT, chosen, weights)
+    }
+
+    fn within(&self, tolerance: f64, chosen: &[usize], weights: &DVector<f64>) -> Vec<Vec<usize>> {
+        let force = tolerance / WEAK * self.force_tolerance(weights);
+        let tolerance = |form: usize| if self.is_force[form] { force } else { tolerance };
+        let values = &self.forms * weights;
+        let fits = |choice: &Choice| {
+            choice.zero.iter().all(|&form| values[form].abs() <= tolerance(form))
+                && choice.nonnegative.iter().all(|signed| signed.sign * values[signed.form] >= -tolerance(signed.form))
+        };
+        let of_entity = |(entity, &chosen): (&Entity, &usize)| {
+            (0..entity.options.len()).filter(|&index| index == chosen || fits(&entity.options[index])).collect()
+        };
+        self.entities.iter().zip(chosen).map(of_entity).collect()
+    }
+
+    /// The entities whose inequalities a vector of weights violates under a combination: below zero by more
+    /// than the weak tolerance.
+    pub(super) fn violated(&self, chosen: &[usize], weights: &DVector<f64>) -> Vec<usize> {
         let force = self.force_tolerance(weights);
-        let mut weak = false;
-        for (entity, &choice) in self.entities.iter().zip(chosen) {
-            for signed in &entity.options[choice].nonnegative {
-                let value = signed.sign * self.value(signed.form, weights);
+        let is_violated = |choice: &Choice| {
+            choice.nonnegative.iter().any(|signed| {
                 let tolerance = if self.is_force[signed.form] { force } else { WEAK };
-                if value.is_nan() || value < -tolerance {
-                    return None;
-                }
-                weak |= value <= tolerance;
-            }
-        }
-        Some(weak)
+                signed.sign * self.value(signed.form, weights) < -tolerance
+            })
+        };
+        (0..chosen.len()).filter(|&entity| is_violated(&self.entities[entity].options[chosen[entity]])).collect()
+    }
+
+    /// Whether some inequality of a ray of unit arc length holds with equality under the first of its options.
+    pub(super) fn is_weak(&self, fitting: &[Vec<usize>], weights: &DVector<f64>) -> bool {
+        let force = self.force_tolerance(weights);
+        self.entities.iter().zip(fitting).any(|(entity, options)| {
+            entity.options[options[0]].nonnegative.iter().any(|signed| {
+                let tolerance = if self.is_force[signed.form] { force } else { WEAK };
+                signed.sign * self.value(signed.form, weights) <= tolerance
+            })
+        })
     }
 }

@@ -41,11 +41,16 @@ pub(in crate::path) fn every_combination(problem: &RateProblem) -> Findings {
             })
             .collect();
         match problem.line(&chosen) {
-            Line::Rays(rays) => findings.rays.extend(rays.into_iter().map(|(weights, weak)| Ray {
-                weights,
-                chosen: chosen.clone(),
-                weak,
-            })),
+            Line::Nothing => {}
+            Line::Along(weights) => {
+                for weights in [-&weights, weights] {
+                    if problem.violated(&chosen, &weights).is_empty() {
+                        let fitting: Vec<Vec<usize>> = chosen.iter().map(|choice| vec![*choice]).collect();
+                        let weak = problem.is_weak(&fitting, &weights);
+                        findings.rays.push(Ray { weights, in_doubt: fitting.clone(), fitting, weak });
+                    }
+                }
+            }
             Line::Plane(basis) => {
                 findings.degenerate = true;
                 if basis.ncols() == 2 && plane_is_wide(problem, &chosen, &basis) {
@@ -156,23 +161,31 @@ fn random_problem(random: &mut Random, kinds: &[bool], numbers: Numbers) -> Rate
     }
 }
 
+fn combinations(options: &[Vec<usize>]) -> Vec<Vec<usize>> {
+    options.iter().fold(vec![Vec::new()], |known, options| {
+        let with = |choice: &usize| known.iter().map(|one| [&one[..], &[*choice]].concat()).collect::<Vec<_>>();
+        options.iter().flat_map(with).collect()
+    })
+}
+
 /// Every ray of one list is in the other; a list may name one motion under several combinations.
 fn compare(problem: &RateProblem, found: &Findings, exact: &Findings, what: &str) {
     assert_eq!(found.unexplored, 0, "{what}");
     let near = |a: &Ray, b: &Ray| (&a.weights - &b.weights).norm() <= 1e-7;
     for ray in &exact.rays {
-        assert!(
-            found.rays.iter().any(|other| other.chosen == ray.chosen && near(ray, other) && other.weak == ray.weak),
-            "{what}: missed {:?} {:?}",
-            ray.chosen,
-            ray.weights
-        );
+        let is_listed = |other: &Ray| near(ray, other) && other.is_under(&ray.chosen()) && (other.weak || !ray.weak);
+        assert!(found.rays.iter().any(is_listed), "{what}: missed {:?} {:?}", ray.fitting, ray.weights);
     }
     for ray in &found.rays {
-        // A combination whose equations leave more than a line may still be a further label of a ray.
-        let is_plane = || matches!(problem.line(&ray.chosen), Line::Plane(_));
-        let known = exact.rays.iter().any(|other| other.chosen == ray.chosen && near(ray, other));
-        assert!(known || is_plane(), "{what}: {:?} {:?} is none", ray.chosen, ray.weights);
+        // A combination whose equations leave more than a line may still be a label of a ray.
+        let is_plane = || matches!(problem.line(&ray.chosen()), Line::Plane(_));
+        let known = exact.rays.iter().any(|other| near(ray, other) && ray.is_under(&other.chosen()));
+        assert!(known || is_plane(), "{what}: {:?} {:?} is none", ray.fitting, ray.weights);
+        for combination in combinations(&ray.fitting) {
+            let listed = exact.rays.iter().any(|other| near(ray, other) && other.chosen() == combination);
+            let is_plane = || matches!(problem.line(&combination), Line::Plane(_));
+            assert!(listed || is_plane(), "{what}: {combination:?} is no label of {:?}", ray.weights);
+        }
     }
     assert!(exact.degenerate || !found.degenerate, "{what}");
     assert!(found.degenerate || exact.planes.is_empty(), "{what}");

@@ -1,0 +1,178 @@
+//! Whether a direction that holds only at first order is one, and under which modes: a small step tells.
+//!
+//! Where inequalities hold with equality, several modes fit one direction, and it is one if it holds under some of them
+//! for a short way. With many such contacts (velocities that die away along a chain, many contacts that touch without
+//! force) their combinations are too many to try: what a step finds violated is changed, and the step tried again, as in
+//! an active set method. Only where that leads nowhere are combinations tried in turn, as many as there are up to a
+//! bound.
+
+use super::advance::MOST_TURN;
+use super::directions::Candidate;
+use super::loading::Loading;
+use super::mode_system::ModeSystem;
+use super::newton::Place;
+use super::state::State;
+use super::watch::{self, Watch};
+use crate::contact::Mode;
+use std::collections::BTreeSet;
+
+/// Arc lengths of the steps by which a direction of first order is tried, one after another until it is clear.
+const TRIAL_STEPS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
+/// Quantities and slopes below this are zero at first order.
+const IN_DOUBT: f64 = 1e-8;
+/// Slopes beyond this after a trial step have a sign (their round-off is a thousand times smaller).
+const CLEAR: f64 = 1e-9;
+/// How far a watched quantity may be negative after a trial step (second order in the step where it is real).
+const TRIAL_TOLERANCE: f64 = 1e-11;
+/// Combinations that are tried in turn.
+const MOST_COMBINATIONS: u64 = 64;
+
+/// What a small step says of a direction that holds only at first order.
+enum Verdict {
+    Holds(f64),
+    /// With the contacts that are to blame, if it is they.
+    Fails(Vec<usize>),
+    /// What is in doubt stays zero to second order, too.
+    Unclear(f64),
+}
+
+/// The modes under which a small step along the direction is feasible, and the load rate after that step.
+pub(super) fn confirm(
+    loading: Loading<'_>,
+    state: &State,
+    candidate: &Candidate,
+    force_scale: f64,
+) -> Option<(Vec<Mode>, f64)> {
+    let trial = Trial { loading, state, candidate, force_scale };
+    let mut tried = BTreeSet::new();
+    let mut places = vec![0; candidate.alternatives.len()];
+    // Every contact in doubt may be changed a few times before it is given up.
+    let most = candidate.alternatives.iter().map(|alternatives| 2 * (alternatives.len() - 1)).sum::<usize>() + 1;
+    for _ in 0..most {
+        if !tried.insert(places.clone()) {
+            break;
+        }
+        let culprits = match trial.judge(&places) {
+            Ok(confirmed) => return Some(confirmed),
+            Err(culprits) => culprits,
+        };
+        let mut changed = false;
+        for (place, alternatives) in places.iter_mut().zip(&candidate.alternatives) {
+            let is_culprit = |(contact, _): &(usize, Mode)| culprits.contains(contact);
+            if alternatives.len() > 1 && alternatives[*place].iter().any(is_culprit) {
+                *place = (*place + 1) % alternatives.len();
+                changed = true;
+            }
+        }
+        if !changed {
+            break;
+        }
+    }
+    let mut combinations = combinations(candidate);
+    combinations.retain(|places| !tried.contains(places));
+    combinations.iter().find_map(|places| trial.judge(places).ok())
+}
+
+/// The first combinations of alternatives, those with more sticking contacts first.
+fn combinations(candidate: &Candidate) -> Vec<Vec<usize>> {
+    let sizes = || candidate.alternatives.iter().map(|alternatives| alternatives.len() as u64);
+    let total = sizes().fold(1u64, u64::saturating_mul);
+    let numbered = |number: u64| {
+        let mut rest = number;
+        sizes()
+            .map(|size| {
+                let place = (rest % size) as usize;
+                rest /= size;
+                place
+            })
+            .collect::<Vec<usize>>()
+    };
+    let mut all: Vec<Vec<usize>> = (0..total.min(MOST_COMBINATIONS)).map(numbered).collect();
+    let sliding = |places: &Vec<usize>| {
+        let modes = places.iter().zip(&candidate.alternatives).flat_map(|(&place, all)| &all[place]);
+        modes.filter(|(_, mode)| *mode != Mode::Stick).count()
+    };
+    all.sort_by_key(sliding);
+    all
+}
+
+struct Trial<'a> {
+    loading: Loading<'a>,
+    state: &'a State,
+    candidate: &'a Candidate,
+    force_scale: f64,
+}
+
+impl Trial<'_> {
+    /// The modes of a combination and the load rate after a small step, or who is to blame.
+    fn judge(&self, places: &[usize]) -> Result<(Vec<Mode>, f64), Vec<usize>> {
+        let mut modes = self.candidate.modes.clone();
+        for (&place, alternatives) in places.iter().zip(&self.candidate.alternatives) {
+            alternatives[place].iter().for_each(|(contact, mode)| modes[*contact] = *mode);
+        }
+        let mut later_load = 0.0;
+        for step in TRIAL_STEPS {
+            match self.step(&modes, step) {
+                Verdict::Holds(load) => return Ok((modes, load)),
+                Verdict::Fails(culprits) => return Err(culprits),
+                Verdict::Unclear(load) => later_load = load,
+            }
+        }
+        Ok((modes, later_load))
+    }
+
+    /// Follows only what is zero at first order: whatever else ends the mode within the step is an event to come. The
+    /// step is short, so that such events come after it as a rule: where many contacts change close together, a long one
+    /// would judge a motion that does not happen.
+    fn step(&self, modes: &[Mode], step: f64) -> Verdict {
+        let Self { loading, state, candidate, force_scale } = *self;
+        let nobody = || Verdict::Fails(Vec::new());
+        let system = ModeSystem::new(loading, modes, state);
+        let guess = state.advanced(&candidate.rate, step);
+        let place = Place::ArcLength { from: state, step };
+        let Ok(corrected) = system.correct(guess, place, force_scale) else { return nobody() };
+        if state.angle_of_chord(&corrected.state, &candidate.rate) > MOST_TURN {
+            return nobody();
+        }
+        let Some(rate) = system.tangent(&corrected, &candidate.rate) else { return nobody() };
+        let forces = force_scale.max(corrected.force_scale);
+        let rates = candidate.rate.largest_reaction().max(rate.largest_reaction()).max(f64::MIN_POSITIVE);
+        let mut unclear = false;
+        let mut culprits = Vec::new();
+        for watch in watch::of_mode(loading, modes) {
+            let scale = watch.scale(forces);
+            let first = watch.value(loading, modes, state, &candidate.rate);
+            let (tendency, size) = match watch.slope(loading, state, &candidate.rate) {
+                None => (0.0, 1.0),
+                Some(slope) => (slope, watch.scale(rates)),
+            };
+            if first > IN_DOUBT * scale || tendency > IN_DOUBT * size {
+                continue;
+            }
+            let last = watch.value(loading, modes, &corrected.state, &rate) / scale;
+            let grown = watch.slope(loading, &corrected.state, &rate).map_or(last, |slope| slope / size);
+            if last < -TRIAL_TOLERANCE || grown < -CLEAR {
+                culprits.extend(contacts_of(loading, watch));
+            }
+            unclear |= grown <= CLEAR;
+        }
+        if !culprits.is_empty() {
+            Verdict::Fails(culprits)
+        } else if unclear {
+            Verdict::Unclear(rate.load)
+        } else {
+            Verdict::Holds(rate.load)
+        }
+    }
+}
+
+/// The contacts that a quantity is of.
+fn contacts_of(loading: Loading<'_>, watch: Watch) -> Vec<usize> {
+    match watch {
+        Watch::Gap(contact) | Watch::Normal(contact) | Watch::Cone { contact, .. } | Watch::Sliding(contact) => {
+            vec![contact]
+        }
+        Watch::Facet { corner, .. } => loading.corners[corner].contacts.clone(),
+        Watch::LoadRate { .. } | Watch::End(_) => Vec::new(),
+    }
+}
