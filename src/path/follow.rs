@@ -2,7 +2,7 @@
 
 use super::advance::AT_END;
 use super::checkpoint::{Checkpoint, CheckpointError};
-use super::decide::Choice;
+use super::decide::{Choice, STATIONARY};
 use super::increment::{Increment, Point, PointKind};
 use super::progress::{Phase, StageCounts, Visited};
 use super::scene::{End, Scene};
@@ -131,15 +131,15 @@ impl<'a> Path<'a> {
         }
     }
 
-    /// Whether a direction leads out of the running stage at a bound that is reached here.
+    /// Whether a direction leads out of the running stage at a bound that is reached here, or stays on it.
     fn goes_past_end(&self, choice: &Choice) -> bool {
         self.scene.stages[self.at.stage].ends.iter().any(|end| match *end {
             End::Load { bound, sign } => {
-                sign * (self.at.here.state.load - bound) >= -AT_END && sign * choice.load_sign > 0.0
+                sign * (self.at.here.state.load - bound) >= -AT_END && sign * choice.load_sign >= 0.0
             }
             End::Displacement { freedom, bound, sign } => {
                 sign * (self.at.here.state.displacement[freedom] - bound) >= -AT_END
-                    && sign * choice.rate.displacement[freedom] > 0.0
+                    && sign * choice.rate.displacement[freedom] > -STATIONARY
             }
             End::LimitPoints(_) | End::ContactChanges(_) | End::Increments(_) => false,
         })

@@ -66,7 +66,7 @@ pub(super) fn increment(scene: &Scene, totals: &Totals, row: &Row<'_>) -> Increm
     Increment {
         index: totals.index,
         stage: Arc::clone(&stage.name),
-        load_factor: row.state.load * stage.load_scale,
+        load_factor: stage.load_factor(row.state.load),
         arc_length: totals.arc_length,
         step: row.step,
         displacements,
