@@ -30,7 +30,7 @@ const STACK_BYTES: usize = 8 << 20;
 /// How a solve ended.
 #[derive(Debug)]
 pub enum SolveEnd {
-    Reported(JudgedReport),
+    Reported(Box<JudgedReport>),
     /// The stored request is no longer accepted, for example after an upgrade.
     Refused(InputErrors),
     Panicked(String),
@@ -112,7 +112,7 @@ fn run(solver: &dyn Solver, claim: &Claim, cancel: CancelFlag, lines: &mpsc::Sen
     let reported = solver.solve(&request, beginning, cancel, accept);
     match (unwritable, reported) {
         (Some(error), _) => SolveEnd::Unwritable(error),
-        (None, Ok(Some(report))) => SolveEnd::Reported(report),
+        (None, Ok(Some(report))) => SolveEnd::Reported(Box::new(report)),
         (None, Ok(None)) => SolveEnd::Silent,
         (None, Err(errors)) => SolveEnd::Refused(errors),
     }

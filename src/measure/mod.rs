@@ -112,7 +112,7 @@ impl Judge {
         }
         let strain = self.forces(increment);
         let force = if self.largest_force > 0.0 { self.largest_force } else { 1.0 };
-        errors.equilibrium = self.unbalanced() / force;
+        errors.equilibrium = worse(0.0, self.unbalanced() / force);
         errors.support = self.off_support();
         errors.arc_length = self.off_arc(increment);
         for index in 0..self.posted.contacts.len().min(increment.contacts.len()) {
@@ -221,7 +221,7 @@ impl Judge {
             squared += vector::dot(&change, &change);
         }
         let of_step = (squared.sqrt() - increment.step).abs();
-        worse(of_step, (increment.arc_length - (self.before.arc_length + increment.step)).abs())
+        worse(worse(0.0, of_step), (increment.arc_length - (self.before.arc_length + increment.step)).abs())
     }
 
     fn energy(&mut self, increment: &Increment, strain: f64, errors: &mut Errors) {
