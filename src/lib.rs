@@ -8,11 +8,11 @@
 //! The data flow one way, and so do the dependencies:
 //!
 //! ```text
-//! model (JSON, checked) -> structure -> contact -> mpec -> path -> jobs -> store -> http
+//! model (JSON, checked) -> structure -> contact -> mpec -> path -> judged -> jobs -> store -> http
 //! ```
 //!
-//! `linear_algebra` stands below all of them, [`measure`] beside the solver that it judges, [`scenes`] holds the
-//! built-in models with their exact solutions. Everything up to [`path`] builds without the `server` feature and knows
+//! `linear_algebra` stands below all of them, [`measure`] beside the solver that it judges ([`judged`] brings both
+//! together), [`scenes`] holds the built-in models with their exact solutions. Everything up to [`judged`] builds without the `server` feature and knows
 //! neither HTTP nor SQL.
 //!
 //! ## Notation
@@ -31,6 +31,7 @@
 
 pub mod cancel;
 pub mod contact;
+pub mod judged;
 pub mod linear_algebra;
 pub mod measure;
 pub mod model;

@@ -10,7 +10,7 @@ use super::problem::{Kind, Problem};
 use super::view::Job;
 use super::{Service, document};
 use crate::jobs::JobsError;
-use crate::path::Increment;
+use crate::judged::JudgedIncrement;
 use crate::store::{JobRecord, Line, Page, StoreError};
 use async_stream::stream;
 use axum::body::Body;
@@ -49,7 +49,7 @@ const RETRY: Duration = Duration::from_secs(2);
     ),
     responses((status = 200, description = "Increments in order of their index.", content(
         (String = "text/event-stream"),
-        (Increment = "application/x-ndjson")
+        (JudgedIncrement = "application/x-ndjson")
     )))
 )]
 pub async fn stream(State(service): State<Service>, JobId(id): JobId, headers: HeaderMap) -> Result<Response, Problem> {

@@ -4,7 +4,7 @@
 //! one solve on a thread of its own, [`batch`] its increments on their way to the store, [`worker`] the loop around both,
 //! [`crew`] all workers of a process, [`demonstration`] the built-in scenes as jobs; [`follow`] jobs that follow a direction
 //! of another, [`branches`] the points they begin from, [`explore`] which of them are queued unasked. Called by `http` and
-//! `command`; knows `store`, `path` and `model`.
+//! `command`; knows `store`, `judged`, `path` and `model`.
 
 pub mod batch;
 pub mod branches;

@@ -8,9 +8,9 @@ use super::branches::{self, Recorder};
 use super::explore::Alternatives;
 use super::solver::Accept;
 use crate::cancel::CancelFlag;
+use crate::judged::JudgedReport;
 use crate::model::{InputErrors, decode};
 use crate::output::json_line;
-use crate::path::Report;
 use crate::store::{Claim, Line};
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -30,7 +30,7 @@ const STACK_BYTES: usize = 8 << 20;
 /// How a solve ended.
 #[derive(Debug)]
 pub enum SolveEnd {
-    Reported(Report),
+    Reported(Box<JudgedReport>),
     /// The stored request is no longer accepted, for example after an upgrade.
     Refused(InputErrors),
     Panicked(String),
@@ -85,16 +85,17 @@ fn run(solver: &dyn Solver, claim: &Claim, cancel: CancelFlag, lines: &mpsc::Sen
     let mut recorder = Recorder::default();
     let mut alternatives = claim.explores.then(|| Alternatives::of(claim.origin.is_some()));
     let mut unwritable = None;
-    let accept: Accept<'_> = &mut |increment, junction| {
+    let accept: Accept<'_> = &mut |judged, junction| {
         // What is stored already is looked at too: what comes after depends on it.
-        let stored = claim.last_index.is_some_and(|stored| increment.index <= stored);
+        let stored = claim.last_index.is_some_and(|stored| judged.increment.index <= stored);
         let junction = junction();
         let open = junction.as_ref().map_or(&[][..], |junction| &junction.open);
-        let followed = alternatives.as_mut().map_or_else(Vec::new, |alternatives| alternatives.at(&increment, open));
+        let followed =
+            alternatives.as_mut().map_or_else(Vec::new, |alternatives| alternatives.at(&judged.increment, open));
         let branch = junction.map(|junction| recorder.branch(junction.checkpoint, followed)).transpose();
         let line = branch.and_then(|branch| {
-            let body = if stored { String::new() } else { json_line(&increment)? };
-            Ok(Line { index: increment.index, body, branch })
+            let body = if stored { String::new() } else { json_line(&judged)? };
+            Ok(Line { index: judged.increment.index, body, branch })
         });
         match line {
             Ok(_) if stored => ControlFlow::Continue(()),
@@ -111,7 +112,7 @@ fn run(solver: &dyn Solver, claim: &Claim, cancel: CancelFlag, lines: &mpsc::Sen
     let reported = solver.solve(&request, beginning, cancel, accept);
     match (unwritable, reported) {
         (Some(error), _) => SolveEnd::Unwritable(error),
-        (None, Ok(Some(report))) => SolveEnd::Reported(report),
+        (None, Ok(Some(report))) => SolveEnd::Reported(Box::new(report)),
         (None, Ok(None)) => SolveEnd::Silent,
         (None, Err(errors)) => SolveEnd::Refused(errors),
     }

@@ -4,7 +4,8 @@ use super::batch::{self, Drained};
 use super::solve::{self, Solve, SolveEnd};
 use super::{Jobs, running};
 use crate::cancel::CancelFlag;
-use crate::path::{Outcome, Report, StopReason};
+use crate::judged::JudgedReport;
+use crate::path::{Outcome, StopReason};
 use crate::store::{Claim, Ending, LeaseAnswer, Status, StoreError};
 use tokio_util::sync::CancellationToken;
 use tracing::Instrument;
@@ -127,16 +128,16 @@ fn ending(end: SolveEnd) -> Ending {
     }
 }
 
-fn reported(report: &Report) -> serde_json::Result<Ending> {
-    let status = match report.stop_reason.outcome() {
+fn reported(judged: &JudgedReport) -> serde_json::Result<Ending> {
+    let status = match judged.report.stop_reason.outcome() {
         Outcome::Completed => Status::Completed,
         Outcome::Stopped => Status::Stopped,
         Outcome::Cancelled => Status::Cancelled,
     };
     Ok(Ending {
         status,
-        stop_reason: Some(reason_name(report.stop_reason)?),
-        report: Some(serde_json::to_string(report)?),
+        stop_reason: Some(reason_name(judged.report.stop_reason)?),
+        report: Some(serde_json::to_string(judged)?),
         error: None,
     })
 }

@@ -4,6 +4,7 @@
 //! every contact, so `tip.x`, `tip.y`, `tip/floor.status`, `tip/floor.gap`. Later rows find their values by name; what
 //! they lack is an empty cell.
 
+use crate::measure::Errors;
 use crate::path::Increment;
 use crate::path::increment::{ContactState, PointKind, Status};
 use std::sync::Arc;
@@ -70,11 +71,14 @@ impl Table {
         for name in ["factorisations", "newton_iterations", "qp_solves", "mpec_solves"] {
             line.text(name);
         }
+        for name in Errors::NAMES {
+            line.text(&format!("measure.{name}"));
+        }
         line.end()
     }
 
-    /// One increment, its line feed included.
-    pub fn row(&self, increment: &Increment) -> String {
+    /// One increment, its line feed included; without a measure those cells are empty.
+    pub fn row(&self, increment: &Increment, measure: Option<&Errors>) -> String {
         let mut line = Row::default();
         line.raw(&increment.index.to_string());
         line.text(&increment.stage);
@@ -114,6 +118,7 @@ impl Table {
         {
             line.raw(&count.to_string());
         }
+        line.numbers(measure.map(Errors::values).as_ref().map_or(&[], <[f64; _]>::as_slice), Errors::NAMES.len());
         line.end()
     }
 }
