@@ -141,3 +141,101 @@ fn copies_of_a_floor_leave_a_stuck_node_stuck() {
         }
     }
 }
+
+/// A node in the corner of a floor and a wall on the left, springs k = 1, pressed into it by (-1, -1), then pushed by `push`.
+fn pressed_into_a_corner(floor: f64, wall: f64, push: [f64; 2]) -> JobRequest {
+    typed(json!({
+        "model": {
+            "name": format!("corner, friction {floor} and {wall}, push {push:?}"),
+            "dimension": 2, "nodes": {"node": [0, 0]},
+            "elements": [{"kind": "spring", "nodes": ["node"], "stiffness": [[1, 0], [0, 1]]}],
+            "obstacles": {"floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]},
+                          "wall": {"kind": "plane", "point": [0, 0], "normal": [1, 0]}},
+            "contacts": [{"node": "node", "obstacle": "floor", "friction": floor},
+                         {"node": "node", "obstacle": "wall", "friction": wall}],
+            "stages": [
+                {"name": "press", "forces": {"node": [-1, -1]}, "until": {"load_above": 1}},
+                {"name": "push", "forces": {"node": push}, "until": {"load_above": 3}}
+            ]
+        }
+    }))
+}
+
+/// With `μ_floor μ_wall = 1` the two cones together are a half-plane: forces `R` with `R_x + μ R_y >= 0`, `μ` the floor's.
+/// The corner lets go where `R = (1, 1) - s p` reaches its bound, `s = (1 + μ)/(p_x + μ p_y)`: along the floor where
+/// `R_y > 0` there, along the wall where `R_x > 0`, and at once where `R = 0`.
+#[test]
+fn a_corner_whose_cones_span_a_half_plane_lets_go() {
+    let along_the_floor = |s: f64| if s <= 1.0 { [2.5 * s - 1.5, 0.0] } else { [2.0 * s - 1.0, s - 1.0] };
+    // Up the wall R_y = -R_x/3, R_x = 1 - s.
+    let along_the_wall = |s: f64| {
+        if s <= 1.0 { [0.0, 2.5 * s - 1.0 - (1.0 - s) / 3.0] } else { [s - 1.0, 2.5 * s - 1.0] }
+    };
+    let at_once = |s: f64| [s - 1.0, s - 1.0];
+    type Free<'a> = &'a dyn Fn(f64) -> [f64; 2];
+    let cases: [(f64, f64, [f64; 2], Free<'_>); 5] = [
+        (1.0, 1.0, [1.0, 1.0], &at_once),
+        (3.0, 1.0 / 3.0, [1.0, 1.0], &at_once),
+        // Rounding of a coefficient leaves a half-plane.
+        (1.0, 1.0 + 4e-13, [1.0, 1.0], &at_once),
+        (0.5, 2.0, [2.0, 1.0], &along_the_floor),
+        (3.0, 1.0 / 3.0, [1.0, 2.5], &along_the_wall),
+    ];
+    for method in METHODS {
+        for (floor, wall, push, free) in cases {
+            let (increments, report) = trace(&with(pressed_into_a_corner(floor, wall, push), method));
+            let what = format!("friction {floor} and {wall}, push {push:?}");
+            assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{what}");
+            let leaves = (1.0 + floor) / (push[0] + floor * push[1]);
+            assert!(increments.iter().any(|increment| (increment.load_factor - leaves).abs() < 1e-11), "{what}");
+            for increment in increments.iter().filter(|increment| &*increment.stage == "push") {
+                let s = increment.load_factor;
+                let exact = if s <= leaves { [0.0; 2] } else { free(s) };
+                for (found, exact) in increment.displacements["node"].iter().zip(exact) {
+                    close(*found, exact, 1e-10, &format!("{what}, s = {s}"));
+                }
+            }
+        }
+    }
+}
+
+/// The same near a half-plane: a little less and the corner lets go where the force leaves the narrower sector (here at
+/// its tip); a little more and the node is wedged, held by whatever reactions that takes.
+#[test]
+fn a_corner_just_off_a_half_plane() {
+    for off in [1e-11, 1e-7] {
+        let (increments, report) = trace(&pressed_into_a_corner(1.0, 1.0 - off, [1.0, 1.0]));
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted);
+        close(increments[increments.len() - 1].displacements["node"][0], 2.0, 1e-10, "free at s = 3");
+    }
+    for off in [1e-7, 1e-4] {
+        let (increments, report) = trace(&pressed_into_a_corner(1.0, 1.0 + off, [1.0, 1.0]));
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted);
+        let last = &increments[increments.len() - 1];
+        close(last.displacements["node"][0], 0.0, 0.0, "wedged at s = 3");
+        // R = (-2, -2) = r (1, -μ_wall) + q (-1, 1) with q the floor's: r off = 4, q = r + 2.
+        close(last.contacts[1].normal_reaction * off, 4.0, 1e-6, "the wall's part");
+    }
+}
+
+/// Nearly without end: the cone of each flank is all but a half-plane and the groove holds whatever the push. The normal
+/// reaction of a flank may be lost in the rounding of the whole, its cone is kept all the same.
+#[test]
+fn a_groove_with_very_large_friction_holds() {
+    for friction in [1e3, 1e6, 1e12, 1e75] {
+        let mut request = scene_file("groove");
+        request.model.contacts.iter_mut().for_each(|contact| contact.friction = friction);
+        request.analysis.max_increments = 60;
+        let (increments, report) = trace(&request);
+        assert_eq!(report.stop_reason, StopReason::MaxIncrements, "friction {friction}");
+        assert!(report.largest_complementarity <= 1e-10, "friction {friction}: {report:?}");
+        for increment in &increments {
+            let u = &increment.displacements["node"];
+            assert_eq!((u[0], u[1]), (0.0, 0.0), "friction {friction}");
+            let [left, right] = [&increment.contacts[0], &increment.contacts[1]];
+            for contact in [left, right] {
+                assert!(contact.tangential_reaction[0].abs() <= friction * contact.normal_reaction, "{contact:?}");
+            }
+        }
+    }
+}
