@@ -1,6 +1,7 @@
 //! From a dimensionless point to the row that a user sees: the user's units and names.
 
 use super::advance::Work;
+use super::contact_law;
 use super::decide::Choice;
 use super::increment::{ContactState, Diagnostics, Direction, Energy, Increment, Point, Status};
 use super::loading::Loading;
@@ -105,14 +106,12 @@ fn contact_rows(scene: &Scene, row: &Row<'_>) -> (Vec<ContactState>, f64) {
     let plan = scene.plan();
     let (length, force) = (plan.displacement_scale, plan.force_scale);
     let dimension = scene.structure.dimension;
-    let mut violation = 0.0_f64;
     let mut rows = Vec::with_capacity(scene.reported.len());
     let loading = row.loading;
     let members = |contact: usize| scene.reported.iter().filter(|one| one.contact == contact).count();
     let coincident = scene.reported.len() > scene.contacts.len();
     for one in &scene.reported {
         let index = one.contact;
-        let contact = &scene.contacts[index];
         let frame = loading.frame(index, row.state);
         let gap = frame.gap;
         let moved = add(&loading.relative(index, row.state), -1.0, &loading.relative(index, row.before));
@@ -122,10 +121,6 @@ fn contact_rows(scene: &Scene, row: &Row<'_>) -> (Vec<ContactState>, f64) {
         } else {
             tangents_in_space(&frame.normal)
         };
-        let scaled = 1.0 / row.force_scale.max(f64::MIN_POSITIVE);
-        let normal = reaction.normal * scaled;
-        violation = violation.max(-gap).max(-normal).max(gap.min(normal).abs());
-        violation = violation.max(reaction.tangential_size() * scaled - contact.friction * normal);
         let pairs = 0..dimension - 1;
         let closed = row.modes[index].is_active();
         let traction = |k: usize| dot(&reaction.tangential, &tangents[k]) * one.tangential_share * force;
@@ -140,7 +135,7 @@ fn contact_rows(scene: &Scene, row: &Row<'_>) -> (Vec<ContactState>, f64) {
             indeterminate: closed && ((coincident && members(index) > 1) || held_by_too_many(scene, row.modes, index)),
         });
     }
-    (rows, violation)
+    (rows, contact_law::violation(loading, row.state, row.force_scale))
 }
 
 /// Whether a contact holds its node together with others whose reactions equilibrium does not tell apart.

@@ -26,6 +26,8 @@ pub enum StopReason {
     /// A node is closed against several obstacles in a way that is not available: in space with friction, or obstacles that
     /// move against each other.
     CornerNotAvailable,
+    /// No step of at least `arc_length.min` leads to a point that keeps to the laws of contact and friction.
+    ContactViolated,
     /// More contact modes than `max_modes` would have to be examined to go on.
     ModeLimit,
     /// The caller asked for it.
@@ -53,6 +55,7 @@ impl StopReason {
             | Self::CollapsedBar
             | Self::Degenerate
             | Self::CornerNotAvailable
+            | Self::ContactViolated
             | Self::ModeLimit => Outcome::Stopped,
         }
     }
@@ -73,6 +76,9 @@ impl StopReason {
             Self::CornerNotAvailable => {
                 "a node is closed against several obstacles at once, in space with friction or while they move against each \
                  other, which is not available"
+            }
+            Self::ContactViolated => {
+                "no step of at least arc_length.min leads to a point that keeps to the laws of contact and friction"
             }
             Self::ModeLimit => "more contact modes than max_modes would have to be examined to go on",
             Self::Cancelled => "cancelled",

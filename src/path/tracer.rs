@@ -4,7 +4,8 @@
 //! directions are listed and one is taken. The step follows the turn of the path and the work of Newton's method.
 
 use super::advance::{AT_END, Work};
-use super::corner::total_force;
+use super::contact_law;
+use super::corner::{taken_apart, total_force};
 use super::decide::{self, Before, Choice, Decision, Rules};
 use super::follow::{Arriving, Followed, Listed};
 use super::increment::{Energy, Increment, Point, PointKind};
@@ -20,7 +21,6 @@ use super::stepping::{Accepted, NO_ENERGY};
 use super::stop::{Outcome, StopReason};
 use super::watch::Watch;
 use crate::cancel::CancelFlag;
-use crate::contact::vector::{add, dot};
 use crate::contact::{Mode, Reaction};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -207,9 +207,8 @@ impl<'a> Path<'a> {
             let mut active = corner.contacts.iter().copied().filter(|contact| choice.modes[*contact].is_active());
             if let (Some(only), None) = (active.next(), active.next()) {
                 let force = total_force(loading, corner.contacts.iter().copied(), state);
-                let normal = loading.frame(only, state).normal;
-                let along = dot(&force, &normal);
-                moved.push((only, Reaction { normal: along, tangential: add(&force, -along, &normal) }));
+                let frame = loading.frame(only, state);
+                moved.push((only, taken_apart(&force, &frame, loading.contacts[only].friction)));
             }
         }
         for (contact, reaction) in moved {
@@ -302,8 +301,8 @@ impl<'a> Path<'a> {
         true
     }
 
-    /// Makes a reached point the present one and says what it is.
-    fn accept(&mut self, accepted: Accepted) -> Increment {
+    /// Makes a reached point the present one and says what it is; none where the way on would break the laws of contact.
+    fn accept(&mut self, accepted: Accepted) -> Option<Increment> {
         let reached = accepted.reached;
         let before = self.here.state.clone();
         let modes = self.here.modes.clone();
@@ -323,6 +322,11 @@ impl<'a> Path<'a> {
         let mut arrival = self.classify(reached.event, accepted.crossing, &reached.rate);
         if accepted.returned {
             arrival.stop = Some(StopReason::Cycle);
+        }
+        if !contact_law::holds(self.loading(), &self.here.state, self.force_scale) {
+            self.index -= 1;
+            self.end(StopReason::ContactViolated);
+            return None;
         }
         let stage_ends = arrival.stage_ends || at_bound || self.counts_end_stage(&self.counts);
         let mut point = arrival.point;
@@ -349,7 +353,7 @@ impl<'a> Path<'a> {
             arriving: Some(arriving),
         });
         self.stage_over = stage_ends && self.phase == Phase::Running;
-        row
+        Some(row)
     }
 
     /// Whether a load or displacement at which the stage ends is reached here, whatever else happens here; it is then
@@ -469,7 +473,7 @@ impl Iterator for Path<'_> {
             return None;
         }
         match self.step() {
-            Ok(accepted) => Some(self.accept(accepted)),
+            Ok(accepted) => self.accept(accepted),
             Err(reason) => {
                 self.end(reason);
                 None
