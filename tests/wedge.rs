@@ -239,3 +239,140 @@ fn a_groove_with_very_large_friction_holds() {
         }
     }
 }
+
+/// At the tip of a corner (the force on the node just zero) the way back is one motion, however the obstacles share its
+/// force, and it is not taken: friction 0.9 and 1, pushed straight out, the node leaves at s = 1.
+#[test]
+fn the_way_back_into_a_corner_is_listed_once_and_not_taken() {
+    for method in METHODS {
+        let (increments, report) = trace(&with(pressed_into_a_corner(0.9, 1.0, [1.0, 1.0]), method));
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted);
+        let leaves = increments
+            .iter()
+            .find(|increment| &*increment.stage == "push" && (increment.load_factor - 1.0).abs() < 1e-11)
+            .expect("leaving is a point of the path");
+        let directions = leaves.directions.as_ref().expect("directions");
+        let found: Vec<_> = directions.iter().map(|one| (one.contacts.clone(), one.retrace, one.taken)).collect();
+        let (held, left) = (vec![Status::Stick; 2], vec![Status::Free; 2]);
+        assert_eq!(found, [(held, true, false), (left, false, true)]);
+        for increment in increments.iter().filter(|increment| &*increment.stage == "push") {
+            let exact = (increment.load_factor - 1.0).max(0.0);
+            close(increment.displacements["node"][0], exact, 1e-11, "u_x");
+        }
+    }
+}
+
+/// A groove that moves as a whole by `s` carries its node (spring k = 1/2, pressed by 1) along until the spring pulls it
+/// out: `k s = tan(45° + arctan μ)`.
+#[test]
+fn a_groove_that_moves_carries_its_node() {
+    for friction in [0.0, 0.25] {
+        let mut request = scene_file("groove");
+        request.model.contacts.iter_mut().for_each(|contact| contact.friction = friction);
+        let carried = typed(json!({
+            "model": {"dimension": 2, "nodes": {"node": [0, 0]},
+                "elements": [{"kind": "spring", "nodes": ["node"], "stiffness": [[1, 0], [0, 1]]}],
+                "stages": [{"name": "carry", "obstacle_motion": {"left": [1, 0], "right": [1, 0]},
+                            "until": {"load_above": 6}}]}
+        }));
+        request.model.stages[1] = carried.model.stages[0].clone();
+        let (increments, report) = trace(&request);
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted, "friction {friction}");
+        let leaves = 2.0 * (1.0 + friction) / (1.0 - friction);
+        assert!(increments.iter().any(|increment| (increment.load_factor - leaves).abs() < 1e-10));
+        for increment in increments.iter().filter(|increment| &*increment.stage == "carry") {
+            let (s, u) = (increment.load_factor, &increment.displacements["node"]);
+            if s <= leaves {
+                close(u[0], s, 1e-11, "carried");
+                close(u[1], 0.0, 1e-12, "carried");
+            } else {
+                // Up the left flank by ξ in x and -ξ less in y: (k u_x, 1 + k u_y) stays on the cone.
+                close(u[1], s - u[0], 1e-11, "on the left flank");
+                close(0.5 * u[0], 0.5 * leaves * (1.0 + 0.5 * u[1]), 1e-10, "on its cone");
+            }
+        }
+    }
+}
+
+/// Smooth flanks at 45° of which the left one moves by `s` along x: the node (k = 1, pressed by 1) is at their meeting
+/// point `(s/2, s/2)`, and `r = (1 + s, 1)/√2`. On the way back by `-2 s` from there `r_left = (2 - 2 s)/√2` falls to zero
+/// at s = 1, and the node stays on the right flank.
+#[test]
+fn smooth_flanks_that_move_against_each_other() {
+    for method in METHODS {
+        let request = typed(json!({
+            "model": {
+                "name": "moving flanks", "dimension": 2, "nodes": {"node": [0, 0]},
+                "elements": [{"kind": "spring", "nodes": ["node"], "stiffness": [[1, 0], [0, 1]]}],
+                "obstacles": {"left": {"kind": "plane", "point": [0, 0], "normal": [1, 1]},
+                              "right": {"kind": "plane", "point": [0, 0], "normal": [-1, 1]}},
+                "contacts": [{"node": "node", "obstacle": "left", "friction": 0},
+                             {"node": "node", "obstacle": "right", "friction": 0}],
+                "stages": [
+                    {"name": "press", "forces": {"node": [0, -1]}, "until": {"load_above": 1}},
+                    {"name": "close", "obstacle_motion": {"left": [1, 0]}, "until": {"load_above": 1}},
+                    {"name": "open", "obstacle_motion": {"left": [-2, 0]}, "until": {"load_above": 2}}
+                ]
+            }
+        }));
+        let (increments, report) = trace(&with(request, method));
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{:?}", increments.last());
+        for increment in increments.iter().filter(|increment| &*increment.stage != "press") {
+            let s = increment.load_factor;
+            let opening = &*increment.stage == "open";
+            let place = if opening { (0.5 - s).max(-0.5) } else { 0.5 * s };
+            let left = if opening { (2.0 - 2.0 * s).max(0.0) } else { 1.0 + s };
+            let what = format!("{} at s = {s}", increment.stage);
+            for component in &increment.displacements["node"] {
+                close(*component, place, 1e-11, &what);
+            }
+            close(increment.contacts[0].normal_reaction, left * 0.5_f64.sqrt(), 1e-10, &what);
+            close(increment.contacts[1].normal_reaction, 0.5_f64.sqrt(), 1e-10, &what);
+        }
+    }
+}
+
+/// Smooth floor, wall and back of a box in space, springs k = 1: pressed against floor and wall the node slides along their
+/// edge to the back at y = 1/2 and stays in the corner of the three; the back then moves on by `s` against the others, and
+/// last a pull out of the wall frees the node of it at s = 1.
+#[test]
+fn a_smooth_corner_in_space() {
+    for method in METHODS {
+        let request = typed(json!({
+            "model": {
+                "name": "box", "dimension": 3, "nodes": {"node": [0, 0, 0]},
+                "elements": [{"kind": "spring", "nodes": ["node"], "stiffness": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}],
+                "obstacles": {"floor": {"kind": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]},
+                              "wall": {"kind": "plane", "point": [0, 0, 0], "normal": [1, 0, 0]},
+                              "back": {"kind": "plane", "point": [0, 0.5, 0], "normal": [0, -1, 0]}},
+                "contacts": [{"node": "node", "obstacle": "floor", "friction": 0},
+                             {"node": "node", "obstacle": "wall", "friction": 0},
+                             {"node": "node", "obstacle": "back", "friction": 0}],
+                "stages": [
+                    {"name": "press", "forces": {"node": [-1, 0, -1]}, "until": {"load_above": 1}},
+                    {"name": "along", "forces": {"node": [0, 1, 0]}, "until": {"load_above": 1}},
+                    {"name": "back", "obstacle_motion": {"back": [0, -1, 0]}, "until": {"load_above": 1}},
+                    {"name": "pull", "forces": {"node": [1, 0, 0]}, "until": {"load_above": 2}}
+                ]
+            }
+        }));
+        let (increments, report) = trace(&with(request, method));
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{:?}", increments.last());
+        for increment in &increments {
+            let s = increment.load_factor;
+            let (u, [floor, wall, back]) = match &*increment.stage {
+                "press" => ([0.0, 0.0, 0.0], [s, s, 0.0]),
+                "along" => ([0.0, s.min(0.5), 0.0], [1.0, 1.0, (s - 0.5).max(0.0)]),
+                "back" => ([0.0, 0.5 - s, 0.0], [1.0, 1.0, 0.5 + s]),
+                _ => ([(s - 1.0).max(0.0), -0.5, 0.0], [1.0, (1.0 - s).max(0.0), 1.5]),
+            };
+            let what = format!("{} at s = {s}", increment.stage);
+            for (found, exact) in increment.displacements["node"].iter().zip(u) {
+                close(*found, exact, 1e-11, &what);
+            }
+            for (contact, exact) in increment.contacts.iter().zip([floor, wall, back]) {
+                close(contact.normal_reaction, exact, 1e-10, &what);
+            }
+        }
+    }
+}

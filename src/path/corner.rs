@@ -4,6 +4,8 @@
 //! reactions, and the node is held as long as `R` lies in the sum of their friction cones. That is a cone itself, between
 //! two of the rays `n_i ± μ_i t_i`: a sector of less than a half-plane, or a half-plane with one bound, or all of the
 //! plane, and then the node is jammed and stays. Two smooth walls that face each other leave just a line.
+//! Smooth obstacles whose normals are independent need none of this: each has a reaction of its own, in the plane and in
+//! space, and they may move against each other.
 //! The reactions that are reported are those of least norm (`contact::share`).
 
 use super::energy::reaction_in_space;
@@ -33,7 +35,15 @@ pub struct Sector {
 /// by no more than this part of its size.
 const FLAT: f64 = 1e-12;
 
+/// A normal is independent of others where more than this part of it (sine of an angle) is across them.
+const INDEPENDENT: f64 = 1e-6;
+
 impl Corner {
+    /// The contacts without a gap.
+    pub fn closed(&self, loading: Loading<'_>, state: &State) -> Vec<usize> {
+        self.contacts.iter().copied().filter(|contact| loading.gap(*contact, state) <= ZERO).collect()
+    }
+
     /// The contacts that hold the node together in these modes; none where fewer than two do.
     pub fn holding<'a>(&'a self, modes: &'a [Mode]) -> impl Iterator<Item = usize> + 'a {
         let sticking = |contact: &&usize| modes[**contact] == Mode::Stick;
@@ -58,16 +68,47 @@ pub fn agree(loading: Loading<'_>, first: &[Mode], second: &[Mode]) -> bool {
     (0..first.len()).filter(free_of_corners).all(|contact| first[contact].continues(second[contact]))
 }
 
-/// Whether a node is closed against several obstacles that the running stage moves against each other, or in space with
-/// friction: the bounds of such a hold are not known.
+/// Whether a node is closed against several obstacles in a way whose bounds are not known: with friction, or with more
+/// reactions than its equilibrium tells apart, in space or where the running stage moves the obstacles against each other.
 pub fn is_not_available(loading: Loading<'_>, state: &State) -> bool {
-    let shifts = &loading.pattern.shifts;
-    let circular = |contact: &usize| loading.contacts[*contact].tangents() == 2;
     loading.corners.iter().any(|corner| {
-        let closed: Vec<usize> =
-            corner.contacts.iter().copied().filter(|contact| loading.gap(*contact, state) <= ZERO).collect();
-        let moving = closed.iter().skip(1).any(|other| shifts[closed[0]] != shifts[*other]);
-        closed.len() > 1 && (moving || closed.iter().any(circular))
+        let closed = corner.closed(loading, state);
+        let is_known = loading.structure.dimension == 2 && !move_apart(loading, &closed);
+        closed.len() > 1 && !is_known && !are_determinate(loading, &closed, state)
+    })
+}
+
+/// Whether closed contacts of a node are best taken one by one: its equilibrium gives all reactions, and no hold together
+/// is at rest.
+pub fn stand_alone(loading: Loading<'_>, closed: &[usize], state: &State) -> bool {
+    move_apart(loading, closed) && are_determinate(loading, closed, state)
+}
+
+/// Whether the running stage moves the obstacles of some contacts against each other.
+fn move_apart(loading: Loading<'_>, contacts: &[usize]) -> bool {
+    let shifts = &loading.pattern.shifts;
+    contacts.iter().skip(1).any(|other| shifts[contacts[0]] != shifts[*other])
+}
+
+/// Whether the reactions of some contacts of a node follow from its equilibrium: none has friction, and their normals
+/// are independent as far as the node is free to move.
+fn are_determinate(loading: Loading<'_>, contacts: &[usize], state: &State) -> bool {
+    let dimension = loading.structure.dimension;
+    let mut basis: Vec<Vector> = Vec::new();
+    contacts.iter().all(|contact| {
+        let data = &loading.contacts[*contact];
+        let mut rest = loading.frame(*contact, state).normal;
+        for (component, part) in rest.iter_mut().enumerate() {
+            let is_free =
+                component < dimension && loading.structure.unknown_of[data.node * dimension + component].is_some();
+            *part = if is_free { *part } else { 0.0 };
+        }
+        for known in &basis {
+            rest = add(&rest, -dot(&rest, known), known);
+        }
+        let is_independent = size(&rest) > INDEPENDENT;
+        basis.push(if is_independent { unit(&rest) } else { rest });
+        data.tangents() == 0 && is_independent
     })
 }
 
