@@ -14,7 +14,7 @@ use super::standing::ZERO;
 use super::state::{Rate, State};
 use crate::contact::share::{Cone, least_reactions};
 use crate::contact::vector::{Vector, add, dot, scaled, size, unit};
-use crate::contact::{Frame, Mode, Reaction};
+use crate::contact::{Frame, Mode, Reaction, Sliding};
 use std::f64::consts::{PI, TAU};
 
 /// A node with several contacts.
@@ -69,11 +69,13 @@ pub fn agree(loading: Loading<'_>, first: &[Mode], second: &[Mode]) -> bool {
 }
 
 /// Whether a node is closed against several obstacles in a way whose bounds are not known: with friction, or with more
-/// reactions than its equilibrium tells apart, in space or where the running stage moves the obstacles against each other.
+/// reactions than its equilibrium tells apart, in space, on a support, or where the running stage moves the obstacles
+/// against each other.
 pub fn is_not_available(loading: Loading<'_>, state: &State) -> bool {
     loading.corners.iter().any(|corner| {
         let closed = corner.closed(loading, state);
-        let is_known = loading.structure.dimension == 2 && !move_apart(loading, &closed);
+        let is_free = closed.iter().all(|contact| loading.contacts[*contact].sliding != Sliding::None);
+        let is_known = loading.structure.dimension == 2 && is_free && !move_apart(loading, &closed);
         closed.len() > 1 && !is_known && !are_determinate(loading, &closed, state)
     })
 }
