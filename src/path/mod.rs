@@ -7,6 +7,7 @@
 //! | `scene`, `plan` | a request made dimensionless; what it needs and what is left out |
 //! | `state`, `loading` | a point; the structure under a pattern of forces, supports and obstacles that move |
 //! | `mode_system`, `newton` | the equations of one contact mode; Newton's method on them |
+//! | `contact_law` | how far a state is from the laws of contact and friction |
 //! | `corner` | nodes that several obstacles hold at once |
 //! | `track`, `drift` | slip in a plane: its rule of fourth order; the error that is left |
 //! | `watch`, `root`, `advance` | what ends a mode; one step, ended exactly at the first event |
@@ -28,6 +29,7 @@ mod changeable;
 pub mod checkpoint;
 mod condensed;
 mod confirm;
+mod contact_law;
 mod corner;
 mod critical;
 mod decide;

@@ -1,5 +1,6 @@
 //! From a dimensionless point to the row that a user sees: the user's units and names.
 
+use super::contact_law;
 use super::decide::{Choice, is_worth_listing};
 use super::increment::{ContactState, Diagnostics, Direction, Energy, Increment, Point, Status};
 use super::loading::Loading;
@@ -98,14 +99,12 @@ fn contact_rows(scene: &Scene, row: &Row<'_>, force_scale: f64) -> (Vec<ContactS
     let plan = scene.plan();
     let (length, force) = (plan.displacement_scale, plan.force_scale);
     let dimension = scene.structure.dimension;
-    let mut violation = 0.0_f64;
     let mut rows = Vec::with_capacity(scene.reported.len());
     let loading = row.loading;
     let members = |contact: usize| scene.reported.iter().filter(|one| one.contact == contact).count();
     let coincident = scene.reported.len() > scene.contacts.len();
     for one in &scene.reported {
         let index = one.contact;
-        let contact = &scene.contacts[index];
         let frame = loading.frame(index, row.state);
         let gap = frame.gap;
         let moved = add(&loading.relative(index, row.state), -1.0, &loading.relative(index, row.before));
@@ -115,10 +114,6 @@ fn contact_rows(scene: &Scene, row: &Row<'_>, force_scale: f64) -> (Vec<ContactS
         } else {
             tangents_in_space(&frame.normal)
         };
-        let scaled = 1.0 / force_scale.max(f64::MIN_POSITIVE);
-        let normal = reaction.normal * scaled;
-        violation = violation.max(-gap).max(-normal).max(gap.min(normal).abs());
-        violation = violation.max(reaction.tangential_size() * scaled - contact.friction * normal);
         let pairs = 0..dimension - 1;
         let closed = row.modes[index].is_active();
         let traction = |k: usize| dot(&reaction.tangential, &tangents[k]) * one.tangential_share * force;
@@ -133,7 +128,7 @@ fn contact_rows(scene: &Scene, row: &Row<'_>, force_scale: f64) -> (Vec<ContactS
             indeterminate: closed && ((coincident && members(index) > 1) || held_by_too_many(scene, row.modes, index)),
         });
     }
-    (rows, violation)
+    (rows, contact_law::violation(loading, row.state, force_scale))
 }
 
 /// Whether a contact holds its node together with others whose reactions equilibrium does not tell apart.

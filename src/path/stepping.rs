@@ -2,6 +2,7 @@
 
 use super::advance::{Reached, Refused, Start, Work};
 use super::arrival::SAME_STATE;
+use super::contact_law;
 use super::critical::{self, Crossing};
 use super::decide::{self, Before};
 use super::energy;
@@ -124,6 +125,12 @@ impl Path<'_> {
                 }
                 (Err(refused), _) => Err(refused),
             };
+            let outcome = outcome.and_then(|point| {
+                let corrected = &point.0.corrected;
+                let forces = self.at.totals.force_scale.max(corrected.force_scale);
+                let lawful = contact_law::holds(self.loading(), &corrected.state, forces);
+                if lawful { Ok(point) } else { Err(Refused::Unlawful) }
+            });
             self.at.totals.work = work;
             match outcome {
                 Ok((reached, crossing, signature, returned)) => {
@@ -151,10 +158,13 @@ impl Path<'_> {
                     step *= match refused {
                         Refused::Turned(angle) => (0.5 * TURN_SOUGHT / angle).clamp(0.1, 0.5),
                         Refused::Newton(_) => 0.5,
-                        Refused::AtStart(_) | Refused::Unresolved => 0.25,
+                        Refused::AtStart(_) | Refused::Unlawful | Refused::Unresolved => 0.25,
                     };
                     if step < least {
-                        return Err(self.reason_of_underflow());
+                        return Err(match refused {
+                            Refused::Unlawful => StopReason::ContactViolated,
+                            _ => self.reason_of_underflow(),
+                        });
                     }
                 }
             }

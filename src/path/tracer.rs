@@ -3,7 +3,8 @@
 //! Between events the path keeps its contact mode and is followed by arc-length steps; where the mode ends, the
 //! directions are listed and one is taken. The step follows the turn of the path and the work of Newton's method.
 
-use super::corner::total_force;
+use super::contact_law;
+use super::corner::{taken_apart, total_force};
 use super::decide::{Choice, Decision, Rules};
 use super::follow::{Arriving, Listed};
 use super::increment::{Increment, Point, PointKind};
@@ -17,7 +18,6 @@ use super::state::State;
 use super::stepping::Accepted;
 use super::stop::{Outcome, StopReason};
 use crate::cancel::CancelFlag;
-use crate::contact::vector::{add, dot};
 use crate::contact::{Mode, Reaction};
 use std::time::Instant;
 
@@ -98,9 +98,8 @@ impl<'a> Path<'a> {
             let mut active = corner.contacts.iter().copied().filter(|contact| choice.modes[*contact].is_active());
             if let (Some(only), None) = (active.next(), active.next()) {
                 let force = total_force(loading, corner.contacts.iter().copied(), state);
-                let normal = loading.frame(only, state).normal;
-                let along = dot(&force, &normal);
-                moved.push((only, Reaction { normal: along, tangential: add(&force, -along, &normal) }));
+                let frame = loading.frame(only, state);
+                moved.push((only, taken_apart(&force, &frame, loading.contacts[only].friction)));
             }
         }
         for (contact, reaction) in moved {
@@ -113,8 +112,8 @@ impl<'a> Path<'a> {
         }
     }
 
-    /// Makes a reached point the present one and says what it is.
-    fn accept(&mut self, accepted: Accepted) -> Increment {
+    /// Makes a reached point the present one and says what it is; none where the way on would break the laws of contact.
+    fn accept(&mut self, accepted: Accepted) -> Option<Increment> {
         let reached = accepted.reached;
         self.at.totals.add(&accepted.added);
         self.at.counts.increments += 1;
@@ -128,6 +127,11 @@ impl<'a> Path<'a> {
         let mut arrival = self.classify(reached.event, accepted.crossing, &reached.rate);
         if accepted.returned {
             arrival.stop = Some(StopReason::Cycle);
+        }
+        if !contact_law::holds(self.loading(), &self.at.here.state, self.at.totals.force_scale) {
+            self.at.totals.index -= 1;
+            self.end(StopReason::ContactViolated);
+            return None;
         }
         let stage = &self.scene.stages[self.at.stage];
         let stage_ends = arrival.stage_ends || at_bound || self.at.counts.end_stage(&stage.ends);
@@ -155,7 +159,7 @@ impl<'a> Path<'a> {
             arriving: Some(arriving),
         });
         self.at.stage_over = stage_ends && self.at.phase == Phase::Running;
-        row
+        Some(row)
     }
 
     pub(super) fn emit(&mut self, emitted: Emitted<'_>) -> Increment {
@@ -232,7 +236,7 @@ impl Iterator for Path<'_> {
             return Some(self.begin_stage());
         }
         match self.step() {
-            Ok(accepted) => Some(self.accept(accepted)),
+            Ok(accepted) => self.accept(accepted),
             Err(reason) => {
                 self.end(reason);
                 None
