@@ -12,8 +12,8 @@
 //! ```
 //!
 //! `linear_algebra` stands below all of them, [`measure`] beside the solver that it judges, [`scenes`] holds the
-//! built-in models with their exact solutions. Everything up to [`path`] builds without the `server` feature and knows
-//! neither HTTP nor SQL.
+//! built-in models with their exact solutions, [`studies`] sets the errors of paths against their times. Everything up
+//! to [`path`], and these, builds without the `server` feature and knows neither HTTP nor SQL.
 //!
 //! ## Notation
 //!
@@ -39,6 +39,7 @@ pub mod output;
 pub mod path;
 pub mod scenes;
 pub mod structure;
+pub mod studies;
 
 #[cfg(feature = "server")]
 pub mod command;
@@ -46,5 +47,7 @@ pub mod command;
 pub mod http;
 #[cfg(feature = "server")]
 pub mod jobs;
+#[cfg(feature = "server")]
+pub mod picture;
 #[cfg(feature = "server")]
 pub mod store;

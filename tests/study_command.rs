@@ -1,0 +1,72 @@
+//! `arcslip study`: tables, picture, refusals.
+#![cfg(feature = "server")]
+
+use roxmltree::Document;
+use serde_json::Value;
+use std::process::{Command, Output};
+
+fn study(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_arcslip")).arg("study").args(arguments).output().expect("the program runs")
+}
+
+fn text(output: &Output) -> String {
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    String::from_utf8(output.stdout.clone()).expect("text")
+}
+
+const KLARBRING: [&str; 5] = ["klarbring", "--arc-lengths", "0.2,0.1", "--repeats", "2"];
+
+#[test]
+fn the_table_comes_as_text_csv_and_json() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("table.json");
+    let printed = text(&study(&KLARBRING));
+    assert!(
+        printed.contains("exact solution, Klarbring's node") && printed.contains("order of regularised"),
+        "{printed}"
+    );
+    let csv = text(&study(&[&KLARBRING[..], &["--format", "csv"]].concat()));
+    assert_eq!(csv.lines().count(), 7);
+    let out = file.to_str().expect("a path");
+    assert_eq!(text(&study(&[&KLARBRING[..], &["--format", "json", "--out", out]].concat())), "");
+    let report: Value = serde_json::from_str(&std::fs::read_to_string(&file).expect("a file")).expect("JSON");
+    assert_eq!(report["rows"].as_array().expect("rows").len(), 6);
+    assert_eq!(report["reference"]["kind"], "exact");
+    assert_eq!(report["rows"][0]["time"]["repeats"], 2);
+}
+
+#[test]
+fn the_picture_has_a_line_a_method() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("picture.svg");
+    let picture = file.to_str().expect("a path");
+    text(&study(&[&KLARBRING[..], &["--plot", picture]].concat()));
+    let svg = std::fs::read_to_string(&file).expect("a picture");
+    let document = Document::parse(&svg).expect("well-formed XML");
+    let texts: Vec<&str> = document.descendants().filter_map(|node| node.text()).map(str::trim).collect();
+    for wanted in ["Klarbring's node, mu = 1.5", "auto", "mpec", "regularised", "path error", "numbers: arc_length"] {
+        assert_eq!(texts.iter().filter(|text| **text == wanted).count(), 1, "{wanted} in {texts:?}");
+    }
+    // The rungs stand at the marks of each method.
+    for rung in ["0.2", "0.1"] {
+        assert_eq!(texts.iter().filter(|text| **text == rung).count(), 3, "{rung} in {texts:?}");
+    }
+    // Without times there is nothing to draw across.
+    let untimed = study(&["klarbring", "--arc-lengths", "0.2", "--repeats", "0", "--plot", picture]);
+    assert_eq!(untimed.status.code(), Some(1), "{untimed:?}");
+}
+
+#[test]
+fn bad_studies_are_bad_input() {
+    for (arguments, complaint) in [
+        (&["klarbring", "--arc-lengths", "0.1,0.2"][..], "study.arc_lengths[1]"),
+        (&["klarbring", "--penalties", "1e3", "--methods", "auto"], "study.methods[0]"),
+        (&["klarbring", "--repeats", "1000"], "study.repeats"),
+        (&["no such scene"], "no such scene"),
+    ] {
+        let output = study(arguments);
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(said.contains(complaint), "{said}");
+    }
+}
