@@ -43,7 +43,12 @@ fn the_picture_has_a_line_a_method() {
     text(&study(&[&KLARBRING[..], &["--plot", picture]].concat()));
     let svg = std::fs::read_to_string(&file).expect("a picture");
     let document = Document::parse(&svg).expect("well-formed XML");
-    let texts: Vec<&str> = document.descendants().filter_map(|node| node.text()).map(str::trim).collect();
+    let texts: Vec<&str> = document
+        .descendants()
+        .filter(|node| node.has_tag_name(("http://www.w3.org/2000/svg", "text")))
+        .filter_map(|node| node.text())
+        .map(str::trim)
+        .collect();
     for wanted in ["Klarbring's node, mu = 1.5", "auto", "mpec", "regularised", "path error", "numbers: arc_length"] {
         assert_eq!(texts.iter().filter(|text| **text == wanted).count(), 1, "{wanted} in {texts:?}");
     }

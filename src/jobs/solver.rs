@@ -1,8 +1,9 @@
 //! The seam between whoever runs a solve and the path tracer, so that tests can put a solver of their own in its place.
 
 use crate::cancel::CancelFlag;
-use crate::model::{InputError, InputErrors, JobRequest};
+use crate::model::{InputError, InputErrors, JobRequest, StudyRequest};
 use crate::path::{Checkpoint, CheckpointError, Increment, Path, Plan, Report, Scene, TracedPath};
+use crate::studies::{self, Run};
 use std::ops::ControlFlow;
 
 /// Where a path begins that follows a direction of another.
@@ -41,6 +42,22 @@ pub trait Solver: Send + Sync + 'static {
         cancel: CancelFlag,
         accept: Accept<'_>,
     ) -> Result<Option<Report>, InputErrors>;
+
+    /// Checks a study and says what it is going to do.
+    fn plan_study(&self, request: &StudyRequest) -> Result<studies::Plan, InputErrors> {
+        studies::plan(request)
+    }
+
+    /// Runs a study, `done` being its first runs; see [`studies::run`].
+    fn study(
+        &self,
+        request: &StudyRequest,
+        done: Vec<Run>,
+        cancel: &CancelFlag,
+        accept: &mut dyn FnMut(&Run) -> ControlFlow<()>,
+    ) -> Result<Option<studies::Report>, InputErrors> {
+        studies::run(request, done, cancel, accept)
+    }
 }
 
 /// The solver of this crate.

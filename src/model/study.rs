@@ -20,6 +20,7 @@ pub struct StudyRequest {
 /// What a study varies. At most one of `arc_lengths`, `tolerances` and `penalties` is given.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "server", schema(as = StudySettings))]
 #[serde(default, deny_unknown_fields)]
 pub struct Study {
     /// Each once. Absent: `auto`, `mpec` and `regularised`, or those that have what is varied.

@@ -216,7 +216,8 @@ fn legend(sheet: &Sheet<'_>, report: &Report, left: i32) -> Drawn {
         sheet.draw(&PathElement::new(sample, look(order.method).stroke_width(16)))?;
         mark(sheet, order.method, (place.0 - 17 * FINE, place.1))?;
         let words = match order.order {
-            Some(slope) => format!("order {slope:.1}"),
+            // What rounds to zero has no sign.
+            Some(slope) => format!("order {:.1}", (10.0 * slope).round() / 10.0 + 0.0),
             None => "no order to be read".to_owned(),
         };
         write(&words, Lettering { centred: false, ..FAINT }, 30)?;

@@ -1,7 +1,8 @@
 //! All rows of a study.
 
 use super::reference::Reference;
-use super::row::{Row, slope};
+use super::row::{Row, Run, slope};
+use super::run::Plan;
 use crate::model::request::Method;
 use crate::model::study::Parameter;
 use serde::{Deserialize, Serialize};
@@ -30,6 +31,21 @@ pub struct MethodOrder {
 }
 
 impl Report {
+    /// What has been found when these are the last runs of a study so far: as many as it has rows, or all. `None` before
+    /// the first.
+    pub fn of_runs(name: Option<String>, plan: &Plan, runs: &[Run]) -> Option<Self> {
+        let last = runs.last()?;
+        let mut rows: Vec<Row> = Vec::new();
+        for run in runs.iter().rev() {
+            if rows.iter().all(|known| known.row != run.row.row) {
+                rows.push(run.row.clone());
+            }
+        }
+        rows.sort_by_key(|row| row.row);
+        let complete = last.index + 1 == plan.runs;
+        Some(Self::new(name, plan.parameter, last.reference.clone(), rows, complete))
+    }
+
     pub(super) fn new(
         name: Option<String>,
         parameter: Parameter,

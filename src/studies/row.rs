@@ -1,5 +1,6 @@
 //! What is found of one path of a study.
 
+use super::reference::Reference;
 use crate::model::request::Method;
 use crate::path::StopReason;
 use serde::{Deserialize, Serialize};
@@ -88,6 +89,8 @@ pub struct Run {
     pub elapsed_s: f64,
     /// The row as it stands now.
     pub row: Row,
+    /// What its error is measured against.
+    pub reference: Reference,
 }
 
 impl Row {

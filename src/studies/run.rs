@@ -97,7 +97,8 @@ pub fn run(
         let Some((elapsed_s, row)) = traced else {
             return Ok(Some(found.report(request, standard, false)));
         };
-        let run = found.complete(Run { index, round, elapsed_s, row });
+        let reference = standard.reference.clone();
+        let run = found.complete(Run { index, round, elapsed_s, row, reference });
         found.take(&run);
         if accept(&run).is_break() {
             return Ok(None);

@@ -108,7 +108,7 @@ impl Report {
             let _ = writeln!(text, "order of {}: {slope}", order.method.name());
         }
         if !self.complete {
-            text.push_str("not complete: cancelled\n");
+            text.push_str("not complete: some paths have not been traced as often as was asked for\n");
         }
         Ok(text)
     }
