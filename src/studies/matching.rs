@@ -8,6 +8,7 @@
 use super::curve::Curve;
 use super::nearest::{chord, distance_from_segment};
 use super::trace::{Point, distance};
+use crate::cancel::CancelFlag;
 
 /// Bisections of the logarithm of the distance: from seventeen decades to a part in a hundred.
 const BISECTIONS: usize = 12;
@@ -15,8 +16,8 @@ const DECADES: f64 = 1e-17;
 /// Places on the polygon and on the curve that belong together are this many times the curve's sag apart at most.
 const SLACK: f64 = 4.0;
 
-/// The largest distance of any point.
-pub(super) fn path_error(points: &[Point], curve: &Curve) -> f64 {
+/// The largest distance of any point; infinite where it overflows, and when cancelled.
+pub(super) fn path_error(points: &[Point], curve: &Curve, cancel: &CancelFlag) -> f64 {
     let polygon = Polygon { vertices: &curve.vertices, arc: &curve.arc, backward: false };
     let Some(start) = curve.vertices.first() else { return f64::INFINITY };
     // Everything fits onto the first place within this.
@@ -26,6 +27,9 @@ pub(super) fn path_error(points: &[Point], curve: &Curve) -> f64 {
     }
     let mut least = enough * DECADES;
     for _ in 0..BISECTIONS {
+        if cancel.is_cancelled() {
+            return f64::INFINITY;
+        }
         let between = (least * enough).sqrt();
         match polygon.places(points.iter(), between) {
             Some(_) => enough = between,
@@ -42,20 +46,32 @@ pub(super) fn path_error(points: &[Point], curve: &Curve) -> f64 {
         .iter()
         .zip(windows)
         .map(|(point, (from, to))| {
+            if cancel.is_cancelled() {
+                return f64::INFINITY;
+            }
             let from = polygon.place_at(polygon.length_at(*from) - aside);
             let to = polygon.place_at(polygon.length_at(to.max(from)) + aside);
-            distance_from_window(curve, from, to, point)
+            distance_from_window(curve, &polygon, (from, to), point)
         })
         .fold(0.0, f64::max)
 }
 
 /// Distance of a point from a curve between two places: from the segment whose chord is nearest, and its neighbours.
-fn distance_from_window(curve: &Curve, from: f64, to: f64, point: &[f64]) -> f64 {
+fn distance_from_window(curve: &Curve, polygon: &Polygon<'_>, (from, to): (f64, f64), point: &[f64]) -> f64 {
     let last = curve.segments() - 1;
     let (first, last) = ((from.floor() as usize).min(last), (to.floor() as usize).min(last));
-    let by_chord = |segment: usize| chord(&curve.vertices[segment], &curve.vertices[segment + 1], point).0;
-    let nearest = (first..=last).min_by(|a, b| by_chord(*a).total_cmp(&by_chord(*b))).unwrap_or(first);
-    let near = nearest.saturating_sub(1).max(first)..=(nearest + 1).min(last);
+    let mut nearest = (first, f64::INFINITY);
+    let mut segment = first;
+    while segment <= last {
+        let found = chord(&curve.vertices[segment], &curve.vertices[segment + 1], point).0;
+        if found < nearest.1 {
+            nearest = (segment, found);
+        }
+        // What comes before this cannot be nearer than the nearest so far.
+        let beyond = distance(&curve.vertices[segment + 1], point) - nearest.1;
+        segment = polygon.first_ending_past(polygon.length(segment + 1) + beyond, segment + 1);
+    }
+    let near = nearest.0.saturating_sub(1).max(first)..=(nearest.0 + 1).min(last);
     near.map(|segment| {
         let begins = segment as f64;
         let parts = ((from - begins).clamp(0.0, 1.0), (to - begins).clamp(0.0, 1.0));

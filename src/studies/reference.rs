@@ -126,19 +126,20 @@ impl Standard {
         let coarser = Scene::new(&request.finer_job(request.study.refinement as f64 / COARSER))?;
         let Some((trace, _)) = traced(&coarser, &scales, cancel) else { return Ok(None) };
         let mut standard = Self { source, scales, reference: reference.clone() };
-        reference.uncertainty = standard.measure(&trace).path_error;
+        reference.uncertainty = standard.measure(&trace, cancel).path_error;
         reference.floor = ROUND_OFF.max(reference.uncertainty.map_or(f64::INFINITY, |own| COARSER * own));
         standard.reference = reference;
-        Ok(Some(standard))
+        Ok((!cancel.is_cancelled()).then_some(standard))
     }
 
     pub fn scales(&self) -> &Scales {
         &self.scales
     }
 
-    pub fn measure(&self, trace: &Trace) -> Measured {
+    /// Without a meaning when cancelled meanwhile.
+    pub fn measure(&self, trace: &Trace, cancel: &CancelFlag) -> Measured {
         match &self.source {
-            Source::Fine(curves) => against(trace, curves),
+            Source::Fine(curves) => against(trace, curves, cancel),
             Source::Exact(exact) => {
                 let (displacement, load) = trace.largest();
                 let largest_scale = trace.stages.iter().map(|stage| self.scales.load(stage.stage)).fold(0.0, f64::max);
@@ -149,19 +150,19 @@ impl Standard {
                     .take_while(|(number, _)| *number <= reached)
                     .map(|(number, stage)| Curve::exact(number, stage, &self.scales))
                     .collect();
-                against(trace, &curves)
+                against(trace, &curves, cancel)
             }
         }
     }
 }
 
-fn against(trace: &Trace, curves: &[Curve]) -> Measured {
+fn against(trace: &Trace, curves: &[Curve], cancel: &CancelFlag) -> Measured {
     let mut largest = None;
     let mut outside = 0;
     for stage in &trace.stages {
         match curves.iter().find(|curve| curve.stage == stage.stage) {
             Some(curve) => {
-                let error = path_error(&stage.points, curve);
+                let error = path_error(&stage.points, curve, cancel);
                 largest = Some(largest.map_or(error, |largest: f64| largest.max(error)));
             }
             None => outside += stage.points.len() as u64,

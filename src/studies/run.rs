@@ -174,7 +174,10 @@ fn first(
         largest_estimate = largest_estimate.max(increment.diagnostics.error_estimate);
     }
     let report = path.report().filter(|report| report.stop_reason != StopReason::Cancelled)?;
-    let measured = standard.measure(&trace);
+    let measured = standard.measure(&trace, cancel);
+    if cancel.is_cancelled() {
+        return None;
+    }
     let row = Row {
         row,
         method,

@@ -2,12 +2,17 @@
 
 use super::curve::Curve;
 use super::events;
-use super::matching::path_error;
+use super::matching;
 use super::row::{EventsFound, Row, Time, slope};
 use super::trace::{Event, Point, Trace, TracedStage};
+use crate::cancel::CancelFlag;
 use crate::model::request::Method;
 use crate::path::StopReason;
 use crate::path::increment::PointKind;
+
+fn path_error(points: &[Point], curve: &Curve) -> f64 {
+    matching::path_error(points, curve, &CancelFlag::default())
+}
 
 fn through(points: Vec<Point>, corners: &[usize]) -> Curve {
     let events = corners.iter().map(|point| Event { kind: PointKind::ContactChange, point: *point }).collect();

@@ -41,8 +41,8 @@ pub struct Stage {
     pub pieces: Vec<Piece>,
 }
 
-/// Parts of a piece in which a bound is looked for.
-const PARTS: u32 = 1000;
+/// Parts of a stage in which a bound is looked for; a piece has four at least.
+const PARTS: usize = 1000;
 
 impl Piece {
     pub fn new(from: f64, to: f64, at: impl Fn(f64) -> Place + Send + Sync + 'static) -> Self {
@@ -65,11 +65,11 @@ impl Piece {
     }
 
     /// Where a quantity that is negative at first becomes zero; the parameter.
-    fn reaches(&self, quantity: impl Fn(&Place) -> f64) -> Option<f64> {
+    fn reaches(&self, quantity: impl Fn(&Place) -> f64, parts: usize) -> Option<f64> {
         let value = |part: f64| quantity(&self.at(self.parameter(part)));
         let mut before = 0.0;
-        for part in 1..=PARTS {
-            let here = f64::from(part) / f64::from(PARTS);
+        for part in 1..=parts {
+            let here = part as f64 / parts as f64;
             if value(here) >= 0.0 {
                 return Some(self.parameter(zero(value, before, here)));
             }
@@ -126,9 +126,10 @@ impl Stage {
                 bounds.push(Box::new(move |place| bound - place.displacements[freedom]));
             }
         }
+        let parts = (PARTS / self.pieces.len().max(1)).max(4);
         for index in 0..self.pieces.len() {
             let piece = &self.pieces[index];
-            let met = bounds.iter().filter_map(|bound| piece.reaches(bound));
+            let met = bounds.iter().filter_map(|bound| piece.reaches(bound, parts));
             let first = met.min_by(|a, b| (a - piece.from).abs().total_cmp(&(b - piece.from).abs()));
             if let Some(first) = first {
                 // An event at the very bound stays what it is.
