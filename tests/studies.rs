@@ -143,7 +143,7 @@ fn a_study_that_was_broken_off_goes_on_to_the_same_rows() {
     assert!(report.complete && report.rows.iter().all(|row| row.time.expect("a time").repeats == 2));
     let whole = run(&request);
     let timeless =
-        |report: &Report| -> Vec<Row> { report.rows.iter().cloned().map(|row| Row { time: None, ..row }).collect() };
+        |report: &Report| -> Vec<Row> { report.rows.iter().map(|row| Row { time: None, ..row.clone() }).collect() };
     assert_eq!(timeless(&report), timeless(&whole));
 }
 

@@ -3,6 +3,7 @@
 
 use roxmltree::Document;
 use serde_json::Value;
+use std::path::Path;
 use std::process::{Command, Output};
 
 fn study(arguments: &[&str]) -> Output {
@@ -12,6 +13,13 @@ fn study(arguments: &[&str]) -> Output {
 fn text(output: &Output) -> String {
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     String::from_utf8(output.stdout.clone()).expect("text")
+}
+
+/// The texts of a picture, as a reader sees them.
+fn texts(svg: &str) -> Vec<String> {
+    let document = Document::parse(svg).expect("well-formed XML");
+    let texts = document.descendants().filter(|node| node.has_tag_name(("http://www.w3.org/2000/svg", "text")));
+    texts.filter_map(|node| node.text()).map(|text| text.trim().to_owned()).collect()
 }
 
 const KLARBRING: [&str; 5] = ["klarbring", "--arc-lengths", "0.2,0.1", "--repeats", "2"];
@@ -42,19 +50,13 @@ fn the_picture_has_a_line_a_method() {
     let picture = file.to_str().expect("a path");
     text(&study(&[&KLARBRING[..], &["--plot", picture]].concat()));
     let svg = std::fs::read_to_string(&file).expect("a picture");
-    let document = Document::parse(&svg).expect("well-formed XML");
-    let texts: Vec<&str> = document
-        .descendants()
-        .filter(|node| node.has_tag_name(("http://www.w3.org/2000/svg", "text")))
-        .filter_map(|node| node.text())
-        .map(str::trim)
-        .collect();
+    let texts = texts(&svg);
     for wanted in ["Klarbring's node, mu = 1.5", "auto", "mpec", "regularised", "path error", "numbers: arc_length"] {
-        assert_eq!(texts.iter().filter(|text| **text == wanted).count(), 1, "{wanted} in {texts:?}");
+        assert_eq!(texts.iter().filter(|text| *text == wanted).count(), 1, "{wanted} in {texts:?}");
     }
     // The rungs stand at the marks of each method.
     for rung in ["0.2", "0.1"] {
-        assert_eq!(texts.iter().filter(|text| **text == rung).count(), 3, "{rung} in {texts:?}");
+        assert_eq!(texts.iter().filter(|text| *text == rung).count(), 3, "{rung} in {texts:?}");
     }
     // Without times there is nothing to draw across.
     let untimed = study(&["klarbring", "--arc-lengths", "0.2", "--repeats", "0", "--plot", picture]);
@@ -73,5 +75,34 @@ fn bad_studies_are_bad_input() {
         assert_eq!(output.status.code(), Some(2), "{output:?}");
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(said.contains(complaint), "{said}");
+    }
+}
+
+/// Times differ from run to run; title, reference, methods, rungs, orders and what is resolved do not.
+#[test]
+fn the_committed_pictures_show_what_is_found() {
+    let pictures = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/scenes/pictures");
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("picture.svg");
+    for (scene, arc_lengths) in [
+        ("one-bar-truss", "0.1,0.05,0.02,0.01"),
+        ("arch-type-truss", "0.1,0.05,0.02,0.01"),
+        ("curving-slip", "0.04,0.02,0.01,0.005"),
+        ("capstan", "0.1,0.05,0.02"),
+    ] {
+        let plot = file.to_str().expect("a path");
+        text(&study(&[scene, "--arc-lengths", arc_lengths, "--repeats", "1", "--plot", plot]));
+        let lasting = |file: &Path| -> Vec<String> {
+            let mut texts = texts(&std::fs::read_to_string(file).expect("a picture"));
+            // Ticks of the axes: those of the time, and of errors that are round-off.
+            texts.retain(|text| !text.contains("e-") || text.contains(' '));
+            texts.sort();
+            texts
+        };
+        let command = format!(
+            "study {scene} --arc-lengths {arc_lengths} --repeats 21 --plot src/scenes/pictures/{scene}-study.svg"
+        );
+        let committed = lasting(&pictures.join(format!("{scene}-study.svg")));
+        assert_eq!(committed, lasting(&file), "draw it anew: cargo run --release -- {command}");
     }
 }

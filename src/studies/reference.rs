@@ -72,7 +72,7 @@ pub(super) fn describe_fine(job: &JobRequest) -> String {
 }
 
 enum Source {
-    Exact(Exact),
+    Exact(Box<Exact>),
     Fine(Vec<Curve>),
 }
 
@@ -106,7 +106,7 @@ impl Standard {
                 increments: None,
                 stop_reason: None,
             };
-            return Ok(Some(Self { source: Source::Exact(exact), scales, reference }));
+            return Ok(Some(Self { source: Source::Exact(Box::new(exact)), scales, reference }));
         }
         let (trace, report) = match traced(&scene, &scales, cancel) {
             Some(traced) => traced,

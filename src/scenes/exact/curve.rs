@@ -22,6 +22,8 @@ pub struct Reach {
     pub displacement: f64,
 }
 
+/// Negative before the bound, 0 at it.
+type Bound = Box<dyn Fn(&Place) -> f64>;
 type At = Box<dyn Fn(f64) -> Place + Send + Sync>;
 
 /// A smooth stretch of a path.
@@ -108,7 +110,7 @@ impl Stage {
     /// Cuts the stage where one of its bounds is met first.
     pub(super) fn end_at(&mut self, model: &Model, stage: &request::Stage) {
         let Some(until) = &stage.until else { return };
-        let mut bounds: Vec<Box<dyn Fn(&Place) -> f64>> = Vec::new();
+        let mut bounds: Vec<Bound> = Vec::new();
         if let Some(bound) = until.load_above {
             bounds.push(Box::new(move |place| place.load - bound));
         }

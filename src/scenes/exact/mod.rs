@@ -31,7 +31,8 @@ mod zeros;
 
 pub use curve::{Piece, Place, Reach, Stage};
 
-use crate::model::JobRequest;
+use crate::model::request::Selection;
+use crate::model::{JobRequest, Model};
 
 /// A scene's path in closed form.
 pub trait Solution: Send + Sync {
@@ -48,7 +49,7 @@ pub trait Solution: Send + Sync {
 /// The exact path of a request, if it is of a family with one.
 pub struct Exact {
     solution: Box<dyn Solution>,
-    model: crate::model::Model,
+    model: Model,
 }
 
 impl Exact {
@@ -71,14 +72,16 @@ impl Exact {
     }
 }
 
+type Recognise = fn(&Model) -> Option<Box<dyn Solution>>;
+
 /// Whether the request's path is known in closed form: by its model, and by its selecting the direction of largest
 /// dissipation where there are several, as the formulas do.
 pub fn recognise(request: &JobRequest) -> Option<Exact> {
-    if request.analysis.selection != crate::model::request::Selection::MaxDissipation {
+    if request.analysis.selection != Selection::MaxDissipation {
         return None;
     }
     let model = &request.model;
-    let boxed: [fn(&crate::model::Model) -> Option<Box<dyn Solution>>; 8] = [
+    let families: [Recognise; 8] = [
         |model| Some(Box::new(one_bar::OneBar::recognise(model)?)),
         |model| Some(Box::new(klarbring::Klarbring::recognise(model)?)),
         |model| Some(Box::new(slider_chain::SliderChain::recognise(model)?)),
@@ -88,7 +91,7 @@ pub fn recognise(request: &JobRequest) -> Option<Exact> {
         |model| Some(Box::new(turning_drag::TurningDrag::recognise(model)?)),
         |model| Some(Box::new(von_mises::VonMises::recognise(model)?)),
     ];
-    let solution = boxed.iter().find_map(|recognise| recognise(model))?;
+    let solution = families.iter().find_map(|recognise| recognise(model))?;
     Some(Exact { solution, model: model.clone() })
 }
 
