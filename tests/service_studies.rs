@@ -120,10 +120,10 @@ async fn studies_and_jobs_are_told_apart() {
     let listed = |list: &Value, of: &str| -> Vec<String> {
         list[of].as_array().expect("a list").iter().map(|one| one["id"].as_str().expect("an id").to_owned()).collect()
     };
-    assert_eq!(listed(&server.get_json("/v1/studies").await, "studies"), [id.clone()]);
-    assert_eq!(listed(&server.get_json("/v1/studies?status=queued").await, "studies"), [id.clone()]);
-    assert_eq!(listed(&server.get_json("/v1/jobs").await, "jobs"), [job.clone()]);
-    assert_eq!(listed(&server.get_json("/v1/jobs?status=queued").await, "jobs"), [job.clone()]);
+    assert_eq!(listed(&server.get_json("/v1/studies").await, "studies"), [id.as_str()]);
+    assert_eq!(listed(&server.get_json("/v1/studies?status=queued").await, "studies"), [id.as_str()]);
+    assert_eq!(listed(&server.get_json("/v1/jobs").await, "jobs"), [job.as_str()]);
+    assert_eq!(listed(&server.get_json("/v1/jobs?status=queued").await, "jobs"), [job.as_str()]);
     for wrong in ["", "/increments", "/stream", "/path.csv"] {
         assert_eq!(server.get(&format!("/v1/jobs/{id}{wrong}")).await.status(), StatusCode::NOT_FOUND, "{wrong}");
     }
