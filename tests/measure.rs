@@ -7,7 +7,8 @@ use arcslip::measure::{Errors, Judge};
 use arcslip::model::JobRequest;
 use arcslip::path::Increment;
 use arcslip::path::increment::Status;
-use common::exact::{Hump, Tractrix};
+use arcslip::scenes::exact::hump::Hump;
+use arcslip::scenes::exact::tractrix::Tractrix;
 use common::paths::{scene_file, typed};
 use serde_json::{Map, Value, json};
 

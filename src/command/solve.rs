@@ -1,6 +1,5 @@
 //! `arcslip solve`: a model's path, one line an increment, as it converges.
 
-use super::plot::{self, Against};
 use super::{Failure, Outcome, input};
 use crate::cancel::CancelFlag;
 use crate::jobs::{PathSolver, Solver};
@@ -8,6 +7,7 @@ use crate::judged::JudgedIncrement;
 use crate::model::Model;
 use crate::output::{Table, json_line};
 use crate::path::{self, Increment};
+use crate::picture::path::{Against, svg};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::fs::File;
 use std::io::{IsTerminal, Write};
@@ -151,7 +151,7 @@ impl<'a> Picture<'a> {
     }
 
     fn write(self, model: &Model) -> Result<(), Failure> {
-        let svg = plot::svg(model, &self.increments, self.against).map_err(Failure::other)?;
+        let svg = svg(model, &self.increments, self.against).map_err(Failure::other)?;
         std::fs::write(self.file, svg).map_err(|error| Failure::Other(format!("{}: {error}", self.file.display())))
     }
 }

@@ -3,11 +3,10 @@
 use super::extract::JobId;
 use super::problem::Problem;
 use super::{Service, document};
-use crate::jobs::JobsError;
 use crate::measure::Errors;
 use crate::output::Table;
 use crate::path::Increment;
-use crate::store::Page;
+use crate::store::{Page, Task};
 use async_stream::try_stream;
 use axum::body::Body;
 use axum::extract::State;
@@ -32,7 +31,7 @@ const PAGE: Page = Page { rows: 500, bytes: 1 << 20 };
     responses((status = 200, description = "The table.", body = String, content_type = "text/csv"))
 )]
 pub async fn path_csv(State(service): State<Service>, JobId(id): JobId) -> Result<Response, Problem> {
-    service.jobs.store().job(id).await?.ok_or(JobsError::NoJob(id))?;
+    service.jobs.find(Task::Path, id).await?;
     let headers = [
         (header::CONTENT_TYPE, "text/csv; charset=utf-8".to_owned()),
         (header::CONTENT_DISPOSITION, format!("attachment; filename=\"path-{id}.csv\"")),

@@ -11,7 +11,8 @@ use crate::cancel::CancelFlag;
 use crate::judged::JudgedReport;
 use crate::model::{InputErrors, decode};
 use crate::output::json_line;
-use crate::store::{Claim, Line};
+use crate::store::{Claim, Line, Task};
+use crate::studies::{self, Run};
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -35,8 +36,12 @@ pub enum SolveEnd {
     Refused(InputErrors),
     Panicked(String),
     Unwritable(String),
-    /// Where the job begins cannot be read.
+    /// Where the job begins, or what it has found already, cannot be read.
     Unreadable(String),
+    /// A study has ended, complete or cancelled.
+    Studied(studies::Report),
+    /// Cancelled before there was anything to report.
+    Cancelled,
     /// Without a report: nobody listened any more, or a defect.
     Silent,
 }
@@ -48,8 +53,8 @@ pub struct Solve {
 }
 
 /// Starts the thread. Increments up to `claim.last_index` are stored already: they are computed again (the run is
-/// deterministic) and not sent.
-pub fn start(solver: Arc<dyn Solver>, claim: &Claim, cancel: CancelFlag) -> std::io::Result<Solve> {
+/// deterministic) and not sent. A study goes on from `stored`, the lines of its finished runs.
+pub fn start(solver: Arc<dyn Solver>, claim: &Claim, stored: Vec<Line>, cancel: CancelFlag) -> std::io::Result<Solve> {
     let (line_sender, lines) = mpsc::channel(places(claim.request.len()));
     let (end_sender, end) = oneshot::channel();
     let claim_of_thread = claim.clone();
@@ -57,8 +62,11 @@ pub fn start(solver: Arc<dyn Solver>, claim: &Claim, cancel: CancelFlag) -> std:
     std::thread::Builder::new().name(format!("solve-{}", claim.lease.job)).stack_size(STACK_BYTES).spawn(
         move || {
             let _entered = span.enter();
-            let ended = catch_unwind(AssertUnwindSafe(|| run(solver.as_ref(), &claim_of_thread, cancel, &line_sender)))
-                .unwrap_or_else(|panic| SolveEnd::Panicked(panic_text(panic.as_ref())));
+            let ended = catch_unwind(AssertUnwindSafe(|| match claim_of_thread.task {
+                Task::Path => run(solver.as_ref(), &claim_of_thread, cancel, &line_sender),
+                Task::Study => study(solver.as_ref(), &claim_of_thread, &stored, &cancel, &line_sender),
+            }))
+            .unwrap_or_else(|panic| SolveEnd::Panicked(panic_text(panic.as_ref())));
             // Nobody waits for the end when the runtime is going down.
             let _ = end_sender.send(ended);
         },
@@ -113,6 +121,41 @@ fn run(solver: &dyn Solver, claim: &Claim, cancel: CancelFlag, lines: &mpsc::Sen
     match (unwritable, reported) {
         (Some(error), _) => SolveEnd::Unwritable(error),
         (None, Ok(Some(report))) => SolveEnd::Reported(Box::new(report)),
+        (None, Ok(None)) => SolveEnd::Silent,
+        (None, Err(errors)) => SolveEnd::Refused(errors),
+    }
+}
+
+fn study(
+    solver: &dyn Solver,
+    claim: &Claim,
+    stored: &[Line],
+    cancel: &CancelFlag,
+    lines: &mpsc::Sender<Line>,
+) -> SolveEnd {
+    let request = match decode::study(claim.request.as_bytes()) {
+        Ok(request) => request,
+        Err(errors) => return SolveEnd::Refused(errors),
+    };
+    let done: Vec<Run> = match stored.iter().map(|line| serde_json::from_str(&line.body)).collect() {
+        Ok(done) => done,
+        Err(error) => return SolveEnd::Unreadable(error.to_string()),
+    };
+    let mut unwritable = None;
+    let reported = solver.study(&request, done, cancel, &mut |run| match serde_json::to_string(run) {
+        Ok(body) => match lines.blocking_send(Line { index: run.index, body, branch: None }) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(_) => ControlFlow::Break(()),
+        },
+        Err(error) => {
+            unwritable = Some(error.to_string());
+            ControlFlow::Break(())
+        }
+    });
+    match (unwritable, reported) {
+        (Some(error), _) => SolveEnd::Unwritable(error),
+        (None, Ok(Some(report))) => SolveEnd::Studied(report),
+        (None, Ok(None)) if cancel.is_cancelled() => SolveEnd::Cancelled,
         (None, Ok(None)) => SolveEnd::Silent,
         (None, Err(errors)) => SolveEnd::Refused(errors),
     }

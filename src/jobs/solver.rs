@@ -2,8 +2,9 @@
 
 use crate::cancel::CancelFlag;
 use crate::judged::{JudgedCheckpoint, JudgedCheckpointError, JudgedIncrement, JudgedPath, JudgedReport};
-use crate::model::{InputError, InputErrors, JobRequest};
+use crate::model::{InputError, InputErrors, JobRequest, StudyRequest};
 use crate::path::{CheckpointError, Plan, Scene};
+use crate::studies::{self, Run};
 use std::ops::ControlFlow;
 
 /// Where a path begins that follows a direction of another.
@@ -42,6 +43,22 @@ pub trait Solver: Send + Sync + 'static {
         cancel: CancelFlag,
         accept: Accept<'_>,
     ) -> Result<Option<JudgedReport>, InputErrors>;
+
+    /// Checks a study and says what it is going to do.
+    fn plan_study(&self, request: &StudyRequest) -> Result<studies::Plan, InputErrors> {
+        studies::plan(request)
+    }
+
+    /// Runs a study, `done` being its first runs; see [`studies::run`].
+    fn study(
+        &self,
+        request: &StudyRequest,
+        done: Vec<Run>,
+        cancel: &CancelFlag,
+        accept: &mut dyn FnMut(&Run) -> ControlFlow<()>,
+    ) -> Result<Option<studies::Report>, InputErrors> {
+        studies::run(request, done, cancel, accept)
+    }
 }
 
 /// The solver of this crate.

@@ -279,6 +279,17 @@ pub enum Method {
     Regularised,
 }
 
+impl Method {
+    /// As the contract spells it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Mpec => "mpec",
+            Self::Regularised => "regularised",
+        }
+    }
+}
+
 /// Parameters of the rival method: penalties of contact and friction, and Crisfield's arc-length control.
 ///
 /// Penalties are multiples of the plan's `force_scale / displacement_scale`, the stiffness of the softest bar.
