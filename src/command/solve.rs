@@ -4,7 +4,7 @@ use super::{Failure, Outcome, input};
 use crate::cancel::CancelFlag;
 use crate::jobs::{PathSolver, Solver};
 use crate::judged::JudgedIncrement;
-use crate::model::Model;
+use crate::model::{JobRequest, Model};
 use crate::output::{Table, json_line};
 use crate::path::{self, Increment};
 use crate::picture::path::{Against, svg};
@@ -48,7 +48,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if request.analysis.explore.is_some() {
         eprintln!("explore: the directions not taken are followed by `arcslip serve` only; this traces one path");
     }
-    let mut picture = Picture::planned(arguments, &request.model)?;
+    let mut picture = Picture::planned(arguments, &request)?;
     let mut writer = Writer::open(arguments)?;
     let progress = progress_bar(request.analysis.max_increments, arguments.out.is_some());
     let mut unwritten = None;
@@ -144,9 +144,16 @@ struct Picture<'a> {
 }
 
 impl<'a> Picture<'a> {
-    fn planned(arguments: &'a Arguments, model: &Model) -> Result<Option<Self>, Failure> {
-        let against = arguments.against.as_deref().map(|text| Against::read(text, model)).transpose();
+    fn planned(arguments: &'a Arguments, request: &JobRequest) -> Result<Option<Self>, Failure> {
+        let against = arguments.against.as_deref().map(|text| Against::read(text, &request.model)).transpose();
         let against = against.map_err(|error| Failure::Input(vec![error.to_string()]))?;
+        let recorded = request.analysis.record.as_ref().and_then(|record| record.nodes.as_ref());
+        if let (Some(_), Some(nodes)) = (&arguments.plot, recorded)
+            && !against.as_ref().map_or(!nodes.is_empty(), |against| nodes.contains(&against.node))
+        {
+            let what = "/analysis/record/nodes: the displacement to be drawn is not recorded; add its node";
+            return Err(Failure::Input(vec![what.to_owned()]));
+        }
         Ok(arguments.plot.as_deref().map(|file| Self { file, against, increments: Vec::new() }))
     }
 

@@ -5,8 +5,7 @@
 
 use super::Solver;
 use super::branches::{self, Recorder};
-use super::explore::Alternatives;
-use super::solver::Accept;
+use super::solver::{Accept, Junction};
 use crate::cancel::CancelFlag;
 use crate::judged::JudgedReport;
 use crate::model::{InputErrors, decode};
@@ -91,16 +90,15 @@ fn run(solver: &dyn Solver, claim: &Claim, cancel: CancelFlag, lines: &mpsc::Sen
         Err(error) => return SolveEnd::Unreadable(error.to_string()),
     };
     let mut recorder = Recorder::default();
-    let mut alternatives = claim.explores.then(|| Alternatives::of(claim.origin.is_some()));
     let mut unwritable = None;
     let accept: Accept<'_> = &mut |judged, junction| {
         // What is stored already is looked at too: what comes after depends on it.
         let stored = claim.last_index.is_some_and(|stored| judged.increment.index <= stored);
-        let junction = junction();
-        let open = junction.as_ref().map_or(&[][..], |junction| &junction.open);
-        let followed =
-            alternatives.as_mut().map_or_else(Vec::new, |alternatives| alternatives.at(&judged.increment, open));
-        let branch = junction.map(|junction| recorder.branch(junction.checkpoint, followed)).transpose();
+        let branch = junction()
+            .map(|Junction { checkpoint, alternatives, open: _ }| {
+                recorder.branch(checkpoint, if claim.explores { alternatives } else { Vec::new() })
+            })
+            .transpose();
         let line = branch.and_then(|branch| {
             let body = if stored { String::new() } else { json_line(&judged)? };
             Ok(Line { index: judged.increment.index, body, branch })

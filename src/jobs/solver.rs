@@ -22,6 +22,8 @@ pub struct Junction {
     pub checkpoint: JudgedCheckpoint,
     /// Which of the directions can be followed.
     pub open: Vec<bool>,
+    /// Those that appear here first: see [`crate::judged::Alternatives`].
+    pub alternatives: Vec<u64>,
 }
 
 /// Takes an increment and, where directions are listed with it, what makes its junction.
@@ -104,7 +106,8 @@ fn warn_off_measure(judged: &JudgedIncrement) {
 
 fn junction(path: &JudgedPath<'_>) -> Option<Junction> {
     let open = path.open_directions();
-    if open.is_empty() { None } else { Some(Junction { checkpoint: path.checkpoint()?, open }) }
+    let alternatives = path.alternatives().to_vec();
+    if open.is_empty() { None } else { Some(Junction { checkpoint: path.checkpoint()?, open, alternatives }) }
 }
 
 fn begin<'a>(

@@ -8,16 +8,21 @@
 //! |---|---|
 //! | `path` | the iterator: traces, judges, goes on from a checkpoint |
 //! | `increment`, `report` | what it gives |
+//! | `record` | what of an increment is kept, after it has been judged |
+//! | `alternatives` | which directions are new at an increment |
 //! | `checkpoint` | a path put down together with the judge's memory of it |
 //! | `schema` | their JSON Schema |
 
+pub mod alternatives;
 pub mod checkpoint;
 pub mod increment;
 pub mod path;
+mod record;
 pub mod report;
 #[cfg(feature = "server")]
 mod schema;
 
+pub use alternatives::Alternatives;
 pub use checkpoint::{JudgedCheckpoint, JudgedCheckpointError};
 pub use increment::JudgedIncrement;
 pub use path::JudgedPath;

@@ -1,7 +1,9 @@
 //! A path being traced and judged.
 
+use super::alternatives::Alternatives;
 use super::checkpoint::{JudgedCheckpoint, JudgedCheckpointError};
 use super::increment::JudgedIncrement;
+use super::record::Recorder;
 use super::report::{JudgedReport, MeasureReport, OFF_MEASURE};
 use crate::cancel::CancelFlag;
 use crate::measure::Judge;
@@ -14,18 +16,48 @@ pub struct JudgedPath<'a> {
     path: TracedPath<'a>,
     judge: Judge,
     measure: MeasureReport,
+    record: Recorder,
     /// The last increment is off the measure.
     off_measure: bool,
+    alternatives: Alternatives,
+    /// Directions that appear first at the last increment.
+    found: Vec<u64>,
+    /// The last increment where it was left out: the last of the path is given after all.
+    left_out: Option<LeftOut>,
+    /// The path at the last increment given, where it has gone on from there.
+    put_down: Option<Option<Place>>,
+}
+
+/// An increment not given yet.
+struct LeftOut {
+    judged: JudgedIncrement,
+    place: Option<Place>,
+}
+
+/// A path put down where directions are listed.
+struct Place {
+    checkpoint: JudgedCheckpoint,
+    open: Vec<bool>,
 }
 
 impl<'a> JudgedPath<'a> {
     /// From the start; `scene` is the request's.
     pub fn new(request: &JobRequest, scene: &'a Scene, cancel: CancelFlag) -> Self {
-        Self::of(TracedPath::new(scene, cancel), judge(request, scene), fresh(request))
+        Self::of(request, TracedPath::new(scene, cancel), judge(request, scene), fresh(request))
     }
 
-    fn of(path: TracedPath<'a>, judge: Judge, measure: MeasureReport) -> Self {
-        Self { path, judge, measure, off_measure: false }
+    fn of(request: &JobRequest, path: TracedPath<'a>, judge: Judge, measure: MeasureReport) -> Self {
+        Self {
+            path,
+            judge,
+            measure,
+            record: Recorder::new(request),
+            off_measure: false,
+            alternatives: Alternatives::default(),
+            found: Vec::new(),
+            left_out: None,
+            put_down: None,
+        }
     }
 
     /// Along a direction listed at a checkpoint: see [`Path::follow`]. The judge goes on from where it was; the maxima
@@ -44,10 +76,13 @@ impl<'a> JudgedPath<'a> {
         let JudgedCheckpoint { path, history, measure: _ } = checkpoint;
         let path = Path::follow(scene, path, direction, event, cancel)?;
         let judge = judge(request, scene).taking_up(history)?;
-        Ok(Self::of(TracedPath::Exact(Box::new(path)), judge, fresh(request)))
+        let mut followed = Self::of(request, TracedPath::Exact(Box::new(path)), judge, fresh(request));
+        followed.alternatives = Alternatives::of(true);
+        Ok(followed)
     }
 
-    /// Takes a path up where it was put down: increments and report are the same as if it had not been.
+    /// Takes a path up where it was put down: increments and report are the same as if it had not been, but that all
+    /// alternatives at the next increment count as new.
     ///
     /// # Errors
     /// A checkpoint of another model, or of another version of this program.
@@ -60,17 +95,38 @@ impl<'a> JudgedPath<'a> {
         let JudgedCheckpoint { path, history, measure } = checkpoint;
         let path = Path::resume(scene, path, cancel)?;
         let judge = judge(request, scene).taking_up(history)?;
-        Ok(Self::of(TracedPath::Exact(Box::new(path)), judge, measure))
+        Ok(Self::of(request, TracedPath::Exact(Box::new(path)), judge, measure))
     }
 
-    /// The path at its present point; `None` by a method whose paths cannot be put down.
+    /// The path at the last increment; `None` by a method whose paths cannot be put down.
     pub fn checkpoint(&self) -> Option<JudgedCheckpoint> {
+        match &self.put_down {
+            Some(place) => place.as_ref().map(|place| place.checkpoint.clone()),
+            None => self.present(),
+        }
+    }
+
+    fn present(&self) -> Option<JudgedCheckpoint> {
         let TracedPath::Exact(path) = &self.path else { return None };
         Some(JudgedCheckpoint { path: path.checkpoint(), history: self.judge.history(), measure: self.measure })
     }
 
-    /// For each direction listed at the present point, whether a path goes along it; empty where there is one way on.
+    /// For each direction listed with the last increment, whether a path goes along it; empty where there is one way on,
+    /// and where none are recorded.
     pub fn open_directions(&self) -> Vec<bool> {
+        match &self.put_down {
+            _ if !self.record.directions() => Vec::new(),
+            Some(place) => place.as_ref().map_or_else(Vec::new, |place| place.open.clone()),
+            None => self.open(),
+        }
+    }
+
+    /// The directions among them that appear first at the last increment.
+    pub fn alternatives(&self) -> &[u64] {
+        &self.found
+    }
+
+    fn open(&self) -> Vec<bool> {
         let TracedPath::Exact(path) = &self.path else { return Vec::new() };
         (0..path.listed_directions()).map(|direction| path.can_be_followed(direction)).collect()
     }
@@ -102,9 +158,26 @@ impl Iterator for JudgedPath<'_> {
     type Item = JudgedIncrement;
 
     fn next(&mut self) -> Option<JudgedIncrement> {
-        let increment = self.path.next()?;
-        let measure = self.judge.judge(&increment);
-        self.off_measure = self.measure.include(increment.index, &measure);
-        Some(JudgedIncrement { increment, measure })
+        self.put_down = None;
+        while let Some(increment) = self.path.next() {
+            let measure = self.judge.judge(&increment);
+            self.off_measure = self.measure.include(increment.index, &measure);
+            self.found = self.alternatives.at(&increment, &self.open());
+            let kept = self.off_measure || !self.found.is_empty() || self.record.keeps(&increment);
+            let judged = JudgedIncrement { increment: self.record.cut(increment), measure };
+            if kept {
+                self.left_out = None;
+                return Some(judged);
+            }
+            // What comes next may not lead to a point, and leave another state behind.
+            let open = self.open_directions();
+            let place =
+                if open.is_empty() { None } else { self.present().map(|checkpoint| Place { checkpoint, open }) };
+            self.left_out = Some(LeftOut { judged, place });
+        }
+        let LeftOut { judged, place } = self.left_out.take()?;
+        self.put_down = Some(place);
+        self.off_measure = false;
+        Some(judged)
     }
 }

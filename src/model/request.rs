@@ -228,6 +228,9 @@ pub struct Analysis {
     /// Follow the directions not taken by jobs of their own; absent: none is followed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub explore: Option<Explore>,
+    /// What is kept of the increments; absent: all of everything.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub record: Option<Record>,
     /// Parameters of `method: "regularised"`; given with that method only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub regularised: Option<Regularised>,
@@ -251,6 +254,41 @@ pub struct Explore {
     pub max_jobs: u64,
 }
 
+/// What is kept of the increments: printed, streamed and stored. Every increment is traced and judged in full before
+/// anything of it is left out, and the report is that of all of them.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct Record {
+    /// Nodes whose displacements are kept; absent: all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nodes: Option<Vec<String>>,
+    /// Contacts whose rows are kept, in the increments and in their directions, in the order of the model; absent: all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contacts: Option<Vec<RecordedContact>>,
+    /// Of the regular increments, those whose index is a multiple of this are kept; 1 or more. Kept in any case: starts
+    /// and ends of the path and of its stages, contact changes, limit and bifurcation points at which something happens,
+    /// increments at which another direction first appears, and those off the measure.
+    pub every: u64,
+    /// Whether directions are listed. Without them none can be followed.
+    pub directions: bool,
+}
+
+/// A contact, by the names in the model; contacts listed twice there are meant together.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct RecordedContact {
+    pub node: String,
+    pub obstacle: String,
+}
+
+impl Default for Record {
+    fn default() -> Self {
+        Self { nodes: None, contacts: None, every: 1, directions: true }
+    }
+}
+
 impl Default for Analysis {
     fn default() -> Self {
         Self {
@@ -261,6 +299,7 @@ impl Default for Analysis {
             max_increments: 1000,
             max_modes: 65_536,
             explore: None,
+            record: None,
             regularised: None,
         }
     }

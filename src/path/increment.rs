@@ -18,8 +18,9 @@ pub struct Increment {
     /// Dimensionless arc length of this increment: 0 where a stage begins, and where a contact change is found at the very
     /// point before.
     pub step: f64,
-    /// Node name to displacement (length).
+    /// Node name to displacement (length); the nodes that `analysis.record` asks for.
     pub displacements: IndexMap<Arc<str>, Vec<f64>>,
+    /// In the model's order; those that `analysis.record` asks for.
     pub contacts: Vec<ContactState>,
     pub point: Point,
     /// Feasible one-sided directions, the one taken among them; present where there is a choice.
@@ -107,7 +108,7 @@ pub enum PointKind {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct Direction {
-    /// Status along the direction, one a contact.
+    /// Status along the direction, one a contact, as in the increment's `contacts`.
     pub contacts: Vec<Status>,
     /// Load factor per arc length.
     pub load_rate: f64,

@@ -55,7 +55,7 @@ pub(super) fn increment(scene: &Scene, totals: &Totals, row: &Row<'_>) -> Increm
     let (contacts, complementarity) = contact_rows(scene, row, totals.force_scale);
     let directions = is_worth_listing(row.options).then(|| {
         let direction = |(index, option): (usize, &Choice)| Direction {
-            contacts: option.modes.iter().map(|mode| status(*mode)).collect(),
+            contacts: scene.reported.iter().map(|one| status(option.modes[one.contact])).collect(),
             load_rate: option.rate.load * stage.load_scale,
             dissipation_rate: option.dissipation * energy_unit,
             taken: row.taken == Some(index),

@@ -3,7 +3,9 @@
 use super::numbers;
 use crate::model::limits::{MAX_DESIRED_ITERATIONS, MAX_EXPLORE_DEPTH, MAX_EXPLORE_JOBS, MAX_INCREMENTS, MAX_MODES};
 use crate::model::mistakes::{Mistakes, Place};
-use crate::model::request::{Analysis, ArcLength, Method, Regularised};
+use crate::model::names::{quoted, suggestion};
+use crate::model::request::{Analysis, ArcLength, Method, Model, Record, RecordedContact, Regularised};
+use std::collections::HashSet;
 
 pub(super) fn analysis(analysis: &Analysis, at: &Place, mistakes: &mut Mistakes) {
     arc_length(&analysis.arc_length, &at.member("arc_length"), mistakes);
@@ -17,12 +19,53 @@ pub(super) fn analysis(analysis: &Analysis, at: &Place, mistakes: &mut Mistakes)
         numbers::count(explore.depth, MAX_EXPLORE_DEPTH, &at.member("depth"), mistakes);
         numbers::count(explore.max_jobs, MAX_EXPLORE_JOBS, &at.member("max_jobs"), mistakes);
     }
+    if let Some(record) = &analysis.record {
+        let at = at.member("record");
+        numbers::count(record.every, MAX_INCREMENTS, &at.member("every"), mistakes);
+        if !record.directions && analysis.explore.is_some() {
+            mistakes.add(&at.member("directions"), || "`explore` follows directions, which this leaves out; give true");
+        }
+    }
     if let Some(given) = &analysis.regularised {
         let at = at.member("regularised");
         if analysis.method != Method::Regularised {
             mistakes.add(&at, || "parameters of the method `regularised`, which is not the one chosen; leave them out, or give `\"method\": \"regularised\"`".to_owned());
         }
         regularised(given, &at, mistakes);
+    }
+}
+
+/// What `record` names is in the model, and stands there once.
+pub(super) fn recorded(record: &Record, model: &Model, at: &Place, mistakes: &mut Mistakes) {
+    let mut seen = HashSet::new();
+    for (index, name) in record.nodes.iter().flatten().enumerate() {
+        let at = &at.member("nodes");
+        let at = at.index(index);
+        if !model.nodes.contains_key(name) {
+            let known = || suggestion(name, model.nodes.keys().map(String::as_str));
+            mistakes.add(&at, || format!("there is no node {}{}", quoted(name), known()));
+        } else if !seen.insert(name) {
+            mistakes.add(&at, || format!("{} stands here twice", quoted(name)));
+        }
+    }
+    let contacts: HashSet<(&str, &str)> =
+        model.contacts.iter().map(|contact| (contact.node.as_str(), contact.obstacle.as_str())).collect();
+    let mut seen = HashSet::new();
+    for (index, RecordedContact { node, obstacle }) in record.contacts.iter().flatten().enumerate() {
+        let at = &at.member("contacts");
+        let at = at.index(index);
+        let pair = (node.as_str(), obstacle.as_str());
+        if !model.nodes.contains_key(node) {
+            let known = || suggestion(node, model.nodes.keys().map(String::as_str));
+            mistakes.add(&at.member("node"), || format!("there is no node {}{}", quoted(node), known()));
+        } else if !model.obstacles.contains_key(obstacle) {
+            let known = || suggestion(obstacle, model.obstacles.keys().map(String::as_str));
+            mistakes.add(&at.member("obstacle"), || format!("there is no obstacle {}{}", quoted(obstacle), known()));
+        } else if !contacts.contains(&pair) {
+            mistakes.add(&at, || format!("there is no contact of {} with {}", quoted(node), quoted(obstacle)));
+        } else if !seen.insert(pair) {
+            mistakes.add(&at, || format!("{} with {} stands here twice", quoted(node), quoted(obstacle)));
+        }
     }
 }
 

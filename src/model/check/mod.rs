@@ -36,6 +36,10 @@ pub fn check(request: &JobRequest) -> Result<(), InputErrors> {
     let at = Place::ROOT.member("model");
     if sizes(&request.model, &at, &mut mistakes) && dimension(&request.model, &at, &mut mistakes) {
         model(&request.model, &at, &mut mistakes);
+        if let Some(record) = &request.analysis.record {
+            let at = Place::ROOT.member("analysis");
+            analysis::recorded(record, &request.model, &at.member("record"), &mut mistakes);
+        }
     }
     analysis::analysis(&request.analysis, &Place::ROOT.member("analysis"), &mut mistakes);
     mistakes.into_result()

@@ -33,6 +33,10 @@ pub fn study(request: &StudyRequest) -> Result<(), InputErrors> {
     if request.analysis.explore.is_some() {
         mistakes.add(&analysis.member("explore"), || "a study follows no other directions; leave it out");
     }
+    if request.analysis.record.is_some() {
+        mistakes
+            .add(&analysis.member("record"), || "a study compares whole paths and keeps no increments; leave it out");
+    }
     if request.analysis.regularised.is_some() && !study.methods().contains(&Method::Regularised) {
         mistakes.add(
             &analysis.member("regularised"),

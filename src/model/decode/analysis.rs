@@ -1,19 +1,35 @@
 //! Reads how the path is to be traced.
 
-use super::reader::{Choices, Fields, Input, count, number};
+use super::reader::{Choices, Fields, Input, boolean, count, number, text};
 use crate::model::mistakes::Mistakes;
-use crate::model::request::{Analysis, ArcLength, Events, Explore, LoadSign, Method, Regularised, Selection};
+use crate::model::request::{
+    Analysis, ArcLength, Events, Explore, LoadSign, Method, Record, RecordedContact, Regularised, Selection,
+};
 
 const ANALYSIS: Fields = Fields {
     what: "an analysis",
-    known: &["method", "selection", "events", "arc_length", "max_increments", "max_modes", "explore", "regularised"],
-    later: &[("record", "leave it out: everything is recorded"), ("keep_all", "leave it out: every increment is kept")],
+    known: &[
+        "method",
+        "selection",
+        "events",
+        "arc_length",
+        "max_increments",
+        "max_modes",
+        "explore",
+        "record",
+        "regularised",
+    ],
+    later: &[("keep_all", "leave it out: every increment is kept")],
 };
 
 const ARC_LENGTH: Fields =
     Fields { what: "an arc length", known: &["initial", "min", "max", "displacement_scale", "load_scale"], later: &[] };
 
 const EXPLORE: Fields = Fields { what: "an exploration", known: &["depth", "max_jobs"], later: &[] };
+
+const RECORD: Fields = Fields { what: "a record", known: &["nodes", "contacts", "every", "directions"], later: &[] };
+
+const RECORDED_CONTACT: Fields = Fields { what: "a recorded contact", known: &["node", "obstacle"], later: &[] };
 
 const REGULARISED: Fields = Fields {
     what: "a regularisation",
@@ -59,6 +75,7 @@ pub(super) fn analysis(input: &Input, mistakes: &mut Mistakes) -> Option<Analysi
     let max_increments = object.with_default("max_increments", default.max_increments, mistakes, count);
     let max_modes = object.with_default("max_modes", default.max_modes, mistakes, count);
     let explore = object.optional("explore", mistakes, explore);
+    let record = object.optional("record", mistakes, record);
     let regularised = object.optional("regularised", mistakes, regularised);
     Some(Analysis {
         method: method?,
@@ -68,6 +85,7 @@ pub(super) fn analysis(input: &Input, mistakes: &mut Mistakes) -> Option<Analysi
         max_increments: max_increments?,
         max_modes: max_modes?,
         explore: explore?,
+        record: record?,
         regularised: regularised?,
     })
 }
@@ -88,6 +106,23 @@ fn explore(input: &Input, mistakes: &mut Mistakes) -> Option<Explore> {
     let depth = object.required("depth", mistakes, count);
     let max_jobs = object.required("max_jobs", mistakes, count);
     Some(Explore { depth: depth?, max_jobs: max_jobs? })
+}
+
+fn record(input: &Input, mistakes: &mut Mistakes) -> Option<Record> {
+    let object = input.object(&RECORD, mistakes)?;
+    let default = Record::default();
+    let nodes = object.optional("nodes", mistakes, |input, mistakes| input.list(mistakes, text));
+    let contacts = object.optional("contacts", mistakes, |input, mistakes| input.list(mistakes, recorded_contact));
+    let every = object.with_default("every", default.every, mistakes, count);
+    let directions = object.with_default("directions", default.directions, mistakes, boolean);
+    Some(Record { nodes: nodes?, contacts: contacts?, every: every?, directions: directions? })
+}
+
+fn recorded_contact(input: &Input, mistakes: &mut Mistakes) -> Option<RecordedContact> {
+    let object = input.object(&RECORDED_CONTACT, mistakes)?;
+    let node = object.required("node", mistakes, text);
+    let obstacle = object.required("obstacle", mistakes, text);
+    Some(RecordedContact { node: node?, obstacle: obstacle? })
 }
 
 fn regularised(input: &Input, mistakes: &mut Mistakes) -> Option<Regularised> {

@@ -151,6 +151,13 @@ pub(super) fn text(input: &Input, mistakes: &mut Mistakes) -> Option<String> {
     }
 }
 
+pub(super) fn boolean(input: &Input, mistakes: &mut Mistakes) -> Option<bool> {
+    match input.value {
+        Json::Bool(value) => Some(*value),
+        _ => input.refuse("true or false", mistakes),
+    }
+}
+
 pub(super) fn numbers(input: &Input, mistakes: &mut Mistakes) -> Option<Vec<f64>> {
     input.list(mistakes, number)
 }

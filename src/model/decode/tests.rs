@@ -132,8 +132,12 @@ fn analysis() -> impl Strategy<Value = Analysis> {
     let selection = one_of([Selection::MaxDissipation, Selection::MinPotentialEnergy, Selection::Straightest]);
     let events = one_of([Events::Auto, Events::All]);
     let explore = of((any::<u64>(), any::<u64>()).prop_map(|(depth, max_jobs)| Explore { depth, max_jobs }));
-    (method, selection, events, arc_length, any::<u64>(), any::<u64>(), explore, of(regularised)).prop_map(
-        |(method, selection, events, arc_length, max_increments, max_modes, explore, regularised)| Analysis {
+    let contact = (name(), name()).prop_map(|(node, obstacle)| RecordedContact { node, obstacle });
+    let record = (of(vec(name(), 0..3)), of(vec(contact, 0..3)), any::<u64>(), any::<bool>())
+        .prop_map(|(nodes, contacts, every, directions)| Record { nodes, contacts, every, directions });
+    let counts = (any::<u64>(), any::<u64>());
+    (method, selection, events, arc_length, counts, explore, of(record), of(regularised)).prop_map(
+        |(method, selection, events, arc_length, (max_increments, max_modes), explore, record, regularised)| Analysis {
             method,
             selection,
             events,
@@ -141,6 +145,7 @@ fn analysis() -> impl Strategy<Value = Analysis> {
             max_increments,
             max_modes,
             explore,
+            record,
             regularised,
         },
     )

@@ -20,7 +20,7 @@ const COMPONENTS: [Component; 3] = [Component::X, Component::Y, Component::Z];
 /// A displacement component of a node, `tip.x` on the command line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Against {
-    node: String,
+    pub node: String,
     component: Component,
 }
 

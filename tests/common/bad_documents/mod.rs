@@ -5,6 +5,7 @@
 mod form;
 mod loading;
 mod model;
+mod record;
 mod regularised;
 
 use serde_json::{Value, json};
@@ -43,6 +44,7 @@ pub fn bad_documents() -> Vec<BadDocument> {
         loading::motions(),
         loading::ends(),
         loading::analysis(),
+        record::record(),
         regularised::regularised(),
         model::sizes(),
     ]

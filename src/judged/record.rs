@@ -1,0 +1,76 @@
+//! What of an increment is kept, after it has been judged in full.
+
+use crate::model::JobRequest;
+use crate::path::Increment;
+use crate::path::increment::PointKind;
+
+/// A request's `record` with places for names.
+#[derive(Debug, Clone)]
+pub(super) struct Recorder {
+    /// One a node; `None`: all are kept.
+    nodes: Option<Vec<bool>>,
+    /// One a contact; `None`: all are kept.
+    contacts: Option<Vec<bool>>,
+    every: u64,
+    directions: bool,
+}
+
+impl Recorder {
+    /// Of a request that has been checked.
+    pub fn new(request: &JobRequest) -> Self {
+        let record = request.analysis.record.clone().unwrap_or_default();
+        let model = &request.model;
+        let nodes = record.nodes.map(|asked| {
+            let mut kept = vec![false; model.nodes.len()];
+            for node in asked.iter().filter_map(|name| model.nodes.get_index_of(name)) {
+                kept[node] = true;
+            }
+            kept
+        });
+        let contacts = record.contacts.map(|asked| {
+            let asked: std::collections::HashSet<(&str, &str)> =
+                asked.iter().map(|one| (one.node.as_str(), one.obstacle.as_str())).collect();
+            let is_asked = |contact: &crate::model::request::Contact| {
+                asked.contains(&(contact.node.as_str(), contact.obstacle.as_str()))
+            };
+            model.contacts.iter().map(is_asked).collect()
+        });
+        Self { nodes, contacts, every: record.every, directions: record.directions }
+    }
+
+    pub fn directions(&self) -> bool {
+        self.directions
+    }
+
+    /// Whether an increment is kept for itself.
+    pub fn keeps(&self, increment: &Increment) -> bool {
+        increment.index == 0
+            || increment.point.kind != PointKind::Regular
+            || increment.point.event.is_some()
+            || increment.index.is_multiple_of(self.every)
+    }
+
+    /// An increment without what is not kept.
+    pub fn cut(&self, mut increment: Increment) -> Increment {
+        if let Some(kept) = &self.nodes {
+            let mut kept = kept.iter();
+            increment.displacements.retain(|_, _| kept.next().is_some_and(|kept| *kept));
+        }
+        if !self.directions {
+            increment.directions = None;
+        }
+        if let Some(kept) = &self.contacts {
+            retain(&mut increment.contacts, kept);
+            for direction in increment.directions.iter_mut().flatten() {
+                retain(&mut direction.contacts, kept);
+            }
+        }
+        increment
+    }
+}
+
+/// Keeps the items whose place is marked.
+fn retain<Item>(items: &mut Vec<Item>, kept: &[bool]) {
+    let mut kept = kept.iter();
+    items.retain(|_| kept.next().is_some_and(|kept| *kept));
+}
