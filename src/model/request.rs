@@ -231,6 +231,8 @@ pub struct Analysis {
     /// What is kept of the increments; absent: all of everything.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub record: Option<Record>,
+    /// Keep contacts that are out of reach in the equations, too. For comparison: the path is the same.
+    pub keep_all: bool,
     /// Parameters of `method: "regularised"`; given with that method only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub regularised: Option<Regularised>,
@@ -300,6 +302,7 @@ impl Default for Analysis {
             max_modes: 65_536,
             explore: None,
             record: None,
+            keep_all: false,
             regularised: None,
         }
     }

@@ -5,7 +5,6 @@ use super::critical::Crossing;
 use super::decide::{self, Before, Choice};
 use super::increment::{Point, PointKind};
 use super::name_event::describe_change;
-use super::progress::Visited;
 use super::standing::Standing;
 use super::state::Rate;
 use super::stop::StopReason;
@@ -159,7 +158,12 @@ impl Path<'_> {
         let point = Point {
             kind,
             bifurcation: decide::is_bifurcation(&decision.options, decision.taken, None),
-            event: Some(describe_change(self.scene, &old_modes, outgoing.map(|choice| &choice.modes[..]), &standings)),
+            event: Some(describe_change(
+                self.names(),
+                &old_modes,
+                outgoing.map(|choice| &choice.modes[..]),
+                &standings,
+            )),
             better_direction: false,
             unexplored_modes: decision.unexplored,
             degenerate: decision.degenerate,
@@ -176,9 +180,9 @@ impl Path<'_> {
 
     /// Whether the path has left this very state in these modes before; remembers it if not.
     fn is_cycle(&mut self) -> bool {
-        let here = &self.at.here;
+        let here = self.visit();
         let known = self.at.visited.iter().any(|visited| {
-            visited.stage == self.at.stage
+            visited.stage == here.stage
                 && all_continue(&visited.modes, &here.modes)
                 && visited.state.distance(&here.state) < SAME_STATE
                 && visited
@@ -188,8 +192,7 @@ impl Path<'_> {
                     .zip(&here.state.reactions)
                     .all(|(a, b)| a.difference(b) < SAME_STATE * self.at.totals.force_scale)
         });
-        let (state, modes) = (here.state.clone(), here.modes.clone());
-        self.at.visited.push(Arc::new(Visited { stage: self.at.stage, state, modes }));
+        self.at.visited.push(Arc::new(here));
         known
     }
 }

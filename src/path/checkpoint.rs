@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Changes when a checkpoint of before would be read as something else.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// A path at one of its points.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -90,14 +90,20 @@ impl Checkpoint {
         let same = |what: &'static str, found: usize, expected: usize| {
             if found == expected { Ok(()) } else { Err(CheckpointError::OtherModel { what, found, expected }) }
         };
-        let (freedoms, contacts) = (scene.structure.freedoms(), scene.contacts.len());
+        let (freedoms, all) = (scene.structure.freedoms(), scene.contacts.len());
         if self.at.stage >= scene.stages.len() {
             return same("stages", self.at.stage + 1, scene.stages.len());
         }
-        let state = |state: &State| {
+        let near = &self.at.near;
+        if !near.is_sorted_by(|one, next| one < next) || near.last().is_some_and(|last| *last >= all) {
+            return same("contacts", near.last().map_or(0, |last| last + 1), all);
+        }
+        let contacts = near.len();
+        let state_of = |contacts: usize, state: &State| {
             same("degrees of freedom", state.displacement.len(), freedoms)?;
             same("contacts", state.reactions.len(), contacts)
         };
+        let state = |state: &State| state_of(contacts, state);
         let rate = |rate: &Rate| {
             same("degrees of freedom", rate.displacement.len(), freedoms)?;
             same("contacts", rate.reactions.len(), contacts)
@@ -108,7 +114,7 @@ impl Checkpoint {
             listed.options.iter().try_for_each(|option| rate(&option.rate).and_then(|()| modes(&option.modes)))
         };
         same("degrees of freedom", self.at.held.forces.len(), freedoms)?;
-        same("contacts", self.at.held.shifts.len(), contacts)?;
+        same("contacts", self.at.held.shifts.len(), all)?;
         if let Some((begun, direction)) = &self.at.begun {
             state(begun)?;
             rate(direction)?;
@@ -117,7 +123,10 @@ impl Checkpoint {
         modes(&self.at.here.modes)?;
         self.at.here.rate.iter().try_for_each(rate)?;
         self.at.here.drift.iter().try_for_each(rate)?;
-        self.at.visited.iter().try_for_each(|visited| state(&visited.state).and_then(|()| modes(&visited.modes)))?;
+        self.at.visited.iter().try_for_each(|visited| {
+            state_of(all, &visited.state)?;
+            same("contacts", visited.modes.len(), all)
+        })?;
         self.at.listed.iter().try_for_each(listed)?;
         self.at.followed.iter().try_for_each(|followed| listed(&followed.listed))
     }
@@ -135,8 +144,6 @@ impl<'a> Path<'a> {
     /// A checkpoint of another model, or of another version of this program.
     pub fn resume(scene: &'a Scene, checkpoint: Checkpoint, cancel: CancelFlag) -> Result<Self, CheckpointError> {
         checkpoint.fits(scene)?;
-        let mut path = Path::new(scene, cancel);
-        (path.elapsed_before, path.at) = (checkpoint.elapsed_s, checkpoint.at);
-        Ok(path)
+        Ok(Path::at(scene, checkpoint.at, checkpoint.elapsed_s, cancel))
     }
 }

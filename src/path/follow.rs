@@ -4,7 +4,7 @@ use super::advance::AT_END;
 use super::checkpoint::{Checkpoint, CheckpointError};
 use super::decide::{Choice, STATIONARY};
 use super::increment::{Increment, Point, PointKind};
-use super::progress::{Phase, StageCounts, Visited};
+use super::progress::{Phase, StageCounts};
 use super::scene::{End, Scene};
 use super::totals::Totals;
 use super::tracer::{Emitted, Path};
@@ -124,8 +124,7 @@ impl<'a> Path<'a> {
     /// Leaves the present point along another direction than the one taken there.
     fn turn(&mut self, choice: &Choice) {
         self.go(choice);
-        let (state, modes) = (self.at.here.state.clone(), choice.modes.clone());
-        let visited = Visited { stage: self.at.stage, state, modes };
+        let visited = self.visit();
         if !self.at.visited.iter().any(|known| **known == visited) {
             self.at.visited.push(Arc::new(visited));
         }

@@ -44,6 +44,7 @@ mod loading;
 mod mode_system;
 mod name_event;
 mod naming;
+mod near;
 mod newton;
 pub mod plan;
 mod program;

@@ -5,6 +5,7 @@ use super::scene::Scene;
 use super::standing::Standing;
 use crate::contact::Mode;
 use crate::path::increment::Status;
+use std::sync::Arc;
 
 /// The start of a stage; `met`: one of its bounds is met already.
 pub(super) fn describe_start(scene: &Scene, stage: usize, met: bool) -> String {
@@ -13,10 +14,16 @@ pub(super) fn describe_start(scene: &Scene, stage: usize, met: bool) -> String {
 }
 
 /// Which contacts change, from what to what; where the path ends, which contacts stand at the limit of their mode.
-pub(super) fn describe_change(scene: &Scene, old: &[Mode], new: Option<&[Mode]>, standings: &[Standing]) -> String {
+///
+/// `names` are those of the contacts' nodes and obstacles.
+pub(super) fn describe_change<'a>(
+    names: impl Iterator<Item = &'a (Arc<str>, Arc<str>)>,
+    old: &[Mode],
+    new: Option<&[Mode]>,
+    standings: &[Standing],
+) -> String {
     let mut parts = Vec::new();
-    for (index, before) in old.iter().enumerate() {
-        let (node, obstacle) = &scene.contact_names[index];
+    for ((index, before), (node, obstacle)) in old.iter().enumerate().zip(names) {
         let after = new.map(|new| new[index]);
         let word = |mode: Mode| match status(mode) {
             Status::Free => "free",

@@ -18,13 +18,16 @@ pub(super) struct Progress {
     pub stage: usize,
     /// The stage ended at the present point; the next one begins with the next increment.
     pub stage_over: bool,
+    /// What earlier stages hold; of every contact of the scene.
     pub held: LoadPattern,
+    /// Which of the scene's contacts are in reach, in order: reactions and modes are theirs, one each.
+    pub near: Vec<usize>,
     pub here: Here,
     /// Arc length that the next step tries.
     pub step: f64,
     pub totals: Totals,
     pub counts: StageCounts,
-    /// States at which a direction was taken, for telling a cycle.
+    /// States at which a direction was taken, of every contact of the scene, for telling a cycle.
     pub visited: Vec<Arc<Visited>>,
     /// Where the stage began and the direction it took.
     pub begun: Option<(State, Rate)>,
@@ -73,12 +76,14 @@ pub(super) enum Phase {
 impl Progress {
     /// Before the first increment.
     pub fn new(scene: &Scene) -> Self {
-        let contacts = scene.contacts.len();
+        let near: Vec<usize> = if scene.analysis.keep_all { (0..scene.contacts.len()).collect() } else { Vec::new() };
+        let contacts = near.len();
         Self {
             phase: Phase::NotStarted,
             stage: 0,
             stage_over: false,
             held: scene.stages[0].pattern.zeroed(),
+            near,
             here: Here {
                 state: State::at_rest(&scene.structure, contacts),
                 modes: vec![Mode::Free; contacts],

@@ -15,6 +15,10 @@ use std::sync::Arc;
 pub(super) struct Row<'a> {
     pub stage: usize,
     pub loading: Loading<'a>,
+    /// The loading of every contact of the scene.
+    pub whole: Loading<'a>,
+    /// For each of them its place among those that state and modes are of; without one it is free.
+    pub places: &'a [Option<usize>],
     pub state: &'a State,
     /// The point before; the state itself at the start.
     pub before: &'a State,
@@ -55,7 +59,11 @@ pub(super) fn increment(scene: &Scene, totals: &Totals, row: &Row<'_>) -> Increm
     let (contacts, complementarity) = contact_rows(scene, row, totals.force_scale);
     let directions = is_worth_listing(row.options).then(|| {
         let direction = |(index, option): (usize, &Choice)| Direction {
-            contacts: scene.reported.iter().map(|one| status(option.modes[one.contact])).collect(),
+            contacts: scene
+                .reported
+                .iter()
+                .map(|one| row.places[one.contact].map_or(Status::Free, |place| status(option.modes[place])))
+                .collect(),
             load_rate: option.rate.load * stage.load_scale,
             dissipation_rate: option.dissipation * energy_unit,
             taken: row.taken == Some(index),
@@ -104,37 +112,47 @@ fn contact_rows(scene: &Scene, row: &Row<'_>, force_scale: f64) -> (Vec<ContactS
     let members = |contact: usize| scene.reported.iter().filter(|one| one.contact == contact).count();
     let coincident = scene.reported.len() > scene.contacts.len();
     for one in &scene.reported {
-        let index = one.contact;
-        let frame = loading.frame(index, row.state);
-        let gap = frame.gap;
-        let moved = add(&loading.relative(index, row.state), -1.0, &loading.relative(index, row.before));
-        let reaction = row.state.reactions[index];
-        let tangents = if dimension == 2 {
-            [[frame.normal[1], -frame.normal[0], 0.0], [0.0; 3]]
-        } else {
-            tangents_in_space(&frame.normal)
-        };
-        let pairs = 0..dimension - 1;
-        let closed = row.modes[index].is_active();
-        let traction = |k: usize| dot(&reaction.tangential, &tangents[k]) * one.tangential_share * force;
-        rows.push(ContactState {
+        let frame = row.whole.frame(one.contact, row.state);
+        let mut contact = ContactState {
             node: Arc::clone(&one.node),
             obstacle: Arc::clone(&one.obstacle),
-            status: status(row.modes[index]),
-            gap: gap * length,
-            normal_reaction: reaction.normal * one.normal_share * force,
-            tangential_reaction: pairs.clone().map(traction).collect(),
-            slip: pairs.map(|k| if closed { dot(&moved, &tangents[k]) * length } else { 0.0 }).collect(),
-            indeterminate: closed && ((coincident && members(index) > 1) || held_by_too_many(scene, row.modes, index)),
-        });
+            status: Status::Free,
+            gap: frame.gap * length,
+            normal_reaction: 0.0,
+            tangential_reaction: vec![0.0; dimension - 1],
+            slip: vec![0.0; dimension - 1],
+            indeterminate: false,
+        };
+        if let Some(index) = row.places[one.contact] {
+            let reaction = row.state.reactions[index];
+            let tangents = if dimension == 2 {
+                [[frame.normal[1], -frame.normal[0], 0.0], [0.0; 3]]
+            } else {
+                tangents_in_space(&frame.normal)
+            };
+            contact.status = status(row.modes[index]);
+            contact.normal_reaction = reaction.normal * one.normal_share * force;
+            for (value, tangent) in contact.tangential_reaction.iter_mut().zip(&tangents) {
+                *value = dot(&reaction.tangential, tangent) * one.tangential_share * force;
+            }
+            if row.modes[index].is_active() {
+                let moved = add(&loading.relative(index, row.state), -1.0, &loading.relative(index, row.before));
+                for (value, tangent) in contact.slip.iter_mut().zip(&tangents) {
+                    *value = dot(&moved, tangent) * length;
+                }
+                contact.indeterminate =
+                    (coincident && members(one.contact) > 1) || held_by_too_many(loading, row.modes, index);
+            }
+        }
+        rows.push(contact);
     }
     (rows, contact_law::violation(loading, row.state, force_scale))
 }
 
 /// Whether a contact holds its node together with others whose reactions equilibrium does not tell apart.
-fn held_by_too_many(scene: &Scene, modes: &[Mode], contact: usize) -> bool {
-    scene.corners.iter().filter(|corner| corner.contacts.contains(&contact)).any(|corner| {
-        let parts: usize = corner.holding(modes).map(|one| 1 + scene.contacts[one].tangents()).sum();
-        parts > scene.structure.dimension && corner.holding(modes).any(|one| one == contact)
+fn held_by_too_many(loading: Loading<'_>, modes: &[Mode], contact: usize) -> bool {
+    loading.corners.iter().filter(|corner| corner.contacts.contains(&contact)).any(|corner| {
+        let parts: usize = corner.holding(modes).map(|one| 1 + loading.contacts[one].tangents()).sum();
+        parts > loading.structure.dimension && corner.holding(modes).any(|one| one == contact)
     })
 }

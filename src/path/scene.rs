@@ -138,7 +138,9 @@ impl Scene {
         };
         let node_names = model.nodes.keys().map(|name| Arc::from(name.as_str())).collect();
         let analysis = request.analysis.clone();
-        let scene = Self { structure, contacts, contact_names, reported, corners, node_names, stages, analysis, plan };
+        let mut scene =
+            Self { structure, contacts, contact_names, reported, corners, node_names, stages, analysis, plan };
+        scene.plan.left_out.extend(super::near::left_out(&scene));
         scene.refuse_mechanism()?;
         scene.refuse_imbalance()?;
         scene.refuse_dragged_supports(model)?;

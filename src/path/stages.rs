@@ -20,6 +20,7 @@ impl Path<'_> {
             self.at.totals.index += 1;
         }
         self.at.phase = Phase::Running;
+        self.look_ahead(self.at.step);
         self.at.stage_over = self.bound_is_met();
         let event = describe_start(self.scene, self.at.stage, self.at.stage_over);
         let mut point = Point::plain(PointKind::Start, Some(event));
@@ -84,6 +85,7 @@ impl Path<'_> {
         at.here.signature = None;
         at.counts = StageCounts::default();
         at.visited.clear();
+        self.load_anew();
         true
     }
 

@@ -91,6 +91,7 @@ impl Path<'_> {
     pub(super) fn step(&mut self) -> Result<Accepted, StopReason> {
         let (least, most) = (self.scene.analysis.arc_length.min, self.scene.analysis.arc_length.max);
         let mut step = self.at.step.min(most);
+        self.look_ahead(step);
         let mut unresolved = 0;
         let mut known = self.at.here.signature;
         loop {

@@ -9,6 +9,7 @@ use super::decide::{Choice, Decision, Rules};
 use super::follow::{Arriving, Listed};
 use super::increment::{Increment, Point, PointKind};
 use super::loading::Loading;
+use super::near::Near;
 use super::progress::{Phase, Progress};
 use super::record::{self, Row};
 use super::report::Report;
@@ -31,13 +32,20 @@ pub struct Path<'a> {
     /// Strain energy of the undeformed structure (prestress).
     pub(super) initial_strain: f64,
     pub(super) at: Progress,
+    pub(super) near: Near,
 }
 
 impl<'a> Path<'a> {
     pub fn new(scene: &'a Scene, cancel: CancelFlag) -> Self {
-        let at = Progress::new(scene);
-        let initial_strain = scene.structure.strain_energy(&at.here.state.displacement);
-        Self { scene, cancel, began: Instant::now(), elapsed_before: 0.0, initial_strain, at }
+        Self::at(scene, Progress::new(scene), 0.0, cancel)
+    }
+
+    /// At a point that fits the scene; `elapsed_before`: solver time that led there.
+    pub(super) fn at(scene: &'a Scene, at: Progress, elapsed_before: f64, cancel: CancelFlag) -> Self {
+        let undeformed = vec![0.0; scene.structure.freedoms()];
+        let initial_strain = scene.structure.strain_energy(&undeformed);
+        let near = Near::of(scene, &at);
+        Self { scene, cancel, began: Instant::now(), elapsed_before, initial_strain, at, near }
     }
 
     /// Present when the path has ended, that is when `next` has returned `None`.
@@ -50,13 +58,7 @@ impl<'a> Path<'a> {
     }
 
     pub(super) fn loading(&self) -> Loading<'_> {
-        Loading {
-            structure: &self.scene.structure,
-            contacts: &self.scene.contacts,
-            corners: &self.scene.corners,
-            pattern: &self.scene.stages[self.at.stage].pattern,
-            held: &self.at.held,
-        }
+        self.near.loading(self.scene)
     }
 
     pub(super) fn rules(&self) -> Rules<'_> {
@@ -166,6 +168,8 @@ impl<'a> Path<'a> {
         let row = Row {
             stage: self.at.stage,
             loading: self.loading(),
+            whole: self.whole_loading(),
+            places: self.near.places(),
             state: &self.at.here.state,
             before: emitted.before,
             modes: emitted.modes,

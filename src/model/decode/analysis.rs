@@ -17,9 +17,10 @@ const ANALYSIS: Fields = Fields {
         "max_modes",
         "explore",
         "record",
+        "keep_all",
         "regularised",
     ],
-    later: &[("keep_all", "leave it out: every increment is kept")],
+    later: &[],
 };
 
 const ARC_LENGTH: Fields =
@@ -76,6 +77,7 @@ pub(super) fn analysis(input: &Input, mistakes: &mut Mistakes) -> Option<Analysi
     let max_modes = object.with_default("max_modes", default.max_modes, mistakes, count);
     let explore = object.optional("explore", mistakes, explore);
     let record = object.optional("record", mistakes, record);
+    let keep_all = object.with_default("keep_all", default.keep_all, mistakes, boolean);
     let regularised = object.optional("regularised", mistakes, regularised);
     Some(Analysis {
         method: method?,
@@ -86,6 +88,7 @@ pub(super) fn analysis(input: &Input, mistakes: &mut Mistakes) -> Option<Analysi
         max_modes: max_modes?,
         explore: explore?,
         record: record?,
+        keep_all: keep_all?,
         regularised: regularised?,
     })
 }

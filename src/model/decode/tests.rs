@@ -135,9 +135,18 @@ fn analysis() -> impl Strategy<Value = Analysis> {
     let contact = (name(), name()).prop_map(|(node, obstacle)| RecordedContact { node, obstacle });
     let record = (of(vec(name(), 0..3)), of(vec(contact, 0..3)), any::<u64>(), any::<bool>())
         .prop_map(|(nodes, contacts, every, directions)| Record { nodes, contacts, every, directions });
-    let counts = (any::<u64>(), any::<u64>());
+    let counts = (any::<u64>(), any::<u64>(), any::<bool>());
     (method, selection, events, arc_length, counts, explore, of(record), of(regularised)).prop_map(
-        |(method, selection, events, arc_length, (max_increments, max_modes), explore, record, regularised)| Analysis {
+        |(
+            method,
+            selection,
+            events,
+            arc_length,
+            (max_increments, max_modes, keep_all),
+            explore,
+            record,
+            regularised,
+        )| Analysis {
             method,
             selection,
             events,
@@ -146,6 +155,7 @@ fn analysis() -> impl Strategy<Value = Analysis> {
             max_modes,
             explore,
             record,
+            keep_all,
             regularised,
         },
     )

@@ -141,7 +141,10 @@ impl<'a> RegularisedPath<'a> {
         let (old, new) = (modes(&before), modes(&self.here));
         if old != new {
             kind = PointKind::ContactChange;
-            events.push(format!("{} within the step", describe_change(self.scene, &old, Some(&new), &[])));
+            events.push(format!(
+                "{} within the step",
+                describe_change(self.scene.contact_names.iter(), &old, Some(&new), &[])
+            ));
             self.counts.contact_changes += 1;
         }
         let stage_ends = stage_ends || self.counts.end_stage(&self.scene.stages[self.stage].ends);
@@ -181,9 +184,12 @@ impl<'a> RegularisedPath<'a> {
 
     fn emit(&mut self, before: &Point, kind: PointKind, event: Option<String>, step: f64, residual: f64) -> Increment {
         let system = self.system();
+        let places: Vec<Option<usize>> = (0..self.scene.contacts.len()).map(Some).collect();
         let row = Row {
             stage: self.stage,
             loading: system.loading,
+            whole: system.loading,
+            places: &places,
             state: &self.here.state,
             before: &before.state,
             modes: &modes(&self.here),

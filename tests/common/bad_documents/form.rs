@@ -113,9 +113,7 @@ pub fn wrong_form() -> Vec<BadDocument> {
 }
 
 pub fn not_available() -> Vec<BadDocument> {
-    let later = "is not available in this version";
     vec![
-        at("keep all", "/analysis/keep_all", json!(true), later),
         at("segment", "/model/obstacles/floor/kind", json!("segment"), "`plane`, `ball` would do"),
         at("box", "/model/obstacles/floor/kind", json!("box"), "`plane`, `ball` would do"),
     ]

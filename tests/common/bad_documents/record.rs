@@ -56,6 +56,7 @@ pub fn record() -> Vec<BadDocument> {
         ),
         spoilt("every 0th", "/analysis/record/every", json!({"every": 0}), "1 or more is expected"),
         spoilt("directions as a number", "/analysis/record/directions", json!({"directions": 1}), "true or false"),
+        elsewhere("keep all as a number", &[("/analysis/keep_all", json!(1))], "/analysis/keep_all", "true or false"),
         elsewhere(
             "explored, but no directions recorded",
             &[

@@ -1,0 +1,319 @@
+//! Contacts out of reach, which take no part in the path's equations until it comes near them.
+//!
+//! Over an arc length `a` a contact's gap changes by at most `a √(1 + |d|²)`, `d` the translation of its obstacle per load
+//! factor: its node moves against the obstacle by `Δu - d Δs`, `‖(Δu, Δs)‖ <= a`, and a gap changes by no more than the
+//! motion (it is a signed distance). So a gap `g` cannot close before the path has gone on by `g/√(1 + |d|²)`, and is not
+//! looked at before then. A contact that could be reached within a few steps joins the others and stays with them. Which
+//! ones do follows from their gaps alone, not from when these were looked at.
+//!
+//! A contact that is out of reach is free, without reaction: the equations that the others have are those of the whole.
+
+use super::corner::Corner;
+use super::follow::Listed;
+use super::loading::{LoadPattern, Loading};
+use super::plan::LeftOut;
+use super::progress::{Progress, Visited};
+use super::scene::Scene;
+use super::state::{Rate, State};
+use super::tracer::Path;
+use crate::contact::vector::size;
+use crate::contact::{Contact, Mode, Reaction};
+use crate::model::request::Method;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+use std::sync::Arc;
+
+/// A contact is in reach that this many steps could close: more than the one that is taken, so that what is tried past
+/// its end (the program of an increment looks three steps ahead) finds every contact it needs.
+const REACH: f64 = 4.0;
+/// What rounding may do to a bound.
+const ROUNDING: f64 = 1e-9;
+
+/// The contacts in reach, with the loading as it concerns them.
+#[derive(Debug, Clone)]
+pub(super) struct Near {
+    contacts: Vec<Contact>,
+    corners: Vec<Corner>,
+    pattern: LoadPattern,
+    held: LoadPattern,
+    /// For each contact of the scene its place among those in reach.
+    places: Vec<Option<usize>>,
+    far: BinaryHeap<Far>,
+}
+
+/// A contact out of reach.
+#[derive(Debug, Clone, Copy)]
+struct Far {
+    /// Arc length of the path before which its gap cannot close.
+    until: f64,
+    contact: usize,
+}
+
+/// The one that may be reached first is the greatest.
+impl Ord for Far {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.until.total_cmp(&self.until).then(other.contact.cmp(&self.contact))
+    }
+}
+
+impl PartialOrd for Far {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Far {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Far {}
+
+/// How far a contact's gap may change by unit arc length, in any stage.
+fn fastest(scene: &Scene, contact: usize) -> f64 {
+    let shift = scene.stages.iter().fold(0.0_f64, |most, stage| most.max(size(&stage.pattern.shifts[contact])));
+    shift.hypot(1.0)
+}
+
+/// What the plan says of the contacts that are out of reach where the path begins.
+pub(super) fn left_out(scene: &Scene) -> Option<LeftOut> {
+    let analysis = &scene.analysis;
+    if analysis.keep_all || analysis.method == Method::Regularised {
+        return None;
+    }
+    let reach = REACH * analysis.arc_length.initial;
+    let gap = |contact: usize| scene.contacts[contact].gap(&[0.0; 3]);
+    let is_far = |contact: &usize| gap(*contact) / fastest(scene, *contact) > reach;
+    let far = (0..scene.contacts.len()).filter(is_far).count();
+    (far > 0).then(|| LeftOut {
+        what: format!("{far} of {} contacts, each until the path comes near it", scene.contacts.len()),
+        why: format!("their gaps cannot close within {REACH} steps"),
+    })
+}
+
+/// The loading of all contacts; a state's reactions are not to be read through it.
+fn whole<'a>(scene: &'a Scene, at: &'a Progress) -> Loading<'a> {
+    Loading {
+        structure: &scene.structure,
+        contacts: &scene.contacts,
+        corners: &scene.corners,
+        pattern: &scene.stages[at.stage].pattern,
+        held: &at.held,
+    }
+}
+
+impl Near {
+    /// The contacts that `at` has in reach.
+    pub fn of(scene: &Scene, at: &Progress) -> Self {
+        let mut places = vec![None; scene.contacts.len()];
+        for (place, contact) in at.near.iter().enumerate() {
+            places[*contact] = Some(place);
+        }
+        let stage = &scene.stages[at.stage].pattern;
+        let chosen = |pattern: &LoadPattern| LoadPattern {
+            forces: pattern.forces.clone(),
+            supports: pattern.supports.clone(),
+            shifts: at.near.iter().map(|contact| pattern.shifts[*contact]).collect(),
+        };
+        let corners = scene.corners.iter().filter_map(|corner| {
+            let contacts: Vec<usize> = corner.contacts.iter().filter_map(|contact| places[*contact]).collect();
+            (contacts.len() > 1).then_some(Corner { contacts })
+        });
+        // Looked at before the first step, whatever the gap.
+        let far = (0..scene.contacts.len()).filter(|contact| places[*contact].is_none());
+        let far = far.map(|contact| Far { until: f64::NEG_INFINITY, contact }).collect();
+        Self {
+            contacts: at.near.iter().map(|contact| scene.contacts[*contact].clone()).collect(),
+            corners: corners.collect(),
+            pattern: chosen(stage),
+            held: chosen(&at.held),
+            places,
+            far,
+        }
+    }
+
+    pub fn loading<'a>(&'a self, scene: &'a Scene) -> Loading<'a> {
+        Loading {
+            structure: &scene.structure,
+            contacts: &self.contacts,
+            corners: &self.corners,
+            pattern: &self.pattern,
+            held: &self.held,
+        }
+    }
+
+    /// For each contact of the scene its place among those in reach.
+    pub fn places(&self) -> &[Option<usize>] {
+        &self.places
+    }
+}
+
+impl Path<'_> {
+    /// The loading of all contacts, for what is said of those out of reach.
+    pub(super) fn whole_loading(&self) -> Loading<'_> {
+        whole(self.scene, &self.at)
+    }
+
+    /// Takes in every contact that could close within a few steps of this arc length.
+    pub(super) fn look_ahead(&mut self, step: f64) {
+        let (reach, travelled) = (REACH * step, self.at.totals.arc_length);
+        let (mut reached, mut left) = (Vec::new(), Vec::new());
+        while self.near.far.peek().is_some_and(|next| next.until <= travelled + reach) {
+            let Some(Far { contact, .. }) = self.near.far.pop() else { break };
+            let gap = self.whole_loading().gap(contact, &self.at.here.state);
+            let way = gap / fastest(self.scene, contact);
+            if way <= reach {
+                reached.push(contact);
+            } else {
+                left.push(Far { until: travelled + way - ROUNDING * (travelled + way), contact });
+            }
+        }
+        self.near.far.extend(left);
+        if !reached.is_empty() {
+            self.at.admit(&reached);
+            let far = std::mem::take(&mut self.near.far);
+            self.near = Near { far, ..Near::of(self.scene, &self.at) };
+        }
+    }
+
+    /// The loading of the running stage, after a change of stage.
+    pub(super) fn load_anew(&mut self) {
+        let far = std::mem::take(&mut self.near.far);
+        self.near = Near { far, ..Near::of(self.scene, &self.at) };
+    }
+
+    /// Names of the nodes and obstacles of the contacts in reach.
+    pub(super) fn names(&self) -> impl Iterator<Item = &(Arc<str>, Arc<str>)> {
+        self.at.near.iter().map(|contact| &self.scene.contact_names[*contact])
+    }
+
+    /// The present state and modes of all contacts.
+    pub(super) fn visit(&self) -> Visited {
+        let mut state = self.at.here.state.clone();
+        let near = std::mem::take(&mut state.reactions);
+        state.reactions = spread(&near, self.near.places());
+        Visited { stage: self.at.stage, state, modes: spread_modes(&self.at.here.modes, self.near.places()) }
+    }
+}
+
+fn spread(near: &[Reaction], places: &[Option<usize>]) -> Vec<Reaction> {
+    places.iter().map(|place| place.map_or_else(Reaction::default, |place| near[place])).collect()
+}
+
+fn spread_modes(near: &[Mode], places: &[Option<usize>]) -> Vec<Mode> {
+    places.iter().map(|place| place.map_or(Mode::Free, |place| near[place])).collect()
+}
+
+impl Progress {
+    /// Numbers the contacts in reach anew, some more among them, which are free.
+    fn admit(&mut self, contacts: &[usize]) {
+        let before = self.near.clone();
+        self.near.extend(contacts);
+        self.near.sort_unstable();
+        let old: Vec<Option<usize>> = self.near.iter().map(|contact| before.binary_search(contact).ok()).collect();
+        let reactions = |values: &mut Vec<Reaction>| *values = spread(values, &old);
+        let modes = |values: &mut Vec<Mode>| *values = spread_modes(values, &old);
+        let rate = |rate: &mut Rate| reactions(&mut rate.reactions);
+        let listed = |listed: &mut Listed| {
+            for option in &mut listed.options {
+                rate(&mut option.rate);
+                modes(&mut option.modes);
+            }
+            listed.arriving.iter_mut().for_each(|arriving| modes(&mut arriving.modes));
+        };
+        let state = |state: &mut State| reactions(&mut state.reactions);
+        state(&mut self.here.state);
+        modes(&mut self.here.modes);
+        self.here.rate.iter_mut().for_each(rate);
+        self.here.drift.iter_mut().for_each(rate);
+        if let Some((begun, direction)) = &mut self.begun {
+            state(begun);
+            rate(direction);
+        }
+        self.listed.iter_mut().for_each(listed);
+        self.followed.iter_mut().for_each(|followed| listed(&mut followed.listed));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cancel::CancelFlag;
+    use crate::model::JobRequest;
+    use serde_json::{Value, json};
+
+    /// A node on springs over a floor, drawn towards a wall, with walls much farther away.
+    fn request(far: usize, keep_all: bool) -> JobRequest {
+        let mut obstacles = json!({
+            "floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]},
+            "wall": {"kind": "plane", "point": [2, 0], "normal": [-1, 0]},
+        });
+        let contact = |name: &str| json!({"node": "tip", "obstacle": name, "friction": 0.3});
+        let mut contacts: Vec<Value> = Vec::new();
+        for index in 0..far {
+            let name = format!("far{index}");
+            obstacles[&name] = json!({"kind": "ball", "center": [10 + index, 50], "radius": 5});
+            contacts.push(contact(&name));
+        }
+        contacts.extend([contact("floor"), contact("wall")]);
+        serde_json::from_value(json!({
+            "model": {
+                "dimension": 2, "nodes": {"tip": [0, 0]},
+                "elements": [{"kind": "spring", "nodes": ["tip"], "stiffness": [[1, 0.2], [0.2, 1]]}],
+                "obstacles": obstacles, "contacts": contacts,
+                "stages": [
+                    {"name": "press", "forces": {"tip": [0, -1]}, "until": {"load_above": 1}},
+                    {"name": "pull", "forces": {"tip": [1, 0]}, "until": {"load_above": 4}},
+                    {"name": "slide", "obstacle_motion": {"wall": [-1, 0]}, "until": {"load_above": 1}},
+                ],
+            },
+            "analysis": {"keep_all": keep_all},
+        }))
+        .expect("a request")
+    }
+
+    #[test]
+    fn only_what_can_be_reached_is_in_the_equations() {
+        let request = request(500, false);
+        let scene = Scene::new(&request).expect("a scene");
+        assert!(scene.plan().left_out.iter().any(|left| left.what.starts_with("501 of 502 contacts")));
+        let mut path = Path::new(&scene, CancelFlag::default());
+        let mut seen = Vec::new();
+        let mut looks = 0;
+        while path.next().is_some() {
+            if seen.last() != Some(&path.at.near) {
+                seen.push(path.at.near.clone());
+            }
+            looks += path.near.far.iter().filter(|far| far.until <= path.at.totals.arc_length).count();
+        }
+        assert_eq!(seen, [vec![500], vec![500, 501]], "the floor, then the wall too");
+        assert_eq!(looks, 0, "no far contact was looked at again");
+    }
+
+    #[test]
+    fn with_and_without_far_contacts_it_is_one_path_and_can_be_taken_up_anywhere() {
+        let rows = |far: usize, keep_all: bool| {
+            let scene = Scene::new(&request(far, keep_all)).expect("a scene");
+            let mut path = Path::new(&scene, CancelFlag::default());
+            let mut rows = Vec::new();
+            while let Some(row) = path.next() {
+                rows.push(row);
+                // Put down and taken up at every point.
+                path = Path::resume(&scene, path.checkpoint(), CancelFlag::default()).expect("a path");
+            }
+            rows
+        };
+        let none = rows(0, true);
+        assert!(none.len() > 20 && none.iter().any(|row| row.contacts[1].normal_reaction > 0.0));
+        for others in [rows(0, false), rows(30, false), rows(30, true)] {
+            assert_eq!(others.len(), none.len());
+            for (other, row) in others.iter().zip(&none) {
+                let far = other.contacts.len() - 2;
+                assert_eq!((other.load_factor, &other.displacements), (row.load_factor, &row.displacements));
+                assert_eq!((&other.contacts[far..], &other.point), (&row.contacts[..], &row.point));
+                assert!(other.contacts[..far].iter().all(|contact| contact.gap > 1.0));
+            }
+        }
+    }
+}

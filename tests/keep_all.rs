@@ -1,0 +1,99 @@
+//! What a scene does not need is left out: with `keep_all` it is not, and the path is the same.
+
+mod common;
+
+use arcslip::model::JobRequest;
+use arcslip::model::request::{Contact, Obstacle, Side};
+use arcslip::path::Increment;
+use common::paths::{Traced, judged, scene};
+
+const SAME: f64 = 1e-10;
+
+fn near(one: f64, other: f64, place: &str) {
+    assert!((one - other).abs() <= SAME * (1.0 + one.abs()), "{place}: {one:e} and {other:e}");
+}
+
+/// The same points, whatever contacts come after those of the first.
+fn assert_same(one: &[Increment], other: &[Increment], name: &str) {
+    assert_eq!(one.len(), other.len(), "{name}");
+    for (one, other) in one.iter().zip(other) {
+        let place = format!("{name}, increment {}", one.index);
+        assert_eq!(one.point, other.point, "{place}");
+        near(one.load_factor, other.load_factor, &place);
+        near(one.step, other.step, &place);
+        for (one, other) in one.displacements.values().flatten().zip(other.displacements.values().flatten()) {
+            near(*one, *other, &place);
+        }
+        for (one, other) in one.contacts.iter().zip(&other.contacts) {
+            assert_eq!((&one.node, &one.obstacle, one.status), (&other.node, &other.obstacle, other.status), "{place}");
+            near(one.gap, other.gap, &place);
+            near(one.normal_reaction, other.normal_reaction, &place);
+            for (one, other) in one.tangential_reaction.iter().zip(&other.tangential_reaction) {
+                near(*one, *other, &place);
+            }
+        }
+        assert_eq!(one.directions.as_ref().map(Vec::len), other.directions.as_ref().map(Vec::len), "{place}");
+        for (one, other) in one.directions.iter().flatten().zip(other.directions.iter().flatten()) {
+            assert_eq!(one.contacts[..], other.contacts[..one.contacts.len()], "{place}");
+            assert_eq!((one.taken, one.retrace, one.mechanism), (other.taken, other.retrace, other.mechanism));
+        }
+    }
+}
+
+/// Contacts of every free node that has one with balls that it never comes near.
+fn with_far_contacts(mut request: JobRequest, number: usize) -> JobRequest {
+    let model = &mut request.model;
+    let nodes: Vec<String> = model.contacts.iter().map(|contact| contact.node.clone()).collect();
+    if nodes.is_empty() {
+        return request;
+    }
+    let reach = model.nodes.values().flatten().fold(1.0_f64, |most, value| most.max(value.abs()));
+    for index in 0..number {
+        let mut center = vec![1e3 * reach; model.dimension];
+        center[0] += reach * index as f64;
+        let name = format!("far {index}");
+        model.obstacles.insert(name.clone(), Obstacle::Ball { center, radius: reach, side: Side::Outside });
+        model.contacts.push(Contact { node: nodes[index % nodes.len()].clone(), obstacle: name, friction: 0.5 });
+    }
+    request
+}
+
+fn kept(mut request: JobRequest) -> JobRequest {
+    request.analysis.keep_all = true;
+    request
+}
+
+#[test]
+fn every_scene_has_one_path_with_and_without_savings() {
+    let mut left_out = 0;
+    for built_in in arcslip::scenes::ALL {
+        let request = scene(built_in.name);
+        let (saving, keeping) = (judged(&request), judged(&kept(request)));
+        assert_same(&saving.increments, &keeping.increments, built_in.name);
+        assert_eq!(saving.report.stop_reason, keeping.report.stop_reason);
+        left_out += usize::from(saving.plan.left_out.len() > keeping.plan.left_out.len());
+    }
+    assert!(left_out > 0, "some scene has a contact that is out of reach at first");
+}
+
+#[test]
+fn far_contacts_change_nothing() {
+    for built_in in arcslip::scenes::ALL {
+        let alone = judged(&scene(built_in.name));
+        let Traced { increments, errors, plan, .. } = judged(&with_far_contacts(scene(built_in.name), 12));
+        assert_same(&alone.increments, &increments, built_in.name);
+        assert!(errors.iter().all(|errors| errors.largest_of_state() <= 1e-10), "{}", built_in.name);
+        let far = increments[0].contacts.len() > alone.increments[0].contacts.len();
+        assert_eq!(far, plan.left_out.iter().any(|left| left.what.contains("until the path comes near")) && far);
+    }
+}
+
+#[test]
+fn the_plan_names_the_contacts_that_are_left_out() {
+    let request = with_far_contacts(scene("one-bar-truss"), 12);
+    let plan = judged(&request).plan;
+    let named = plan.left_out.iter().find(|left| left.what.starts_with("12 of 13 contacts")).expect("named");
+    assert!(named.why.contains("cannot close"));
+    let plan = judged(&kept(request)).plan;
+    assert!(!plan.left_out.iter().any(|left| left.what.contains("of 13 contacts")));
+}
