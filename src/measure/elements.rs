@@ -58,6 +58,31 @@ pub(super) fn element_forces(model: &Model, element: &Element, u: &[Vec<f64>]) -
     }
 }
 
+/// Multiple of unit round-off that a difference of two rounded numbers, made from rounded ones, may be off by.
+const ROUNDINGS: f64 = 16.0;
+
+/// What the rounding of displacements (and of a bar's places, over its length) puts into the forces on an element's nodes.
+pub(super) fn element_rounding(model: &Model, element: &Element, u: &[Vec<f64>]) -> Vec<(usize, f64)> {
+    let largest = |vectors: &[&Vec<f64>]| vectors.iter().copied().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let index = |name: &String| model.nodes.get_index_of(name).unwrap_or(0);
+    match element {
+        Element::Bar { nodes, axial_stiffness, rest_length, .. } => {
+            let Bar { stretch, rest, ends, .. } = bar(model, nodes, *rest_length, u);
+            let moved = largest(&[&u[ends[0]], &u[ends[1]]]);
+            // The tangent of Green strain grows with the square of the stretch.
+            let stiffness = axial_stiffness / rest * stretch.max(1.0).powi(2);
+            ends.iter().map(|end| (*end, ROUNDINGS * f64::EPSILON * stiffness * moved)).collect()
+        }
+        Element::Spring { nodes, stiffness } => {
+            let ends: Vec<usize> = nodes.iter().map(index).collect();
+            let moved = ends.iter().map(|end| largest(&[&u[*end]])).fold(0.0, f64::max);
+            let row = |row: &Vec<f64>| row.iter().map(|value| value.abs()).sum::<f64>();
+            let stiffness = stiffness.iter().map(row).fold(0.0, f64::max);
+            ends.iter().map(|end| (*end, ROUNDINGS * f64::EPSILON * stiffness * moved)).collect()
+        }
+    }
+}
+
 pub(super) fn strain_energy(model: &Model, u: &[Vec<f64>]) -> f64 {
     let energy = |element: &Element| match element {
         Element::Bar { nodes, axial_stiffness, rest_length, prestress, strain } => {
