@@ -60,6 +60,11 @@ pub enum Before<'a> {
 pub const STATIONARY: f64 = 1e-9;
 /// Dissipations closer than this, relative to the largest force, tie.
 const TIE: f64 = 1e-8;
+/// Difference to the incoming direction reversed, of unit arc length, within which a direction may be the way back.
+const BACK: f64 = 4e-5;
+/// The same of the reactions, relative to the largest.
+const BACK_REACTIONS: f64 = 1e-4;
+
 /// Settings and scales of a decision.
 #[derive(Debug, Clone, Copy)]
 pub struct Rules<'a> {
@@ -93,7 +98,6 @@ pub fn list(
         };
         let Some((modes, later_load)) = confirmed else { continue };
         let load_sign = sign_of(if sign_of(candidate.rate.load) == 0.0 { later_load } else { candidate.rate.load });
-        let retrace = incoming.is_some_and(|incoming| is_reverse(&candidate.rate, incoming));
         let potential_rate = potential_rate(loading, state, &candidate.rate, candidate.dissipation);
         options.push(Choice {
             rate: candidate.rate,
@@ -101,9 +105,15 @@ pub fn list(
             dissipation: candidate.dissipation,
             potential_rate,
             load_sign,
-            retrace,
+            retrace: false,
             mechanism,
         });
+    }
+    // Several may run close to the way back; that is the closest.
+    let off = |option: &Choice| incoming.and_then(|incoming| off_reverse(&option.rate, incoming));
+    let back = options.iter_mut().filter_map(|option| Some((off(option)?, option)));
+    if let Some((_, option)) = back.min_by(|a, b| a.0.total_cmp(&b.0)) {
+        option.retrace = true;
     }
     (options, found)
 }
@@ -124,15 +134,14 @@ pub fn sign_of(load: f64) -> f64 {
     if load.abs() <= STATIONARY { 0.0 } else { load.signum() }
 }
 
-/// Whether a direction is the incoming one reversed, reactions included.
-fn is_reverse(rate: &Rate, incoming: &Rate) -> bool {
+/// How far a direction is from the incoming one reversed, reactions included; `None` where it is another.
+fn off_reverse(rate: &Rate, incoming: &Rate) -> Option<f64> {
     let size = rate.largest_reaction().max(incoming.largest_reaction()).max(f64::MIN_POSITIVE);
-    rate.product(incoming) < -1.0 + 1e-9
-        && rate.reactions.iter().zip(&incoming.reactions).all(|(rate, incoming)| {
-            let mut sum = *rate;
-            sum.add(1.0, incoming);
-            sum.difference(&Reaction::default()) <= 1e-4 * size
-        })
+    let mut sum = rate.clone();
+    sum.add(incoming, 1.0);
+    let motion = sum.size();
+    let reactions = sum.reactions.iter().map(|sum| sum.difference(&Reaction::default()) / size).fold(0.0, f64::max);
+    (motion <= BACK && reactions <= BACK_REACTIONS).then(|| motion.max(reactions))
 }
 
 /// Lists the directions and takes one.
