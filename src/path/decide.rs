@@ -207,7 +207,8 @@ fn is_preferred(first: &Choice, second: &Choice, previous: &Rate, rules: Rules<'
     let cosine = |choice: &Choice| {
         let size = dot(&choice.rate.displacement, &choice.rate.displacement).sqrt();
         let along = dot(&choice.rate.displacement, &previous.displacement);
-        if size > 0.0 { along / size } else { 0.0 }
+        // Where only the load and the reactions change there is no direction to compare.
+        if size > STATIONARY { along / size } else { 0.0 }
     };
     match rules.selection {
         Selection::Straightest => cosine(first) > cosine(second),

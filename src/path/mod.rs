@@ -16,8 +16,9 @@
 //! | `rates`, `turning` | all rays of a rate problem, linear forms only; slip whose direction is unknown |
 //! | `program`, `naming` | the MPEC of an increment; where it names the mode |
 //! | `energy`, `record`, `increment`, `report`, `stop` | balances, rows, totals, reasons |
-//! | `tracer`, `stepping`, `arrival` | the iterator; how far a step goes; what a point turned out to be |
-//! | `checkpoint`, `follow` | a path put down at a point and taken up again; along another direction |
+//! | `tracer`, `stages`, `stepping`, `arrival` | the iterator; how a stage begins; how far a step goes; what a point turned out to be |
+//! | `totals` | sums and maxima along a path, of either method |
+//! | `progress`, `checkpoint`, `follow` | what decides how a path goes on; a path put down at a point and taken up again; along another direction |
 //! | `regularised`, `traced` | the rival method; the path by whichever method is named |
 
 mod advance;
@@ -44,6 +45,7 @@ mod naming;
 mod newton;
 pub mod plan;
 mod program;
+mod progress;
 mod rates;
 mod record;
 pub mod regularised;
@@ -51,10 +53,12 @@ pub mod report;
 mod root;
 pub mod scene;
 mod singular;
+mod stages;
 mod standing;
 mod state;
 mod stepping;
 pub mod stop;
+mod totals;
 mod traced;
 pub mod tracer;
 mod track;

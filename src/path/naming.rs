@@ -25,8 +25,8 @@ impl Path<'_> {
     /// Its increment has about the arc length asked for, not exactly; where it names another mode, it may have gone past
     /// the end of this one, and is asked again for shorter increments.
     pub(super) fn program_keeps_mode(&mut self, rate: &Rate, step: f64) -> bool {
-        let modes = self.here.modes.clone();
-        let state = self.here.state.clone();
+        let modes = self.at.here.modes.clone();
+        let state = self.at.here.state.clone();
         let mut tried = step;
         for _ in 0..TRIALS {
             let named = self.name(&state, rate, &modes, tried);
@@ -41,8 +41,8 @@ impl Path<'_> {
     /// Arc length to the first change of a contact along a direction, to first order: an increment that goes on past it
     /// ends in another mode. Infinite where none is ahead.
     fn way_to_next_change(&self, modes: &[Mode], rate: &Rate) -> f64 {
-        let (loading, state) = (self.loading(), &self.here.state);
-        let forces = self.force_scale;
+        let (loading, state) = (self.loading(), &self.at.here.state);
+        let forces = self.at.totals.force_scale;
         watch::of_mode(loading, modes)
             .into_iter()
             .filter_map(|watch| {
@@ -58,7 +58,7 @@ impl Path<'_> {
         let loading = self.loading();
         let ahead = base.advanced(expected, step);
         let reactions = ahead.reactions.iter().fold(0.0_f64, |largest, reaction| largest.max(reaction.size()));
-        let force = self.force_scale.max(ahead.load.abs()).max(reactions).max(f64::MIN_POSITIVE);
+        let force = self.at.totals.force_scale.max(ahead.load.abs()).max(reactions).max(f64::MIN_POSITIVE);
         let mut program = IncrementProgram::new(loading, base, expected, step, force);
         if program.pairs() == 0 {
             // No contact can be reached: there is nothing to decide.
@@ -70,8 +70,8 @@ impl Path<'_> {
         }
         let start = program.variables_at(expected);
         let (named, counts) = program.name(&start, modes, &self.cancel);
-        self.work.qp_solves += counts.qp_solves;
-        self.work.mpec_solves += counts.mpec_solves;
+        self.at.totals.work.qp_solves += counts.qp_solves;
+        self.at.totals.work.mpec_solves += counts.mpec_solves;
         named
     }
 
@@ -81,11 +81,11 @@ impl Path<'_> {
     /// The forward term rewards the direction that is tried, not the one in which the path came: where the path turns
     /// against its past (a contact closes, the load turns), that term would hold the increment back at zero.
     pub(super) fn confirmed_by_program(&mut self, options: &[Choice]) -> Vec<Option<bool>> {
-        let state = self.here.state.clone();
+        let state = self.at.here.state.clone();
         let mut confirmed = Vec::with_capacity(options.len());
         for option in options {
             let within = WITHIN * self.way_to_next_change(&option.modes, &option.rate);
-            let mut step = (FIRST_TRIAL * self.step).min(within);
+            let mut step = (FIRST_TRIAL * self.at.step).min(within);
             let mut agrees = (within >= RESOLVED).then_some(false);
             if !option.retrace && !option.mechanism && agrees.is_some() {
                 for _ in 0..TRIALS {

@@ -6,7 +6,6 @@ pub mod bad_documents;
 pub mod exact;
 #[cfg(feature = "server")]
 pub mod faulty_store;
-pub mod generated;
 pub mod generators;
 pub mod paths;
 pub mod random;

@@ -45,17 +45,17 @@ fn followed(scene: &Scene) -> Vec<Vec<Increment>> {
     loop {
         let mut path = Path::new(scene, CancelFlag::default());
         let point = path.by_ref().find(|i| i.point.kind == PointKind::SmoothBifurcation).unwrap();
-        let tangent = path.here.rate.clone().unwrap();
-        let here = &path.here;
+        let tangent = path.at.here.rate.clone().unwrap();
+        let here = &path.at.here;
         let found = super::branches(path.loading(), &here.modes, &here.state, &tangent, path.rules().force_scale);
         assert_eq!(found.options.len(), point.directions.unwrap().len());
         if all.len() == found.options.len() {
             return all;
         }
         let choice = found.options[all.len()].clone();
-        path.here.rate = Some(choice.rate);
-        path.here.load_sign = choice.load_sign;
-        path.here.signature = None;
+        path.at.here.rate = Some(choice.rate);
+        path.at.here.load_sign = choice.load_sign;
+        path.at.here.signature = None;
         all.push(std::iter::from_fn(|| path.next()).take(12).collect());
     }
 }

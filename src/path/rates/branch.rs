@@ -150,6 +150,9 @@ impl Search<'_> {
             }
             Line::Plane(basis) => {
                 self.findings.degenerate = true;
+                for weights in self.problem.edges(chosen, &basis) {
+                    self.keep(chosen, weights);
+                }
                 if self.findings.planes.len() < MOST_PLANES {
                     self.findings.planes.push(basis);
                 }

@@ -67,6 +67,35 @@ impl RateProblem {
         self.forms.row(form).iter().zip(weights.iter()).map(|(a, b)| a * b).sum()
     }
 
+    /// The edges, of unit arc length, of what a combination leaves of a plane: along each some inequality holds with
+    /// equality. None where the plane has another dimension than two.
+    pub(super) fn edges(&self, chosen: &[usize], basis: &DMatrix<f64>) -> Vec<DVector<f64>> {
+        if basis.ncols() != 2 {
+            return Vec::new();
+        }
+        let choices = self.entities.iter().zip(chosen).map(|(entity, &choice)| &entity.options[choice]);
+        let mut edges: Vec<DVector<f64>> = Vec::new();
+        for signed in choices.flat_map(|choice| &choice.nonnegative) {
+            let row = self.forms.row(signed.form);
+            let parts = [0, 1].map(|column| row.transpose().dot(&basis.column(column)));
+            if parts[0].abs().max(parts[1].abs()) <= WEAK * row.amax() * basis.amax() {
+                continue;
+            }
+            let along = basis.column(0) * parts[1] - basis.column(1) * parts[0];
+            let size = self.size(&along);
+            if !(size.is_finite() && size > WEAK * (&self.reactions * &along).amax()) {
+                continue;
+            }
+            for weights in [-&along / size, &along / size] {
+                let is_new = |known: &DVector<f64>| (known - &weights).amax() > WEAK * weights.amax();
+                if edges.iter().all(is_new) && self.violated(chosen, &weights).is_empty() {
+                    edges.push(weights);
+                }
+            }
+        }
+        edges
+    }
+
     /// The options of each entity under which a ray of unit arc length, found under the chosen ones, is feasible. As
     /// every option speaks of its own entity only, the ray is feasible under every combination of them.
     pub(super) fn fitting(&self, chosen: &[usize], weights: &DVector<f64>) -> Vec<Vec<usize>> {

@@ -2,7 +2,9 @@
 //!
 //! Nonlinear Gauss-Seidel for contact and friction (M. Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235,
 //! doi:10.1016/S0045-7825(98)00383-1), in velocities. Where the structure is stable it comes to the combination that
-//! goes on, however many contacts touch; what it gives is examined exactly like any other combination.
+//! goes on, however many contacts touch; what it gives is examined exactly like any other combination. Along a chain of
+//! contacts plain sweeps take a number that grows with the square of its length; they are over-relaxed (C. W. Cryer,
+//! SIAM J. Control 9 (1971) 385, doi:10.1137/0309028), and plain again where that does not settle.
 
 use super::problem::{Entity, RateProblem, Touching};
 use crate::cancel::CancelFlag;
@@ -10,8 +12,10 @@ use nalgebra::{DMatrix, DVector};
 
 /// Products that the sweeps of one sign of the load rate may take.
 const WORK: usize = 400_000_000;
-/// Sweeps without a change of any option after which the combination is taken.
-const SETTLED: usize = 60;
+/// Change of the largest velocity in a sweep, over that velocity, below which the sweeps have settled.
+const SETTLED: f64 = 1e-12;
+/// Factors of relaxation, tried one after another.
+const RELAXATIONS: [f64; 3] = [1.9, 1.6, 1.0];
 
 /// A coefficient this small is none.
 const ROUND_OFF: f64 = 1e-12;
@@ -29,7 +33,11 @@ pub fn sweeps(problem: &RateProblem, cancel: &CancelFlag) -> Vec<Vec<usize>> {
     if !by_load {
         return Vec::new();
     }
-    [1.0, -1.0].into_iter().filter_map(|sign| settle(problem, &locals, sign * load[last].signum(), cancel)).collect()
+    let settled = |sign: f64| {
+        let from = sign * load[last].signum();
+        RELAXATIONS.iter().find_map(|relaxation| settle(problem, &locals, from, *relaxation, cancel))
+    };
+    [1.0, -1.0].into_iter().filter_map(settled).collect()
 }
 
 /// An entity with the columns of its velocities.
@@ -57,6 +65,15 @@ impl Local {
                     .then_some(Self::Pair { force: force.form, velocity: own(velocity.form)? })
             }
         }
+    }
+
+    /// The columns of the entity's velocities.
+    fn columns(&self) -> impl Iterator<Item = usize> {
+        let (first, second) = match *self {
+            Self::Pair { velocity, .. } => (velocity, None),
+            Self::Touching { normal, tangential, .. } => (normal, Some(tangential)),
+        };
+        std::iter::once(first).chain(second)
     }
 
     /// Puts the entity's velocities where its own conditions hold; its option.
@@ -109,24 +126,50 @@ impl Local {
     }
 }
 
-fn settle(problem: &RateProblem, locals: &[Local], load: f64, cancel: &CancelFlag) -> Option<Vec<usize>> {
+fn settle(
+    problem: &RateProblem,
+    locals: &[Local],
+    load: f64,
+    relaxation: f64,
+    cancel: &CancelFlag,
+) -> Option<Vec<usize>> {
     let forms = &problem.forms;
     let mut weights = DVector::zeros(problem.weights());
     weights[problem.weights() - 1] = load;
     let mut chosen = vec![usize::MAX; locals.len()];
-    let (mut unchanged, mut worked) = (0, 0);
-    while unchanged < SETTLED {
+    let mut worked = 0;
+    loop {
         if cancel.is_cancelled() || worked > WORK {
             return None;
         }
         worked += 5 * locals.len() * weights.len();
         let mut same = true;
+        let (mut change, mut largest) = (0.0_f64, 0.0_f64);
         for (local, chosen) in locals.iter().zip(&mut chosen) {
+            let before: [f64; 2] = pick(local, &weights);
             let option = local.solve(forms, &mut weights)?;
             same &= option == *chosen;
             *chosen = option;
+            for (column, before) in local.columns().zip(before) {
+                let own = weights[column];
+                // What its own conditions hold at zero stays there, and nothing turns round.
+                let relaxed = before + relaxation * (own - before);
+                weights[column] = if own == 0.0 || relaxed * own <= 0.0 { own } else { relaxed };
+                change = change.max((own - before).abs());
+                largest = largest.max(own.abs());
+            }
         }
-        unchanged = if same { unchanged + 1 } else { 0 };
+        if !largest.is_finite() {
+            return None;
+        }
+        if same && change <= SETTLED * largest {
+            return Some(chosen);
+        }
     }
-    Some(chosen)
+}
+
+fn pick(local: &Local, weights: &DVector<f64>) -> [f64; 2] {
+    let mut values = [0.0; 2];
+    values.iter_mut().zip(local.columns()).for_each(|(value, column)| *value = weights[column]);
+    values
 }
