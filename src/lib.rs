@@ -39,6 +39,7 @@ pub mod output;
 pub mod path;
 pub mod scenes;
 pub mod structure;
+pub mod verify;
 
 #[cfg(feature = "server")]
 pub mod command;

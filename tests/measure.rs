@@ -6,7 +6,7 @@ mod common;
 use arcslip::measure::{Errors, Judge};
 use arcslip::model::JobRequest;
 use arcslip::path::Increment;
-use common::exact::{Hump, Tractrix};
+use arcslip::verify::exact::{Hump, Tractrix};
 use common::paths::{scene_file, typed};
 use serde_json::{Map, Value, json};
 

@@ -3,7 +3,6 @@
 #![allow(dead_code)]
 
 pub mod bad_documents;
-pub mod exact;
 #[cfg(feature = "server")]
 pub mod faulty_store;
 pub mod generators;
