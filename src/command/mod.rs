@@ -10,6 +10,7 @@ mod plot;
 mod scenes;
 mod serve;
 mod solve;
+mod verify;
 
 use clap::{Parser, Subcommand};
 use std::io::Write;
@@ -32,6 +33,7 @@ enum Command {
     Solve(solve::Arguments),
     Check(check::Arguments),
     Scenes(scenes::Arguments),
+    Verify(verify::Arguments),
     Health(health::Arguments),
     #[command(hide = true)]
     Openapi(openapi::Arguments),
@@ -66,6 +68,7 @@ pub fn run() -> ExitCode {
         Command::Solve(arguments) => solve::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Scenes(arguments) => scenes::run(&arguments),
+        Command::Verify(arguments) => verify::run(&arguments),
         Command::Health(arguments) => health::run(&arguments),
         Command::Openapi(arguments) => openapi::run(&arguments),
     };

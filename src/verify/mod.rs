@@ -71,7 +71,7 @@ pub struct Row {
     pub state_error: Option<f64>,
     /// The measure's largest error of energy balance; `None` where it is not finite.
     pub energy_error: Option<f64>,
-    /// Why the path ended, or why the request was not taken.
+    /// Why the path ended, or where the request has the mistake for which it was not taken.
     pub stop_reason: String,
     /// Increments after the start.
     pub increments: u64,
@@ -127,7 +127,7 @@ impl Case {
     }
 
     fn refused(mut self, pointer: &'static str) -> Self {
-        self.ending = Ending::Refused(pointer);
+        (self.ending, self.methods) = (Ending::Refused(pointer), AUTO);
         self
     }
 
@@ -156,7 +156,8 @@ impl Case {
         let scene = match Scene::new(&request) {
             Ok(scene) => scene,
             Err(errors) => {
-                row.stop_reason = errors.to_string();
+                let first = errors.0.first().map_or("", |error| error.pointer.as_str());
+                row.stop_reason = format!("refused at {first}");
                 row.pass = match self.ending {
                     Ending::Refused(pointer) => errors.0.first().is_some_and(|error| error.pointer == pointer),
                     Ending::Stops(_) | Ending::MayStop(_) => false,

@@ -33,9 +33,7 @@ pub fn cases() -> Vec<Case> {
             cases.push(Case::new("critical-friction", name, node.request()).exact(1e-10, move |path| node.error(path)));
         }
     }
-    cases.extend(
-        [-90.0, -80.0, -45.0, -20.0, 0.0, 45.0, 90.0, 135.0, 180.0, 200.0, 260.0].map(|degrees| at_rest(degrees)),
-    );
+    cases.extend([-90.0, -80.0, -45.0, -20.0, 0.0, 45.0, 90.0, 135.0, 180.0, 200.0, 260.0].map(at_rest));
     cases
 }
 

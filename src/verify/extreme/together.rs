@@ -10,12 +10,12 @@ const SEPARATIONS: [f64; 7] = [0.0, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 1e-6];
 
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
-    cases.extend([0.0, 1e-13, -1e-13, 1e-11, -1e-11, 1e-9, -1e-9, 1e-6, -1e-6].map(|off| landing_at_the_limit(off)));
+    cases.extend([0.0, 1e-13, -1e-13, 1e-11, -1e-11, 1e-9, -1e-9, 1e-6, -1e-6].map(landing_at_the_limit));
     for number in [2, 6] {
         cases.extend(SEPARATIONS.map(|apart| slips(number, apart)));
         cases.extend(SEPARATIONS.map(|apart| landings(number, apart)));
     }
-    cases.extend([0.0, 1e-6].map(|apart| falling_slips(apart)));
+    cases.extend([0.0, 1e-6].map(falling_slips));
     cases
 }
 

@@ -9,17 +9,15 @@ use crate::path::increment::Status;
 
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
-    cases.extend(
-        [0.0, 1e-13, 1e-12, 1e-11, 1e-9, 1e-6, 1e-4, -1e-13, -1e-12, -1e-11, -1e-9, -1e-6].map(|rise| grazing(rise)),
-    );
+    cases.extend([0.0, 1e-13, 1e-12, 1e-11, 1e-9, 1e-6, 1e-4, -1e-13, -1e-12, -1e-11, -1e-9, -1e-6].map(grazing));
     for slope in [1e-6, 1e-3, 1.0, 3.0, 1e3, 1e6] {
         for friction in [0.0, 0.25] {
             cases.push(wedge(slope, friction));
         }
     }
     cases.extend([2, 3, 10].map(repeated));
-    cases.extend([0.0, 1e-14, 1e-13, 1e-12, 1e-10, 1e-8, 1e-6].map(|tilt| tilted(tilt)));
-    cases.extend([1e-14, 1e-13, 1e-12, 1e-10, 1e-8, 1e-6].map(|depth| beneath(depth)));
+    cases.extend([0.0, 1e-14, 1e-13, 1e-12, 1e-10, 1e-8, 1e-6].map(tilted));
+    cases.extend([1e-14, 1e-13, 1e-12, 1e-10, 1e-8, 1e-6].map(beneath));
     cases
 }
 
