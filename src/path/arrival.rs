@@ -137,8 +137,9 @@ impl Path<'_> {
         let mut confirmed_one = true;
         if self.scene.analysis.method == Method::Mpec && decision.taken.is_some() {
             let confirmed = self.confirmed_by_program(&decision.options);
-            let best = decide::preferred(&decision.options, incoming, self.rules(), |index| confirmed[index]);
-            confirmed_one = best.is_some();
+            let open = |index: usize| confirmed[index] != Some(false) && !decision.options[index].retrace;
+            let best = decide::preferred(&decision.options, incoming, self.rules(), open);
+            confirmed_one = best.is_some_and(|best| confirmed[best] == Some(true));
             decision.taken = best.or(decision.taken);
         }
         let old_modes = self.at.here.modes.clone();

@@ -8,7 +8,7 @@ use super::changeable::{Changeable, Forms, Outcome};
 use super::corner::whole_rates;
 use super::directions::{Alternative, Candidate, Found, RANK, WEAK, is_mechanism, merge, sort};
 use super::loading::Loading;
-use super::mode_system::ModeSystem;
+use super::mode_system::{Kind, ModeSystem};
 use super::rates::{self, RateProblem, Ray};
 use super::standing::Standing;
 use super::state::{Rate, State};
@@ -316,19 +316,18 @@ fn bordered(
     state: &State,
     incoming: Option<&Rate>,
 ) -> Option<Factorisation> {
-    let matrix = system.matrix(state);
-    let mut by_load = matrix.clone();
-    by_load[(system.size() - 1, loading.structure.unknowns())] = 1.0;
-    if let Some(factorisation) = Factorisation::new(by_load) {
+    let iterate = system.iterate(state.clone());
+    let by_load = |matrix: &mut DMatrix<f64>| matrix[(system.size() - 1, loading.structure.unknowns())] = 1.0;
+    if let Some(factorisation) = system.factorise(&iterate, Kind::Rates, by_load) {
         return Some(factorisation);
     }
-    if let Some(rate) = incoming {
-        let mut by_rate = matrix.clone();
-        system.border(&mut by_rate, rate);
-        if let Some(factorisation) = Factorisation::new(by_rate) {
-            return Some(factorisation);
-        }
+    if let Some(rate) = incoming
+        && let Some(factorisation) =
+            system.factorise(&iterate, Kind::Rates, |matrix: &mut DMatrix<f64>| system.border(matrix, rate))
+    {
+        return Some(factorisation);
     }
+    let matrix = system.matrix(state);
     let basis = null_space(&matrix.rows(0, system.size() - 1).into_owned(), RANK)?;
     if basis.ncols() != 1 {
         return None;

@@ -5,8 +5,7 @@ use super::singular::UNCERTAIN;
 use super::state::{Rate, State};
 use crate::contact::Mode;
 use crate::contact::vector::Vector;
-use crate::linear_algebra::Factorisation;
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 /// The last equation: where on the branch the point is to be.
 #[derive(Debug, Clone, Copy)]
@@ -28,7 +27,8 @@ pub struct Corrected {
     pub iterations: u64,
     /// Iterations until the error was small; those after it polish, and their number is round-off's.
     pub iterations_to_small: u64,
-    /// Equilibrium residual over the force scale.
+    /// Equilibrium residual over the force scale; where the rounding of the displacements alone leaves more than is
+    /// accepted, what is beyond it.
     pub residual: f64,
     /// Equilibrium and contact equations left over, one a row.
     left_over: DVector<f64>,
@@ -52,6 +52,10 @@ pub const ACCEPTED_RESIDUAL: f64 = 1e-11;
 const ROUND_OFF: f64 = 1e-15;
 /// Error below which Newton's method is as good as converged.
 const SMALL: f64 = 1e-6;
+/// Multiple of the bound on rounding within which what is left over counts as rounding.
+const ROOM: f64 = 8.0;
+/// Corrections that fall by less than this factor are rounding themselves.
+const NO_FALL: f64 = 0.25;
 
 impl ModeSystem<'_> {
     /// Newton's method from a guess, to round-off.
@@ -75,6 +79,9 @@ impl ModeSystem<'_> {
         let mut iterations = 0;
         let mut iterations_to_small = None;
         let mut best: Option<(f64, Iterate, Figures)> = None;
+        // Sizes of the last correction and the one before.
+        let (mut correction, mut before) = (f64::INFINITY, f64::INFINITY);
+        let mut small_by_correction = None;
         loop {
             let (largest, forces) = self.residual(&iterate, &mut values, &mut force);
             let scale = forces.max(force_scale).max(f64::MIN_POSITIVE);
@@ -99,17 +106,33 @@ impl ModeSystem<'_> {
             if settled && iterations > 0 {
                 break;
             }
-            if iterations == MOST_ITERATIONS {
+            let ended = iterations == MOST_ITERATIONS;
+            if least > ACCEPTED_RESIDUAL && iterations > 0 && (ended || correction >= NO_FALL * before) {
+                // Stiff elements next to large displacements: no displacements in this precision leave less. The point
+                // is the one whose correction no longer falls.
+                if let Some(residual) = self.left_by_rounding(&iterate.state, &values, scale) {
+                    let figures = Figures { iterations, residual, left_over: values.clone(), force_scale: forces };
+                    best = Some((residual, iterate, figures));
+                    iterations_to_small = iterations_to_small.or(small_by_correction);
+                    break;
+                }
+            }
+            if ended {
                 if least <= ACCEPTED_RESIDUAL {
                     break;
                 }
                 return Err(Failure::NotConverged);
             }
-            let mut matrix = self.assemble(&iterate, Kind::Increment);
-            self.place(&iterate.state, place, Some(&mut matrix));
-            let factorisation = Factorisation::new(matrix).ok_or(Failure::Singular)?;
+            let put_place = |matrix: &mut DMatrix<f64>| {
+                self.place(&iterate.state, place, Some(matrix));
+            };
+            let factorisation = self.factorise(&iterate, Kind::Increment, put_place).ok_or(Failure::Singular)?;
             if !factorisation.solve(&mut values) {
                 return Err(Failure::Singular);
+            }
+            (before, correction) = (correction, values.rows(0, self.loading.structure.unknowns() + 1).norm());
+            if correction <= SMALL {
+                small_by_correction.get_or_insert(iterations);
             }
             iterate = self.corrected_by(&iterate, &values);
             iterations += 1;
@@ -133,6 +156,21 @@ impl ModeSystem<'_> {
             left_over: figures.left_over,
             force_scale: figures.force_scale,
         })
+    }
+
+    /// Whether what is left over of each equation is within the rounding of the state's numbers; then the largest
+    /// equilibrium residual beyond it, over the force scale.
+    fn left_by_rounding(&self, state: &State, values: &DVector<f64>, scale: f64) -> Option<f64> {
+        let structure = self.loading.structure;
+        let rounding = structure.rounding(&state.displacement);
+        let mut residual = 0.0_f64;
+        for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
+            residual = residual.max((values[unknown].abs() - ROOM * rounding[*freedom]) / scale);
+        }
+        let reach = state.displacement.iter().fold(state.load.abs(), |reach, value| reach.max(value.abs()));
+        let geometric = values.iter().skip(structure.unknowns()).fold(0.0_f64, |m, v| m.max(v.abs()));
+        let within = geometric <= ACCEPTED_RESIDUAL + ROOM * f64::EPSILON * reach;
+        (residual <= ACCEPTED_RESIDUAL && within).then_some(residual)
     }
 
     /// The path's direction at a converged point, and an estimate of the point's error: the size of one more Newton
