@@ -13,7 +13,7 @@
 //! | `singular`, `critical`, `branches` | whether a step passes a smooth bifurcation; where; which directions leave it |
 //! | `standing`, `directions`, `condensed` | which contacts can change; every direction |
 //! | `confirm`, `decide` | those that hold beyond first order; which one is taken |
-//! | `rates`, `turning` | all rays of a rate problem, linear forms only; slip whose direction is unknown |
+//! | `rates`, `turning`, `together` | all rays of a rate problem, linear forms only; slip whose direction is unknown, of one node and of several at once |
 //! | `program`, `naming` | the MPEC of an increment; where it names the mode |
 //! | `energy`, `record`, `increment`, `report`, `stop` | balances, rows, totals, reasons |
 //! | `tracer`, `stepping`, `arrival` | the iterator; how far a step goes; what a point turned out to be |
@@ -55,6 +55,7 @@ mod standing;
 mod state;
 mod stepping;
 pub mod stop;
+mod together;
 mod traced;
 pub mod tracer;
 mod track;

@@ -28,6 +28,8 @@ pub enum StopReason {
     CornerNotAvailable,
     /// More contact modes than `max_modes` would have to be examined to go on.
     ModeLimit,
+    /// Several nodes that touch in space without reaction may begin to slip at once, and no such direction was found.
+    SlipsNotFound,
     /// The caller asked for it.
     Cancelled,
 }
@@ -53,7 +55,8 @@ impl StopReason {
             | Self::CollapsedBar
             | Self::Degenerate
             | Self::CornerNotAvailable
-            | Self::ModeLimit => Outcome::Stopped,
+            | Self::ModeLimit
+            | Self::SlipsNotFound => Outcome::Stopped,
         }
     }
 
@@ -75,6 +78,10 @@ impl StopReason {
                  other, which is not available"
             }
             Self::ModeLimit => "more contact modes than max_modes would have to be examined to go on",
+            Self::SlipsNotFound => {
+                "several nodes that touch in space without reaction may begin to slip at once, and no direction in which \
+                 they do was found"
+            }
             Self::Cancelled => "cancelled",
         }
     }
