@@ -11,6 +11,7 @@
 //! | `track`, `drift` | slip in a plane: its rule of fourth order; the error that is left |
 //! | `watch`, `root`, `advance` | what ends a mode; one step, ended exactly at the first event |
 //! | `singular`, `critical`, `branches` | whether a step passes a smooth bifurcation; where; which directions leave it |
+//! | `folded` | points of slip in a plane at which the direction is not determined |
 //! | `standing`, `directions`, `condensed` | which contacts can change; every direction |
 //! | `confirm`, `decide` | those that hold beyond first order; which one is taken |
 //! | `rates`, `turning`, `together` | all rays of a rate problem, linear forms only; slip whose direction is unknown, of one node and of several at once |
@@ -35,6 +36,7 @@ mod drift;
 mod energy;
 #[cfg(test)]
 mod exhaustive;
+mod folded;
 mod follow;
 pub mod increment;
 mod loading;
