@@ -112,6 +112,9 @@ struct Pattern {
     own: Vec<Own>,
 }
 
+/// An equation's derivative by the weights, and by the angle in a column.
+type Row = (DVector<f64>, Option<(usize, f64)>);
+
 struct System<'a> {
     problem: &'a RateProblem,
     nodes: Vec<Node<'a>>,
@@ -215,7 +218,7 @@ impl<'a> System<'a> {
     fn equations(&self, pattern: &Pattern, weights: &DVector<f64>) -> Option<(DMatrix<f64>, DVector<f64>)> {
         let count = weights.len();
         let angles = pattern.own.iter().filter(|own| matches!(own, Own::Slip { .. })).count();
-        let mut rows: Vec<(DVector<f64>, Option<(usize, f64)>)> = Vec::new();
+        let mut rows: Vec<Row> = Vec::new();
         let plain = |form: usize| (self.problem.forms.row(form).transpose(), None);
         for (entity, _) in &self.others {
             let zero = &self.problem.entities[*entity].options[pattern.chosen[*entity]].zero;
