@@ -8,12 +8,12 @@
 //! The data flow one way, and so do the dependencies:
 //!
 //! ```text
-//! model (JSON, checked) -> structure -> contact -> mpec -> path -> jobs -> store -> http
+//! model (JSON, checked) -> structure -> contact -> mpec -> path -> judged -> jobs -> store -> http
 //! ```
 //!
-//! `linear_algebra` stands below all of them, [`measure`] beside the solver that it judges, [`scenes`] holds the
-//! built-in models with their exact solutions. Everything up to [`path`] builds without the `server` feature and knows
-//! neither HTTP nor SQL.
+//! `linear_algebra` stands below all of them, [`measure`] beside the solver that it judges ([`judged`] brings both
+//! together), [`scenes`] holds the built-in models with their exact solutions, [`studies`] sets the errors of paths against
+//! their times. Everything up to [`judged`], and these, builds without the `server` feature and knows neither HTTP nor SQL.
 //!
 //! ## Notation
 //!
@@ -31,6 +31,7 @@
 
 pub mod cancel;
 pub mod contact;
+pub mod judged;
 pub mod linear_algebra;
 pub mod measure;
 pub mod model;
@@ -39,6 +40,7 @@ pub mod output;
 pub mod path;
 pub mod scenes;
 pub mod structure;
+pub mod studies;
 
 #[cfg(feature = "server")]
 pub mod command;
@@ -46,5 +48,7 @@ pub mod command;
 pub mod http;
 #[cfg(feature = "server")]
 pub mod jobs;
+#[cfg(feature = "server")]
+pub mod picture;
 #[cfg(feature = "server")]
 pub mod store;

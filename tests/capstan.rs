@@ -101,9 +101,10 @@ fn thirty_two_nodes() {
     }
 }
 
-/// So many contacts that touch at once at the start are more than the search takes: it ends as `mode_limit`.
+/// So many contacts that touch at once at the start are more than the search can exhaust, and the points say so; the
+/// way on is found.
 #[test]
-#[ignore = "64 contacts at zero reaction at the start"]
+#[ignore = "a minute in a release build: cargo test --release --test capstan -- --ignored"]
 fn sixty_four_nodes() {
     for friction in [0.1, 0.3, 1.0] {
         let exponent = check(64, friction);

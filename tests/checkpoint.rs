@@ -3,13 +3,11 @@
 mod common;
 
 use arcslip::cancel::CancelFlag;
-use arcslip::measure::Judge;
 use arcslip::model::JobRequest;
 use arcslip::model::request::{Method, Until};
-use arcslip::output::json_line;
 use arcslip::path::increment::{Diagnostics, PointKind, Status};
 use arcslip::path::{Checkpoint, CheckpointError, Increment, Path, Scene, StopReason};
-use common::paths::{scene, trace};
+use common::paths::{judge, scene, trace};
 
 /// A checkpoint as it comes back from where it was stored.
 fn stored(checkpoint: &Checkpoint) -> Checkpoint {
@@ -21,7 +19,7 @@ fn stored(checkpoint: &Checkpoint) -> Checkpoint {
 
 fn line(mut increment: Increment) -> String {
     increment.diagnostics.elapsed_s = 0.0;
-    json_line(&increment).expect("written")
+    serde_json::to_string(&increment).expect("written")
 }
 
 /// Increments up to an index, and the checkpoint there.
@@ -43,7 +41,7 @@ fn follow(request: &JobRequest, before: &[Increment], checkpoint: Checkpoint, di
     let scene = Scene::new(request).expect("a scene");
     let path = Path::follow(&scene, checkpoint, direction, "follows".to_owned(), CancelFlag::default());
     let increments: Vec<Increment> = path.unwrap_or_else(|error| panic!("{error}")).collect();
-    let mut judge = Judge::new(request, scene.plan().displacement_scale);
+    let mut judge = judge(request, scene.plan());
     for increment in before.iter().chain(&increments) {
         let errors = judge.judge(increment);
         assert!(errors.largest_of_state() <= 1e-10, "increment {}: {errors:?}", increment.index);
@@ -114,7 +112,7 @@ fn following_the_direction_taken_gives_the_same_points() {
                 increment.index += shift;
                 increment.diagnostics =
                     Diagnostics { energy_error: increment.diagnostics.energy_error, ..Diagnostics::default() };
-                json_line(&increment).expect("written")
+                serde_json::to_string(&increment).expect("written")
             };
             let expected: Vec<String> =
                 whole[increment.index as usize + 1..].iter().map(|increment| bare(increment, 0)).collect();
@@ -244,7 +242,7 @@ fn what_cannot_be_followed_is_refused_with_the_reason() {
     let other = Scene::new(&other).expect("a scene");
     let refused = Path::resume(&other, checkpoint.clone(), CancelFlag::default()).err();
     assert!(matches!(refused, Some(CheckpointError::OtherModel { .. })), "{refused:?}");
-    let text = serde_json::to_string(&checkpoint).expect("written").replacen("\"version\":1", "\"version\":99", 1);
+    let text = serde_json::to_string(&checkpoint).expect("written").replacen("\"version\":2", "\"version\":99", 1);
     let newer: Checkpoint = serde_json::from_str(&text).expect("read");
     assert_eq!(Path::resume(&scene, newer, CancelFlag::default()).err(), Some(CheckpointError::Version { found: 99 }));
 }

@@ -6,7 +6,8 @@ use arcslip::model::JobRequest;
 use arcslip::model::request::Method;
 use arcslip::path::StopReason;
 use arcslip::path::increment::{PointKind, Status};
-use common::exact::{Hump, bowl_load};
+use arcslip::scenes::exact::bowl::bowl_load;
+use arcslip::scenes::exact::hump::Hump;
 use common::paths::{close, place, scene_file, trace, typed};
 use serde_json::json;
 

@@ -6,7 +6,9 @@ mod common;
 use arcslip::measure::{Errors, Judge};
 use arcslip::model::JobRequest;
 use arcslip::path::Increment;
-use common::exact::{Hump, Tractrix};
+use arcslip::path::increment::Status;
+use arcslip::scenes::exact::hump::Hump;
+use arcslip::scenes::exact::tractrix::Tractrix;
 use common::paths::{scene_file, typed};
 use serde_json::{Map, Value, json};
 
@@ -43,8 +45,34 @@ fn increment(request: &JobRequest, stage: &str, load: f64, moved: &[(&str, Vec<f
 
 /// The last of these increments' errors.
 fn last(request: &JobRequest, increments: &[Increment]) -> Errors {
-    let mut judge = Judge::new(request, 1.0);
+    judged(request, &stepped(increments))
+}
+
+fn judged(request: &JobRequest, increments: &[Increment]) -> Errors {
+    let mut judge = Judge::new(request, 1.0, &vec![1.0; request.model.stages.len()]);
     increments.iter().map(|increment| judge.judge(increment)).last().expect("an increment")
+}
+
+/// The increments with their steps, all scales being 1: the chords in displacements and load factor.
+fn stepped(increments: &[Increment]) -> Vec<Increment> {
+    let mut stepped: Vec<Increment> = increments.to_vec();
+    let (mut arc_length, mut load, mut stage) = (0.0, 0.0, stepped[0].stage.clone());
+    let mut before: Option<Vec<f64>> = None;
+    for increment in &mut stepped {
+        let place: Vec<f64> = increment.displacements.values().flatten().copied().collect();
+        if increment.stage != stage {
+            (load, stage) = (0.0, increment.stage.clone());
+        }
+        let moved: f64 = match &before {
+            Some(before) => place.iter().zip(before).map(|(a, b)| (a - b) * (a - b)).sum(),
+            None => place.iter().map(|a| a * a).sum(),
+        };
+        increment.step = (moved + (increment.load_factor - load).powi(2)).sqrt();
+        arc_length += increment.step;
+        increment.arc_length = arc_length;
+        (before, load) = (Some(place), increment.load_factor);
+    }
+    stepped
 }
 
 /// Sliding over the hump between two angles.
@@ -80,10 +108,11 @@ fn an_exact_slide_over_a_ball_has_no_error() {
 fn each_fault_shows_in_its_figure() {
     let request = scene_file("hump");
     let spoiled = |spoil: &dyn Fn(&mut Increment)| {
-        let [first, mut second] = hump(&request, -0.6, -0.4);
-        spoil(&mut second);
-        last(&request, &[first, second])
+        let mut increments = stepped(&hump(&request, -0.6, -0.4));
+        spoil(&mut increments[1]);
+        judged(&request, &increments)
     };
+    assert!(spoiled(&|_| {}).largest_of_state() < 1e-14);
     let big = 1e-4;
     assert!(spoiled(&|i| i.load_factor += 1e-3).equilibrium > big);
     assert!(spoiled(&|i| i.contacts[0].normal_reaction += 1e-3).equilibrium > big);
@@ -95,8 +124,31 @@ fn each_fault_shows_in_its_figure() {
     assert!(spoiled(&|i| i.displacements["pin"][1] += 1e-3).support > big);
     assert!(spoiled(&|i| i.displacements["tip"][1] += 1e-3).reported > big);
     assert!(spoiled(&|i| i.energy.strain += 1e-3).energy > big);
-    assert!(spoiled(&|i| i.contacts[0].gap = f64::NAN).largest_of_state().is_infinite());
-    assert!(spoiled(&|i| i.load_factor = f64::NAN).largest_of_state().is_infinite());
+    assert!(spoiled(&|i| i.energy.external_work += 1e-3).energy > big);
+    assert!(spoiled(&|i| i.energy.strain += 1e-3).strain_energy > big);
+    assert!(spoiled(&|i| i.step += 1e-3).arc_length > big);
+    assert!(spoiled(&|i| i.arc_length += 1e-3).arc_length > big);
+    assert!(spoiled(&|i| i.displacements["tip"][0] += 1e-3).arc_length > big);
+    assert!(spoiled(&|i| i.contacts[0].status = Status::Stick).reported > big);
+    assert!(spoiled(&|i| i.contacts[0].status = Status::Free).reported > big);
+    assert!(spoiled(&|i| i.contacts[0].tangential_reaction[0] *= -1.0).friction > big);
+    // What does not fit the model is an error without bound, and no panic.
+    assert_eq!(spoiled(&|i| i.contacts.clear()).reported, f64::MAX);
+    assert_eq!(spoiled(&|i| i.contacts[0].slip.clear()).reported, f64::MAX);
+    assert_eq!(spoiled(&|i| i.stage = "another".into()).reported, f64::MAX);
+    assert_eq!(spoiled(&|i| _ = i.displacements.shift_remove("tip")).reported, f64::MAX);
+    assert_eq!(spoiled(&|i| _ = i.displacements["tip"].pop()).reported, f64::MAX);
+    for spoil in [
+        |i: &mut Increment| i.step = f64::INFINITY,
+        |i: &mut Increment| i.energy.dissipated = f64::NAN,
+        |i: &mut Increment| i.contacts[0].tangential_reaction[0] = f64::NAN,
+        |i: &mut Increment| i.displacements["tip"][0] = f64::NAN,
+    ] {
+        let errors = spoiled(&spoil);
+        assert!(errors.values().contains(&f64::MAX) && errors.values().iter().all(|value| value.is_finite()));
+    }
+    assert!(spoiled(&|i| i.contacts[0].gap = f64::NAN).largest_of_state() == f64::MAX);
+    assert!(spoiled(&|i| i.load_factor = f64::NAN).largest_of_state() == f64::MAX);
 }
 
 /// Tangents of a floor with the normal (0, 0, 1): x and y. Slip is the chord between two places of the exact track.

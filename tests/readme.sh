@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 command -v curl > /dev/null || { apt-get update -q && apt-get install -qy curl; }
 
 work=$(mktemp -d)
-trap 'kill %1 2> /dev/null || true; rm -rf "$work"; rm -f path.ndjson path.svg path.csv arcslip.db arcslip.db-*' EXIT
+trap 'kill %1 2> /dev/null || true; rm -rf "$work"; rm -f path.ndjson path.svg path.csv *-study.svg study.csv arcslip.db arcslip.db-*' EXIT
 
 # The fenced blocks of the README in order: language on the first line of each file.
 awk -v folder="$work" '/^```/ { if (inside) { inside = 0; close(file) } else { inside = 1; count++;
@@ -31,7 +31,7 @@ curl -sf http://127.0.0.1:8080/readyz > /dev/null || { cat "$work/serve.log"; ex
 # One shell for both, as a reader has it: the second goes on with the first one's job.
 { tail -n +2 "$(block '/v1/scenes/klarbring')"; tail -n +2 "$(block '/follow -H')"; } > "$work/both.sh"
 bash -euo pipefail "$work/both.sh" | tee "$work/corners"
-{ tail -n +2 "$(block '^{"index":15,')"; tail -n +2 "$(block '^{"index":0,')"; } | diff - "$work/corners"
+{ tail -n +2 "$(block '^{"index":16,')"; tail -n +2 "$(block '^{"index":0,')"; } | diff - "$work/corners"
 
 # Jobs that end as stopped leave exit status 1: the one-bar truss ends in its mechanism.
 while read -r command; do
@@ -43,6 +43,12 @@ while read -r command; do
   esac
 done < <(tail -n +2 "$(block 'solve one-bar-truss --out')")
 test -s path.ndjson && test -s path.svg && test -s path.csv
+
+# The studies' tables and pictures are made.
+while read -r command; do
+  bash -c "$command" > "$work/out" 2> "$work/err" || { cat "$work/out" "$work/err"; echo "failed: $command"; exit 1; }
+done < <(tail -n +2 "$(block 'study one-bar-truss')")
+test -s one-bar-truss-study.svg && test -s capstan-study.svg && test -s study.csv
 
 # The model in the README is one.
 tail -n +2 "$(block '"dimension": 2')" > "$work/model.json"

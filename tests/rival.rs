@@ -3,12 +3,11 @@
 mod common;
 
 use arcslip::cancel::CancelFlag;
-use arcslip::measure::Judge;
 use arcslip::model::JobRequest;
 use arcslip::model::request::{LoadSign, Method, Regularised};
 use arcslip::path::increment::{PointKind, Status};
 use arcslip::path::{Increment, Report, Scene, StopReason, TracedPath};
-use common::paths::{request, scene, scene_file};
+use common::paths::{judge, request, scene, scene_file};
 use serde_json::json;
 
 fn trace(request: &JobRequest) -> (Vec<Increment>, Report) {
@@ -108,7 +107,7 @@ fn equilibrium_and_the_cone_hold_at_every_point_of_every_scene() {
                 let plan = scene.plan();
                 let stiffness = 1e4 * plan.force_scale / plan.displacement_scale;
                 let (increments, report) = trace(&request);
-                let mut judge = Judge::new(&request, plan.displacement_scale);
+                let mut judge = judge(&request, plan);
                 assert!(increments.len() > 1, "{name}: {report:?}");
                 for increment in &increments {
                     let errors = judge.judge(increment);

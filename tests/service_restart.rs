@@ -3,7 +3,7 @@
 
 mod common;
 
-use arcslip::store::{self, Ending, LeaseAnswer, Line, NewJob, Page, Status, Submitted};
+use arcslip::store::{self, Ending, LeaseAnswer, Line, NewJob, Page, Status, Submitted, Task};
 use common::server::TestServer;
 use common::service::{indices, request, without_elapsed};
 use common::solver::MadeUp;
@@ -118,6 +118,7 @@ async fn a_batch_is_stored_whole_or_not_at_all() {
 
 async fn queue(store: &dyn store::Store, max_attempts: u32) -> uuid::Uuid {
     let job = NewJob {
+        task: Task::Path,
         name: None,
         request: request("queued", 6).to_string(),
         plan: "{}".to_owned(),

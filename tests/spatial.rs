@@ -5,7 +5,8 @@ mod common;
 use arcslip::model::request::Method;
 use arcslip::path::StopReason;
 use arcslip::path::increment::{PointKind, Status};
-use common::exact::{Tractrix, turning_drag};
+use arcslip::scenes::exact::tractrix::Tractrix;
+use arcslip::scenes::exact::turning_drag::turning_drag;
 use common::paths::{Traced, close, judged, place, scene, scene_file, trace, typed};
 use serde_json::json;
 

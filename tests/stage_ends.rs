@@ -2,9 +2,11 @@
 
 mod common;
 
-use arcslip::model::request::{DisplacementBound, Until};
-use arcslip::path::StopReason;
+use arcslip::cancel::CancelFlag;
+use arcslip::model::JobRequest;
+use arcslip::model::request::{Component, DisplacementBound, Method, Until};
 use arcslip::path::increment::PointKind;
+use arcslip::path::{Increment, Path, Scene, StopReason, TracedPath};
 use common::generators::slider_chain;
 use common::paths::{request, scene, trace};
 use serde_json::json;
@@ -56,8 +58,8 @@ fn a_contact_at_the_bound_ends_the_stage() {
     assert!((increments.last().expect("an end").load_factor - 0.5).abs() < 1e-12);
 }
 
-#[test]
-fn a_bound_that_is_met_before_the_stage_begins_ends_it_at_once() {
+/// Klarbring's scene with a stage between the two whose bound is met by where the first one ends.
+fn with_a_stage_that_has_no_way_to_go() -> JobRequest {
     let mut request = scene("klarbring");
     let again = request.model.stages[0].clone();
     request.model.stages.insert(1, again);
@@ -65,15 +67,99 @@ fn a_bound_that_is_met_before_the_stage_begins_ends_it_at_once() {
     request.model.stages[1].until = Some(Until {
         displacement: Some(DisplacementBound {
             node: "node".into(),
-            component: arcslip::model::request::Component::Y,
+            component: Component::Y,
             above: None,
             below: Some(1.0),
         }),
         ..Until::default()
     });
-    let (increments, report) = trace(&request);
+    request
+}
+
+/// It has one row, that says so, and changes nothing else.
+#[test]
+fn a_stage_whose_bound_is_met_before_it_begins_is_told_and_over() {
+    let (increments, report) = trace(&with_a_stage_that_has_no_way_to_go());
     assert_eq!(report.stop_reason, StopReason::StagesCompleted);
-    assert!(increments.iter().all(|increment| &*increment.stage != "no further"));
+    let place = increments.iter().position(|increment| &*increment.stage == "no further").expect("a row");
+    let (before, row, after) = (&increments[place - 1], &increments[place], &increments[place + 1]);
+    assert_eq!((row.point.kind, row.load_factor, row.step), (PointKind::Start, 0.0, 0.0));
+    let event = "stage \"no further\" begins and ends at once: its bound is met already";
+    assert_eq!(row.point.event.as_deref(), Some(event));
+    assert_eq!(
+        (&row.displacements, row.energy, row.arc_length),
+        (&before.displacements, before.energy, before.arc_length)
+    );
+    assert!(row.directions.is_none());
+    assert_eq!((&*after.stage, after.point.kind), ("pull", PointKind::Start));
+    let (without, _) = trace(&scene("klarbring"));
+    assert_eq!(increments.len(), without.len() + 1);
+    for (with, without) in increments[place + 1..].iter().zip(&without[place..]) {
+        assert_eq!((with.load_factor, &with.displacements), (without.load_factor, &without.displacements));
+    }
+}
+
+/// It is told by the rival method, too, and where it is the last stage.
+#[test]
+fn a_stage_whose_bound_is_met_is_told_by_every_method_and_at_the_end() {
+    for method in [Method::Auto, Method::Mpec, Method::Regularised] {
+        let mut request = with_a_stage_that_has_no_way_to_go();
+        request.model.stages.truncate(2);
+        request.analysis.method = method;
+        let scene = Scene::new(&request).expect("a scene");
+        let mut path = TracedPath::new(&scene, CancelFlag::default());
+        let last = path.by_ref().last().expect("increments");
+        assert_eq!((&*last.stage, last.point.kind), ("no further", PointKind::Start), "{method:?}");
+        assert!(last.point.event.is_some_and(|event| event.ends_with("its bound is met already")), "{method:?}");
+        let report = path.report().expect("a report");
+        assert_eq!((report.stop_reason, report.increments), (StopReason::StagesCompleted, last.index), "{method:?}");
+    }
+}
+
+/// Every stage begins with a row of its own, at the place where the one before it ended, at load factor 0.
+#[test]
+fn every_stage_begins_with_a_row_of_its_own() {
+    for method in [Method::Auto, Method::Regularised] {
+        for name in ["klarbring", "turning-drag", "capstan", "one-bar-truss"] {
+            let mut request = scene(name);
+            request.analysis.method = method;
+            let scene = Scene::new(&request).expect("a scene");
+            let increments: Vec<Increment> = TracedPath::new(&scene, CancelFlag::default()).collect();
+            for (place, increment) in increments.iter().enumerate() {
+                let first = place == 0 || increments[place - 1].stage != increment.stage;
+                assert_eq!(increment.point.kind == PointKind::Start, first, "{name}, {method:?}, increment {place}");
+                if first {
+                    let event = format!("stage \"{}\" begins", increment.stage);
+                    assert_eq!(increment.point.event.as_deref(), Some(&*event));
+                    assert_eq!((increment.load_factor, increment.step), (0.0, 0.0));
+                    let before = &increments[place.saturating_sub(1)];
+                    assert_eq!((&increment.displacements, increment.energy), (&before.displacements, before.energy));
+                }
+            }
+        }
+    }
+}
+
+/// A block that slips where a stage ends may slip on in the next, or stick: both ways on are listed where that begins, and
+/// the one not taken can be followed.
+#[test]
+fn directions_at_the_start_of_a_later_stage_are_listed_and_can_be_followed() {
+    let request = scene("turning-drag");
+    let (increments, _) = trace(&request);
+    let start = increments.iter().find(|i| &*i.stage == "across" && i.point.kind == PointKind::Start).expect("a start");
+    let directions = start.directions.as_ref().expect("directions");
+    let other = directions.iter().position(|direction| !direction.taken).expect("an alternative");
+    assert_eq!(directions.iter().filter(|direction| direction.taken).count(), 1);
+    let scene = Scene::new(&request).expect("a scene");
+    let mut path = Path::new(&scene, CancelFlag::default());
+    assert_eq!(path.nth(start.index as usize).map(|increment| increment.index), Some(start.index));
+    let followed = Path::follow(&scene, path.checkpoint(), other, "follows".to_owned(), CancelFlag::default());
+    let followed: Vec<Increment> = followed.unwrap_or_else(|error| panic!("{error}")).collect();
+    assert!(followed.len() > 1);
+    assert_eq!((&followed[0].stage, &followed[0].displacements), (&start.stage, &start.displacements));
+    let status = |increment: &Increment| increment.contacts[0].status;
+    assert_eq!(status(&followed[1]), directions[other].contacts[0]);
+    assert_eq!(followed[1].load_factor.signum(), directions[other].load_rate.signum());
 }
 
 /// The slider chain: block m+1 starts to slip exactly at `s = (m+1) μ W`, block m then having moved `μ W/k` past block

@@ -141,3 +141,272 @@ fn copies_of_a_floor_leave_a_stuck_node_stuck() {
         }
     }
 }
+
+/// A node in the corner of a floor and a wall on the left, springs k = 1, pressed into it by (-1, -1), then pushed by `push`.
+fn pressed_into_a_corner(floor: f64, wall: f64, push: [f64; 2]) -> JobRequest {
+    typed(json!({
+        "model": {
+            "name": format!("corner, friction {floor} and {wall}, push {push:?}"),
+            "dimension": 2, "nodes": {"node": [0, 0]},
+            "elements": [{"kind": "spring", "nodes": ["node"], "stiffness": [[1, 0], [0, 1]]}],
+            "obstacles": {"floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]},
+                          "wall": {"kind": "plane", "point": [0, 0], "normal": [1, 0]}},
+            "contacts": [{"node": "node", "obstacle": "floor", "friction": floor},
+                         {"node": "node", "obstacle": "wall", "friction": wall}],
+            "stages": [
+                {"name": "press", "forces": {"node": [-1, -1]}, "until": {"load_above": 1}},
+                {"name": "push", "forces": {"node": push}, "until": {"load_above": 3}}
+            ]
+        }
+    }))
+}
+
+/// With `μ_floor μ_wall = 1` the two cones together are a half-plane: forces `R` with `R_x + μ R_y >= 0`, `μ` the floor's.
+/// The corner lets go where `R = (1, 1) - s p` reaches its bound, `s = (1 + μ)/(p_x + μ p_y)`: along the floor where
+/// `R_y > 0` there, along the wall where `R_x > 0`, and at once where `R = 0`.
+#[test]
+fn a_corner_whose_cones_span_a_half_plane_lets_go() {
+    let along_the_floor = |s: f64| if s <= 1.0 { [2.5 * s - 1.5, 0.0] } else { [2.0 * s - 1.0, s - 1.0] };
+    // Up the wall R_y = -R_x/3, R_x = 1 - s.
+    let along_the_wall = |s: f64| {
+        if s <= 1.0 { [0.0, 2.5 * s - 1.0 - (1.0 - s) / 3.0] } else { [s - 1.0, 2.5 * s - 1.0] }
+    };
+    let at_once = |s: f64| [s - 1.0, s - 1.0];
+    type Free<'a> = &'a dyn Fn(f64) -> [f64; 2];
+    let cases: [(f64, f64, [f64; 2], Free<'_>); 5] = [
+        (1.0, 1.0, [1.0, 1.0], &at_once),
+        (3.0, 1.0 / 3.0, [1.0, 1.0], &at_once),
+        // Rounding of a coefficient leaves a half-plane.
+        (1.0, 1.0 + 4e-13, [1.0, 1.0], &at_once),
+        (0.5, 2.0, [2.0, 1.0], &along_the_floor),
+        (3.0, 1.0 / 3.0, [1.0, 2.5], &along_the_wall),
+    ];
+    for method in METHODS {
+        for (floor, wall, push, free) in cases {
+            let (increments, report) = trace(&with(pressed_into_a_corner(floor, wall, push), method));
+            let what = format!("friction {floor} and {wall}, push {push:?}");
+            assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{what}");
+            let leaves = (1.0 + floor) / (push[0] + floor * push[1]);
+            assert!(increments.iter().any(|increment| (increment.load_factor - leaves).abs() < 1e-11), "{what}");
+            for increment in increments.iter().filter(|increment| &*increment.stage == "push") {
+                let s = increment.load_factor;
+                let exact = if s <= leaves { [0.0; 2] } else { free(s) };
+                for (found, exact) in increment.displacements["node"].iter().zip(exact) {
+                    close(*found, exact, 1e-10, &format!("{what}, s = {s}"));
+                }
+            }
+        }
+    }
+}
+
+/// The same near a half-plane: a little less and the corner lets go where the force leaves the narrower sector (here at
+/// its tip); a little more and the node is wedged, held by whatever reactions that takes.
+#[test]
+fn a_corner_just_off_a_half_plane() {
+    for off in [1e-11, 1e-7] {
+        let (increments, report) = trace(&pressed_into_a_corner(1.0, 1.0 - off, [1.0, 1.0]));
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted);
+        close(increments[increments.len() - 1].displacements["node"][0], 2.0, 1e-10, "free at s = 3");
+    }
+    for off in [1e-7, 1e-4] {
+        let (increments, report) = trace(&pressed_into_a_corner(1.0, 1.0 + off, [1.0, 1.0]));
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted);
+        let last = &increments[increments.len() - 1];
+        close(last.displacements["node"][0], 0.0, 0.0, "wedged at s = 3");
+        // R = (-2, -2) = r (1, -μ_wall) + q (-1, 1) with q the floor's: r off = 4, q = r + 2.
+        close(last.contacts[1].normal_reaction * off, 4.0, 1e-6, "the wall's part");
+    }
+}
+
+/// Nearly without end: the cone of each flank is all but a half-plane and the groove holds whatever the push. The normal
+/// reaction of a flank may be lost in the rounding of the whole, its cone is kept all the same.
+#[test]
+fn a_groove_with_very_large_friction_holds() {
+    for friction in [1e3, 1e6, 1e12, 1e75] {
+        let mut request = scene_file("groove");
+        request.model.contacts.iter_mut().for_each(|contact| contact.friction = friction);
+        request.analysis.max_increments = 60;
+        let (increments, report) = trace(&request);
+        assert_eq!(report.stop_reason, StopReason::MaxIncrements, "friction {friction}");
+        assert!(report.largest_complementarity <= 1e-10, "friction {friction}: {report:?}");
+        for increment in &increments {
+            let u = &increment.displacements["node"];
+            assert_eq!((u[0], u[1]), (0.0, 0.0), "friction {friction}");
+            let [left, right] = [&increment.contacts[0], &increment.contacts[1]];
+            for contact in [left, right] {
+                assert!(contact.tangential_reaction[0].abs() <= friction * contact.normal_reaction, "{contact:?}");
+            }
+        }
+    }
+}
+
+/// At the tip of a corner (the force on the node just zero) the way back is one motion, however the obstacles share its
+/// force, and it is not taken: friction 0.9 and 1, pushed straight out, the node leaves at s = 1.
+#[test]
+fn the_way_back_into_a_corner_is_listed_once_and_not_taken() {
+    for method in METHODS {
+        let (increments, report) = trace(&with(pressed_into_a_corner(0.9, 1.0, [1.0, 1.0]), method));
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted);
+        let leaves = increments
+            .iter()
+            .find(|increment| &*increment.stage == "push" && (increment.load_factor - 1.0).abs() < 1e-11)
+            .expect("leaving is a point of the path");
+        let directions = leaves.directions.as_ref().expect("directions");
+        let found: Vec<_> = directions.iter().map(|one| (one.contacts.clone(), one.retrace, one.taken)).collect();
+        let (held, left) = (vec![Status::Stick; 2], vec![Status::Free; 2]);
+        assert_eq!(found, [(held, true, false), (left, false, true)]);
+        for increment in increments.iter().filter(|increment| &*increment.stage == "push") {
+            let exact = (increment.load_factor - 1.0).max(0.0);
+            close(increment.displacements["node"][0], exact, 1e-11, "u_x");
+        }
+    }
+}
+
+/// A groove that moves as a whole by `s` carries its node (spring k = 1/2, pressed by 1) along until the spring pulls it
+/// out: `k s = tan(45° + arctan μ)`.
+#[test]
+fn a_groove_that_moves_carries_its_node() {
+    for friction in [0.0, 0.25] {
+        let mut request = scene_file("groove");
+        request.model.contacts.iter_mut().for_each(|contact| contact.friction = friction);
+        let carried = typed(json!({
+            "model": {"dimension": 2, "nodes": {"node": [0, 0]},
+                "elements": [{"kind": "spring", "nodes": ["node"], "stiffness": [[1, 0], [0, 1]]}],
+                "stages": [{"name": "carry", "obstacle_motion": {"left": [1, 0], "right": [1, 0]},
+                            "until": {"load_above": 6}}]}
+        }));
+        request.model.stages[1] = carried.model.stages[0].clone();
+        let (increments, report) = trace(&request);
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted, "friction {friction}");
+        let leaves = 2.0 * (1.0 + friction) / (1.0 - friction);
+        assert!(increments.iter().any(|increment| (increment.load_factor - leaves).abs() < 1e-10));
+        for increment in increments.iter().filter(|increment| &*increment.stage == "carry") {
+            let (s, u) = (increment.load_factor, &increment.displacements["node"]);
+            if s <= leaves {
+                close(u[0], s, 1e-11, "carried");
+                close(u[1], 0.0, 1e-12, "carried");
+            } else {
+                // Up the left flank by ξ in x and -ξ less in y: (k u_x, 1 + k u_y) stays on the cone.
+                close(u[1], s - u[0], 1e-11, "on the left flank");
+                close(0.5 * u[0], 0.5 * leaves * (1.0 + 0.5 * u[1]), 1e-10, "on its cone");
+            }
+        }
+    }
+}
+
+/// Smooth flanks at 45° of which the left one moves by `s` along x: the node (k = 1, pressed by 1) is at their meeting
+/// point `(s/2, s/2)`, and `r = (1 + s, 1)/√2`. On the way back by `-2 s` from there `r_left = (2 - 2 s)/√2` falls to zero
+/// at s = 1, and the node stays on the right flank.
+#[test]
+fn smooth_flanks_that_move_against_each_other() {
+    for method in METHODS {
+        let request = typed(json!({
+            "model": {
+                "name": "moving flanks", "dimension": 2, "nodes": {"node": [0, 0]},
+                "elements": [{"kind": "spring", "nodes": ["node"], "stiffness": [[1, 0], [0, 1]]}],
+                "obstacles": {"left": {"kind": "plane", "point": [0, 0], "normal": [1, 1]},
+                              "right": {"kind": "plane", "point": [0, 0], "normal": [-1, 1]}},
+                "contacts": [{"node": "node", "obstacle": "left", "friction": 0},
+                             {"node": "node", "obstacle": "right", "friction": 0}],
+                "stages": [
+                    {"name": "press", "forces": {"node": [0, -1]}, "until": {"load_above": 1}},
+                    {"name": "close", "obstacle_motion": {"left": [1, 0]}, "until": {"load_above": 1}},
+                    {"name": "open", "obstacle_motion": {"left": [-2, 0]}, "until": {"load_above": 2}}
+                ]
+            }
+        }));
+        let (increments, report) = trace(&with(request, method));
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{:?}", increments.last());
+        for increment in increments.iter().filter(|increment| &*increment.stage != "press") {
+            let s = increment.load_factor;
+            let opening = &*increment.stage == "open";
+            let place = if opening { (0.5 - s).max(-0.5) } else { 0.5 * s };
+            let left = if opening { (2.0 - 2.0 * s).max(0.0) } else { 1.0 + s };
+            let what = format!("{} at s = {s}", increment.stage);
+            for component in &increment.displacements["node"] {
+                close(*component, place, 1e-11, &what);
+            }
+            close(increment.contacts[0].normal_reaction, left * 0.5_f64.sqrt(), 1e-10, &what);
+            close(increment.contacts[1].normal_reaction, 0.5_f64.sqrt(), 1e-10, &what);
+        }
+    }
+}
+
+/// Smooth floor, wall and back of a box in space, springs k = 1: pressed against floor and wall the node slides along their
+/// edge to the back at y = 1/2 and stays in the corner of the three; the back then moves on by `s` against the others, and
+/// last a pull out of the wall frees the node of it at s = 1.
+#[test]
+fn a_smooth_corner_in_space() {
+    for method in METHODS {
+        let request = typed(json!({
+            "model": {
+                "name": "box", "dimension": 3, "nodes": {"node": [0, 0, 0]},
+                "elements": [{"kind": "spring", "nodes": ["node"], "stiffness": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}],
+                "obstacles": {"floor": {"kind": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]},
+                              "wall": {"kind": "plane", "point": [0, 0, 0], "normal": [1, 0, 0]},
+                              "back": {"kind": "plane", "point": [0, 0.5, 0], "normal": [0, -1, 0]}},
+                "contacts": [{"node": "node", "obstacle": "floor", "friction": 0},
+                             {"node": "node", "obstacle": "wall", "friction": 0},
+                             {"node": "node", "obstacle": "back", "friction": 0}],
+                "stages": [
+                    {"name": "press", "forces": {"node": [-1, 0, -1]}, "until": {"load_above": 1}},
+                    {"name": "along", "forces": {"node": [0, 1, 0]}, "until": {"load_above": 1}},
+                    {"name": "back", "obstacle_motion": {"back": [0, -1, 0]}, "until": {"load_above": 1}},
+                    {"name": "pull", "forces": {"node": [1, 0, 0]}, "until": {"load_above": 2}}
+                ]
+            }
+        }));
+        let (increments, report) = trace(&with(request, method));
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{:?}", increments.last());
+        for increment in &increments {
+            let s = increment.load_factor;
+            let (u, [floor, wall, back]) = match &*increment.stage {
+                "press" => ([0.0, 0.0, 0.0], [s, s, 0.0]),
+                "along" => ([0.0, s.min(0.5), 0.0], [1.0, 1.0, (s - 0.5).max(0.0)]),
+                "back" => ([0.0, 0.5 - s, 0.0], [1.0, 1.0, 0.5 + s]),
+                _ => ([(s - 1.0).max(0.0), -0.5, 0.0], [1.0, (1.0 - s).max(0.0), 1.5]),
+            };
+            let what = format!("{} at s = {s}", increment.stage);
+            for (found, exact) in increment.displacements["node"].iter().zip(u) {
+                close(*found, exact, 1e-11, &what);
+            }
+            for (contact, exact) in increment.contacts.iter().zip([floor, wall, back]) {
+                close(contact.normal_reaction, exact, 1e-10, &what);
+            }
+        }
+    }
+}
+
+/// What equilibrium does not tell apart where the node is not free in the plane ends the path by its name: a node guided by
+/// a support before two obstacles, a rough groove in space, four smooth flanks of a pit.
+#[test]
+fn corners_that_are_not_available_are_named() {
+    let request = |dimension: usize, supports: serde_json::Value, normals: &[[f64; 3]], friction: f64| {
+        let (mut obstacles, mut contacts) = (serde_json::Map::new(), Vec::new());
+        for (index, normal) in normals.iter().enumerate() {
+            let name = format!("plane{index}");
+            contacts.push(json!({"node": "node", "obstacle": name, "friction": friction}));
+            obstacles
+                .insert(name, json!({"kind": "plane", "point": vec![0; dimension], "normal": normal[3 - dimension..]}));
+        }
+        let stiffness: Vec<Vec<f64>> =
+            (0..dimension).map(|row| (0..dimension).map(|column| f64::from(row == column)).collect()).collect();
+        let mut force = vec![0.0; dimension];
+        force[dimension - 1] = -1.0;
+        typed(json!({
+            "model": {"dimension": dimension, "nodes": {"node": vec![0; dimension]}, "supports": supports,
+                "elements": [{"kind": "spring", "nodes": ["node"], "stiffness": stiffness}],
+                "obstacles": obstacles, "contacts": contacts,
+                "stages": [{"name": "press", "forces": {"node": force}, "until": {"load_above": 1}}]}
+        }))
+    };
+    let flanks = [[1.0, 0.0, 1.0], [-1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [0.0, -1.0, 1.0]];
+    for request in [
+        request(2, json!({"node": ["x"]}), &[[0.0, 0.0, 1.0], [0.0, 1.0, 1.0]], 0.5),
+        request(3, json!({}), &flanks[..2], 0.3),
+        request(3, json!({}), &flanks, 0.0),
+    ] {
+        let (_, report) = trace(&request);
+        assert_eq!(report.stop_reason, StopReason::CornerNotAvailable);
+    }
+}

@@ -18,7 +18,7 @@ impl Model {
         decode::decode(&self.text()?).map_err(refused)
     }
 
-    fn text(&self) -> Result<Vec<u8>, Failure> {
+    pub fn text(&self) -> Result<Vec<u8>, Failure> {
         let unreadable = |error: std::io::Error| Failure::Input(vec![format!("{}: {error}", self.file)]);
         if self.file == "-" {
             let mut text = Vec::new();

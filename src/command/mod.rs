@@ -6,10 +6,10 @@ mod check;
 mod health;
 mod input;
 mod openapi;
-mod plot;
 mod scenes;
 mod serve;
 mod solve;
+mod study;
 
 use clap::{Parser, Subcommand};
 use std::io::Write;
@@ -30,6 +30,7 @@ struct Arguments {
 enum Command {
     Serve(serve::Arguments),
     Solve(solve::Arguments),
+    Study(study::Arguments),
     Check(check::Arguments),
     Scenes(scenes::Arguments),
     Health(health::Arguments),
@@ -64,6 +65,7 @@ pub fn run() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::Serve(arguments) => serve::run(&arguments),
         Command::Solve(arguments) => solve::run(&arguments),
+        Command::Study(arguments) => study::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Scenes(arguments) => scenes::run(&arguments),
         Command::Health(arguments) => health::run(&arguments),

@@ -1,12 +1,13 @@
 //! `arcslip solve`: a model's path, one line an increment, as it converges.
 
-use super::plot::{self, Against};
 use super::{Failure, Outcome, input};
 use crate::cancel::CancelFlag;
 use crate::jobs::{PathSolver, Solver};
+use crate::judged::JudgedIncrement;
 use crate::model::Model;
 use crate::output::{Table, json_line};
 use crate::path::{self, Increment};
+use crate::picture::path::{Against, svg};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::fs::File;
 use std::io::{IsTerminal, Write};
@@ -52,12 +53,12 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let progress = progress_bar(request.analysis.max_increments, arguments.out.is_some());
     let mut unwritten = None;
     let report = PathSolver
-        .solve(&request, None, CancelFlag::default(), &mut |increment, _| {
-            progress.set_position(increment.index + 1);
-            match writer.write(&increment) {
+        .solve(&request, None, CancelFlag::default(), &mut |judged, _| {
+            progress.set_position(judged.increment.index + 1);
+            match writer.write(&judged) {
                 Ok(()) => {
                     if let Some(picture) = &mut picture {
-                        picture.increments.push(increment);
+                        picture.increments.push(judged.increment);
                     }
                     ControlFlow::Continue(())
                 }
@@ -76,8 +77,15 @@ pub fn run(arguments: &Arguments) -> Outcome {
         picture.write(&request.model)?;
     }
     let Some(report) = report else { return Err(Failure::Other("the solver ended without a report".to_owned())) };
-    eprintln!("{} {}", report.sentence, serde_json::to_string(&report).map_err(Failure::other)?);
-    Ok(match report.stop_reason.outcome() {
+    let measure = &report.measure;
+    if let (Some(bar), 1..) = (measure.bar, measure.off_measure) {
+        eprintln!(
+            "warning: {} increments are off the measure's bar of {bar:e}, a defect of the solver",
+            measure.off_measure
+        );
+    }
+    eprintln!("{} {}", report.report.sentence, serde_json::to_string(&report).map_err(Failure::other)?);
+    Ok(match report.report.stop_reason.outcome() {
         path::Outcome::Completed => ExitCode::SUCCESS,
         path::Outcome::Stopped | path::Outcome::Cancelled => ExitCode::from(super::FAILED),
     })
@@ -112,14 +120,14 @@ impl Writer {
     }
 
     /// Each increment is written in one piece and at once.
-    fn write(&mut self, increment: &Increment) -> std::io::Result<()> {
+    fn write(&mut self, judged: &JudgedIncrement) -> std::io::Result<()> {
         let text = match self.format {
-            Format::Ndjson => json_line(increment)? + "\n",
+            Format::Ndjson => json_line(judged)? + "\n",
             Format::Csv => match &self.table {
-                Some(table) => table.row(increment),
+                Some(table) => table.row(&judged.increment, Some(&judged.measure)),
                 None => {
-                    let table = self.table.insert(Table::fitting(increment));
-                    table.header() + &table.row(increment)
+                    let table = self.table.insert(Table::fitting(&judged.increment));
+                    table.header() + &table.row(&judged.increment, Some(&judged.measure))
                 }
             },
         };
@@ -143,7 +151,7 @@ impl<'a> Picture<'a> {
     }
 
     fn write(self, model: &Model) -> Result<(), Failure> {
-        let svg = plot::svg(model, &self.increments, self.against).map_err(Failure::other)?;
+        let svg = svg(model, &self.increments, self.against).map_err(Failure::other)?;
         std::fs::write(self.file, svg).map_err(|error| Failure::Other(format!("{}: {error}", self.file.display())))
     }
 }

@@ -3,15 +3,16 @@
 use super::extract::JobId;
 use super::problem::Problem;
 use super::{Service, document};
-use crate::jobs::JobsError;
+use crate::measure::Errors;
 use crate::output::Table;
 use crate::path::Increment;
-use crate::store::Page;
+use crate::store::{Page, Task};
 use async_stream::try_stream;
 use axum::body::Body;
 use axum::extract::State;
 use axum::http::header;
 use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
 use std::io;
 use tokio_stream::Stream;
 use uuid::Uuid;
@@ -22,19 +23,30 @@ const PAGE: Page = Page { rows: 500, bytes: 1 << 20 };
 ///
 /// The first line names the columns: `index, stage, load_factor, arc_length, step, point, bifurcation, event`, then
 /// `node.x`, `node.y` for every node, `node/obstacle.status`, `.gap`, `.normal_reaction`, `.tangential_reaction.1`,
-/// `.slip.1` for every contact, the energies and the diagnostics. A path without increments has no lines at all.
+/// `.slip.1` for every contact, the energies, the diagnostics, and the figures of the measure as `measure.equilibrium` and
+/// so on. A path without increments has no lines at all.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/path.csv", tag = document::INCREMENTS, operation_id = "get_path_csv",
     params(("id" = Uuid, Path, description = "The job's id.")),
     responses((status = 200, description = "The table.", body = String, content_type = "text/csv"))
 )]
 pub async fn path_csv(State(service): State<Service>, JobId(id): JobId) -> Result<Response, Problem> {
-    service.jobs.store().job(id).await?.ok_or(JobsError::NoJob(id))?;
+    service.jobs.find(Task::Path, id).await?;
     let headers = [
         (header::CONTENT_TYPE, "text/csv; charset=utf-8".to_owned()),
         (header::CONTENT_DISPOSITION, format!("attachment; filename=\"path-{id}.csv\"")),
     ];
     Ok((headers, Body::from_stream(rows(service, id))).into_response())
+}
+
+/// An increment as it is stored.
+#[derive(Deserialize)]
+struct Stored {
+    #[serde(flatten)]
+    increment: Increment,
+    /// Absent from what was stored before increments carried it.
+    #[serde(default)]
+    measure: Option<Errors>,
 }
 
 /// Reads a page at a time, so that a long path needs no more memory than a short one.
@@ -48,13 +60,13 @@ fn rows(service: Service, id: Uuid) -> impl Stream<Item = io::Result<String>> {
             after = Some(last.index);
             let mut text = String::new();
             for line in &page {
-                let increment: Increment = serde_json::from_str(&line.body)?;
+                let Stored { increment, measure } = serde_json::from_str(&line.body)?;
                 let columns = table.get_or_insert_with(|| {
                     let columns = Table::fitting(&increment);
                     text.push_str(&columns.header());
                     columns
                 });
-                text.push_str(&columns.row(&increment));
+                text.push_str(&columns.row(&increment, measure.as_ref()));
             }
             yield text;
         }

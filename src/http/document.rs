@@ -8,6 +8,7 @@ use utoipa::openapi::{ContentBuilder, Ref, RefOr, ResponseBuilder};
 
 pub const JOBS: &str = "jobs";
 pub const INCREMENTS: &str = "increments";
+pub const STUDIES: &str = "studies";
 pub const SCENES: &str = "scenes";
 pub const PROBES: &str = "probes";
 
@@ -33,6 +34,7 @@ at most 16 MiB; unknown members and unknown query parameters are refused. Every 
     tags(
         (name = JOBS, description = "Paths to be traced"),
         (name = INCREMENTS, description = "Points of a path, as they converge or later"),
+        (name = STUDIES, description = "One scene over a ladder of settings and over methods: error against run time"),
         (name = SCENES, description = "Built-in models, ready to post"),
         (name = PROBES, description = "For whoever runs the service"),
     )

@@ -42,7 +42,7 @@ fn refused_body(rejection: BytesRejection) -> Problem {
     }
 }
 
-/// The id in the address.
+/// The id in the address, of a job or a study.
 pub struct JobId(pub Uuid);
 
 impl<S: Send + Sync> FromRequestParts<S> for JobId {
@@ -51,7 +51,7 @@ impl<S: Send + Sync> FromRequestParts<S> for JobId {
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
         match Path::<Uuid>::from_request_parts(parts, state).await {
             Ok(Path(id)) => Ok(Self(id)),
-            Err(_) => Err(Problem::parameter("id", "a job's id is a UUID, as POST /v1/jobs answers it")),
+            Err(_) => Err(Problem::parameter("id", "an id is a UUID, as the POST that made it answers")),
         }
     }
 }

@@ -4,8 +4,7 @@ use super::extract::{JobId, Parameters, Taken, bounded};
 use super::problem::Problem;
 use super::view::IncrementPage;
 use super::{Service, document};
-use crate::jobs::JobsError;
-use crate::store::Page;
+use crate::store::{Page, Task};
 use axum::Json;
 use axum::extract::State;
 use serde::Deserialize;
@@ -45,7 +44,7 @@ pub async fn page(
 ) -> Result<Json<IncrementPage>, Problem> {
     let rows = bounded("limit", parameters.limit, PAGE_DEFAULT, PAGE_LARGEST)?;
     let store = service.jobs.store();
-    store.job(id).await?.ok_or(JobsError::NoJob(id))?;
+    service.jobs.find(Task::Path, id).await?;
     let lines = store.increments(id, parameters.after, Page { rows, bytes: PAGE_BYTES }).await?;
     let next_after = lines.last().map(|line| line.index).or(parameters.after);
     let increments = lines.into_iter().map(|line| RawValue::from_string(line.body)).collect::<Result<_, _>>()?;

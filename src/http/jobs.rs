@@ -4,10 +4,9 @@ use super::extract::{JobId, JsonText, Parameters, Taken, bounded, idempotency_ke
 use super::problem::Problem;
 use super::view::{Job, JobList, address};
 use super::{Service, document};
-use crate::jobs::JobsError;
 use crate::model::JobRequest;
 use crate::path::Plan;
-use crate::store::{JobRecord, ListFilter, Status};
+use crate::store::{JobRecord, ListFilter, Status, Task};
 use axum::Json;
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
@@ -15,8 +14,8 @@ use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use uuid::Uuid;
 
-const LIST_DEFAULT: u32 = 50;
-const LIST_LARGEST: u32 = 200;
+pub(super) const LIST_DEFAULT: u32 = 50;
+pub(super) const LIST_LARGEST: u32 = 200;
 
 #[derive(Debug, Deserialize, utoipa::IntoParams)]
 #[serde(deny_unknown_fields)]
@@ -24,7 +23,7 @@ const LIST_LARGEST: u32 = 200;
 pub struct SubmitParameters {
     /// Check the request and answer its plan; queue nothing.
     #[serde(default)]
-    validate: bool,
+    pub(super) validate: bool,
 }
 
 impl Taken for SubmitParameters {
@@ -99,7 +98,7 @@ pub async fn list(
     let limit = bounded("limit", parameters.limit, LIST_DEFAULT, LIST_LARGEST)?;
     // One more than asked for tells whether there is a next page.
     let ListParameters { status, parent, cursor, .. } = parameters;
-    let filter = ListFilter { status, parent, before: cursor, limit: limit + 1 };
+    let filter = ListFilter { task: Task::Path, status, parent, before: cursor, limit: limit + 1 };
     let mut records = service.jobs.store().jobs(filter).await?;
     let more = records.len() > limit as usize;
     records.truncate(limit as usize);
@@ -115,7 +114,7 @@ pub async fn list(
     responses((status = 200, description = "The job.", body = Job))
 )]
 pub async fn get(State(service): State<Service>, JobId(id): JobId) -> Result<Json<Job>, Problem> {
-    let job = service.jobs.store().job(id).await?.ok_or(JobsError::NoJob(id))?;
+    let job = service.jobs.find(Task::Path, id).await?;
     Ok(Json(job.try_into()?))
 }
 
@@ -126,7 +125,7 @@ pub async fn get(State(service): State<Service>, JobId(id): JobId) -> Result<Jso
     responses((status = 202, description = "The job; a running one ends shortly.", body = Job))
 )]
 pub async fn cancel(State(service): State<Service>, JobId(id): JobId) -> Result<(StatusCode, Json<Job>), Problem> {
-    let job = service.jobs.cancel(id).await?;
+    let job = service.jobs.cancel(Task::Path, id).await?;
     Ok((StatusCode::ACCEPTED, Json(job.try_into()?)))
 }
 
@@ -137,6 +136,6 @@ pub async fn cancel(State(service): State<Service>, JobId(id): JobId) -> Result<
     responses((status = 204, description = "The job is gone."))
 )]
 pub async fn delete(State(service): State<Service>, JobId(id): JobId) -> Result<StatusCode, Problem> {
-    service.jobs.delete(id).await?;
+    service.jobs.delete(Task::Path, id).await?;
     Ok(StatusCode::NO_CONTENT)
 }

@@ -1,7 +1,8 @@
 //! The service's HTTP face; version 1 of the interface.
 //!
-//! [`problem`] is the one edge where errors become answers, [`extract`] and [`accept`] read requests, [`view`] holds
-//! what is answered; [`jobs`], [`follow`], [`increments`], [`stream`], [`csv`], [`scenes`], [`probes`] and [`pages`] are the calls,
+//! [`problem`] is the one edge where errors become answers, [`extract`] and [`accept`] read requests, [`view`] and
+//! [`view_study`] hold what is answered; [`jobs`], [`follow`], [`increments`], [`stream`], [`csv`], [`studies`], [`scenes`],
+//! [`probes`] and [`pages`] are the calls,
 //! [`document`] their OpenAPI description, [`request_id`] what names each request, [`server`] listening and going down in
 //! good order.
 //! Called by `command`; knows `jobs` and, for reading, `store`.
@@ -20,7 +21,9 @@ pub mod request_id;
 pub mod scenes;
 pub mod server;
 pub mod stream;
+pub mod studies;
 pub mod view;
+pub mod view_study;
 
 use crate::jobs::Jobs;
 use crate::jobs::crew::Attendance;
@@ -55,6 +58,13 @@ fn api() -> OpenApiRouter<Service> {
         .routes(routes!(increments::page))
         .routes(routes!(stream::stream))
         .routes(routes!(csv::path_csv))
+        .routes(routes!(studies::submit, studies::list))
+        .routes(routes!(studies::get, studies::delete))
+        .routes(routes!(studies::cancel))
+        .routes(routes!(studies::stream))
+        .routes(routes!(studies::table_csv))
+        .routes(routes!(studies::table_txt))
+        .routes(routes!(studies::picture))
         .routes(routes!(scenes::list))
         .routes(routes!(scenes::get))
         .routes(routes!(probes::alive))

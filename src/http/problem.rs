@@ -173,6 +173,7 @@ impl From<JobsError> for Problem {
                 Self::new(Kind::KeyReused, "repeat the first request byte for byte, or send another Idempotency-Key")
             }
             JobsError::NoJob(id) => Self::not_found(format_args!("job {id}")),
+            JobsError::NoStudy(id) => Self::not_found(format_args!("study {id}")),
             JobsError::Store(error) => error.into(),
             JobsError::Task(_) | JobsError::Write(_) => {
                 tracing::error!(%error, "a request failed");

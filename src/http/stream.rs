@@ -8,10 +8,10 @@ use super::accept::preferred;
 use super::extract::{JobId, last_event_id};
 use super::problem::{Kind, Problem};
 use super::view::Job;
+use super::view_study::StudyWithReport;
 use super::{Service, document};
-use crate::jobs::JobsError;
-use crate::path::Increment;
-use crate::store::{JobRecord, Line, Page, StoreError};
+use crate::judged::JudgedIncrement;
+use crate::store::{JobRecord, Line, Page, StoreError, Task};
 use async_stream::stream;
 use axum::body::Body;
 use axum::extract::State;
@@ -49,15 +49,20 @@ const RETRY: Duration = Duration::from_secs(2);
     ),
     responses((status = 200, description = "Increments in order of their index.", content(
         (String = "text/event-stream"),
-        (Increment = "application/x-ndjson")
+        (JudgedIncrement = "application/x-ndjson")
     )))
 )]
 pub async fn stream(State(service): State<Service>, JobId(id): JobId, headers: HeaderMap) -> Result<Response, Problem> {
-    let format = Format::accepted(&headers)?;
-    let after = last_event_id(&headers)?;
-    service.jobs.store().job(id).await?.ok_or(JobsError::NoJob(id))?;
+    answer(service, Task::Path, id, &headers).await
+}
+
+/// The lines of a job of that task as they come.
+pub(super) async fn answer(service: Service, task: Task, id: Uuid, headers: &HeaderMap) -> Result<Response, Problem> {
+    let format = Format::accepted(headers)?;
+    let after = last_event_id(headers)?;
+    service.jobs.find(task, id).await?;
     Ok(match format {
-        Format::Events => Sse::new(events(service, id, after))
+        Format::Events => Sse::new(events(service, task, id, after))
             .keep_alive(KeepAlive::new().interval(KEEP_ALIVE).text("waiting"))
             .into_response(),
         Format::Lines => {
@@ -83,7 +88,7 @@ impl Format {
 
 /// What happens on a stream, in order; the last four end it.
 enum Happening {
-    Increment(Line),
+    Line(Line),
     Ended(Box<JobRecord>),
     Deleted,
     ShuttingDown,
@@ -110,7 +115,7 @@ fn follow(service: Service, id: Uuid, mut after: Option<u64>) -> impl Stream<Ite
                 let Some(last) = page.last() else { break };
                 after = Some(last.index);
                 for line in page {
-                    yield Happening::Increment(line);
+                    yield Happening::Line(line);
                 }
                 if service.shutdown.is_cancelled() {
                     break;
@@ -133,17 +138,17 @@ fn follow(service: Service, id: Uuid, mut after: Option<u64>) -> impl Stream<Ite
     }
 }
 
-fn events(service: Service, id: Uuid, after: Option<u64>) -> impl Stream<Item = Result<Event, Infallible>> {
+fn events(service: Service, task: Task, id: Uuid, after: Option<u64>) -> impl Stream<Item = Result<Event, Infallible>> {
     // The request's span ends with its answer's head; what a stream has to say later still belongs to it.
     let span = tracing::Span::current();
     follow(service, id, after).map(move |happening| {
         let _entered = span.enter();
         let retry = || Event::default().retry(RETRY);
         Ok(match happening {
-            Happening::Increment(line) => {
-                Event::default().event("increment").id(line.index.to_string()).data(line.body)
+            Happening::Line(line) => {
+                Event::default().event(event_name(task)).id(line.index.to_string()).data(line.body)
             }
-            Happening::Ended(job) => match Job::try_from(*job).and_then(|job| serde_json::to_string(&job)) {
+            Happening::Ended(job) => match end(task, *job) {
                 Ok(job) => Event::default().event("end").data(job),
                 Err(error) => {
                     tracing::error!(%error, job = %id, "the end cannot be written");
@@ -160,6 +165,20 @@ fn events(service: Service, id: Uuid, after: Option<u64>) -> impl Stream<Item = 
     })
 }
 
+fn event_name(task: Task) -> &'static str {
+    match task {
+        Task::Path => "increment",
+        Task::Study => "row",
+    }
+}
+
+fn end(task: Task, job: JobRecord) -> serde_json::Result<String> {
+    match task {
+        Task::Path => serde_json::to_string(&Job::try_from(job)?),
+        Task::Study => serde_json::to_string(&StudyWithReport::try_from(job)?),
+    }
+}
+
 fn lines(service: Service, id: Uuid, after: Option<u64>) -> impl Stream<Item = io::Result<String>> {
     // An error breaks the body off, so that a client can tell a whole path from a part of one.
     let broken = |why: &str| Some(Err(io::Error::other(why.to_owned())));
@@ -167,7 +186,7 @@ fn lines(service: Service, id: Uuid, after: Option<u64>) -> impl Stream<Item = i
     follow(service, id, after).filter_map(move |happening| {
         let _entered = span.enter();
         match happening {
-            Happening::Increment(line) => Some(Ok(line.body + "\n")),
+            Happening::Line(line) => Some(Ok(line.body + "\n")),
             Happening::Ended(_) => None,
             Happening::Deleted => broken("the job was deleted"),
             Happening::ShuttingDown => broken("the service is going down"),

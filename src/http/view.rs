@@ -1,6 +1,7 @@
 //! What is answered, as JSON.
 
-use crate::path::{Increment, Plan, Report, StopReason};
+use crate::judged::{JudgedIncrement, JudgedReport};
+use crate::path::{Plan, StopReason};
 use crate::store::{JobRecord, Status};
 use jiff::Timestamp;
 use serde::Serialize;
@@ -22,7 +23,7 @@ pub struct Job {
     /// Why the path ended; null before that, and for failed jobs.
     #[schema(value_type = Option<StopReason>)]
     pub stop_reason: Option<String>,
-    #[schema(value_type = Option<Report>)]
+    #[schema(value_type = Option<JudgedReport>)]
     pub report: Option<Box<RawValue>>,
     /// Why the job failed.
     pub error: Option<String>,
@@ -160,7 +161,7 @@ pub struct JobList {
 #[derive(Debug, Serialize, ToSchema)]
 pub struct IncrementPage {
     /// Empty when there are no more for now.
-    #[schema(value_type = Vec<Increment>)]
+    #[schema(value_type = Vec<JudgedIncrement>)]
     pub increments: Vec<Box<RawValue>>,
     /// Pass it as `after` for the next page: the last index of this one, or what was asked for when it is empty.
     pub next_after: Option<u64>,

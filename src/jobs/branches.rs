@@ -4,7 +4,7 @@
 //! the one before, and reading one gathers them.
 
 use super::solver::Beginning;
-use crate::path::Checkpoint;
+use crate::judged::JudgedCheckpoint;
 use crate::store::{Branch, Origin, Parent};
 
 /// Makes branches of a path's checkpoints, in order.
@@ -16,12 +16,13 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    pub fn branch(&mut self, mut checkpoint: Checkpoint, alternatives: Vec<u64>) -> serde_json::Result<Branch> {
-        if checkpoint.stage() != self.stage {
-            *self = Self { stage: checkpoint.stage(), written: 0 };
+    pub fn branch(&mut self, mut checkpoint: JudgedCheckpoint, alternatives: Vec<u64>) -> serde_json::Result<Branch> {
+        let path = &mut checkpoint.path;
+        if path.stage() != self.stage {
+            *self = Self { stage: path.stage(), written: 0 };
         }
-        let length = checkpoint.trail_length();
-        let trail = checkpoint.take_trail(self.written);
+        let length = path.trail_length();
+        let trail = path.take_trail(self.written);
         self.written = length;
         let trail = if trail.is_empty() { None } else { Some(serde_json::to_string(&trail)?) };
         Ok(Branch { body: serde_json::to_string(&checkpoint)?, trail, alternatives })
@@ -30,9 +31,9 @@ impl Recorder {
 
 /// Where a job begins that follows another.
 pub fn beginning(parent: &Parent, origin: &Origin) -> serde_json::Result<Beginning> {
-    let mut checkpoint: Checkpoint = serde_json::from_str(&origin.body)?;
+    let mut checkpoint: JudgedCheckpoint = serde_json::from_str(&origin.body)?;
     let parts: Vec<_> = origin.trail.lines().map(serde_json::from_str).collect::<Result<_, _>>()?;
-    checkpoint.put_trail(parts);
+    checkpoint.path.put_trail(parts);
     let Parent { job, increment, direction } = parent;
     let event = format!("follows direction {direction} of increment {increment} of job {job}");
     // A direction too large for this machine is as absent as one past the end of the list.

@@ -3,7 +3,7 @@
 //! On a stretch of bifurcation points the same alternative exists at every increment; to follow it from each would fill
 //! the queue with nearly the same path. An alternative is followed
 //!
-//! - at the start and at every contact change and limit point, and
+//! - at the start of a stage and at every contact change and limit point, and
 //! - between them where it first appears: where the increment before lists none with the same statuses of the contacts
 //!   and the same sign of the load rate, or only one of the two increments is a bifurcation.
 //!

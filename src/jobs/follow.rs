@@ -4,7 +4,7 @@ use super::submission::wrong_input;
 use super::{Jobs, JobsError, branches, queued};
 use crate::model::{FollowRequest, InputError, InputErrors, decode};
 use crate::path::Increment;
-use crate::store::{JobRecord, NewFollower, Page, Parent};
+use crate::store::{JobRecord, NewFollower, Page, Parent, Task};
 use std::sync::Arc;
 use uuid::Uuid;
 
@@ -17,7 +17,7 @@ impl Jobs {
         idempotency_key: Option<String>,
     ) -> Result<JobRecord, JobsError> {
         let asked = decode::follow(&body).map_err(|errors| wrong_input(&body, errors, JobsError::Follow))?;
-        let job = self.store.job(id).await?.ok_or(JobsError::NoJob(id))?;
+        let job = self.find(Task::Path, id).await?;
         let parent = Parent { job: id, increment: asked.increment, direction: asked.direction };
         let Some(origin) = self.store.branch(id, asked.increment).await? else {
             return Err(self.why_no_branch(&job, &asked).await?);

@@ -3,8 +3,8 @@
 //! [`solver`] is the seam to the path tracer, [`submission`] what is done with a request before it is queued, [`solve`]
 //! one solve on a thread of its own, [`batch`] its increments on their way to the store, [`worker`] the loop around both,
 //! [`crew`] all workers of a process, [`demonstration`] the built-in scenes as jobs; [`follow`] jobs that follow a direction
-//! of another, [`branches`] the points they begin from, [`explore`] which of them are queued unasked. Called by `http` and
-//! `command`; knows `store`, `path` and `model`.
+//! of another, [`branches`] the points they begin from, [`explore`] which of them are queued unasked; [`studies`] are jobs of
+//! another task. Called by `http` and `command`; knows `store`, `judged`, `studies`, `path` and `model`.
 
 pub mod batch;
 pub mod branches;
@@ -16,12 +16,13 @@ pub mod running;
 pub mod settings;
 pub mod solve;
 pub mod solver;
+pub mod studies;
 pub mod submission;
 pub mod worker;
 
 use crate::model::InputErrors;
 use crate::path::Plan;
-use crate::store::{JobRecord, NewJob, Store, StoreError, Submitted};
+use crate::store::{JobRecord, NewJob, Store, StoreError, Submitted, Task};
 use running::Running;
 use std::sync::Arc;
 use uuid::Uuid;
@@ -43,6 +44,8 @@ pub enum JobsError {
     Follow(InputErrors),
     #[error("no job {0}")]
     NoJob(Uuid),
+    #[error("no study {0}")]
+    NoStudy(Uuid),
     #[error(transparent)]
     Store(#[from] StoreError),
     #[error("a task ended early: {0}")]
@@ -77,6 +80,7 @@ impl Jobs {
     pub async fn submit(&self, request: Vec<u8>, idempotency_key: Option<String>) -> Result<JobRecord, JobsError> {
         let prepared = self.prepare(request).await?;
         let job = NewJob {
+            task: Task::Path,
             name: prepared.name,
             plan: serde_json::to_string(&prepared.plan)?,
             request: prepared.text,
@@ -89,23 +93,38 @@ impl Jobs {
         queued(self.store.submit(job).await?)
     }
 
-    pub async fn cancel(&self, id: Uuid) -> Result<JobRecord, JobsError> {
-        let job = self.store.request_cancel(id).await?.ok_or(JobsError::NoJob(id))?;
+    /// A job of that task.
+    pub async fn find(&self, task: Task, id: Uuid) -> Result<JobRecord, JobsError> {
+        let found = self.store.job(id).await?.filter(|job| job.task == task);
+        found.ok_or_else(|| absent(task, id))
+    }
+
+    pub async fn cancel(&self, task: Task, id: Uuid) -> Result<JobRecord, JobsError> {
+        self.find(task, id).await?;
+        let job = self.store.request_cancel(id).await?.ok_or_else(|| absent(task, id))?;
         // A job that runs elsewhere learns of it when its lease is renewed; one that runs here need not wait.
         self.running.cancel(id);
         Ok(job)
     }
 
-    pub async fn delete(&self, id: Uuid) -> Result<(), JobsError> {
+    pub async fn delete(&self, task: Task, id: Uuid) -> Result<(), JobsError> {
+        self.find(task, id).await?;
         let deleted = self.store.delete(id).await?;
         self.running.cancel(id);
-        if deleted { Ok(()) } else { Err(JobsError::NoJob(id)) }
+        if deleted { Ok(()) } else { Err(absent(task, id)) }
     }
 
     /// Reading and checking a large model takes time that the runtime's threads do not have.
     async fn prepare(&self, request: Vec<u8>) -> Result<submission::Prepared, JobsError> {
         let solver = Arc::clone(&self.solver);
         tokio::task::spawn_blocking(move || submission::prepare(solver.as_ref(), request)).await?
+    }
+}
+
+fn absent(task: Task, id: Uuid) -> JobsError {
+    match task {
+        Task::Path => JobsError::NoJob(id),
+        Task::Study => JobsError::NoStudy(id),
     }
 }
 

@@ -8,10 +8,11 @@ use super::branches::{self, Recorder};
 use super::explore::Alternatives;
 use super::solver::Accept;
 use crate::cancel::CancelFlag;
+use crate::judged::JudgedReport;
 use crate::model::{InputErrors, decode};
 use crate::output::json_line;
-use crate::path::Report;
-use crate::store::{Claim, Line};
+use crate::store::{Claim, Line, Task};
+use crate::studies::{self, Run};
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -30,13 +31,17 @@ const STACK_BYTES: usize = 8 << 20;
 /// How a solve ended.
 #[derive(Debug)]
 pub enum SolveEnd {
-    Reported(Report),
+    Reported(Box<JudgedReport>),
     /// The stored request is no longer accepted, for example after an upgrade.
     Refused(InputErrors),
     Panicked(String),
     Unwritable(String),
-    /// Where the job begins cannot be read.
+    /// Where the job begins, or what it has found already, cannot be read.
     Unreadable(String),
+    /// A study has ended, complete or cancelled.
+    Studied(studies::Report),
+    /// Cancelled before there was anything to report.
+    Cancelled,
     /// Without a report: nobody listened any more, or a defect.
     Silent,
 }
@@ -48,8 +53,8 @@ pub struct Solve {
 }
 
 /// Starts the thread. Increments up to `claim.last_index` are stored already: they are computed again (the run is
-/// deterministic) and not sent.
-pub fn start(solver: Arc<dyn Solver>, claim: &Claim, cancel: CancelFlag) -> std::io::Result<Solve> {
+/// deterministic) and not sent. A study goes on from `stored`, the lines of its finished runs.
+pub fn start(solver: Arc<dyn Solver>, claim: &Claim, stored: Vec<Line>, cancel: CancelFlag) -> std::io::Result<Solve> {
     let (line_sender, lines) = mpsc::channel(places(claim.request.len()));
     let (end_sender, end) = oneshot::channel();
     let claim_of_thread = claim.clone();
@@ -57,8 +62,11 @@ pub fn start(solver: Arc<dyn Solver>, claim: &Claim, cancel: CancelFlag) -> std:
     std::thread::Builder::new().name(format!("solve-{}", claim.lease.job)).stack_size(STACK_BYTES).spawn(
         move || {
             let _entered = span.enter();
-            let ended = catch_unwind(AssertUnwindSafe(|| run(solver.as_ref(), &claim_of_thread, cancel, &line_sender)))
-                .unwrap_or_else(|panic| SolveEnd::Panicked(panic_text(panic.as_ref())));
+            let ended = catch_unwind(AssertUnwindSafe(|| match claim_of_thread.task {
+                Task::Path => run(solver.as_ref(), &claim_of_thread, cancel, &line_sender),
+                Task::Study => study(solver.as_ref(), &claim_of_thread, &stored, &cancel, &line_sender),
+            }))
+            .unwrap_or_else(|panic| SolveEnd::Panicked(panic_text(panic.as_ref())));
             // Nobody waits for the end when the runtime is going down.
             let _ = end_sender.send(ended);
         },
@@ -85,16 +93,17 @@ fn run(solver: &dyn Solver, claim: &Claim, cancel: CancelFlag, lines: &mpsc::Sen
     let mut recorder = Recorder::default();
     let mut alternatives = claim.explores.then(|| Alternatives::of(claim.origin.is_some()));
     let mut unwritable = None;
-    let accept: Accept<'_> = &mut |increment, junction| {
+    let accept: Accept<'_> = &mut |judged, junction| {
         // What is stored already is looked at too: what comes after depends on it.
-        let stored = claim.last_index.is_some_and(|stored| increment.index <= stored);
+        let stored = claim.last_index.is_some_and(|stored| judged.increment.index <= stored);
         let junction = junction();
         let open = junction.as_ref().map_or(&[][..], |junction| &junction.open);
-        let followed = alternatives.as_mut().map_or_else(Vec::new, |alternatives| alternatives.at(&increment, open));
+        let followed =
+            alternatives.as_mut().map_or_else(Vec::new, |alternatives| alternatives.at(&judged.increment, open));
         let branch = junction.map(|junction| recorder.branch(junction.checkpoint, followed)).transpose();
         let line = branch.and_then(|branch| {
-            let body = if stored { String::new() } else { json_line(&increment)? };
-            Ok(Line { index: increment.index, body, branch })
+            let body = if stored { String::new() } else { json_line(&judged)? };
+            Ok(Line { index: judged.increment.index, body, branch })
         });
         match line {
             Ok(_) if stored => ControlFlow::Continue(()),
@@ -111,7 +120,42 @@ fn run(solver: &dyn Solver, claim: &Claim, cancel: CancelFlag, lines: &mpsc::Sen
     let reported = solver.solve(&request, beginning, cancel, accept);
     match (unwritable, reported) {
         (Some(error), _) => SolveEnd::Unwritable(error),
-        (None, Ok(Some(report))) => SolveEnd::Reported(report),
+        (None, Ok(Some(report))) => SolveEnd::Reported(Box::new(report)),
+        (None, Ok(None)) => SolveEnd::Silent,
+        (None, Err(errors)) => SolveEnd::Refused(errors),
+    }
+}
+
+fn study(
+    solver: &dyn Solver,
+    claim: &Claim,
+    stored: &[Line],
+    cancel: &CancelFlag,
+    lines: &mpsc::Sender<Line>,
+) -> SolveEnd {
+    let request = match decode::study(claim.request.as_bytes()) {
+        Ok(request) => request,
+        Err(errors) => return SolveEnd::Refused(errors),
+    };
+    let done: Vec<Run> = match stored.iter().map(|line| serde_json::from_str(&line.body)).collect() {
+        Ok(done) => done,
+        Err(error) => return SolveEnd::Unreadable(error.to_string()),
+    };
+    let mut unwritable = None;
+    let reported = solver.study(&request, done, cancel, &mut |run| match serde_json::to_string(run) {
+        Ok(body) => match lines.blocking_send(Line { index: run.index, body, branch: None }) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(_) => ControlFlow::Break(()),
+        },
+        Err(error) => {
+            unwritable = Some(error.to_string());
+            ControlFlow::Break(())
+        }
+    });
+    match (unwritable, reported) {
+        (Some(error), _) => SolveEnd::Unwritable(error),
+        (None, Ok(Some(report))) => SolveEnd::Studied(report),
+        (None, Ok(None)) if cancel.is_cancelled() => SolveEnd::Cancelled,
         (None, Ok(None)) => SolveEnd::Silent,
         (None, Err(errors)) => SolveEnd::Refused(errors),
     }

@@ -1,14 +1,16 @@
 //! The seam between whoever runs a solve and the path tracer, so that tests can put a solver of their own in its place.
 
 use crate::cancel::CancelFlag;
-use crate::model::{InputError, InputErrors, JobRequest};
-use crate::path::{Checkpoint, CheckpointError, Increment, Path, Plan, Report, Scene, TracedPath};
+use crate::judged::{JudgedCheckpoint, JudgedCheckpointError, JudgedIncrement, JudgedPath, JudgedReport};
+use crate::model::{InputError, InputErrors, JobRequest, StudyRequest};
+use crate::path::{CheckpointError, Plan, Scene};
+use crate::studies::{self, Run};
 use std::ops::ControlFlow;
 
 /// Where a path begins that follows a direction of another.
 #[derive(Debug, Clone)]
 pub struct Beginning {
-    pub checkpoint: Checkpoint,
+    pub checkpoint: JudgedCheckpoint,
     pub direction: usize,
     /// The event of its first increment.
     pub event: String,
@@ -17,13 +19,13 @@ pub struct Beginning {
 /// A point whose directions are listed.
 #[derive(Debug, Clone)]
 pub struct Junction {
-    pub checkpoint: Checkpoint,
+    pub checkpoint: JudgedCheckpoint,
     /// Which of the directions can be followed.
     pub open: Vec<bool>,
 }
 
 /// Takes an increment and, where directions are listed with it, what makes its junction.
-pub type Accept<'a> = &'a mut dyn FnMut(Increment, &dyn Fn() -> Option<Junction>) -> ControlFlow<()>;
+pub type Accept<'a> = &'a mut dyn FnMut(JudgedIncrement, &dyn Fn() -> Option<Junction>) -> ControlFlow<()>;
 
 pub trait Solver: Send + Sync + 'static {
     /// Checks a request as a whole and says what it needs.
@@ -40,7 +42,23 @@ pub trait Solver: Send + Sync + 'static {
         beginning: Option<Beginning>,
         cancel: CancelFlag,
         accept: Accept<'_>,
-    ) -> Result<Option<Report>, InputErrors>;
+    ) -> Result<Option<JudgedReport>, InputErrors>;
+
+    /// Checks a study and says what it is going to do.
+    fn plan_study(&self, request: &StudyRequest) -> Result<studies::Plan, InputErrors> {
+        studies::plan(request)
+    }
+
+    /// Runs a study, `done` being its first runs; see [`studies::run`].
+    fn study(
+        &self,
+        request: &StudyRequest,
+        done: Vec<Run>,
+        cancel: &CancelFlag,
+        accept: &mut dyn FnMut(&Run) -> ControlFlow<()>,
+    ) -> Result<Option<studies::Report>, InputErrors> {
+        studies::run(request, done, cancel, accept)
+    }
 }
 
 /// The solver of this crate.
@@ -53,7 +71,7 @@ impl Solver for PathSolver {
     }
 
     fn check_beginning(&self, request: &JobRequest, beginning: Beginning) -> Result<(), InputErrors> {
-        begin(&Scene::new(request)?, Some(beginning), CancelFlag::default()).map(|_| ())
+        begin(request, &Scene::new(request)?, Some(beginning), CancelFlag::default()).map(|_| ())
     }
 
     fn solve(
@@ -62,10 +80,15 @@ impl Solver for PathSolver {
         beginning: Option<Beginning>,
         cancel: CancelFlag,
         accept: Accept<'_>,
-    ) -> Result<Option<Report>, InputErrors> {
+    ) -> Result<Option<JudgedReport>, InputErrors> {
         let scene = Scene::new(request)?;
-        let mut path = begin(&scene, beginning, cancel)?;
+        let mut path = begin(request, &scene, beginning, cancel)?;
+        let mut off_measure = false;
         while let Some(increment) = path.next() {
+            // The first one only: a path that is off once may be off at every point after. The report counts them.
+            if path.is_off_measure() && !std::mem::replace(&mut off_measure, true) {
+                warn_off_measure(&increment);
+            }
             if accept(increment, &|| junction(&path)).is_break() {
                 return Ok(None);
             }
@@ -74,26 +97,36 @@ impl Solver for PathSolver {
     }
 }
 
-fn junction(path: &TracedPath<'_>) -> Option<Junction> {
-    let TracedPath::Exact(path) = path else { return None };
-    let listed = path.listed_directions();
-    let open = || (0..listed).map(|direction| path.can_be_followed(direction)).collect();
-    (listed > 0).then(|| Junction { checkpoint: path.checkpoint(), open: open() })
+fn warn_off_measure(judged: &JudgedIncrement) {
+    let errors = serde_json::to_string(&judged.measure).unwrap_or_default();
+    tracing::warn!(increment = judged.increment.index, %errors, "an accepted increment is off the measure");
 }
 
-fn begin(scene: &Scene, beginning: Option<Beginning>, cancel: CancelFlag) -> Result<TracedPath<'_>, InputErrors> {
+fn junction(path: &JudgedPath<'_>) -> Option<Junction> {
+    let open = path.open_directions();
+    if open.is_empty() { None } else { Some(Junction { checkpoint: path.checkpoint()?, open }) }
+}
+
+fn begin<'a>(
+    request: &JobRequest,
+    scene: &'a Scene,
+    beginning: Option<Beginning>,
+    cancel: CancelFlag,
+) -> Result<JudgedPath<'a>, InputErrors> {
     let Some(Beginning { checkpoint, direction, event }) = beginning else {
-        return Ok(TracedPath::new(scene, cancel));
+        return Ok(JudgedPath::new(request, scene, cancel));
     };
-    let followed = Path::follow(scene, checkpoint, direction, event, cancel);
-    followed.map(|path| TracedPath::Exact(Box::new(path))).map_err(|error| {
-        let pointer = match error {
-            CheckpointError::Version { .. } | CheckpointError::OtherModel { .. } | CheckpointError::NothingListed => {
-                "/increment"
-            }
-            CheckpointError::NoSuchDirection { .. }
-            | CheckpointError::Mechanism { .. }
-            | CheckpointError::StageEnds { .. } => "/direction",
+    JudgedPath::follow(request, scene, checkpoint, direction, event, cancel).map_err(|error| {
+        let pointer = match &error {
+            JudgedCheckpointError::History(_) => "/increment",
+            JudgedCheckpointError::Path(error) => match error {
+                CheckpointError::Version { .. }
+                | CheckpointError::OtherModel { .. }
+                | CheckpointError::NothingListed => "/increment",
+                CheckpointError::NoSuchDirection { .. }
+                | CheckpointError::Mechanism { .. }
+                | CheckpointError::StageEnds { .. } => "/direction",
+            },
         };
         InputErrors(vec![InputError::new(pointer, error.to_string())])
     })

@@ -33,6 +33,6 @@ pub(super) fn wrong_input(request: &[u8], errors: InputErrors, otherwise: fn(Inp
     if is_json { otherwise(errors) } else { JobsError::NotJson(errors) }
 }
 
-fn not_text(error: FromUtf8Error) -> JobsError {
+pub(super) fn not_text(error: FromUtf8Error) -> JobsError {
     JobsError::NotJson(InputErrors(vec![InputError::new("", error.to_string())]))
 }

@@ -4,8 +4,10 @@ use super::batch::{self, Drained};
 use super::solve::{self, Solve, SolveEnd};
 use super::{Jobs, running};
 use crate::cancel::CancelFlag;
-use crate::path::{Outcome, Report, StopReason};
-use crate::store::{Claim, Ending, LeaseAnswer, Status, StoreError};
+use crate::judged::JudgedReport;
+use crate::path::{Outcome, StopReason};
+use crate::store::{Claim, Ending, LeaseAnswer, Status, StoreError, Task};
+use crate::studies;
 use tokio_util::sync::CancellationToken;
 use tracing::Instrument;
 
@@ -62,7 +64,11 @@ async fn trace(jobs: &Jobs, claim: &Claim, shutdown: &CancellationToken) -> Resu
     if jobs.store.job(lease.job).await?.is_none_or(|job| job.cancel_requested) {
         cancel.cancel();
     }
-    let mut solve = match solve::start(jobs.solver.clone(), claim, cancel.clone()) {
+    let stored = match claim.task {
+        Task::Path => Vec::new(),
+        Task::Study => batch::retry(|| jobs.stored(lease.job)).await?,
+    };
+    let mut solve = match solve::start(jobs.solver.clone(), claim, stored, cancel.clone()) {
         Ok(solve) => solve,
         Err(error) => return end(jobs, claim, Ending::failed(format!("no thread could be started: {error}"))).await,
     };
@@ -117,26 +123,38 @@ fn ending(end: SolveEnd) -> Ending {
         SolveEnd::Reported(report) => {
             reported(&report).unwrap_or_else(|error| Ending::failed(format!("the report cannot be written: {error}")))
         }
+        SolveEnd::Studied(report) => {
+            studied(&report).unwrap_or_else(|error| Ending::failed(format!("the report cannot be written: {error}")))
+        }
+        SolveEnd::Cancelled => cancelled(None),
         SolveEnd::Refused(errors) => Ending::failed(format!("the stored request is not accepted: {errors}")),
         SolveEnd::Panicked(text) => Ending::failed(format!("the solver panicked: {text}")),
         SolveEnd::Unwritable(error) => Ending::failed(format!("an increment cannot be written: {error}")),
-        SolveEnd::Unreadable(error) => {
-            Ending::failed(format!("the point that the job begins from cannot be read: {error}"))
-        }
+        SolveEnd::Unreadable(error) => Ending::failed(format!("what is stored of the job cannot be read: {error}")),
         SolveEnd::Silent => Ending::failed("the solver ended without a report"),
     }
 }
 
-fn reported(report: &Report) -> serde_json::Result<Ending> {
-    let status = match report.stop_reason.outcome() {
+fn studied(report: &studies::Report) -> serde_json::Result<Ending> {
+    let text = Some(serde_json::to_string(report)?);
+    let completed = Ending { status: Status::Completed, stop_reason: None, report: text.clone(), error: None };
+    Ok(if report.complete { completed } else { cancelled(text) })
+}
+
+fn cancelled(report: Option<String>) -> Ending {
+    Ending { status: Status::Cancelled, stop_reason: Some("cancelled".to_owned()), report, error: None }
+}
+
+fn reported(judged: &JudgedReport) -> serde_json::Result<Ending> {
+    let status = match judged.report.stop_reason.outcome() {
         Outcome::Completed => Status::Completed,
         Outcome::Stopped => Status::Stopped,
         Outcome::Cancelled => Status::Cancelled,
     };
     Ok(Ending {
         status,
-        stop_reason: Some(reason_name(report.stop_reason)?),
-        report: Some(serde_json::to_string(report)?),
+        stop_reason: Some(reason_name(judged.report.stop_reason)?),
+        report: Some(serde_json::to_string(judged)?),
         error: None,
     })
 }

@@ -1,78 +1,98 @@
 //! Forces and strain energy of the posted elements, for the measure alone.
 
-use crate::model::request::{Element, Model, Strain};
+use super::vector::{Vector, add, dot, norm, padded, scaled};
+use crate::model::request::{Element as Posted, Model, Strain};
 
-/// A bar as it is deformed.
-struct Bar {
-    /// `L/L0`
-    stretch: f64,
-    /// `L - L0` and `(L - L0)/L0`, without the cancellation of two lengths.
-    elongation: f64,
-    strain: f64,
-    rest: f64,
-    direction: Vec<f64>,
-    ends: [usize; 2],
+/// An element with its nodes numbered.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Element {
+    Bar {
+        ends: [usize; 2],
+        /// From the first end to the second, undeformed.
+        reference: Vector,
+        /// Its length.
+        before: f64,
+        rest: f64,
+        stiffness: f64,
+        prestress: f64,
+        strain: Strain,
+    },
+    Spring {
+        node: usize,
+        /// `None`: the ground.
+        other: Option<usize>,
+        stiffness: [Vector; 3],
+    },
 }
 
-fn bar(model: &Model, nodes: &[String], rest: Option<f64>, u: &[Vec<f64>]) -> Bar {
-    let index = |name: &String| model.nodes.get_index_of(name).unwrap_or(0);
-    let ends = [index(&nodes[0]), index(&nodes[1])];
-    let reference: Vec<f64> = (0..model.dimension).map(|k| model.nodes[ends[1]][k] - model.nodes[ends[0]][k]).collect();
-    let change: Vec<f64> = (0..model.dimension).map(|k| u[ends[1]][k] - u[ends[0]][k]).collect();
-    let deformed: Vec<f64> = reference.iter().zip(&change).map(|(a, b)| a + b).collect();
-    let norm = |vector: &[f64]| vector.iter().map(|value| value * value).sum::<f64>().sqrt();
-    let (before, length) = (norm(&reference), norm(&deformed));
-    let rest = rest.unwrap_or(before);
-    let grown: f64 = change.iter().zip(&reference).map(|(d, r)| d * (2.0 * r + d)).sum::<f64>() / (length + before);
-    let elongation = grown + (before - rest);
-    let direction = deformed.iter().map(|value| value / length).collect();
-    Bar { stretch: length / rest, elongation, strain: elongation / rest, rest, direction, ends }
+/// What the nodes do to an element: a force on the second node, the opposite on the first; and its energy.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Response {
+    pub first: Option<usize>,
+    pub second: usize,
+    /// On the second node.
+    pub force: Vector,
+    pub energy: f64,
 }
 
-pub(super) fn element_forces(model: &Model, element: &Element, u: &[Vec<f64>]) -> Vec<(usize, Vec<f64>)> {
-    match element {
-        Element::Bar { nodes, axial_stiffness, rest_length, prestress, strain } => {
-            let Bar { stretch, strain: linear, direction, ends, .. } = bar(model, nodes, *rest_length, u);
-            let elastic = match strain {
-                Strain::Engineering => linear,
-                Strain::Green => linear * (1.0 + 0.5 * linear) * stretch,
-                Strain::Log => linear.ln_1p() / stretch,
-            };
-            let axial = axial_stiffness * elastic + prestress;
-            let force: Vec<f64> = direction.iter().map(|value| axial * value).collect();
-            vec![(ends[0], force.iter().map(|value| -value).collect()), (ends[1], force)]
-        }
-        Element::Spring { nodes, stiffness } => {
-            let ends: Vec<usize> = nodes.iter().map(|name| model.nodes.get_index_of(name).unwrap_or(0)).collect();
-            let force: Vec<f64> = stiffness
-                .iter()
-                .map(|row| {
-                    let relative = |k: usize| u[ends[0]][k] - ends.get(1).map_or(0.0, |other| u[*other][k]);
-                    row.iter().enumerate().map(|(k, value)| value * relative(k)).sum()
-                })
-                .collect();
-            let mut forces = vec![(ends[0], force.clone())];
-            forces.extend(ends.get(1).map(|other| (*other, force.iter().map(|value| -value).collect())));
-            forces
+impl Element {
+    /// `None` where a node is unknown.
+    pub fn new(model: &Model, posted: &Posted) -> Option<Self> {
+        let index = |name: &String| model.nodes.get_index_of(name);
+        match posted {
+            Posted::Bar { nodes, axial_stiffness, rest_length, prestress, strain } => {
+                let ends = [index(nodes.first()?)?, index(nodes.get(1)?)?];
+                let reference = add(&padded(&model.nodes[ends[1]]), -1.0, &padded(&model.nodes[ends[0]]));
+                let before = norm(&reference);
+                let rest = rest_length.unwrap_or(before);
+                let (stiffness, prestress, strain) = (*axial_stiffness, *prestress, *strain);
+                Some(Self::Bar { ends, reference, before, rest, stiffness, prestress, strain })
+            }
+            Posted::Spring { nodes, stiffness } => {
+                let row = |k: usize| stiffness.get(k).map_or([0.0; 3], |row| padded(row));
+                let other = nodes.get(1).map(|name| index(name).ok_or(())).transpose().ok()?;
+                Some(Self::Spring { node: index(nodes.first()?)?, other, stiffness: [row(0), row(1), row(2)] })
+            }
         }
     }
-}
 
-pub(super) fn strain_energy(model: &Model, u: &[Vec<f64>]) -> f64 {
-    let energy = |element: &Element| match element {
-        Element::Bar { nodes, axial_stiffness, rest_length, prestress, strain } => {
-            let Bar { elongation, strain: linear, rest, .. } = bar(model, nodes, *rest_length, u);
-            let measure = match strain {
-                Strain::Engineering => linear,
-                Strain::Green => linear * (1.0 + 0.5 * linear),
-                Strain::Log => linear.ln_1p(),
-            };
-            0.5 * axial_stiffness * rest * measure * measure + prestress * elongation
+    /// Under these displacements of the nodes.
+    pub fn response(&self, u: &[Vector]) -> Response {
+        match self {
+            Self::Bar { ends, reference, before, rest, stiffness, prestress, strain } => {
+                let change = add(&u[ends[1]], -1.0, &u[ends[0]]);
+                let deformed = add(reference, 1.0, &change);
+                let length = norm(&deformed);
+                // `L - L0` and `(L - L0)/L0` without the cancellation of two lengths.
+                let grown = dot(&change, &add(&scaled(reference, 2.0), 1.0, &change)) / (length + before);
+                let elongation = grown + (before - rest);
+                let linear = elongation / rest;
+                let stretch = length / rest;
+                // The measure of strain, and the axial force over EA.
+                let (measure, elastic) = match strain {
+                    Strain::Engineering => (linear, linear),
+                    Strain::Green => {
+                        let green = linear * (1.0 + 0.5 * linear);
+                        (green, green * stretch)
+                    }
+                    Strain::Log => {
+                        let logarithmic = linear.ln_1p();
+                        (logarithmic, logarithmic / stretch)
+                    }
+                };
+                let force = scaled(&deformed, (stiffness * elastic + prestress) / length);
+                let energy = 0.5 * stiffness * rest * measure * measure + prestress * elongation;
+                Response { first: Some(ends[0]), second: ends[1], force, energy }
+            }
+            Self::Spring { node, other, stiffness } => {
+                let relative = match other {
+                    Some(other) => add(&u[*node], -1.0, &u[*other]),
+                    None => u[*node],
+                };
+                let force =
+                    [dot(&stiffness[0], &relative), dot(&stiffness[1], &relative), dot(&stiffness[2], &relative)];
+                Response { first: *other, second: *node, force, energy: 0.5 * dot(&force, &relative) }
+            }
         }
-        Element::Spring { .. } => {
-            let forces = element_forces(model, element, u);
-            0.5 * forces.iter().flat_map(|(node, f)| f.iter().zip(&u[*node]).map(|(f, u)| f * u)).sum::<f64>()
-        }
-    };
-    model.elements.iter().map(energy).sum()
+    }
 }

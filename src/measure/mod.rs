@@ -5,305 +5,236 @@
 //! equilibrium     max |Σ N d + K Δu - s f - f_held - Σ n r_n - Σ t r_t| / F    free components; F: largest force so far
 //! support         max |u - s u_given - u_held| / ℓ                            supported components
 //! contact         max |min(g/ℓ, r_n/F)|                                       natural map of 0 <= g ⊥ r_n >= 0
+//! friction        max |t - P(t - x)|,   t = r_t/F,   x = Tᵀ(Δu - Δd)/ℓ         natural map of Coulomb's law;
+//!                 P: projection onto the disc of radius μ r_n/F;  d: the obstacle's translation
 //! cone            max (|r_t| - μ r_n)/F
-//! friction        stick: |slip|/ℓ;   free: |r|/F;
-//!                 slip in 2D: |r_t + μ r_n slip/|slip||/F;   in 3D: ||r_t| - μ r_n|/F and (r_t·slip/|slip|)₊/F
-//! reported        |gap - g|/ℓ, |slip - Tᵀ(Δu - Δd)|/ℓ                         d: the obstacle's translation
+//! reported        |gap - g|/ℓ, |slip - Tᵀ(Δu - Δd)|/ℓ;   free: |r|/F;   stick: |x|;   slip: ||r_t| - μ r_n|/F
+//! arc_length      |‖(Δu/ℓ, Δs/σ)‖ - step|,   |arc_length - arc_length before - step|
 //! energy          |W - E - D| / largest energy so far (at least 1e-12 F ℓ)
+//! strain_energy   |E - E(u)| / the same
 //! slip_direction  3D: angle between the slip and the sum of the unit directions -r_t/|r_t| at its two ends
 //! ```
 //!
-//! (Natural map: F. Facchinei, J.-S. Pang, *Finite-Dimensional Variational Inequalities and Complementarity Problems*,
-//! Springer 2003, section 1.5.)
+//! `ℓ` and `σ` are the plan's displacement and load scales. (Natural map: F. Facchinei, J.-S. Pang, *Finite-Dimensional
+//! Variational Inequalities and Complementarity Problems*, Springer 2003, section 1.5; of Coulomb's law: P. Alart,
+//! A. Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353, doi:10.1016/0045-7825(91)90022-X.) `W` and `D` are the
+//! reported ones: integrals along the path, of which two increments do not hold enough to compute them anew.
 //!
 //! In 3D the slip of an increment is the chord of a curve. Traction opposes the velocity, and the chord of a curve with
-//! unit end directions `d0`, `d1` is along `d0 + d1` up to an angle of second order in the step. So the end is judged
-//! exactly on the cone and the chord by that angle, which is a figure of its own: it falls with the step and is not
-//! an error of the state. It is 0 where the slip began off the cone (a first touch), where no direction is known.
+//! unit end directions `d0`, `d1` is along `d0 + d1` up to an angle of second order in the step. So on the cone the
+//! friction's natural map takes the part of the chord along the traction, and the chord is judged by that angle, which
+//! is a figure of its own: it falls with the step and is not an error of the state. It is 0 where the slip began off the
+//! cone (a first touch), where no direction is known.
+//!
+//! | file | what it does |
+//! |---|---|
+//! | `errors` | the figures and their maxima |
+//! | `posted`, `elements`, `obstacles`, `vector` | the model as posted, with numbers for names |
+//! | `contacts` | one contact |
+//! | `history` | what a judge remembers, put down and taken up |
 
+mod contacts;
 mod elements;
+mod errors;
+mod history;
 mod obstacles;
+mod posted;
+mod vector;
 
-use crate::model::request::{JobRequest, Model};
-use crate::path::increment::{ContactState, Increment, Status};
-use elements::{element_forces, strain_energy};
-use obstacles::{Frame, dot, norm};
+pub use errors::{Errors, Largest, Maxima};
+pub use history::{History, HistoryError};
 
-/// Errors of one increment, all dimensionless.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Errors {
-    pub equilibrium: f64,
-    pub support: f64,
-    pub contact: f64,
-    pub cone: f64,
-    pub friction: f64,
-    /// Gaps and slips as reported against those of the reported displacements.
-    pub reported: f64,
-    pub energy: f64,
-    /// Reported against recomputed strain energy, over the largest energy so far.
-    pub strain_energy: f64,
-    /// Radians.
-    pub slip_direction: f64,
-}
-
-impl Errors {
-    /// The largest of equilibrium, support, contact, cone, friction and reported.
-    pub fn largest_of_state(&self) -> f64 {
-        let parts = [self.equilibrium, self.support, self.contact, self.cone, self.friction, self.reported];
-        parts.into_iter().fold(0.0, worse)
-    }
-}
-
-/// One vector a node, or one an obstacle.
-type Vectors = Vec<Vec<f64>>;
-
-/// The point before, as far as slip needs it.
-#[derive(Debug, Clone)]
-struct Before {
-    displacements: Vectors,
-    shifts: Vectors,
-    /// `-r_t/|r_t|` in space of each contact that is on its cone.
-    directions: Vec<Option<Vec<f64>>>,
-}
+use crate::model::JobRequest;
+use crate::path::increment::Increment;
+use contacts::Seen;
+use errors::worse;
+use history::Before;
+use obstacles::Frame;
+use posted::{Loading, Posted};
+use vector::{Vector, ZERO, add, largest, padded, scaled};
 
 /// Judges the increments of one path, in order.
 #[derive(Debug, Clone)]
-pub struct Judge<'m> {
-    model: &'m Model,
+pub struct Judge {
+    posted: Posted,
+    /// The plan's displacement scale.
     length: f64,
     stage: usize,
-    last_load: f64,
-    held_forces: Vectors,
-    held_displacements: Vectors,
-    held_shifts: Vectors,
+    /// Loads at which the stages before ended.
+    reached: Vec<f64>,
+    held: Loading,
     before: Before,
     largest_force: f64,
     largest_energy: f64,
     initial_strain: f64,
+    /// What the increment at hand is computed in.
+    work: Workspace,
 }
 
-/// A traction within this part of `μ r_n` of the cone is on it.
-const ON_THE_CONE: f64 = 1e-6;
+#[derive(Debug, Clone)]
+struct Workspace {
+    loading: Loading,
+    displacements: Vec<Vector>,
+    /// Unbalanced force, one a node.
+    balance: Vec<Vector>,
+    frames: Vec<Frame>,
+}
 
-impl<'m> Judge<'m> {
-    /// `length` makes gaps and slips dimensionless (the plan's displacement scale).
-    pub fn new(request: &'m JobRequest, length: f64) -> Self {
-        let model = &request.model;
-        let rest = vec![vec![0.0; model.dimension]; model.nodes.len()];
-        let still = vec![vec![0.0; model.dimension]; model.obstacles.len()];
+impl Judge {
+    /// Of a request that has been checked. The scales are those of the plan: `displacement_scale` makes lengths
+    /// dimensionless, `load_scales` the load factor, one a stage.
+    pub fn new(request: &JobRequest, displacement_scale: f64, load_scales: &[f64]) -> Self {
+        let posted = Posted::new(request, load_scales);
+        let none = Loading::none(&posted);
+        let nodes = posted.nodes.len();
+        let (displacements, balance) = (vec![ZERO; nodes], vec![ZERO; nodes]);
+        let frames = Vec::with_capacity(posted.contacts.len());
+        let initial_strain = posted.elements.iter().map(|element| element.response(&displacements).energy).sum();
         Self {
-            model,
-            length,
+            length: displacement_scale,
             stage: 0,
-            last_load: 0.0,
-            held_forces: rest.clone(),
-            held_displacements: rest.clone(),
-            held_shifts: still.clone(),
-            before: Before { displacements: rest.clone(), shifts: still, directions: vec![None; model.contacts.len()] },
+            reached: Vec::new(),
+            held: none.clone(),
+            before: Before::at_rest(&posted),
             largest_force: 0.0,
             largest_energy: 0.0,
-            initial_strain: strain_energy(model, &rest),
+            initial_strain,
+            work: Workspace { loading: none, displacements, balance, frames },
+            posted,
         }
     }
 
     /// Errors of the next increment.
     pub fn judge(&mut self, increment: &Increment) -> Errors {
-        while self.model.stages[self.stage].name != *increment.stage && self.stage + 1 < self.model.stages.len() {
-            (self.held_forces, self.held_displacements, self.held_shifts) = self.loading(self.last_load);
-            self.stage += 1;
-            self.last_load = 0.0;
+        let mut errors = Errors::default();
+        if !self.read(increment) {
+            errors.reported = f64::MAX;
         }
-        self.last_load = increment.load_factor;
-        let (forces, given, shifts) = self.loading(increment.load_factor);
-        let displacements: Vectors =
-            self.model.nodes.keys().map(|name| increment.displacements[name.as_str()].clone()).collect();
-        let frames = self.frames(&displacements, &shifts);
-        let mut errors = Errors {
-            equilibrium: self.equilibrium(&increment.contacts, &displacements, &forces, &frames),
-            support: self.support(&displacements, &given),
-            ..Errors::default()
-        };
-        let mut after = Before { displacements, shifts, directions: vec![None; self.model.contacts.len()] };
-        for (index, state) in increment.contacts.iter().enumerate() {
-            let Some(frame) = frames.get(index).and_then(Option::as_ref) else { continue };
-            self.contact(index, state, frame, &mut after, &mut errors);
+        let strain = self.forces(increment);
+        let force = if self.largest_force > 0.0 { self.largest_force } else { 1.0 };
+        errors.equilibrium = worse(0.0, self.unbalanced() / force);
+        errors.support = self.off_support();
+        errors.arc_length = self.off_arc(increment);
+        for index in 0..self.posted.contacts.len().min(increment.contacts.len()) {
+            let contact = self.posted.contacts[index];
+            let (node, obstacle) = (contact.node, contact.obstacle);
+            let moved = add(&self.work.displacements[node], -1.0, &self.before.displacements[node]);
+            let shifted = add(&self.work.loading.shifts[obstacle], -1.0, &self.before.shifts[obstacle]);
+            let seen = Seen {
+                state: &increment.contacts[index],
+                frame: &self.work.frames[index],
+                friction: contact.friction,
+                motion: add(&moved, -1.0, &shifted),
+                direction_before: self.before.directions[index],
+                dimension: self.posted.dimension,
+            };
+            self.before.directions[index] = seen.judge(self.length, force, &mut errors);
         }
-        self.energy(increment, &after.displacements, &mut errors);
-        self.before = after;
+        self.energy(increment, strain, &mut errors);
+        std::mem::swap(&mut self.before.displacements, &mut self.work.displacements);
+        self.before.shifts.copy_from_slice(&self.work.loading.shifts);
+        self.before.load = increment.load_factor;
+        self.before.arc_length = increment.arc_length;
         errors
     }
 
-    /// Forces on nodes, displacements of supports and translations of obstacles under a load factor of the stage.
-    fn loading(&self, load: f64) -> (Vectors, Vectors, Vectors) {
-        let stage = &self.model.stages[self.stage];
-        let add = |held: &Vectors, patterns: &indexmap::IndexMap<String, Vec<f64>>, number: &dyn Fn(&str) -> _| {
-            let mut sums = held.clone();
-            for (name, pattern) in patterns {
-                if let Some(index) = number(name) {
-                    let sum: &mut Vec<f64> = &mut sums[index];
-                    sum.iter_mut().zip(pattern).for_each(|(sum, value)| *sum += load * value);
-                }
-            }
-            sums
-        };
-        let node = |name: &str| self.model.nodes.get_index_of(name);
-        let obstacle = |name: &str| self.model.obstacles.get_index_of(name);
-        (
-            add(&self.held_forces, &stage.forces, &node),
-            add(&self.held_displacements, &stage.displacements, &node),
-            add(&self.held_shifts, &stage.obstacle_motion, &obstacle),
-        )
+    /// Goes to the increment's stage and takes its displacements and load; `false` where it does not fit the model.
+    fn read(&mut self, increment: &Increment) -> bool {
+        let posted = &self.posted;
+        let known = posted.stages[self.stage..].iter().position(|stage| stage.name == *increment.stage);
+        for _ in 0..known.unwrap_or(0) {
+            self.work.loading.set(&self.held, &posted.stages[self.stage], self.before.load);
+            std::mem::swap(&mut self.held, &mut self.work.loading);
+            self.reached.push(self.before.load);
+            self.stage += 1;
+            self.before.load = 0.0;
+        }
+        self.work.loading.set(&self.held, &posted.stages[self.stage], increment.load_factor);
+        let mut fits = known.is_some() && increment.contacts.len() == posted.contacts.len();
+        for (index, (node, displacement)) in posted.nodes.iter().zip(&mut self.work.displacements).enumerate() {
+            let in_place = increment.displacements.get_index(index).filter(|(name, _)| ***name == node.name);
+            let found = in_place.map(|(_, values)| values).or_else(|| increment.displacements.get(node.name.as_str()));
+            let found = found.filter(|values| values.len() == posted.dimension);
+            *displacement = found.map_or(ZERO, |values| padded(values));
+            fits &= found.is_some();
+        }
+        fits
     }
 
-    fn frames(&self, displacements: &Vectors, shifts: &Vectors) -> Vec<Option<Frame>> {
-        let frame = |contact: &crate::model::request::Contact| {
-            let (node, _, place) = self.model.nodes.get_full(&contact.node)?;
-            let (number, _, obstacle) = self.model.obstacles.get_full(&contact.obstacle)?;
-            Some(Frame::new(obstacle, &shifts[number], place, &displacements[node]))
-        };
-        self.model.contacts.iter().map(frame).collect()
+    /// Sums up the forces on every node; answers the strain energy.
+    fn forces(&mut self, increment: &Increment) -> f64 {
+        let (posted, work) = (&self.posted, &mut self.work);
+        let mut most = self.largest_force;
+        for (balance, load) in work.balance.iter_mut().zip(&work.loading.forces) {
+            *balance = scaled(load, -1.0);
+            most = most.max(largest(load));
+        }
+        let mut strain = 0.0;
+        for element in &posted.elements {
+            let response = element.response(&work.displacements);
+            strain += response.energy;
+            most = most.max(largest(&response.force));
+            if let Some(first) = response.first {
+                work.balance[first] = add(&work.balance[first], -1.0, &response.force);
+            }
+            work.balance[response.second] = add(&work.balance[response.second], 1.0, &response.force);
+        }
+        work.frames.clear();
+        for contact in &posted.contacts {
+            let (shift, place) = (&work.loading.shifts[contact.obstacle], &posted.nodes[contact.node].place);
+            let obstacle = &posted.obstacles[contact.obstacle];
+            work.frames.push(obstacle.frame(posted.dimension, shift, place, &work.displacements[contact.node]));
+        }
+        for ((contact, frame), state) in posted.contacts.iter().zip(&work.frames).zip(&increment.contacts) {
+            let balance = &mut work.balance[contact.node];
+            *balance = add(balance, -1.0, &contacts::force(state, frame));
+            most = most.max(state.normal_reaction.abs());
+        }
+        // An error without bound is one already; what scales the others stays a number.
+        if most.is_finite() {
+            self.largest_force = most;
+        }
+        strain
     }
 
-    fn supported(&self, node: &str, component: usize) -> bool {
-        self.model.supports.get(node).is_some_and(|held| held.iter().any(|c| c.index() == component))
+    /// The largest unbalanced force on a free component.
+    fn unbalanced(&self) -> f64 {
+        let components = self.posted.nodes.iter().zip(&self.work.balance).flat_map(|(node, balance)| {
+            (0..self.posted.dimension).filter(|k| !node.held[*k]).map(|k| balance[k].abs())
+        });
+        components.fold(0.0, worse)
     }
 
-    fn support(&self, displacements: &Vectors, given: &Vectors) -> f64 {
-        let mut error = 0.0_f64;
-        for (node, name) in self.model.nodes.keys().enumerate() {
-            for component in (0..self.model.dimension).filter(|component| self.supported(name, *component)) {
-                error = worse(error, (displacements[node][component] - given[node][component]).abs() / self.length);
-            }
-        }
-        error
+    fn off_support(&self) -> f64 {
+        let given = self.work.displacements.iter().zip(&self.work.loading.displacements);
+        let components = self.posted.nodes.iter().zip(given).flat_map(|(node, (found, given))| {
+            (0..self.posted.dimension).filter(|k| node.held[*k]).map(|k| (found[k] - given[k]).abs())
+        });
+        worse(0.0, components.fold(0.0, worse) / self.length)
     }
 
-    fn equilibrium(
-        &mut self,
-        contacts: &[ContactState],
-        displacements: &Vectors,
-        forces: &Vectors,
-        frames: &[Option<Frame>],
-    ) -> f64 {
-        let model = self.model;
-        let mut balance = vec![vec![0.0; model.dimension]; model.nodes.len()];
-        let mut largest = 0.0_f64;
-        for element in &model.elements {
-            for (node, force) in element_forces(model, element, displacements) {
-                for (sum, value) in balance[node].iter_mut().zip(force) {
-                    *sum += value;
-                    largest = largest.max(value.abs());
-                }
-            }
+    fn off_arc(&self, increment: &Increment) -> f64 {
+        let mut squared =
+            ((increment.load_factor - self.before.load) / self.posted.stages[self.stage].load_scale).powi(2);
+        for (after, before) in self.work.displacements.iter().zip(&self.before.displacements) {
+            let change = scaled(&add(after, -1.0, before), 1.0 / self.length);
+            squared += vector::dot(&change, &change);
         }
-        for (sums, loads) in balance.iter_mut().zip(forces) {
-            for (sum, load) in sums.iter_mut().zip(loads) {
-                *sum -= load;
-                largest = largest.max(load.abs());
-            }
-        }
-        for ((contact, state), frame) in model.contacts.iter().zip(contacts).zip(frames) {
-            let (Some(node), Some(frame)) = (model.nodes.get_index_of(&contact.node), frame) else { continue };
-            let tangential = frame.in_space(&state.tangential_reaction);
-            for (component, sum) in balance[node].iter_mut().enumerate() {
-                *sum -= state.normal_reaction * frame.normal[component] + tangential[component];
-            }
-            largest = largest.max(state.normal_reaction.abs());
-        }
-        self.largest_force = self.largest_force.max(largest);
-        let mut error = 0.0_f64;
-        for (node, name) in model.nodes.keys().enumerate() {
-            for (component, value) in balance[node].iter().enumerate() {
-                if !self.supported(name, component) {
-                    error = worse(error, value.abs());
-                }
-            }
-        }
-        if self.largest_force > 0.0 { error / self.largest_force } else { error }
+        let of_step = (squared.sqrt() - increment.step).abs();
+        worse(worse(0.0, of_step), (increment.arc_length - (self.before.arc_length + increment.step)).abs())
     }
 
-    fn contact(&self, index: usize, state: &ContactState, frame: &Frame, after: &mut Before, errors: &mut Errors) {
-        let (model, length) = (self.model, self.length);
-        let contact = &model.contacts[index];
-        let friction = contact.friction;
-        let force = if self.largest_force > 0.0 { self.largest_force } else { 1.0 };
-        let normal = state.normal_reaction / force;
-        let traction: Vec<f64> = state.tangential_reaction.iter().map(|value| value / force).collect();
-        let size = norm(&traction);
-        let beyond_rounding =
-            |error: f64| if error.abs() <= frame.rounding { 0.0 } else { (error.abs() - frame.rounding) / length };
-        let apart = state.gap / length;
-        // Written out: `min` passes over what is not a number.
-        errors.contact = worse(errors.contact, if normal < apart { normal.abs() } else { apart.abs() });
-        errors.contact = worse(errors.contact, if normal.is_nan() { normal } else { 0.0 });
-        errors.cone = worse(errors.cone, size - friction * normal);
-        errors.reported = worse(errors.reported, beyond_rounding(state.gap - frame.gap));
-
-        let node = model.nodes.get_index_of(&contact.node).unwrap_or_default();
-        let obstacle = model.obstacles.get_index_of(&contact.obstacle).unwrap_or_default();
-        let motion = |k: usize| {
-            let moved = after.displacements[node][k] - self.before.displacements[node][k];
-            moved - (after.shifts[obstacle][k] - self.before.shifts[obstacle][k])
-        };
-        let motion: Vec<f64> = (0..model.dimension).map(motion).collect();
-        let slip = frame.along(&motion);
-        let expected = if state.status == Status::Free { vec![0.0; slip.len()] } else { slip.clone() };
-        for (reported, expected) in state.slip.iter().zip(&expected) {
-            errors.reported = worse(errors.reported, beyond_rounding(reported - expected));
-        }
-        let distance = norm(&slip);
-        // Motion within the rounding of the coordinates has no direction.
-        let moves = distance > frame.rounding;
-        let friction_error = match state.status {
-            Status::Free => size.max(normal.abs()),
-            Status::Stick => beyond_rounding(distance),
-            Status::Slip if friction == 0.0 || !moves => 0.0,
-            Status::Slip if model.dimension == 2 => (traction[0] + friction * normal * slip[0] / distance).abs(),
-            Status::Slip => {
-                let against = dot(&traction, &slip) / distance;
-                (size - friction * normal).abs().max(against)
-            }
-        };
-        errors.friction = worse(errors.friction, friction_error);
-
-        let on_the_cone = size > 0.0 && size >= (1.0 - ON_THE_CONE) * friction * normal;
-        if model.dimension == 3 && friction > 0.0 && on_the_cone {
-            let direction: Vec<f64> = frame.in_space(&traction).iter().map(|value| -value / size).collect();
-            if let (Status::Slip, true, Some(before)) = (state.status, moves, &self.before.directions[index]) {
-                let middle: Vec<f64> = before.iter().zip(&direction).map(|(a, b)| a + b).collect();
-                errors.slip_direction = worse(errors.slip_direction, angle(&motion, &middle));
-            }
-            after.directions[index] = Some(direction);
-        }
-    }
-
-    fn energy(&mut self, increment: &Increment, displacements: &Vectors, errors: &mut Errors) {
+    fn energy(&mut self, increment: &Increment, strain: f64, errors: &mut Errors) {
         let energy = increment.energy;
-        for value in [energy.external_work, energy.strain, energy.dissipated] {
-            self.largest_energy = self.largest_energy.max(value.abs());
+        let most = [energy.external_work, energy.strain, energy.dissipated].map(f64::abs);
+        let most = most.into_iter().fold(self.largest_energy, f64::max);
+        if most.is_finite() {
+            self.largest_energy = most;
         }
         let size = self.largest_energy.max(1e-12 * self.largest_force * self.length);
-        if size > 0.0 {
-            let imbalance = energy.external_work - energy.strain - energy.dissipated;
-            errors.energy = worse(0.0, imbalance.abs() / size);
-            let strain = strain_energy(self.model, displacements) - self.initial_strain;
-            errors.strain_energy = worse(0.0, (energy.strain - strain).abs() / size);
-        }
+        let size = if size > 0.0 { size } else { 1.0 };
+        let imbalance = energy.external_work - energy.strain - energy.dissipated;
+        errors.energy = worse(0.0, imbalance.abs() / size);
+        errors.strain_energy = worse(0.0, (energy.strain - (strain - self.initial_strain)).abs() / size);
     }
-}
-
-/// The larger error; one that is not a number is without bound.
-fn worse(error: f64, other: f64) -> f64 {
-    if other.is_nan() { f64::INFINITY } else { error.max(other) }
-}
-
-/// Angle between two vectors in space, exact for small ones (W. Kahan, *How Futile are Mindless Assessments of
-/// Roundoff*, 2006, section 12).
-fn angle(a: &[f64], b: &[f64]) -> f64 {
-    let (a_size, b_size) = (norm(a), norm(b));
-    let scaled = |sign: f64| -> f64 {
-        let parts: Vec<f64> = a.iter().zip(b).map(|(a, b)| a / a_size + sign * b / b_size).collect();
-        norm(&parts)
-    };
-    2.0 * scaled(-1.0).atan2(scaled(1.0))
 }

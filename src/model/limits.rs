@@ -32,6 +32,15 @@ pub const MAX_EXPLORE_JOBS: u64 = 10_000;
 /// Upper bound of `analysis.regularised.desired_iterations`.
 pub const MAX_DESIRED_ITERATIONS: u64 = 1_000;
 
+/// Values that a study varies its parameter over.
+pub const MAX_STUDY_RUNGS: usize = 20;
+/// Upper bound of `study.repeats`.
+pub const MAX_STUDY_REPEATS: u64 = 101;
+/// Upper bound of `study.refinement`.
+pub const MAX_STUDY_REFINEMENT: u64 = 16;
+/// Displacement components of all points of one path of a study: they are held in memory to be compared.
+pub const MAX_STUDY_VALUES: f64 = 5e7;
+
 /// Numbers of a request are zero or lie between this and [`MAX_MAGNITUDE`] in absolute value, so that neither a ratio
 /// of two of them nor its square can overflow or vanish.
 pub const MIN_MAGNITUDE: f64 = 1e-75;

@@ -1,6 +1,6 @@
 //! What a user posts, decoded from JSON and checked.
 //!
-//! [`request`] holds the types of the contract, [`mod@decode`] reads them from JSON text and says where each mistake is,
+//! [`request`] and [`study`] hold the types of the contract, [`mod@decode`] reads them from JSON text and says where each mistake is,
 //! [`mod@check`] looks at what can only be judged on the whole (unknown names, zero lengths, penetration). Nothing here
 //! knows how a path is traced. [`read`] does both.
 
@@ -12,9 +12,11 @@ pub mod limits;
 mod mistakes;
 pub(crate) mod names;
 pub mod request;
+pub mod study;
 
 pub use error::{InputError, InputErrors};
 pub use request::{Analysis, FollowRequest, JobRequest, Model};
+pub use study::StudyRequest;
 
 /// Reads a job request from JSON text and checks it: what every edge (HTTP, command line) does with what comes in.
 ///

@@ -220,7 +220,7 @@ pub struct Analysis {
     pub selection: Selection,
     pub events: Events,
     pub arc_length: ArcLength,
-    /// Counted over the whole job; 1 or more.
+    /// Counted over the whole job, the rows in which later stages begin among them; 1 or more.
     pub max_increments: u64,
     /// Branches and contact modes that may be examined at one point when its directions are searched; what lies past it is
     /// reported.
@@ -235,8 +235,8 @@ pub struct Analysis {
 
 /// How far the directions not taken are followed: each by a job of its own, queued when this one has completed or stopped.
 ///
-/// A direction is followed from the start and from every contact change and limit point at which it is listed, and
-/// between them where it first appears: on a stretch along which the same alternative exists at every increment (the same
+/// A direction is followed from the starts of stages, contact changes and limit points at which it is listed, and between
+/// them where it first appears: on a stretch along which the same alternative exists at every increment (the same
 /// statuses of the contacts, the same sign of the load rate, all of them bifurcations or none), it is followed from the
 /// first. The way back and mechanisms are not followed. Jobs are queued in a fixed order, generation by generation, so
 /// that the same request gives the same jobs; what `max_jobs` leaves out is counted in the jobs' `explore`. The service
@@ -277,6 +277,17 @@ pub enum Method {
     Mpec,
     /// The rival, for comparison: penalty contact and regularised friction under a conventional arc-length method.
     Regularised,
+}
+
+impl Method {
+    /// As the contract spells it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Mpec => "mpec",
+            Self::Regularised => "regularised",
+        }
+    }
 }
 
 /// Parameters of the rival method: penalties of contact and friction, and Crisfield's arc-length control.

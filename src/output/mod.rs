@@ -1,8 +1,10 @@
 //! Increments as text: the JSON line and the CSV table.
 //!
 //! The one place where an increment is written, so that `arcslip solve`, the store and every stream show the same bytes.
-//! Called by `jobs`, `http` and `command`; knows only `path::increment`.
+//! [`csv`] writes rows of any table. Called by `jobs`, `http`, `studies` and `command`; knows only `judged`, `measure` and
+//! `path::increment`.
 
+pub mod csv;
 pub mod line;
 pub mod table;
 

@@ -4,6 +4,8 @@
 //! every contact, so `tip.x`, `tip.y`, `tip/floor.status`, `tip/floor.gap`. Later rows find their values by name; what
 //! they lack is an empty cell.
 
+use super::csv::CsvRow;
+use crate::measure::Errors;
 use crate::path::Increment;
 use crate::path::increment::{ContactState, PointKind, Status};
 use std::sync::Arc;
@@ -42,7 +44,7 @@ impl Table {
 
     /// The first line, its line feed included.
     pub fn header(&self) -> String {
-        let mut line = Row::default();
+        let mut line = CsvRow::default();
         for name in ["index", "stage", "load_factor", "arc_length", "step", "point", "bifurcation", "event"] {
             line.text(name);
         }
@@ -70,12 +72,15 @@ impl Table {
         for name in ["factorisations", "newton_iterations", "qp_solves", "mpec_solves"] {
             line.text(name);
         }
+        for name in Errors::NAMES {
+            line.text(&format!("measure.{name}"));
+        }
         line.end()
     }
 
-    /// One increment, its line feed included.
-    pub fn row(&self, increment: &Increment) -> String {
-        let mut line = Row::default();
+    /// One increment, its line feed included; without a measure those cells are empty.
+    pub fn row(&self, increment: &Increment, measure: Option<&Errors>) -> String {
+        let mut line = CsvRow::default();
         line.raw(&increment.index.to_string());
         line.text(&increment.stage);
         line.number(increment.load_factor);
@@ -114,6 +119,7 @@ impl Table {
         {
             line.raw(&count.to_string());
         }
+        line.numbers(measure.map(Errors::values).as_ref().map_or(&[], <[f64; _]>::as_slice), Errors::NAMES.len());
         line.end()
     }
 }
@@ -123,48 +129,6 @@ impl ContactColumns {
     fn find<'a>(&self, place: usize, contacts: &'a [ContactState]) -> Option<&'a ContactState> {
         let fits = |state: &&ContactState| state.node == self.node && state.obstacle == self.obstacle;
         contacts.get(place).filter(fits).or_else(|| contacts.iter().find(fits))
-    }
-}
-
-#[derive(Default)]
-struct Row(String);
-
-impl Row {
-    fn raw(&mut self, cell: &str) {
-        self.0.push_str(cell);
-        self.0.push(',');
-    }
-
-    fn text(&mut self, cell: &str) {
-        if cell.contains(['"', ',', '\n', '\r']) {
-            self.raw(&format!("\"{}\"", cell.replace('"', "\"\"")));
-        } else {
-            self.raw(cell);
-        }
-    }
-
-    /// The shortest text that reads back to the same bits, with an exponent where that is shorter.
-    fn number(&mut self, value: f64) {
-        self.raw(&format!("{value:?}"));
-    }
-
-    fn optional(&mut self, value: Option<f64>) {
-        match value {
-            Some(value) => self.number(value),
-            None => self.raw(""),
-        }
-    }
-
-    fn numbers(&mut self, values: &[f64], cells: usize) {
-        for place in 0..cells {
-            self.optional(values.get(place).copied());
-        }
-    }
-
-    fn end(mut self) -> String {
-        self.0.pop();
-        self.0.push('\n');
-        self.0
     }
 }
 

@@ -58,6 +58,8 @@ pub enum Refused {
     Turned(f64),
     /// An event lies at the start itself.
     AtStart(Watch),
+    /// The point reached breaks the laws of contact and friction.
+    Unlawful,
     /// The signs of the equations changed, and no bifurcation point could be made out.
     Unresolved,
 }

@@ -5,10 +5,11 @@ use super::critical::Crossing;
 use super::decide::{self, Before, Choice};
 use super::increment::{Point, PointKind};
 use super::name_event::describe_change;
+use super::progress::Visited;
 use super::standing::Standing;
 use super::state::Rate;
 use super::stop::StopReason;
-use super::tracer::{Path, Visited};
+use super::tracer::Path;
 use super::watch::Watch;
 use crate::contact::{Mode, Reaction, all_continue};
 use crate::model::request::Method;
@@ -38,14 +39,14 @@ impl Path<'_> {
                 self.smooth_bifurcation(crossing, incoming, event.is_some())
             }
             None | Some(Watch::End(_)) => {
-                self.here.rate = Some(incoming.clone());
+                self.at.here.rate = Some(incoming.clone());
                 let stage_ends = event.is_some();
                 self.look_around(incoming, PointKind::Regular, None, None, stage_ends)
             }
             Some(Watch::LoadRate { sign }) => {
-                self.here.rate = Some(incoming.clone());
-                self.here.load_sign = -sign;
-                self.counts.limit_points += 1;
+                self.at.here.rate = Some(incoming.clone());
+                self.at.here.load_sign = -sign;
+                self.at.counts.limit_points += 1;
                 let what = if sign > 0.0 { "load maximum" } else { "load minimum" };
                 self.look_around(incoming, PointKind::SmoothLimit, Some(what.to_owned()), Some(-sign), false)
             }
@@ -64,16 +65,15 @@ impl Path<'_> {
         sign: Option<f64>,
         stage_ends: bool,
     ) -> Arrival {
-        let standings = self.standings(&self.here.state);
-        let mut point =
-            Point { kind, bifurcation: false, event, better_direction: false, unexplored_modes: 0, degenerate: false };
+        let standings = self.standings(&self.at.here.state);
+        let mut point = Point::plain(kind, event);
         let settled = standings.iter().all(|standing| matches!(standing, Standing::Settled(_)));
         if settled {
             return Arrival { point, options: Vec::new(), taken: None, stop: None, stage_ends, unconfirmed: false };
         }
         let rules = self.rules();
         let before = Before::Incoming(incoming);
-        let (options, found) = decide::list(self.loading(), &self.here.state, &standings, before, rules);
+        let (options, found) = decide::list(self.loading(), &self.at.here.state, &standings, before, rules);
         let taken = options.iter().position(|option| option.rate.product(incoming) > 1.0 - 1e-9);
         point.bifurcation = decide::is_bifurcation(&options, taken, sign);
         point.unexplored_modes = found.unexplored;
@@ -92,13 +92,13 @@ impl Path<'_> {
         if crossing.eigenvalues == 0 {
             return self.undetermined();
         }
-        self.here.rate = Some(incoming.clone());
+        self.at.here.rate = Some(incoming.clone());
         let rules = self.rules();
-        let standings = self.standings(&self.here.state);
-        let modes = &self.here.modes;
+        let standings = self.standings(&self.at.here.state);
+        let modes = &self.at.here.modes;
         let here = branches::Here {
             loading: self.loading(),
-            state: &self.here.state,
+            state: &self.at.here.state,
             standings: &standings,
             force_scale: rules.force_scale,
         };
@@ -119,7 +119,7 @@ impl Path<'_> {
         if !standings.iter().all(|standing| matches!(standing, Standing::Settled(_))) {
             // Other modes of the contacts that can change; in the current mode, singular here, the branches are it.
             let before = Before::Incoming(incoming);
-            let (others, listed) = decide::list(self.loading(), &self.here.state, &standings, before, rules);
+            let (others, listed) = decide::list(self.loading(), &self.at.here.state, &standings, before, rules);
             if listed.degenerate && others.is_empty() {
                 branches::in_other_modes(here, modes, &mut found);
             } else {
@@ -166,17 +166,17 @@ impl Path<'_> {
 
     /// A contact has reached the end of its mode: list the directions and take one.
     fn contact_change(&mut self, incoming: &Rate) -> Arrival {
-        self.counts.contact_changes += 1;
-        let standings = self.standings(&self.here.state);
-        for (reaction, standing) in self.here.state.reactions.iter_mut().zip(&standings) {
+        self.at.counts.contact_changes += 1;
+        let standings = self.standings(&self.at.here.state);
+        for (reaction, standing) in self.at.here.state.reactions.iter_mut().zip(&standings) {
             // The event was located to round-off; the rest of a reaction that is zero there is dropped.
-            if *standing == Standing::Touching && reaction.size() <= ROUND_OFF * self.force_scale {
+            if *standing == Standing::Touching && reaction.size() <= ROUND_OFF * self.at.totals.force_scale {
                 *reaction = Reaction::default();
             }
         }
         let before = Before::Incoming(incoming);
         let rules = self.rules();
-        let mut decision = decide::decide(self.loading(), &self.here.state, &standings, before, rules);
+        let mut decision = decide::decide(self.loading(), &self.at.here.state, &standings, before, rules);
         // Where the program confirms no direction, the listed ones decide, and the increment says so.
         let mut confirmed_one = true;
         if self.scene.analysis.method == Method::Mpec && decision.taken.is_some() {
@@ -185,8 +185,8 @@ impl Path<'_> {
             confirmed_one = best.is_some();
             decision.taken = best.or(decision.taken);
         }
-        let old_modes = self.here.modes.clone();
-        let old_sign = self.here.load_sign;
+        let old_modes = self.at.here.modes.clone();
+        let old_sign = self.at.here.load_sign;
         let mut stop = decision.stop;
         self.take(&decision);
         let outgoing = decision.taken.map(|index| &decision.options[index]);
@@ -195,7 +195,7 @@ impl Path<'_> {
             && choice.load_sign * old_sign < 0.0
         {
             kind = PointKind::NonsmoothLimit;
-            self.counts.limit_points += 1;
+            self.at.counts.limit_points += 1;
         }
         if stop.is_none() && self.is_cycle() {
             stop = Some(StopReason::Cycle);
@@ -220,9 +220,9 @@ impl Path<'_> {
 
     /// Whether the path has left this very state in these modes before; remembers it if not.
     fn is_cycle(&mut self) -> bool {
-        let here = &self.here;
-        let known = self.visited.iter().any(|visited| {
-            visited.stage == self.stage
+        let here = &self.at.here;
+        let known = self.at.visited.iter().any(|visited| {
+            visited.stage == self.at.stage
                 && all_continue(&visited.modes, &here.modes)
                 && visited.state.distance(&here.state) < SAME_STATE
                 && visited
@@ -230,10 +230,10 @@ impl Path<'_> {
                     .reactions
                     .iter()
                     .zip(&here.state.reactions)
-                    .all(|(a, b)| a.difference(b) < SAME_STATE * self.force_scale)
+                    .all(|(a, b)| a.difference(b) < SAME_STATE * self.at.totals.force_scale)
         });
         let (state, modes) = (here.state.clone(), here.modes.clone());
-        self.visited.push(Arc::new(Visited { stage: self.stage, state, modes }));
+        self.at.visited.push(Arc::new(Visited { stage: self.at.stage, state, modes }));
         known
     }
 }

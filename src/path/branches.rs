@@ -196,7 +196,9 @@ impl Point<'_> {
             return;
         }
         let modes = self.modes.to_vec();
-        let candidate = Candidate { rate: direction, modes, alternatives, weak: true, dissipation: 0.0 };
+        // Only rays of the rate problem are told apart by their forces.
+        let forces = Vec::new();
+        let candidate = Candidate { rate: direction, forces, modes, alternatives, weak: true, dissipation: 0.0 };
         let tried = RADII.iter().find_map(|radius| confirm_by(loading, state, &candidate, force_scale, &[*radius]));
         match tried {
             Some((modes, later)) => found.options.push(self.choice(candidate.rate, modes, Some(later), false)),

@@ -6,7 +6,7 @@ use super::loading::Loading;
 use super::rates::{Choice, Entity, Signed, Touching};
 use super::standing::Standing;
 use super::state::{Rate, State};
-use crate::contact::vector::{Vector, add, dot, scaled};
+use crate::contact::vector::{Vector, add, dot, scaled, unit};
 use crate::contact::{Frame, Mode, Reaction, Sliding};
 use nalgebra::DVector;
 
@@ -218,20 +218,21 @@ impl Changeable {
             let tangent = frame.tangents[0];
             let senses: &[f64] = if friction > 0.0 { &[1.0, -1.0] } else { &[0.0] };
             for &sense in senses {
-                let ray = rays(frame, friction)[usize::from(sense < 0.0)];
+                let ray = unit(&rays(frame, friction)[usize::from(sense < 0.0)]);
                 let on_bound = inward
                     .iter()
                     .flatten()
                     .zip(facets)
                     .any(|(inward, active)| active && dot(inward, &ray).abs() <= ON_BOUND);
-                if !unloaded && !on_bound {
+                // The other end of a half-plane's bound is another contact's ray.
+                let on_ray = on_bound && dot(&ray, &self.force) > 0.0;
+                if !unloaded && !on_ray {
                     continue;
                 }
                 let across = [-ray[1], ray[0], 0.0];
                 let mut off_ray = forms.force_rate(self, &across);
                 if frame.curvature != 0.0 {
-                    let pressed = dot(&self.force, &frame.normal);
-                    let turn = frame.curvature * pressed * dot(&ray, &ray);
+                    let turn = frame.curvature * dot(&self.force, &ray);
                     // The ray turns clockwise as the node goes along the tangent of a convex obstacle.
                     for (column, direction) in &self.velocities {
                         off_ray[*column] += turn * dot(direction, &tangent);

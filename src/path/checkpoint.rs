@@ -5,46 +5,26 @@
 //! them exactly (`float_roundtrip`). What a scene says (structure, loads, settings) is not in it: a checkpoint is taken
 //! up with the scene that it was made with, or with one that differs in `max_increments` alone.
 
-use super::advance::Work;
-use super::follow::{Followed, Listed};
-use super::increment::Energy;
-use super::loading::LoadPattern;
-use super::report::Report;
+use super::follow::Listed;
+use super::progress::{Progress, Visited};
 use super::scene::Scene;
 use super::state::{Rate, State};
-use super::tracer::{Here, Path, Phase, StageCounts, Visited};
+use super::tracer::Path;
 use crate::cancel::CancelFlag;
 use crate::contact::Mode;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Changes when a checkpoint of before would be read as something else.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// A path at one of its points.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Checkpoint {
     version: u32,
-    phase: Phase,
-    stage: usize,
-    stage_over: bool,
-    held: LoadPattern,
-    here: Here,
-    step: f64,
-    index: u64,
-    arc_length: f64,
-    energy: Energy,
-    largest_energy: f64,
-    force_scale: f64,
-    counts: StageCounts,
-    work: Work,
-    report: Report,
     elapsed_s: f64,
-    listed: Option<Listed>,
-    followed: Option<Followed>,
-    visited: Vec<Arc<Visited>>,
-    begun: Option<(State, Rate)>,
+    at: Progress,
 }
 
 /// States that a path has passed, for telling a cycle. They only grow along a stage: kept apart from the checkpoints,
@@ -78,29 +58,29 @@ pub enum CheckpointError {
 impl Checkpoint {
     /// Index of the increment at which the path was put down.
     pub fn index(&self) -> u64 {
-        self.index
+        self.at.totals.index
     }
 
     /// The running stage.
     pub fn stage(&self) -> usize {
-        self.stage
+        self.at.stage
     }
 
     pub fn trail_length(&self) -> usize {
-        self.visited.len()
+        self.at.visited.len()
     }
 
     /// Takes the trail out, and of it the part that begins at this place.
     pub fn take_trail(&mut self, from: usize) -> Trail {
-        let mut trail = std::mem::take(&mut self.visited);
+        let mut trail = std::mem::take(&mut self.at.visited);
         Trail(trail.split_off(from.min(trail.len())))
     }
 
     /// Puts the parts of a trail back, in the order in which they were taken.
     pub fn put_trail(&mut self, parts: impl IntoIterator<Item = Trail>) {
-        let stage = self.stage;
+        let stage = self.at.stage;
         let visited = parts.into_iter().flat_map(|part| part.0).filter(|visited| visited.stage == stage);
-        self.visited = visited.collect();
+        self.at.visited = visited.collect();
     }
 
     fn fits(&self, scene: &Scene) -> Result<(), CheckpointError> {
@@ -111,8 +91,8 @@ impl Checkpoint {
             if found == expected { Ok(()) } else { Err(CheckpointError::OtherModel { what, found, expected }) }
         };
         let (freedoms, contacts) = (scene.structure.freedoms(), scene.contacts.len());
-        if self.stage >= scene.stages.len() {
-            return same("stages", self.stage + 1, scene.stages.len());
+        if self.at.stage >= scene.stages.len() {
+            return same("stages", self.at.stage + 1, scene.stages.len());
         }
         let state = |state: &State| {
             same("degrees of freedom", state.displacement.len(), freedoms)?;
@@ -127,73 +107,26 @@ impl Checkpoint {
             listed.arriving.iter().try_for_each(|arriving| modes(&arriving.modes))?;
             listed.options.iter().try_for_each(|option| rate(&option.rate).and_then(|()| modes(&option.modes)))
         };
-        same("degrees of freedom", self.held.forces.len(), freedoms)?;
-        same("contacts", self.held.shifts.len(), contacts)?;
-        if let Some((begun, direction)) = &self.begun {
+        same("degrees of freedom", self.at.held.forces.len(), freedoms)?;
+        same("contacts", self.at.held.shifts.len(), contacts)?;
+        if let Some((begun, direction)) = &self.at.begun {
             state(begun)?;
             rate(direction)?;
         }
-        state(&self.here.state)?;
-        modes(&self.here.modes)?;
-        self.here.rate.iter().try_for_each(rate)?;
-        self.here.drift.iter().try_for_each(rate)?;
-        self.visited.iter().try_for_each(|visited| state(&visited.state).and_then(|()| modes(&visited.modes)))?;
-        self.listed.iter().try_for_each(listed)?;
-        self.followed.iter().try_for_each(|followed| listed(&followed.listed))
+        state(&self.at.here.state)?;
+        modes(&self.at.here.modes)?;
+        self.at.here.rate.iter().try_for_each(rate)?;
+        self.at.here.drift.iter().try_for_each(rate)?;
+        self.at.visited.iter().try_for_each(|visited| state(&visited.state).and_then(|()| modes(&visited.modes)))?;
+        self.at.listed.iter().try_for_each(listed)?;
+        self.at.followed.iter().try_for_each(|followed| listed(&followed.listed))
     }
 }
 
 impl<'a> Path<'a> {
     /// The path at its present point; after any call of `next`.
     pub fn checkpoint(&self) -> Checkpoint {
-        // Named one by one: what a path learns to carry has to be carried here too.
-        let Path {
-            scene: _,
-            cancel: _,
-            began: _,
-            elapsed_before: _,
-            initial_strain: _,
-            phase,
-            stage,
-            stage_over,
-            held,
-            here,
-            step,
-            index,
-            arc_length,
-            energy,
-            largest_energy,
-            force_scale,
-            counts,
-            work,
-            report,
-            visited,
-            begun,
-            listed,
-            followed,
-        } = self;
-        Checkpoint {
-            version: VERSION,
-            phase: *phase,
-            stage: *stage,
-            stage_over: *stage_over,
-            held: held.clone(),
-            here: here.clone(),
-            step: *step,
-            index: *index,
-            arc_length: *arc_length,
-            energy: *energy,
-            largest_energy: *largest_energy,
-            force_scale: *force_scale,
-            counts: *counts,
-            work: *work,
-            report: report.clone(),
-            elapsed_s: self.elapsed_s(),
-            listed: listed.clone(),
-            followed: followed.clone(),
-            visited: visited.clone(),
-            begun: begun.clone(),
-        }
+        Checkpoint { version: VERSION, elapsed_s: self.elapsed_s(), at: self.at.clone() }
     }
 
     /// Takes a path up where it was put down; its increments are the same, bit for bit, as if it had not been.
@@ -203,47 +136,7 @@ impl<'a> Path<'a> {
     pub fn resume(scene: &'a Scene, checkpoint: Checkpoint, cancel: CancelFlag) -> Result<Self, CheckpointError> {
         checkpoint.fits(scene)?;
         let mut path = Path::new(scene, cancel);
-        let Checkpoint {
-            version: _,
-            phase,
-            stage,
-            stage_over,
-            held,
-            here,
-            step,
-            index,
-            arc_length,
-            energy,
-            largest_energy,
-            force_scale,
-            counts,
-            work,
-            report,
-            elapsed_s,
-            listed,
-            followed,
-            visited,
-            begun,
-        } = checkpoint;
-        path.phase = phase;
-        path.stage = stage;
-        path.stage_over = stage_over;
-        path.held = held;
-        path.here = here;
-        path.step = step;
-        path.index = index;
-        path.arc_length = arc_length;
-        path.energy = energy;
-        path.largest_energy = largest_energy;
-        path.force_scale = force_scale;
-        path.counts = counts;
-        path.work = work;
-        path.report = report;
-        path.elapsed_before = elapsed_s;
-        path.listed = listed;
-        path.followed = followed;
-        path.visited = visited;
-        path.begun = begun;
+        (path.elapsed_before, path.at) = (checkpoint.elapsed_s, checkpoint.at);
         Ok(path)
     }
 }

@@ -5,6 +5,7 @@
 //! The inequalities are those listed in `directions`; `changeable` writes them down, `rates` finds the rays.
 
 use super::changeable::{Changeable, Forms, Outcome};
+use super::corner::whole_rates;
 use super::directions::{Alternative, Candidate, Found, RANK, WEAK, is_mechanism, merge, sort};
 use super::loading::Loading;
 use super::mode_system::ModeSystem;
@@ -122,7 +123,7 @@ impl<'a> Condensed<'a> {
             }
         }
         for ray in &findings.rays {
-            self.add(ray, &[], held, found);
+            self.add(ray, &[], held, state, found);
         }
         let touches: Vec<Touch> = (0..self.changeable.len())
             .filter(|entry| self.changeable[*entry].may_turn(self.loading))
@@ -153,7 +154,7 @@ impl<'a> Condensed<'a> {
                     (self.changeable[*entity].contacts[0], direction)
                 })
                 .collect();
-            self.add(&slip.ray, &directions, held, found);
+            self.add(&slip.ray, &directions, held, state, found);
         }
     }
 
@@ -191,7 +192,9 @@ impl<'a> Condensed<'a> {
         nearest.scale(1.0 / size);
         let mut modes = held.to_vec();
         self.changeable.iter().flat_map(|entry| &entry.contacts).for_each(|contact| modes[*contact] = Mode::Free);
-        merge(found, Candidate { rate: nearest, modes, alternatives: Vec::new(), weak: true, dissipation: 0.0 });
+        let forces = whole_rates(self.loading, state, &nearest);
+        let (alternatives, dissipation) = (Vec::new(), 0.0);
+        merge(found, Candidate { rate: nearest, forces, modes, alternatives, weak: true, dissipation });
     }
 
     /// The weights that come nearest to a rate: its velocities, and what it has along `z₀`.
@@ -215,7 +218,7 @@ impl<'a> Condensed<'a> {
     }
 
     /// Adds a ray as a candidate direction.
-    fn add(&self, ray: &Ray, turning: &[(usize, Vector)], held: &[Mode], found: &mut Found) {
+    fn add(&self, ray: &Ray, turning: &[(usize, Vector)], held: &[Mode], state: &State, found: &mut Found) {
         let (mut rate, _) = self.combine(&ray.weights);
         let mut modes = held.to_vec();
         for ((entry, outcomes), choice) in self.changeable.iter().zip(&self.outcomes).zip(ray.chosen()) {
@@ -244,7 +247,8 @@ impl<'a> Condensed<'a> {
         }
         let dissipation = self.changeable.iter().map(|entry| entry.dissipation(self.loading, &modes, &rate)).sum();
         let alternatives = self.alternatives(ray, turning, &modes, &rate, force);
-        merge(found, Candidate { rate, modes, alternatives, weak: ray.weak, dissipation });
+        let forces = whole_rates(self.loading, state, &rate);
+        merge(found, Candidate { rate, forces, modes, alternatives, weak: ray.weak, dissipation });
     }
 
     /// What each contact may do along a ray.

@@ -2,15 +2,20 @@
 //!
 //! In 2D a node pressed by two obstacles that are not parallel cannot move: equilibrium gives only the sum `R` of their
 //! reactions, and the node is held as long as `R` lies in the sum of their friction cones. That is a cone itself, between
-//! two of the rays `n_i ± μ_i t_i`; where it covers a half-plane or more, the node is jammed and stays.
+//! two of the rays `n_i ± μ_i t_i`: a sector of less than a half-plane, or a half-plane with one bound, or all of the
+//! plane, and then the node is jammed and stays. Two smooth walls that face each other leave just a line.
+//! Smooth obstacles whose normals are independent need none of this: each has a reaction of its own, in the plane and in
+//! space, and they may move against each other.
 //! The reactions that are reported are those of least norm (`contact::share`).
 
+use super::energy::reaction_in_space;
 use super::loading::Loading;
 use super::standing::ZERO;
-use super::state::State;
+use super::state::{Rate, State};
 use crate::contact::share::{Cone, least_reactions};
-use crate::contact::vector::{Vector, add, dot};
-use crate::contact::{Frame, Mode, Reaction};
+use crate::contact::vector::{Vector, add, dot, scaled, size, unit};
+use crate::contact::{Frame, Mode, Reaction, Sliding};
+use std::f64::consts::{PI, TAU};
 
 /// A node with several contacts.
 #[derive(Debug, Clone)]
@@ -21,14 +26,24 @@ pub struct Corner {
 /// The sum of friction cones in 2D.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sector {
-    /// Unit vectors across its two bounding rays, pointing in; `None` where it has no bound.
+    /// Unit vectors across its two bounds, pointing in: the same one twice for a half-plane; `None` where it is all of
+    /// the plane.
     pub inward: Option<[Vector; 2]>,
 }
 
-/// Rays closer to opposite than this (sine of the angle) span a half-plane.
+/// Rays closer to opposite than this (angle) are opposite. A force that is taken as held then lies outside the true cone
+/// by no more than this part of its size.
 const FLAT: f64 = 1e-12;
 
+/// A normal is independent of others where more than this part of it (sine of an angle) is across them.
+const INDEPENDENT: f64 = 1e-6;
+
 impl Corner {
+    /// The contacts without a gap.
+    pub fn closed(&self, loading: Loading<'_>, state: &State) -> Vec<usize> {
+        self.contacts.iter().copied().filter(|contact| loading.gap(*contact, state) <= ZERO).collect()
+    }
+
     /// The contacts that hold the node together in these modes; none where fewer than two do.
     pub fn holding<'a>(&'a self, modes: &'a [Mode]) -> impl Iterator<Item = usize> + 'a {
         let sticking = |contact: &&usize| modes[**contact] == Mode::Stick;
@@ -53,22 +68,71 @@ pub fn agree(loading: Loading<'_>, first: &[Mode], second: &[Mode]) -> bool {
     (0..first.len()).filter(free_of_corners).all(|contact| first[contact].continues(second[contact]))
 }
 
-/// Whether a node is closed against several obstacles that the running stage moves against each other, or in space with
-/// friction: the bounds of such a hold are not known.
+/// Whether a node is closed against several obstacles in a way whose bounds are not known: with friction, or with more
+/// reactions than its equilibrium tells apart, in space, on a support, or where the running stage moves the obstacles
+/// against each other.
 pub fn is_not_available(loading: Loading<'_>, state: &State) -> bool {
-    let shifts = &loading.pattern.shifts;
-    let circular = |contact: &usize| loading.contacts[*contact].tangents() == 2;
     loading.corners.iter().any(|corner| {
-        let closed: Vec<usize> =
-            corner.contacts.iter().copied().filter(|contact| loading.gap(*contact, state) <= ZERO).collect();
-        let moving = closed.iter().skip(1).any(|other| shifts[closed[0]] != shifts[*other]);
-        closed.len() > 1 && (moving || closed.iter().any(circular))
+        let closed = corner.closed(loading, state);
+        let is_free = closed.iter().all(|contact| loading.contacts[*contact].sliding != Sliding::None);
+        let is_known = loading.structure.dimension == 2 && is_free && !move_apart(loading, &closed);
+        closed.len() > 1 && !is_known && !are_determinate(loading, &closed, state)
+    })
+}
+
+/// Whether closed contacts of a node are best taken one by one: its equilibrium gives all reactions, and no hold together
+/// is at rest.
+pub fn stand_alone(loading: Loading<'_>, closed: &[usize], state: &State) -> bool {
+    move_apart(loading, closed) && are_determinate(loading, closed, state)
+}
+
+/// Whether the running stage moves the obstacles of some contacts against each other.
+fn move_apart(loading: Loading<'_>, contacts: &[usize]) -> bool {
+    let shifts = &loading.pattern.shifts;
+    contacts.iter().skip(1).any(|other| shifts[contacts[0]] != shifts[*other])
+}
+
+/// Whether the reactions of some contacts of a node follow from its equilibrium: none has friction, and their normals
+/// are independent as far as the node is free to move.
+fn are_determinate(loading: Loading<'_>, contacts: &[usize], state: &State) -> bool {
+    let dimension = loading.structure.dimension;
+    let mut basis: Vec<Vector> = Vec::new();
+    contacts.iter().all(|contact| {
+        let data = &loading.contacts[*contact];
+        let mut rest = loading.frame(*contact, state).normal;
+        for (component, part) in rest.iter_mut().enumerate() {
+            let is_free =
+                component < dimension && loading.structure.unknown_of[data.node * dimension + component].is_some();
+            *part = if is_free { *part } else { 0.0 };
+        }
+        for known in &basis {
+            rest = add(&rest, -dot(&rest, known), known);
+        }
+        let is_independent = size(&rest) > INDEPENDENT;
+        basis.push(if is_independent { unit(&rest) } else { rest });
+        data.tangents() == 0 && is_independent
     })
 }
 
 /// The whole force of an obstacle on its node.
 pub fn force(frame: &Frame, reaction: &Reaction) -> Vector {
     add(&reaction.tangential, reaction.normal, &frame.normal)
+}
+
+/// Rates of the forces of the contacts on their nodes; for a node with several the sum, with the first of them: how it is
+/// shared is not part of a motion.
+pub fn whole_rates(loading: Loading<'_>, state: &State, rate: &Rate) -> Vec<Vector> {
+    let mut rates: Vec<Vector> =
+        (0..loading.contacts.len()).map(|contact| reaction_in_space(loading, contact, (state, rate)).1).collect();
+    for corner in loading.corners {
+        if let [first, others @ ..] = &corner.contacts[..] {
+            for other in others {
+                let part = std::mem::take(&mut rates[*other]);
+                rates[*first] = add(&rates[*first], 1.0, &part);
+            }
+        }
+    }
+    rates
 }
 
 /// Sum of the forces of some contacts on their node.
@@ -90,22 +154,31 @@ fn turn(a: &Vector, b: &Vector) -> f64 {
 
 /// The sum of the cones of some contacts of a node in 2D.
 pub fn sector(loading: Loading<'_>, contacts: &[usize], state: &State) -> Sector {
-    let all: Vec<Vector> = contacts
+    let rays = contacts
         .iter()
         .flat_map(|contact| rays(&loading.frame(*contact, state), loading.contacts[*contact].friction))
-        .map(|ray| crate::contact::vector::unit(&ray))
-        .collect();
-    // A ray bounds the sector where all others lie on one side of it.
-    let bounds = |side: f64| {
-        all.iter().find(|ray| {
-            all.iter().all(|other| {
-                let sine = side * turn(ray, other);
-                sine > FLAT || (sine >= -FLAT && dot(ray, other) > 0.0)
-            })
-        })
-    };
-    let inward = match (bounds(1.0), bounds(-1.0)) {
-        (Some(first), Some(last)) => Some([[-first[1], first[0], 0.0], [last[1], -last[0], 0.0]]),
+        .map(|ray| unit(&ray));
+    sum_of(rays.collect())
+}
+
+/// The sum of rays: what is left of the plane where the widest angle free of them, at least half a turn, is cut out.
+fn sum_of(mut rays: Vec<Vector>) -> Sector {
+    let angle = |ray: &Vector| ray[1].atan2(ray[0]);
+    rays.sort_by(|a, b| angle(a).total_cmp(&angle(b)));
+    // Each ray, the next one counterclockwise, and the angle between them.
+    let mut free: Vec<(f64, &Vector, &Vector)> =
+        rays.windows(2).map(|pair| (angle(&pair[1]) - angle(&pair[0]), &pair[0], &pair[1])).collect();
+    if let [first, .., last] = &rays[..] {
+        free.push((angle(first) + TAU - angle(last), last, first));
+    }
+    free.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let inward = match free[..] {
+        [(widest, last, first), ref others @ ..] if widest >= PI - FLAT => {
+            let across = [-first[1], first[0], 0.0];
+            // Half a turn on the other side, too: only a line is left.
+            let is_line = widest <= PI + FLAT && others.first().is_some_and(|(second, ..)| *second >= PI - FLAT);
+            Some([across, if is_line { scaled(&across, -1.0) } else { [last[1], -last[0], 0.0] }])
+        }
         _ => None,
     };
     Sector { inward }
@@ -129,11 +202,24 @@ pub fn share(loading: Loading<'_>, corners: &[Corner], modes: &[Mode], state: &m
         let parts = least_reactions(&cones, &force).or_else(|| along_rays(loading, &holding, &force, state));
         // Outside the cones the event that ends the mode was passed; the point is not kept.
         let Some(parts) = parts else { continue };
-        for ((contact, frame), part) in holding.iter().zip(&frames).zip(parts) {
-            let normal = dot(&part, &frame.normal);
-            state.reactions[*contact] = Reaction { normal, tangential: add(&part, -normal, &frame.normal) };
+        for (((contact, frame), cone), part) in holding.iter().zip(&frames).zip(&cones).zip(parts) {
+            state.reactions[*contact] = taken_apart(&part, frame, cone.friction);
         }
     }
+}
+
+/// Normal and tangential parts of a force in the cone of a contact. With much friction the normal part may be lost in the
+/// rounding of the whole: it is then what the cone makes of the tangential one.
+pub fn taken_apart(force: &Vector, frame: &Frame, friction: f64) -> Reaction {
+    let normal = dot(force, &frame.normal);
+    if friction == 0.0 {
+        return Reaction { normal, tangential: [0.0; 3] };
+    }
+    let tangential = add(force, -normal, &frame.normal);
+    // A little more, so that the cone holds in spite of rounding, however large the force.
+    let least = size(&tangential) / friction * (1.0 + 4.0 * f64::EPSILON);
+    let is_round_off = least - normal <= FLAT * size(force);
+    Reaction { normal: if is_round_off { normal.max(least) } else { normal }, tangential }
 }
 
 /// Reactions along two of the rays that bound the friction cones in 2D, with the smallest sum of squares.
@@ -142,7 +228,7 @@ fn along_rays(loading: Loading<'_>, holding: &[usize], force: &Vector, state: &S
         .iter()
         .enumerate()
         .flat_map(|(place, contact)| {
-            rays(&loading.frame(*contact, state), loading.contacts[*contact].friction).map(|ray| (place, ray))
+            rays(&loading.frame(*contact, state), loading.contacts[*contact].friction).map(|ray| (place, unit(&ray)))
         })
         .collect();
     let mut best: Option<(f64, Vec<Vector>)> = None;
@@ -167,4 +253,35 @@ fn along_rays(loading: Loading<'_>, holding: &[usize], force: &Vector, state: &S
         }
     }
     best.map(|(_, parts)| parts)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sum_of_angles(degrees: &[f64]) -> Option<[f64; 2]> {
+        let ray = |degrees: &f64| [degrees.to_radians().cos(), degrees.to_radians().sin(), 0.0];
+        let inward = sum_of(degrees.iter().map(ray).collect()).inward?;
+        Some(inward.map(|across| across[1].atan2(across[0]).to_degrees()))
+    }
+
+    #[test]
+    fn a_sum_of_rays_has_two_bounds_or_one_or_none() {
+        let near = |found: Option<[f64; 2]>, expected: [f64; 2]| {
+            let found = found.expect("bounds");
+            found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9)
+        };
+        assert!(near(sum_of_angles(&[10.0, 60.0, 100.0, 20.0]), [100.0, 10.0]));
+        // Across the place where the angle jumps.
+        assert!(near(sum_of_angles(&[-170.0, 160.0]), [-110.0, 100.0]));
+        // A half-plane.
+        assert!(near(sum_of_angles(&[-45.0, 45.0, 60.0, 135.0]), [45.0, 45.0]));
+        // More.
+        assert_eq!(sum_of_angles(&[-45.0, 45.0, 45.0, 136.0]), None);
+        assert_eq!(sum_of_angles(&[0.0, 120.0, -120.0]), None);
+        // One ray, and two opposite ones: a line.
+        assert!(near(sum_of_angles(&[90.0, 90.0]), [-180.0, 0.0]) || near(sum_of_angles(&[90.0, 90.0]), [180.0, 0.0]));
+        let [one, other] = sum_of_angles(&[90.0, 90.0, -90.0, -90.0]).expect("a line");
+        assert!(((one - other).abs() - 180.0).abs() < 1e-9);
+    }
 }

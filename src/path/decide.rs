@@ -3,21 +3,23 @@
 //! Directions that hold only at first order are tried with a small step; the way the path came is never a candidate.
 //! Then the rule: the largest dissipation per arc length (Kanno and Martins), the smallest rate of potential energy
 //! (Hilding 2000), or the straightest. Ties go to the straightest in
-//! displacement, `u̇·u̇_prev` alone: a rule in which the load enters would depend on its units.
+//! displacement, `u̇·u̇_prev` alone: a rule in which the load enters would depend on its units. Where that ties, too
+//! (nothing moves), the load goes on rising or falling as it did.
 //!
 //! The potential energy is that of structure and loads, `Π = W(u) - f_held·u - s f·u`. Along a direction
 //! `Π̇ = (f_int - f_held - s f)·u̇ - ṡ f·u`, and by equilibrium the bracket is the reactions, whose power is `-D` with the
 //! dissipation `D = -Σ r_t·u̇_t`: so `Π̇ = -D - ṡ f·u`, per unit arc length.
 
 use super::confirm::confirm;
-use super::directions::{Found, directions, is_mechanism};
+use super::corner::whole_rates;
+use super::directions::{Candidate, Found, directions, forces_agree, is_mechanism};
 use super::energy;
 use super::loading::Loading;
 use super::standing::Standing;
 use super::state::{Rate, State, dot};
 use super::stop::StopReason;
 use crate::cancel::CancelFlag;
-use crate::contact::{Mode, Reaction};
+use crate::contact::Mode;
 use crate::model::request::Selection;
 use serde::{Deserialize, Serialize};
 
@@ -60,6 +62,13 @@ pub enum Before<'a> {
 pub const STATIONARY: f64 = 1e-9;
 /// Dissipations closer than this, relative to the largest force, tie.
 const TIE: f64 = 1e-8;
+/// Forces that differ by less than this part of the largest are each other's reverse.
+const REVERSED: f64 = 1e-4;
+/// Displacement rates along the incoming one that differ by less than this part of their sizes tie.
+const TIE_OF_MOTIONS: f64 = 1e-9;
+/// Displacement rates below this part of a direction are no motion.
+const STILL: f64 = 1e-15;
+
 /// Settings and scales of a decision.
 #[derive(Debug, Clone, Copy)]
 pub struct Rules<'a> {
@@ -93,7 +102,7 @@ pub fn list(
         };
         let Some((modes, later_load)) = confirmed else { continue };
         let load_sign = sign_of(if sign_of(candidate.rate.load) == 0.0 { later_load } else { candidate.rate.load });
-        let retrace = incoming.is_some_and(|incoming| is_reverse(&candidate.rate, incoming));
+        let retrace = incoming.is_some_and(|incoming| is_reverse(loading, state, &candidate, incoming));
         let potential_rate = potential_rate(loading, state, &candidate.rate, candidate.dissipation);
         options.push(Choice {
             rate: candidate.rate,
@@ -124,15 +133,10 @@ pub fn sign_of(load: f64) -> f64 {
     if load.abs() <= STATIONARY { 0.0 } else { load.signum() }
 }
 
-/// Whether a direction is the incoming one reversed, reactions included.
-fn is_reverse(rate: &Rate, incoming: &Rate) -> bool {
-    let size = rate.largest_reaction().max(incoming.largest_reaction()).max(f64::MIN_POSITIVE);
-    rate.product(incoming) < -1.0 + 1e-9
-        && rate.reactions.iter().zip(&incoming.reactions).all(|(rate, incoming)| {
-            let mut sum = *rate;
-            sum.add(1.0, incoming);
-            sum.difference(&Reaction::default()) <= 1e-4 * size
-        })
+/// Whether a direction is the incoming one reversed, forces on the nodes included.
+fn is_reverse(loading: Loading<'_>, state: &State, candidate: &Candidate, incoming: &Rate) -> bool {
+    candidate.rate.product(incoming) < -1.0 + 1e-9
+        && forces_agree(&candidate.forces, &whole_rates(loading, state, incoming), -1.0, REVERSED)
 }
 
 /// Lists the directions and takes one.
@@ -196,13 +200,8 @@ pub fn preferred(
 
 /// Whether the first of two directions goes before the second.
 fn is_preferred(first: &Choice, second: &Choice, previous: &Rate, rules: Rules<'_>) -> bool {
-    let cosine = |choice: &Choice| {
-        let size = dot(&choice.rate.displacement, &choice.rate.displacement).sqrt();
-        let along = dot(&choice.rate.displacement, &previous.displacement);
-        if size > 0.0 { along / size } else { 0.0 }
-    };
     match rules.selection {
-        Selection::Straightest => cosine(first) > cosine(second),
+        Selection::Straightest => is_straighter(first, second, previous, true),
         Selection::MaxDissipation | Selection::MinPotentialEnergy => {
             let difference = match rules.selection {
                 Selection::MinPotentialEnergy => second.potential_rate - first.potential_rate,
@@ -211,11 +210,32 @@ fn is_preferred(first: &Choice, second: &Choice, previous: &Rate, rules: Rules<'
             if difference.abs() > TIE * rules.force_scale {
                 difference > 0.0
             } else {
-                dot(&first.rate.displacement, &previous.displacement)
-                    > dot(&second.rate.displacement, &previous.displacement)
+                is_straighter(first, second, previous, false)
             }
         }
     }
+}
+
+/// Whether the first of two directions has the larger product (or cosine) with the way the path came, in displacement;
+/// where neither has, whether it alone keeps the sign of the load rate.
+fn is_straighter(first: &Choice, second: &Choice, previous: &Rate, by_cosine: bool) -> bool {
+    let size = |rate: &Rate| {
+        let size = dot(&rate.displacement, &rate.displacement).sqrt();
+        if size > STILL * rate.size() { size } else { 0.0 }
+    };
+    let before = size(previous);
+    let sizes = [first, second].map(|choice| size(&choice.rate));
+    let largest = if by_cosine { 1.0 } else { sizes[0].max(sizes[1]) };
+    let along = |choice: &Choice, size: f64| {
+        let product = if size > 0.0 { dot(&choice.rate.displacement, &previous.displacement) } else { 0.0 };
+        if by_cosine && size > 0.0 { product / size } else { product }
+    };
+    let difference = along(first, sizes[0]) - along(second, sizes[1]);
+    if before > 0.0 && difference.abs() > TIE_OF_MOTIONS * largest * before {
+        return difference > 0.0;
+    }
+    let goes_on = |choice: &Choice| choice.load_sign * previous.load > 0.0;
+    goes_on(first) && !goes_on(second)
 }
 
 /// Whether two or more directions share the sign of the load rate. `taken_sign` replaces the sign of the direction
@@ -253,6 +273,24 @@ mod tests {
         let rate = Rate { displacement: displacement.to_vec(), load: 0.0, reactions: Vec::new() };
         let (modes, load_sign) = (Vec::new(), 1.0);
         Choice { rate, modes, dissipation, potential_rate, load_sign, retrace: false, mechanism: false }
+    }
+
+    #[test]
+    fn where_nothing_moves_the_load_goes_on_as_it_did() {
+        let cancel = CancelFlag::default();
+        let still = |load: f64| {
+            let mut choice = choice([1e-18 * load, 0.0], 0.0, 0.0);
+            (choice.rate.load, choice.load_sign) = (load, load);
+            choice
+        };
+        let options = [still(-1.0), still(1.0)];
+        for selection in [Selection::MaxDissipation, Selection::MinPotentialEnergy, Selection::Straightest] {
+            for (load, index) in [(0.5, 1), (-0.5, 0)] {
+                let previous = Rate { displacement: vec![-0.3 * load, 0.8], load, reactions: Vec::new() };
+                let rules = Rules { selection, most_modes: 1, force_scale: 1.0, cancel: &cancel };
+                assert_eq!(preferred(&options, &previous, rules, |_| true), Some(index));
+            }
+        }
     }
 
     #[test]

@@ -29,12 +29,15 @@ use super::standing::Standing;
 use super::state::{Rate, State};
 use crate::cancel::CancelFlag;
 use crate::contact::Mode;
+use crate::contact::vector::{Vector, add, size};
 use crate::linear_algebra::null_space;
 
 /// A feasible direction.
 #[derive(Debug, Clone)]
 pub struct Candidate {
     pub rate: Rate,
+    /// Rates of the contacts' forces, those on one node together: see `corner::whole_rates`.
+    pub forces: Vec<Vector>,
     /// Modes under which it is feasible at first order: stuck where a contact can be.
     pub modes: Vec<Mode>,
     /// What the contacts that change together may do under it at first order, or nearly so, one entry for each that can
@@ -129,11 +132,8 @@ pub fn is_mechanism(loading: Loading<'_>, state: &State, rate: &Rate) -> bool {
 /// Keeps one entry for one motion, whatever its modes.
 pub(super) fn merge(found: &mut Found, candidate: Candidate) {
     for known in &mut found.candidates {
-        let size = known.rate.largest_reaction().max(candidate.rate.largest_reaction()).max(f64::MIN_POSITIVE);
         let same_motion = (1.0 - known.rate.product(&candidate.rate)) < 0.5 * SAME * SAME;
-        let same_reactions =
-            known.rate.reactions.iter().zip(&candidate.rate.reactions).all(|(a, b)| a.difference(b) <= SAME * size);
-        if same_motion && same_reactions {
+        if same_motion && forces_agree(&known.forces, &candidate.forces, 1.0, SAME) {
             for (alternatives, others) in known.alternatives.iter_mut().zip(candidate.alternatives) {
                 for other in others {
                     if !alternatives.contains(&other) {
@@ -147,6 +147,12 @@ pub(super) fn merge(found: &mut Found, candidate: Candidate) {
         }
     }
     found.candidates.push(candidate);
+}
+
+/// Whether forces are others times a factor, within a part of the largest.
+pub(super) fn forces_agree(forces: &[Vector], others: &[Vector], factor: f64, part: f64) -> bool {
+    let largest = forces.iter().chain(others).fold(f64::MIN_POSITIVE, |largest, force| largest.max(size(force)));
+    forces.iter().zip(others).all(|(force, other)| size(&add(force, -factor, other)) <= part * largest)
 }
 
 /// More sticking contacts first.

@@ -103,7 +103,7 @@ pub fn boundary_force(loading: Loading<'_>, at: Placed<'_>) -> (f64, f64) {
 }
 
 /// The whole force of an obstacle on its node, and its derivative by arc length.
-fn reaction_in_space(loading: Loading<'_>, contact: usize, at: Placed<'_>) -> (Vector, Vector) {
+pub fn reaction_in_space(loading: Loading<'_>, contact: usize, at: Placed<'_>) -> (Vector, Vector) {
     let (reaction, change) = (&at.0.reactions[contact], &at.1.reactions[contact]);
     if *reaction == Default::default() && *change == Default::default() {
         return Default::default();

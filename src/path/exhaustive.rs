@@ -43,8 +43,8 @@ fn where_rows_of_bars_end_only_the_way_back_is_a_direction() {
         let mut path = Path::new(&scene, CancelFlag::default());
         path.by_ref().for_each(drop);
         assert_eq!(path.report().map(|report| report.stop_reason), Some(StopReason::NoDirection));
-        let state = &path.here.state;
-        let incoming = path.here.rate.as_ref().expect("the direction of the last step");
+        let state = &path.at.here.state;
+        let incoming = path.at.here.rate.as_ref().expect("the direction of the last step");
         let standings = path.standings(state);
         let held: Vec<Mode> = standings
             .iter()

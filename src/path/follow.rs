@@ -1,12 +1,13 @@
 //! A path along a direction that another path did not take.
 
-use super::advance::{AT_END, Work};
+use super::advance::AT_END;
 use super::checkpoint::{Checkpoint, CheckpointError};
-use super::decide::Choice;
+use super::decide::{Choice, STATIONARY};
 use super::increment::{Increment, Point, PointKind};
-use super::report::Report;
+use super::progress::{Phase, StageCounts, Visited};
 use super::scene::{End, Scene};
-use super::tracer::{Emitted, Path, Phase, StageCounts, Visited};
+use super::totals::Totals;
+use super::tracer::{Emitted, Path};
 use crate::cancel::CancelFlag;
 use crate::contact::{Mode, all_continue};
 use serde::{Deserialize, Serialize};
@@ -47,7 +48,7 @@ pub(super) struct Followed {
 impl<'a> Path<'a> {
     /// How many directions are listed at the present point; 0 where there is one way on.
     pub fn listed_directions(&self) -> usize {
-        self.listed.as_ref().map_or(0, |listed| listed.options.len())
+        self.at.listed.as_ref().map_or(0, |listed| listed.options.len())
     }
 
     /// A path of its own from a checkpoint along one of the directions listed there.
@@ -67,21 +68,20 @@ impl<'a> Path<'a> {
     ) -> Result<Self, CheckpointError> {
         let mut path = Self::resume(scene, checkpoint, cancel)?;
         let counts = path.counts_along(direction)?;
-        let listed = path.listed.take().ok_or(CheckpointError::NothingListed)?;
+        let listed = path.at.listed.take().ok_or(CheckpointError::NothingListed)?;
         if listed.taken != Some(direction)
             && let Some(choice) = listed.options.get(direction)
         {
             path.turn(choice);
         }
-        path.counts = counts;
-        path.begun = path.here.rate.clone().map(|rate| (path.here.state.clone(), rate));
-        path.phase = Phase::NotStarted;
-        path.stage_over = false;
-        path.index = 0;
-        path.work = Work::default();
-        path.report = Report::begun();
+        path.at.counts = counts;
+        path.at.begun = path.at.here.rate.clone().map(|rate| (path.at.here.state.clone(), rate));
+        path.at.phase = Phase::NotStarted;
+        path.at.stage_over = false;
+        let begun = Totals::begun();
+        path.at.totals = Totals { index: begun.index, work: begun.work, report: begun.report, ..path.at.totals };
         path.elapsed_before = 0.0;
-        path.followed = Some(Followed { listed, direction, event });
+        path.at.followed = Some(Followed { listed, direction, event });
         Ok(path)
     }
 
@@ -92,7 +92,7 @@ impl<'a> Path<'a> {
 
     /// The stage's counts at the present point if the path leaves it along that direction, or why it cannot.
     fn counts_along(&self, direction: usize) -> Result<StageCounts, CheckpointError> {
-        let listed = self.listed.as_ref().ok_or(CheckpointError::NothingListed)?;
+        let listed = self.at.listed.as_ref().ok_or(CheckpointError::NothingListed)?;
         let options = listed.options.len();
         let choice = listed
             .options
@@ -101,7 +101,7 @@ impl<'a> Path<'a> {
         if choice.mechanism {
             return Err(CheckpointError::Mechanism { direction });
         }
-        let mut counts = self.counts;
+        let mut counts = self.at.counts;
         if listed.taken != Some(direction)
             && let Some(arriving) = &listed.arriving
         {
@@ -113,8 +113,9 @@ impl<'a> Path<'a> {
             counts.contact_changes += u64::from(changed);
             counts.limit_points += u64::from(turned);
         }
-        if self.counts_end_stage(&counts) || self.stage_over && self.goes_past_end(choice) {
-            let stage = self.scene.stages[self.stage].name.to_string();
+        if counts.end_stage(&self.scene.stages[self.at.stage].ends) || self.at.stage_over && self.goes_past_end(choice)
+        {
+            let stage = self.scene.stages[self.at.stage].name.to_string();
             return Err(CheckpointError::StageEnds { stage, direction });
         }
         Ok(counts)
@@ -123,22 +124,22 @@ impl<'a> Path<'a> {
     /// Leaves the present point along another direction than the one taken there.
     fn turn(&mut self, choice: &Choice) {
         self.go(choice);
-        let (state, modes) = (self.here.state.clone(), choice.modes.clone());
-        let visited = Visited { stage: self.stage, state, modes };
-        if !self.visited.iter().any(|known| **known == visited) {
-            self.visited.push(Arc::new(visited));
+        let (state, modes) = (self.at.here.state.clone(), choice.modes.clone());
+        let visited = Visited { stage: self.at.stage, state, modes };
+        if !self.at.visited.iter().any(|known| **known == visited) {
+            self.at.visited.push(Arc::new(visited));
         }
     }
 
-    /// Whether a direction leads out of the running stage at a bound that is reached here.
+    /// Whether a direction leads out of the running stage at a bound that is reached here, or stays on it.
     fn goes_past_end(&self, choice: &Choice) -> bool {
-        self.scene.stages[self.stage].ends.iter().any(|end| match *end {
+        self.scene.stages[self.at.stage].ends.iter().any(|end| match *end {
             End::Load { bound, sign } => {
-                sign * (self.here.state.load - bound) >= -AT_END && sign * choice.load_sign > 0.0
+                sign * (self.at.here.state.load - bound) >= -AT_END && sign * choice.load_sign >= 0.0
             }
             End::Displacement { freedom, bound, sign } => {
-                sign * (self.here.state.displacement[freedom] - bound) >= -AT_END
-                    && sign * choice.rate.displacement[freedom] > 0.0
+                sign * (self.at.here.state.displacement[freedom] - bound) >= -AT_END
+                    && sign * choice.rate.displacement[freedom] > -STATIONARY
             }
             End::LimitPoints(_) | End::ContactChanges(_) | End::Increments(_) => false,
         })
@@ -146,11 +147,11 @@ impl<'a> Path<'a> {
 
     /// The first increment of a path that follows another's direction.
     pub(super) fn followed_row(&mut self, followed: Followed) -> Increment {
-        self.phase = Phase::Running;
+        self.at.phase = Phase::Running;
         let Followed { listed, direction, event } = followed;
         let point = Point { kind: PointKind::Start, event: Some(event), better_direction: false, ..listed.point };
-        let state = self.here.state.clone();
-        let modes = self.here.modes.clone();
+        let state = self.at.here.state.clone();
+        let modes = self.at.here.modes.clone();
         self.emit(Emitted {
             before: &state,
             modes: &modes,

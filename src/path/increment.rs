@@ -15,7 +15,8 @@ pub struct Increment {
     pub load_factor: f64,
     /// Dimensionless, from the start of the path.
     pub arc_length: f64,
-    /// Dimensionless arc length of this increment.
+    /// Dimensionless arc length of this increment: 0 where a stage begins, and where a contact change is found at the very
+    /// point before.
     pub step: f64,
     /// Node name to displacement (length).
     pub displacements: IndexMap<Arc<str>, Vec<f64>>,
@@ -76,6 +77,13 @@ pub struct Point {
     /// The number of directions found is odd, or their set has more than one dimension: the list may be incomplete.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub degenerate: bool,
+}
+
+impl Point {
+    /// A point with one way on.
+    pub fn plain(kind: PointKind, event: Option<String>) -> Self {
+        Self { kind, bifurcation: false, event, better_direction: false, unexplored_modes: 0, degenerate: false }
+    }
 }
 
 fn is_zero(count: &u64) -> bool {

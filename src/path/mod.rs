@@ -7,6 +7,7 @@
 //! | `scene`, `plan` | a request made dimensionless; what it needs and what is left out |
 //! | `state`, `loading` | a point; the structure under a pattern of forces, supports and obstacles that move |
 //! | `mode_system`, `newton` | the equations of one contact mode; Newton's method on them |
+//! | `contact_law` | how far a state is from the laws of contact and friction |
 //! | `corner` | nodes that several obstacles hold at once |
 //! | `track`, `drift` | slip in a plane: its rule of fourth order; the error that is left |
 //! | `watch`, `root`, `advance` | what ends a mode; one step, ended exactly at the first event |
@@ -17,8 +18,9 @@
 //! | `rates`, `turning`, `together` | all rays of a rate problem, linear forms only; slip whose direction is unknown, of one node and of several at once |
 //! | `program`, `naming` | the MPEC of an increment; where it names the mode |
 //! | `energy`, `record`, `increment`, `report`, `stop` | balances, rows, totals, reasons |
-//! | `tracer`, `stepping`, `arrival` | the iterator; how far a step goes; what a point turned out to be |
-//! | `checkpoint`, `follow` | a path put down at a point and taken up again; along another direction |
+//! | `tracer`, `stages`, `stepping`, `arrival` | the iterator; how a stage begins; how far a step goes; what a point turned out to be |
+//! | `totals` | sums and maxima along a path, of either method |
+//! | `progress`, `checkpoint`, `follow` | what decides how a path goes on; a path put down at a point and taken up again; along another direction |
 //! | `regularised`, `traced` | the rival method; the path by whichever method is named |
 
 mod advance;
@@ -28,6 +30,7 @@ mod changeable;
 pub mod checkpoint;
 mod condensed;
 mod confirm;
+mod contact_law;
 mod corner;
 mod critical;
 mod decide;
@@ -46,6 +49,7 @@ mod naming;
 mod newton;
 pub mod plan;
 mod program;
+mod progress;
 mod rates;
 mod record;
 pub mod regularised;
@@ -53,11 +57,13 @@ pub mod report;
 mod root;
 pub mod scene;
 mod singular;
+mod stages;
 mod standing;
 mod state;
 mod stepping;
 pub mod stop;
 mod together;
+mod totals;
 mod traced;
 pub mod tracer;
 mod track;

@@ -6,9 +6,10 @@ use super::standing::Standing;
 use crate::contact::Mode;
 use crate::path::increment::Status;
 
-/// The start of the path.
-pub(super) fn describe_start(scene: &Scene) -> String {
-    format!("stage \"{}\" begins", scene.stages[0].name)
+/// The start of a stage; `met`: one of its bounds is met already.
+pub(super) fn describe_start(scene: &Scene, stage: usize, met: bool) -> String {
+    let ends = if met { " and ends at once: its bound is met already" } else { "" };
+    format!("stage \"{}\" begins{ends}", scene.stages[stage].name)
 }
 
 /// Which contacts change, from what to what; where the path ends, which contacts stand at the limit of their mode.

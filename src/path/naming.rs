@@ -19,8 +19,8 @@ impl Path<'_> {
     /// Its increment has about the arc length asked for, not exactly; where it names another mode, it may have gone past
     /// the end of this one, and is asked again for shorter increments.
     pub(super) fn program_keeps_mode(&mut self, rate: &Rate, step: f64) -> bool {
-        let modes = self.here.modes.clone();
-        let state = self.here.state.clone();
+        let modes = self.at.here.modes.clone();
+        let state = self.at.here.state.clone();
         let mut tried = step;
         for _ in 0..TRIALS {
             let named = self.name(&state, rate, &modes, tried);
@@ -36,7 +36,7 @@ impl Path<'_> {
         let loading = self.loading();
         let ahead = base.advanced(expected, step);
         let reactions = ahead.reactions.iter().fold(0.0_f64, |largest, reaction| largest.max(reaction.size()));
-        let force = self.force_scale.max(ahead.load.abs()).max(reactions).max(f64::MIN_POSITIVE);
+        let force = self.at.totals.force_scale.max(ahead.load.abs()).max(reactions).max(f64::MIN_POSITIVE);
         let mut program = IncrementProgram::new(loading, base, expected, step, force);
         if program.pairs() == 0 {
             // No contact can be reached: there is nothing to decide.
@@ -48,8 +48,8 @@ impl Path<'_> {
         }
         let start = program.variables_at(expected);
         let (named, counts) = program.name(&start, modes, &self.cancel);
-        self.work.qp_solves += counts.qp_solves;
-        self.work.mpec_solves += counts.mpec_solves;
+        self.at.totals.work.qp_solves += counts.qp_solves;
+        self.at.totals.work.mpec_solves += counts.mpec_solves;
         named
     }
 
@@ -59,10 +59,10 @@ impl Path<'_> {
     /// The forward term rewards the direction that is tried, not the one in which the path came: where the path turns
     /// against its past (a contact closes, the load turns), that term would hold the increment back at zero.
     pub(super) fn confirmed_by_program(&mut self, options: &[Choice]) -> Vec<bool> {
-        let state = self.here.state.clone();
+        let state = self.at.here.state.clone();
         let mut confirmed = Vec::with_capacity(options.len());
         for option in options {
-            let mut step = FIRST_TRIAL * self.step;
+            let mut step = FIRST_TRIAL * self.at.step;
             let mut agrees = false;
             if !option.retrace && !option.mechanism {
                 for _ in 0..TRIALS {

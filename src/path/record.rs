@@ -1,18 +1,18 @@
 //! From a dimensionless point to the row that a user sees: the user's units and names.
 
-use super::advance::Work;
-use super::decide::Choice;
+use super::contact_law;
+use super::decide::{Choice, is_worth_listing};
 use super::increment::{ContactState, Diagnostics, Direction, Energy, Increment, Point, Status};
 use super::loading::Loading;
 use super::scene::Scene;
 use super::state::State;
+use super::totals::Totals;
 use crate::contact::vector::{add, dot};
 use crate::contact::{Mode, tangents_in_space};
 use std::sync::Arc;
 
-/// What a row is made from.
+/// What a row is made from, beside the path's totals.
 pub(super) struct Row<'a> {
-    pub index: u64,
     pub stage: usize,
     pub loading: Loading<'a>,
     pub state: &'a State,
@@ -20,20 +20,13 @@ pub(super) struct Row<'a> {
     pub before: &'a State,
     /// Modes that held during the increment.
     pub modes: &'a [Mode],
-    pub arc_length: f64,
     pub step: f64,
-    pub point: Point,
+    pub point: &'a Point,
     pub options: &'a [Choice],
     pub taken: Option<usize>,
-    pub list_directions: bool,
-    /// Dimensionless energies.
-    pub energy: Energy,
     pub residual: f64,
     pub error_estimate: f64,
-    pub energy_error: f64,
-    pub force_scale: f64,
     pub elapsed_s: f64,
-    pub work: Work,
     pub mode_named: Option<bool>,
 }
 
@@ -46,7 +39,8 @@ pub(super) fn status(mode: Mode) -> Status {
     }
 }
 
-pub(super) fn increment(scene: &Scene, row: &Row<'_>) -> Increment {
+/// The present increment; its directions where there is a choice.
+pub(super) fn increment(scene: &Scene, totals: &Totals, row: &Row<'_>) -> Increment {
     let plan = scene.plan();
     let (length, force) = (plan.displacement_scale, plan.force_scale);
     let energy_unit = length * force;
@@ -58,8 +52,8 @@ pub(super) fn increment(scene: &Scene, row: &Row<'_>) -> Increment {
         .zip(row.state.displacement.chunks_exact(dimension))
         .map(|(name, values)| (Arc::clone(name), values.iter().map(|value| value * length).collect()))
         .collect();
-    let (contacts, complementarity) = contact_rows(scene, row);
-    let directions = row.list_directions.then(|| {
+    let (contacts, complementarity) = contact_rows(scene, row, totals.force_scale);
+    let directions = is_worth_listing(row.options).then(|| {
         let direction = |(index, option): (usize, &Choice)| Direction {
             contacts: option.modes.iter().map(|mode| status(*mode)).collect(),
             load_rate: option.rate.load * stage.load_scale,
@@ -71,48 +65,46 @@ pub(super) fn increment(scene: &Scene, row: &Row<'_>) -> Increment {
         row.options.iter().enumerate().map(direction).collect()
     });
     Increment {
-        index: row.index,
+        index: totals.index,
         stage: Arc::clone(&stage.name),
-        load_factor: row.state.load * stage.load_scale,
-        arc_length: row.arc_length,
+        load_factor: stage.load_factor(row.state.load),
+        arc_length: totals.arc_length,
         step: row.step,
         displacements,
         contacts,
         point: row.point.clone(),
         directions,
         energy: Energy {
-            external_work: row.energy.external_work * energy_unit,
-            strain: row.energy.strain * energy_unit,
-            dissipated: row.energy.dissipated * energy_unit,
+            external_work: totals.energy.external_work * energy_unit,
+            strain: totals.energy.strain * energy_unit,
+            dissipated: totals.energy.dissipated * energy_unit,
         },
         diagnostics: Diagnostics {
             elapsed_s: row.elapsed_s,
             residual: row.residual,
             complementarity,
-            energy_error: row.energy_error,
+            energy_error: totals.energy_error(),
             error_estimate: row.error_estimate,
-            factorisations: row.work.factorisations,
-            newton_iterations: row.work.newton_iterations,
-            qp_solves: row.work.qp_solves,
-            mpec_solves: row.work.mpec_solves,
+            factorisations: totals.work.factorisations,
+            newton_iterations: totals.work.newton_iterations,
+            qp_solves: totals.work.qp_solves,
+            mpec_solves: totals.work.mpec_solves,
             mode_named_by_mpec: row.mode_named,
         },
     }
 }
 
 /// Contact rows in the user's units, and the largest violation of contact and friction (dimensionless).
-fn contact_rows(scene: &Scene, row: &Row<'_>) -> (Vec<ContactState>, f64) {
+fn contact_rows(scene: &Scene, row: &Row<'_>, force_scale: f64) -> (Vec<ContactState>, f64) {
     let plan = scene.plan();
     let (length, force) = (plan.displacement_scale, plan.force_scale);
     let dimension = scene.structure.dimension;
-    let mut violation = 0.0_f64;
     let mut rows = Vec::with_capacity(scene.reported.len());
     let loading = row.loading;
     let members = |contact: usize| scene.reported.iter().filter(|one| one.contact == contact).count();
     let coincident = scene.reported.len() > scene.contacts.len();
     for one in &scene.reported {
         let index = one.contact;
-        let contact = &scene.contacts[index];
         let frame = loading.frame(index, row.state);
         let gap = frame.gap;
         let moved = add(&loading.relative(index, row.state), -1.0, &loading.relative(index, row.before));
@@ -122,10 +114,6 @@ fn contact_rows(scene: &Scene, row: &Row<'_>) -> (Vec<ContactState>, f64) {
         } else {
             tangents_in_space(&frame.normal)
         };
-        let scaled = 1.0 / row.force_scale.max(f64::MIN_POSITIVE);
-        let normal = reaction.normal * scaled;
-        violation = violation.max(-gap).max(-normal).max(gap.min(normal).abs());
-        violation = violation.max(reaction.tangential_size() * scaled - contact.friction * normal);
         let pairs = 0..dimension - 1;
         let closed = row.modes[index].is_active();
         let traction = |k: usize| dot(&reaction.tangential, &tangents[k]) * one.tangential_share * force;
@@ -140,7 +128,7 @@ fn contact_rows(scene: &Scene, row: &Row<'_>) -> (Vec<ContactState>, f64) {
             indeterminate: closed && ((coincident && members(index) > 1) || held_by_too_many(scene, row.modes, index)),
         });
     }
-    (rows, violation)
+    (rows, contact_law::violation(loading, row.state, force_scale))
 }
 
 /// Whether a contact holds its node together with others whose reactions equilibrium does not tell apart.

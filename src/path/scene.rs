@@ -62,6 +62,19 @@ pub(super) struct StageLoad {
     pub pattern: LoadPattern,
     pub load_scale: f64,
     pub ends: Vec<End>,
+    /// The loads at which the stage may end, in the user's units, in the order of those `ends`.
+    given_loads: Vec<f64>,
+}
+
+impl StageLoad {
+    /// A load in the user's units. At the bound of a stage it is the number that was given: dividing it by a scale and
+    /// multiplying again may not give it back.
+    pub fn load_factor(&self, load: f64) -> f64 {
+        let bounds =
+            self.ends.iter().filter_map(|end| if let End::Load { bound, .. } = end { Some(*bound) } else { None });
+        let given = bounds.zip(&self.given_loads).find(|(bound, _)| *bound == load);
+        given.map_or(load * self.load_scale, |(_, given)| *given)
+    }
 }
 
 /// One way in which a stage ends.
@@ -539,7 +552,9 @@ fn build_stage(stage: &request::Stage, scaled: &Scaled<'_>) -> StageLoad {
         ends.extend(until.contact_change.map(End::ContactChanges));
         ends.extend(until.increments.map(End::Increments));
     }
-    StageLoad { name: Arc::from(stage.name.as_str()), pattern, load_scale, ends }
+    let loads = stage.until.as_ref().map(|until| [until.load_above, until.load_below]);
+    let given_loads = loads.into_iter().flatten().flatten().collect();
+    StageLoad { name: Arc::from(stage.name.as_str()), pattern, load_scale, ends, given_loads }
 }
 
 fn plan_what_is_left_out(model: &Model, contacts: &[Contact], structure: &Structure) -> Vec<LeftOut> {

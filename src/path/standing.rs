@@ -34,9 +34,8 @@ pub fn standings(loading: Loading<'_>, state: &State, force_scale: f64) -> Vec<S
         (0..loading.contacts.len()).map(|contact| standing(loading, state, contact, force_scale)).collect();
     if loading.structure.dimension == 2 {
         for corner in loading.corners {
-            let closed: Vec<usize> =
-                corner.contacts.iter().copied().filter(|contact| loading.gap(*contact, state) <= ZERO).collect();
-            if closed.len() > 1 {
+            let closed = corner.closed(loading, state);
+            if closed.len() > 1 && !corner::stand_alone(loading, &closed, state) {
                 let together = standing_of_corner(loading, state, &closed, force_scale);
                 closed.iter().for_each(|contact| standings[*contact] = together);
             }

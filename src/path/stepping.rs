@@ -2,16 +2,19 @@
 
 use super::advance::{Reached, Refused, Start, Work};
 use super::arrival::SAME_STATE;
+use super::contact_law;
 use super::critical::{self, Crossing};
 use super::decide::{self, Before};
 use super::energy;
+use super::mode_system::ModeSystem;
 use super::root::find_root;
 use super::singular::{self, Change, Signature};
 use super::state::{Rate, State};
 use super::stop::StopReason;
+use super::totals::{Added, NO_ENERGY};
 use super::tracer::Path;
 use super::watch::Watch;
-use crate::contact::Mode;
+use crate::contact::{Mode, all_continue};
 use crate::model::request::Method;
 
 /// The turn of the path (radians) that a step aims at.
@@ -23,8 +26,6 @@ const ITERATIONS_SOUGHT: f64 = 4.0;
 const IMBALANCE_SOUGHT: f64 = 5e-9;
 /// Stretch of a bar at which steps that do not converge are its collapse.
 pub(super) const COLLAPSED: f64 = 1e-4;
-/// Energies below this fraction of the force scale times the displacement scale are round-off.
-pub(super) const NO_ENERGY: f64 = 1e-12;
 /// A step after which the next would have to be shorter than this fraction of it is taken again, shorter.
 const REJECTED: f64 = 0.55;
 
@@ -34,10 +35,7 @@ const MOST_UNRESOLVED: u64 = 4;
 /// A point reached, with the energies of the way there.
 pub(super) struct Accepted {
     pub reached: Reached,
-    pub work: f64,
-    pub dissipation: f64,
-    /// Total at the point, from the start of the path.
-    pub strain: f64,
+    pub added: Added,
     /// Whether the increment's program named the mode; `None` where it was not asked.
     pub mode_named: Option<bool>,
     /// The point is the one where the stage began.
@@ -136,30 +134,29 @@ impl Path<'_> {
     /// Steps until a point is accepted.
     pub(super) fn step(&mut self) -> Result<Accepted, StopReason> {
         let (least, most) = (self.scene.analysis.arc_length.min, self.scene.analysis.arc_length.max);
-        let mut step = self.step.min(most);
-        let mut changes_here = 0;
+        let mut step = self.at.step.min(most);
         let mut unresolved = 0;
-        let mut known = self.here.signature;
+        let mut known = self.at.here.signature;
         loop {
             if self.cancel.is_cancelled() {
                 return Err(StopReason::Cancelled);
             }
-            let Some(rate) = self.here.rate.clone() else { return Err(StopReason::NoDirection) };
+            let Some(rate) = self.at.here.rate.clone() else { return Err(StopReason::NoDirection) };
             let named_as_kept = match self.scene.analysis.method {
                 Method::Mpec if !self.scene.contacts.is_empty() => Some(self.program_keeps_mode(&rate, step)),
                 Method::Mpec | Method::Auto | Method::Regularised => None,
             };
             let start = Start {
                 loading: self.loading(),
-                state: &self.here.state,
+                state: &self.at.here.state,
                 rate: &rate,
-                modes: &self.here.modes,
-                drift: self.here.drift.as_ref(),
-                force_scale: self.force_scale,
+                modes: &self.at.here.modes,
+                drift: self.at.here.drift.as_ref(),
+                force_scale: self.at.totals.force_scale,
             };
-            let mut work = self.work;
-            let ends = &self.scene.stages[self.stage].ends;
-            let outcome = start.advance(step, ends, self.here.load_sign, &mut work);
+            let mut work = self.at.totals.work;
+            let ends = &self.scene.stages[self.at.stage].ends;
+            let outcome = start.advance(step, ends, self.at.here.load_sign, &mut work);
             let back = outcome.as_ref().ok().and_then(|reached| self.way_back(&start, reached, &mut work));
             let outcome = match (outcome, back) {
                 (Ok(_), Some(back)) => Ok((back, None, None, true)),
@@ -172,7 +169,13 @@ impl Path<'_> {
                 }
                 (Err(refused), _) => Err(refused),
             };
-            self.work = work;
+            let outcome = outcome.and_then(|point| {
+                let corrected = &point.0.corrected;
+                let forces = self.at.totals.force_scale.max(corrected.force_scale);
+                let lawful = contact_law::holds(self.loading(), &corrected.state, forces);
+                if lawful { Ok(point) } else { Err(Refused::Unlawful) }
+            });
+            self.at.totals.work = work;
             match outcome {
                 Ok((reached, crossing, signature, returned)) => {
                     let mut accepted = self.balance(&rate, reached);
@@ -181,23 +184,15 @@ impl Path<'_> {
                     accepted.mode_named = named_as_kept.map(|kept| kept || accepted.reached.event.is_some());
                     let factor = self.next_step_factor(&rate, &accepted, step);
                     if factor > REJECTED || step * factor < least {
-                        self.step = (step * factor).clamp(least, most);
+                        self.at.step = (step * factor).clamp(least, most);
                         return Ok(accepted);
                     }
                     step *= factor;
                 }
-                Err(Refused::AtStart(watch)) if watch.is_of_contact() && changes_here <= self.scene.contacts.len() => {
-                    // Two changes at one point, the second too close to be a point of its own.
-                    changes_here += 1;
-                    let standings = self.standings(&self.here.state);
-                    let before = Before::Incoming(&rate);
-                    let rules = self.rules();
-                    let decision = decide::decide(self.loading(), &self.here.state, &standings, before, rules);
-                    if let Some(reason) = decision.stop {
-                        return Err(reason);
-                    }
-                    self.take(&decision);
-                    known = None;
+                Err(Refused::AtStart(watch)) if watch.is_of_contact() && self.mode_ends_here(&rate) => {
+                    let mut accepted = self.balance(&rate, self.without_step(watch, &rate));
+                    accepted.mode_named = named_as_kept.map(|_| true);
+                    return Ok(accepted);
                 }
                 Err(Refused::Unresolved) => {
                     unresolved += 1;
@@ -207,19 +202,48 @@ impl Path<'_> {
                     step *= match refused {
                         Refused::Turned(angle) => (0.5 * TURN_SOUGHT / angle).clamp(0.1, 0.5),
                         Refused::Newton(_) => 0.5,
-                        Refused::AtStart(_) | Refused::Unresolved => 0.25,
+                        Refused::AtStart(_) | Refused::Unlawful | Refused::Unresolved => 0.25,
                     };
                     if step < least {
-                        return Err(self.reason_of_underflow());
+                        return Err(match refused {
+                            Refused::Unlawful => StopReason::ContactViolated,
+                            _ => self.reason_of_underflow(),
+                        });
                     }
                 }
             }
         }
     }
 
+    /// Whether the mode cannot go on from the present point.
+    fn mode_ends_here(&self, rate: &Rate) -> bool {
+        let here = &self.at.here;
+        let standings = self.standings(&here.state);
+        let decision = decide::decide(self.loading(), &here.state, &standings, Before::Incoming(rate), self.rules());
+        decision.taken.is_none_or(|index| !all_continue(&decision.options[index].modes, &here.modes))
+    }
+
+    /// The present point once more, as the place where the mode ends: two changes at one state, the second of which the
+    /// point itself did not show, are two points of the path.
+    fn without_step(&self, watch: Watch, rate: &Rate) -> Reached {
+        let here = &self.at.here;
+        let system = ModeSystem::new(self.loading(), &here.modes, &here.state);
+        let mut corrected = system.judged(here.state.clone(), self.at.totals.force_scale);
+        (corrected.state, corrected.modes) = (here.state.clone(), here.modes.clone());
+        Reached {
+            corrected,
+            rate: rate.clone(),
+            step: 0.0,
+            error_estimate: here.drift.as_ref().map_or(0.0, Rate::size),
+            drift: here.drift.clone(),
+            event: Some(watch),
+            determinant: None,
+        }
+    }
+
     /// The point at which the stage began, where a step without event passes it again in the same sense.
     fn way_back(&self, start: &Start<'_>, reached: &Reached, work: &mut Work) -> Option<Reached> {
-        let (origin, sense) = self.begun.as_ref()?;
+        let (origin, sense) = self.at.begun.as_ref()?;
         // How far a state lies past the origin.
         let past = |state: &State| {
             let chord = state.displacement.iter().zip(&origin.displacement).zip(&sense.displacement);
@@ -241,32 +265,25 @@ impl Path<'_> {
                 .reactions
                 .iter()
                 .zip(&origin.reactions)
-                .all(|(a, b)| a.difference(b) < SAME_STATE * self.force_scale);
+                .all(|(a, b)| a.difference(b) < SAME_STATE * self.at.totals.force_scale);
         same.then_some(back)
     }
 
     /// Why steps became too short.
     fn reason_of_underflow(&self) -> StopReason {
-        let stretch = self.scene.structure.smallest_stretch(&self.here.state.displacement);
+        let stretch = self.scene.structure.smallest_stretch(&self.at.here.state.displacement);
         if stretch < COLLAPSED { StopReason::CollapsedBar } else { StopReason::StepUnderflow }
     }
 
     /// Work, dissipation and strain energy of a point reached.
     fn balance(&self, rate: &Rate, reached: Reached) -> Accepted {
-        let start = (&self.here.state, rate);
+        let start = (&self.at.here.state, rate);
         let end = (&reached.corrected.state, &reached.rate);
-        let (work, dissipation) = energy::work_and_dissipation(self.loading(), &self.here.modes, start, end);
+        let (external_work, dissipated) = energy::work_and_dissipation(self.loading(), &self.at.here.modes, start, end);
         let strain = self.scene.structure.strain_energy(&reached.corrected.state.displacement) - self.initial_strain;
-        Accepted {
-            reached,
-            work,
-            dissipation,
-            strain,
-            mode_named: None,
-            returned: false,
-            crossing: None,
-            signature: None,
-        }
+        let (step, force_scale) = (reached.step, reached.corrected.force_scale);
+        let added = Added { step, external_work, dissipated, strain, force_scale };
+        Accepted { reached, added, mode_named: None, returned: false, crossing: None, signature: None }
     }
 
     /// How the next step should compare with this one: by the path's turn, Newton's work and the energy balance.
@@ -276,9 +293,10 @@ impl Path<'_> {
         let turn = rate.product(&reached.rate).clamp(-1.0, 1.0).acos() / done;
         let by_turn = TURN_SOUGHT / turn.max(1e-3 * TURN_SOUGHT);
         let by_work = ITERATIONS_SOUGHT / reached.corrected.iterations_to_small.max(1) as f64;
-        let imbalance = (accepted.work - accepted.dissipation - (accepted.strain - self.energy.strain)).abs();
-        let floor = (NO_ENERGY * self.force_scale.max(reached.corrected.force_scale)).max(f64::MIN_POSITIVE);
-        let size = self.largest_energy.max(accepted.work.abs()).max(accepted.strain.abs()).max(floor);
+        let added = &accepted.added;
+        let imbalance = (added.external_work - added.dissipated - (added.strain - self.at.totals.energy.strain)).abs();
+        let floor = (NO_ENERGY * self.at.totals.force_scale.max(reached.corrected.force_scale)).max(f64::MIN_POSITIVE);
+        let size = self.at.totals.largest_energy.max(added.external_work.abs()).max(added.strain.abs()).max(floor);
         // The balance of one increment has an error of fifth order in its arc length.
         let by_energy = (IMBALANCE_SOUGHT / (imbalance / size).max(1e-3 * IMBALANCE_SOUGHT)).powf(0.2);
         quantised(by_turn.min(by_work).min(by_energy).clamp(0.2, 1.8))

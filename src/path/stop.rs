@@ -23,9 +23,11 @@ pub enum StopReason {
     CollapsedBar,
     /// The directions form a set of more than one dimension, so that none can be named.
     Degenerate,
-    /// A node is closed against several obstacles in a way that is not available: in space with friction, or obstacles that
-    /// move against each other.
+    /// A node is closed against several obstacles in a way that is not available: with friction, or with more reactions
+    /// than its equilibrium tells apart, in space, on a support, or where the obstacles move against each other.
     CornerNotAvailable,
+    /// No step of at least `arc_length.min` leads to a point that keeps to the laws of contact and friction.
+    ContactViolated,
     /// More contact modes than `max_modes` would have to be examined to go on.
     ModeLimit,
     /// Several nodes that touch in space without reaction may begin to slip at once, and no such direction was found.
@@ -55,6 +57,7 @@ impl StopReason {
             | Self::CollapsedBar
             | Self::Degenerate
             | Self::CornerNotAvailable
+            | Self::ContactViolated
             | Self::ModeLimit
             | Self::SlipsNotFound => Outcome::Stopped,
         }
@@ -74,8 +77,11 @@ impl StopReason {
             Self::CollapsedBar => "a bar has shrunk to a point, where its direction is lost",
             Self::Degenerate => "the possible directions form a set of more than one dimension: none can be named",
             Self::CornerNotAvailable => {
-                "a node is closed against several obstacles at once, in space with friction or while they move against each \
-                 other, which is not available"
+                "a node is closed against several obstacles at once, with friction or with more reactions than its \
+                 equilibrium tells apart, in space, on a support or while they move against each other, which is not available"
+            }
+            Self::ContactViolated => {
+                "no step of at least arc_length.min leads to a point that keeps to the laws of contact and friction"
             }
             Self::ModeLimit => "more contact modes than max_modes would have to be examined to go on",
             Self::SlipsNotFound => {

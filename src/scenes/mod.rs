@@ -1,7 +1,9 @@
 //! The built-in scenes: models as JSON, ready to post.
 //!
 //! They are served, demonstrated, tested and verified from here. `pictures` holds what `arcslip solve --plot` draws of
-//! some of them; a test holds them to that.
+//! some of them; a test holds them to that. [`exact`] has the paths that are known in closed form.
+
+pub mod exact;
 
 /// A model ready to post.
 #[derive(Debug, Clone, Copy)]

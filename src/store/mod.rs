@@ -19,7 +19,7 @@ use uuid::Uuid;
 pub use error::StoreError;
 pub use record::{
     Branch, Claim, Ending, JobRecord, Lease, LeaseAnswer, Line, ListFilter, Membership, NewFollower, NewJob, Origin,
-    Page, Parent, Status, Submitted,
+    Page, Parent, Status, Submitted, Task,
 };
 
 pub type Result<T> = std::result::Result<T, StoreError>;
@@ -47,7 +47,7 @@ pub trait Store: Send + Sync + 'static {
     /// Answers how many were queued.
     async fn explore(&self) -> Result<u64>;
 
-    /// Newest first.
+    /// Jobs of one task, newest first.
     async fn jobs(&self, filter: ListFilter) -> Result<Vec<JobRecord>>;
 
     /// Increments with an index above `after`, in order; at most `page.rows` of them and, past the first, at most about

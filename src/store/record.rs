@@ -49,9 +49,32 @@ impl Status {
     }
 }
 
+/// What a job does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Task {
+    /// Traces one path; its lines are increments.
+    Path,
+    /// Traces many; its lines are the paths that have been traced.
+    Study,
+}
+
+impl Task {
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Path => "path",
+            Self::Study => "study",
+        }
+    }
+
+    pub fn from_name(name: &str) -> Option<Self> {
+        [Self::Path, Self::Study].into_iter().find(|task| task.name() == name)
+    }
+}
+
 /// A job to be queued.
 #[derive(Debug, Clone)]
 pub struct NewJob {
+    pub task: Task,
     pub name: Option<String>,
     /// The request as posted.
     pub request: String,
@@ -130,6 +153,7 @@ pub enum Submitted {
 #[derive(Debug, Clone)]
 pub struct JobRecord {
     pub id: Uuid,
+    pub task: Task,
     pub name: Option<String>,
     pub status: Status,
     /// JSON.
@@ -155,6 +179,7 @@ pub struct JobRecord {
 /// Which jobs to list.
 #[derive(Debug, Clone, Copy)]
 pub struct ListFilter {
+    pub task: Task,
     pub status: Option<Status>,
     /// Only jobs that follow this one.
     pub parent: Option<Uuid>,
@@ -191,6 +216,7 @@ pub struct Lease {
 #[derive(Debug, Clone)]
 pub struct Claim {
     pub lease: Lease,
+    pub task: Task,
     pub request: String,
     pub max_increments: u64,
     /// Increments up to this index are stored already, from an earlier attempt.

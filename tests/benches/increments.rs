@@ -1,10 +1,13 @@
-//! Time per increment by both methods: the median of several whole paths, with its spread.
+//! Time per increment by both methods: the median of several whole paths, with its spread; and what the measure takes to
+//! judge one, with its share in the two together.
 //!
 //! `cargo bench --bench increments`
 
 use arcslip::cancel::CancelFlag;
+use arcslip::measure::Judge;
+use arcslip::model::JobRequest;
 use arcslip::model::request::Method;
-use arcslip::path::{Path, Scene};
+use arcslip::path::{Increment, Path, Scene};
 use std::time::Instant;
 
 /// Whole paths traced; the median is printed.
@@ -12,8 +15,8 @@ const REPEATS: usize = 41;
 
 fn main() {
     println!(
-        "{:<22} {:<6} {:>10} {:>12} {:>12} {:>12} {:>8} {:>8}",
-        "scene", "method", "increments", "median us", "least us", "largest us", "LU/inc", "QP/inc"
+        "{:<22} {:<6} {:>10} {:>12} {:>12} {:>12} {:>8} {:>8} {:>9} {:>7}",
+        "scene", "method", "increments", "median us", "least us", "largest us", "LU/inc", "QP/inc", "judge us", "share"
     );
     for name in ["one-bar-truss", "one-bar-truss-rough", "klarbring", "arch-type-truss", "three-snapping-bars"] {
         let Some(built_in) = arcslip::scenes::find(name) else { continue };
@@ -40,9 +43,11 @@ fn main() {
             }
             times.sort_by(f64::total_cmp);
             let Some(report) = last else { continue };
+            let judging = judging(&request, &scene);
+            let share = 100.0 * judging / (judging + times[REPEATS / 2]);
             let each = |count: u64| count as f64 / report.increments as f64;
             println!(
-                "{:<22} {:<6} {:>10} {:>12.2} {:>12.2} {:>12.2} {:>8.1} {:>8.1}",
+                "{:<22} {:<6} {:>10} {:>12.2} {:>12.2} {:>12.2} {:>8.1} {:>8.1} {:>9.3} {:>5.1} %",
                 name,
                 format!("{method:?}").to_lowercase(),
                 report.increments,
@@ -50,7 +55,9 @@ fn main() {
                 times[0],
                 times[REPEATS - 1],
                 each(report.factorisations),
-                each(report.qp_solves)
+                each(report.qp_solves),
+                judging,
+                share
             );
             medians.push(times[REPEATS / 2]);
         }
@@ -58,4 +65,22 @@ fn main() {
             println!("{:<22} mpec/auto {:.1}", name, mpec / auto);
         }
     }
+}
+
+/// Microseconds that the measure takes for an increment: the median of whole paths.
+fn judging(request: &JobRequest, scene: &Scene) -> f64 {
+    let increments: Vec<Increment> = Path::new(scene, CancelFlag::default()).collect();
+    let fresh = Judge::new(request, scene.plan().displacement_scale, &scene.plan().load_scales);
+    let mut times: Vec<f64> = (0..REPEATS)
+        .map(|_| {
+            let mut judge = fresh.clone();
+            let began = Instant::now();
+            for increment in &increments {
+                std::hint::black_box(judge.judge(increment));
+            }
+            began.elapsed().as_secs_f64() / increments.len() as f64 * 1e6
+        })
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times[REPEATS / 2]
 }

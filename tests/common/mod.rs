@@ -3,10 +3,8 @@
 #![allow(dead_code)]
 
 pub mod bad_documents;
-pub mod exact;
 #[cfg(feature = "server")]
 pub mod faulty_store;
-pub mod generated;
 pub mod generators;
 pub mod paths;
 pub mod random;

@@ -43,9 +43,14 @@ pub fn judged(request: &JobRequest) -> Traced {
     let increments: Vec<Increment> = path.by_ref().collect();
     let report = path.report().expect("an ended path has a report");
     let plan = scene.plan().clone();
-    let mut judge = Judge::new(request, plan.displacement_scale);
+    let mut judge = judge(request, &plan);
     let errors = increments.iter().map(|increment| judge.judge(increment)).collect();
     Traced { increments, errors, report, plan }
+}
+
+/// A judge of the request's paths.
+pub fn judge(request: &JobRequest, plan: &Plan) -> Judge {
+    Judge::new(request, plan.displacement_scale, &plan.load_scales)
 }
 
 /// The whole path of a request, every increment held to the bars.

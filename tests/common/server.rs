@@ -112,10 +112,7 @@ impl TestServer {
         if let Some(last) = last_event_id {
             ask = ask.header("last-event-id", last);
         }
-        let response = ask.send().await.expect("an answer");
-        assert_eq!(response.status(), StatusCode::OK);
-        assert_eq!(response.headers()["content-type"], "text/event-stream");
-        EventStream { response, text: String::new() }
+        EventStream::of(ask.send().await.expect("an answer"))
     }
 }
 
@@ -126,6 +123,12 @@ pub struct EventStream {
 }
 
 impl EventStream {
+    pub fn of(response: Response) -> Self {
+        assert_eq!(response.status(), StatusCode::OK);
+        assert_eq!(response.headers()["content-type"], "text/event-stream");
+        Self { response, text: String::new() }
+    }
+
     /// `None`: the stream has ended.
     pub async fn next(&mut self) -> Option<Event> {
         loop {

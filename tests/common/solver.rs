@@ -3,6 +3,8 @@
 use arcslip::cancel::CancelFlag;
 use arcslip::jobs::Solver;
 use arcslip::jobs::solver::{Accept, Beginning};
+use arcslip::judged::{JudgedIncrement, JudgedReport, MeasureReport};
+use arcslip::measure::{Errors, Maxima};
 use arcslip::model::{InputErrors, JobRequest};
 use arcslip::path::increment::{ContactState, Diagnostics, Energy, Point, PointKind, Status};
 use arcslip::path::{Increment, Plan, Report, StopReason};
@@ -68,7 +70,7 @@ impl Solver for MadeUp {
         _beginning: Option<Beginning>,
         cancel: CancelFlag,
         accept: Accept<'_>,
-    ) -> Result<Option<Report>, InputErrors> {
+    ) -> Result<Option<JudgedReport>, InputErrors> {
         let run = self.runs.fetch_add(1, Ordering::Relaxed) + 1;
         let mut stop_reason = StopReason::MaxIncrements;
         let mut increments = 0;
@@ -80,11 +82,11 @@ impl Solver for MadeUp {
             }
             assert!(!(request.model.name.as_deref() == Some(PANICS) && index == 3), "a made-up defect");
             increments += 1;
-            if accept(increment(index, run), &|| None).is_break() {
+            if accept(judged(index, run), &|| None).is_break() {
                 return Ok(None);
             }
         }
-        Ok(Some(Report {
+        let report = Report {
             stop_reason,
             sentence: stop_reason.sentence().to_owned(),
             increments,
@@ -96,8 +98,14 @@ impl Solver for MadeUp {
             newton_iterations: increments,
             qp_solves: 0,
             mpec_solves: 0,
-        }))
+        };
+        let measure = MeasureReport { largest: Maxima::default(), bar: None, off_measure: 0 };
+        Ok(Some(JudgedReport { report, measure }))
     }
+}
+
+fn judged(index: u64, run: u64) -> JudgedIncrement {
+    JudgedIncrement { increment: increment(index, run), measure: Errors::default() }
 }
 
 fn increment(index: u64, run: u64) -> Increment {

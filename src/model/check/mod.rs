@@ -11,6 +11,9 @@ mod numbers;
 mod obstacles;
 mod stages;
 mod structure;
+mod study;
+
+pub use study::study;
 
 use super::limits::{
     MAX_CONTACTS, MAX_ELEMENTS, MAX_NAME_BYTES, MAX_NODES, MAX_OBSTACLES, MAX_STAGES, MAX_UNKNOWNS,

@@ -21,7 +21,7 @@ const REGULARISED: Fields = Fields {
     later: &[],
 };
 
-const METHOD: Choices<Method> = Choices {
+pub(super) const METHOD: Choices<Method> = Choices {
     what: "a method",
     known: &[("auto", Method::Auto), ("mpec", Method::Mpec), ("regularised", Method::Regularised)],
     later: &[],

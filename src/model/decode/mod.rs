@@ -7,13 +7,15 @@ mod analysis;
 mod follow;
 mod model;
 mod reader;
+mod study;
 
 use super::json::Json;
 use super::mistakes::Mistakes;
-use super::{FollowRequest, InputError, InputErrors, JobRequest};
+use super::{FollowRequest, InputError, InputErrors, JobRequest, StudyRequest};
 use reader::{Fields, Input};
 
 const JOB_REQUEST: Fields = Fields { what: "a job request", known: &["model", "analysis"], later: &[] };
+const STUDY_REQUEST: Fields = Fields { what: "a study", known: &["model", "analysis", "study"], later: &[] };
 
 /// Reads a job request from JSON text and checks nothing but form; [`super::check::check`] looks at the rest.
 ///
@@ -22,14 +24,15 @@ const JOB_REQUEST: Fields = Fields { what: "a job request", known: &["model", "a
 /// [`MAX_LISTED_MISTAKES`](super::limits::MAX_LISTED_MISTAKES)): missing, unknown and duplicate members, wrong types,
 /// unknown values, and what this version does not have.
 pub fn decode(text: &[u8]) -> Result<JobRequest, InputErrors> {
-    let document = Json::parse(text).map_err(|error| InputErrors(vec![error]))?;
-    let root = Input::root(&document);
-    let mut mistakes = Mistakes::default();
-    reader::note_duplicates(&root, &mut mistakes);
-    let request = job_request(&root, &mut mistakes);
-    mistakes.into_result()?;
-    // A reader that returns nothing has noted why, so the error here is for a defect: a refusal, not a panic.
-    request.ok_or_else(|| InputErrors(vec![InputError::new("", "the document could not be read as a job request")]))
+    read(text, JOB_REQUEST.what, job_request)
+}
+
+/// Reads a study from JSON text and checks nothing but form; [`super::check::study`] looks at the rest.
+///
+/// # Errors
+/// As for [`decode`].
+pub fn study(text: &[u8]) -> Result<StudyRequest, InputErrors> {
+    read(text, STUDY_REQUEST.what, study_request)
 }
 
 /// Reads a request to follow a direction from JSON text, and checks it as far as it goes by itself.
@@ -37,13 +40,18 @@ pub fn decode(text: &[u8]) -> Result<JobRequest, InputErrors> {
 /// # Errors
 /// As for [`decode`].
 pub fn follow(text: &[u8]) -> Result<FollowRequest, InputErrors> {
+    read(text, "such a request", follow::follow)
+}
+
+fn read<T>(text: &[u8], what: &str, reader: fn(&Input, &mut Mistakes) -> Option<T>) -> Result<T, InputErrors> {
     let document = Json::parse(text).map_err(|error| InputErrors(vec![error]))?;
     let root = Input::root(&document);
     let mut mistakes = Mistakes::default();
     reader::note_duplicates(&root, &mut mistakes);
-    let request = follow::follow(&root, &mut mistakes);
+    let request = reader(&root, &mut mistakes);
     mistakes.into_result()?;
-    request.ok_or_else(|| InputErrors(vec![InputError::new("", "the document could not be read as such a request")]))
+    // A reader that returns nothing has noted why, so the error here is for a defect: a refusal, not a panic.
+    request.ok_or_else(|| InputErrors(vec![InputError::new("", format!("the document could not be read as {what}"))]))
 }
 
 fn job_request(input: &Input, mistakes: &mut Mistakes) -> Option<JobRequest> {
@@ -51,6 +59,14 @@ fn job_request(input: &Input, mistakes: &mut Mistakes) -> Option<JobRequest> {
     let model = object.required("model", mistakes, model::model);
     let analysis = object.with_default("analysis", Default::default(), mistakes, analysis::analysis);
     Some(JobRequest { model: model?, analysis: analysis? })
+}
+
+fn study_request(input: &Input, mistakes: &mut Mistakes) -> Option<StudyRequest> {
+    let object = input.object(&STUDY_REQUEST, mistakes)?;
+    let model = object.required("model", mistakes, model::model);
+    let analysis = object.with_default("analysis", Default::default(), mistakes, analysis::analysis);
+    let study = object.with_default("study", Default::default(), mistakes, study::study);
+    Some(StudyRequest { model: model?, analysis: analysis?, study: study? })
 }
 
 #[cfg(test)]

@@ -45,21 +45,21 @@ fn followed(scene: &Scene) -> Vec<Vec<Increment>> {
     loop {
         let mut path = Path::new(scene, CancelFlag::default());
         let point = path.by_ref().find(|i| i.point.kind == PointKind::SmoothBifurcation).unwrap();
-        let tangent = path.here.rate.clone().unwrap();
-        let state = &path.here.state;
+        let tangent = path.at.here.rate.clone().unwrap();
+        let state = &path.at.here.state;
         let standings = path.standings(state);
         let (loading, force_scale) = (path.loading(), path.rules().force_scale);
         let here = super::Here { loading, state, standings: &standings, force_scale };
         let eigenvalues = if point.point.event.as_deref() == Some("one eigenvalue crosses zero") { 1 } else { 2 };
-        let found = super::branches(here, &path.here.modes, &tangent, eigenvalues);
+        let found = super::branches(here, &path.at.here.modes, &tangent, eigenvalues);
         assert_eq!(found.options.len(), point.directions.unwrap().len());
         if all.len() == found.options.len() {
             return all;
         }
         let choice = found.options[all.len()].clone();
-        path.here.rate = Some(choice.rate);
-        path.here.load_sign = choice.load_sign;
-        path.here.signature = None;
+        path.at.here.rate = Some(choice.rate);
+        path.at.here.load_sign = choice.load_sign;
+        path.at.here.signature = None;
         all.push(std::iter::from_fn(|| path.next()).take(12).collect());
     }
 }

@@ -111,6 +111,18 @@ struct Task {
     decision: Option<(usize, usize)>,
 }
 
+/// What one combination turned out to be.
+enum Examined {
+    /// Feasible in one sense or both.
+    Rays,
+    /// One line, and the entities that it violates in the sense that violates fewer.
+    Violated(Vec<usize>),
+    /// No line, or more than one.
+    Nothing,
+    /// Known already.
+    Before,
+}
+
 struct Search<'a> {
     problem: &'a RateProblem,
     findings: Findings,
@@ -125,28 +137,27 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The rays of one combination. Where its equations leave a line that is feasible in neither sense, the entities
-    /// that are violated, in the sense that violates fewer.
-    fn examine(&mut self, chosen: &[usize]) -> Option<Vec<usize>> {
+    fn examine(&mut self, chosen: &[usize]) -> Examined {
         if !self.seen.insert(chosen.to_vec()) {
-            return None;
+            return Examined::Before;
         }
         self.findings.examined += self.cost;
         match self.problem.line(chosen) {
-            Line::Nothing => None,
+            Line::Nothing => Examined::Nothing,
             Line::Along(weights) => {
-                let mut fewest: Option<Vec<usize>> = None;
-                let mut is_ray = false;
-                for weights in [-&weights, weights] {
-                    let violated = self.problem.violated(chosen, &weights);
+                let senses = [-&weights, weights];
+                let [first, second] = senses.each_ref().map(|weights| self.problem.violated(chosen, weights));
+                let is_ray = first.is_empty() || second.is_empty();
+                for (weights, violated) in senses.into_iter().zip([&first, &second]) {
                     if violated.is_empty() {
-                        is_ray = true;
                         self.keep(chosen, weights);
-                    } else if fewest.as_ref().is_none_or(|fewest| violated.len() <= fewest.len()) {
-                        fewest = Some(violated);
                     }
                 }
-                fewest.filter(|_| !is_ray)
+                match is_ray {
+                    true => Examined::Rays,
+                    false if first.len() < second.len() => Examined::Violated(first),
+                    false => Examined::Violated(second),
+                }
             }
             Line::Plane(basis) => {
                 self.findings.degenerate = true;
@@ -156,11 +167,11 @@ impl Search<'_> {
                 if self.findings.planes.len() < MOST_PLANES {
                     self.findings.planes.push(basis);
                 }
-                None
+                Examined::Nothing
             }
             Line::Still | Line::NotFinite => {
                 self.findings.degenerate = true;
-                None
+                Examined::Nothing
             }
         }
     }
@@ -180,17 +191,26 @@ impl Search<'_> {
     /// Where many options are in doubt there are too many combinations to try: what the first one violates is changed,
     /// and so on until a combination holds.
     fn examine_all(&mut self, options: &[Vec<usize>]) {
-        let before = self.findings.rays.len();
         let mut places = vec![0; options.len()];
-        let mut refuted = false;
+        let mut settled = false;
         for _ in 0..MOST_LABELS as usize + options.len() {
             let chosen: Vec<usize> = options.iter().zip(&places).map(|(options, &place)| options[place]).collect();
-            let Some(violated) = self.examine(&chosen) else { break };
-            refuted = violated.iter().any(|&entity| options[entity].len() == 1);
-            if refuted {
-                break;
+            settled |= self.findings.rays.iter().any(|ray| ray.is_under(&chosen));
+            match self.examine(&chosen) {
+                Examined::Violated(violated) => {
+                    // One that has no other option refutes them all.
+                    settled |= violated.iter().any(|&entity| options[entity].len() == 1);
+                    if settled {
+                        break;
+                    }
+                    violated.iter().for_each(|&entity| places[entity] = (places[entity] + 1) % options[entity].len());
+                }
+                Examined::Rays => {
+                    settled = true;
+                    break;
+                }
+                Examined::Nothing | Examined::Before => break,
             }
-            violated.iter().for_each(|&entity| places[entity] = (places[entity] + 1) % options[entity].len());
         }
         let total = options.iter().fold(1u64, |total, options| total.saturating_mul(options.len() as u64));
         for number in 0..total.min(MOST_LABELS) {
@@ -203,17 +223,15 @@ impl Search<'_> {
                     choice
                 })
                 .collect();
-            let known = self.findings.rays[before..].iter().find(|ray| ray.is_under(&chosen));
+            let known = self.findings.rays.iter().find(|ray| ray.is_under(&chosen));
             match known.map(|ray| -&ray.weights) {
-                None => {
-                    self.examine(&chosen);
-                }
+                None => settled |= matches!(self.examine(&chosen), Examined::Rays),
                 // Its line is the known one; the other sense may be feasible under this combination only.
                 Some(reversed) if self.problem.violated(&chosen, &reversed).is_empty() => self.keep(&chosen, reversed),
                 Some(_) => {}
             }
         }
-        if total > MOST_LABELS && !refuted && self.findings.rays.len() == before {
+        if total > MOST_LABELS && !settled {
             self.findings.unexplored = self.findings.unexplored.saturating_add(total - MOST_LABELS);
         }
     }

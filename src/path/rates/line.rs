@@ -54,6 +54,17 @@ impl RateProblem {
         if weights.iter().all(|weight| weight.is_finite()) { Line::Along(weights) } else { Line::NotFinite }
     }
 
+    /// Whether a combination has a ray, or more than a line.
+    pub(super) fn is_feasible(&self, chosen: &[usize]) -> bool {
+        match self.line(chosen) {
+            Line::Along(weights) => {
+                self.violated(chosen, &weights).is_empty() || self.violated(chosen, &-weights).is_empty()
+            }
+            Line::Plane(_) => true,
+            Line::Nothing | Line::Still | Line::NotFinite => false,
+        }
+    }
+
     pub(in crate::path) fn force_tolerance(&self, weights: &DVector<f64>) -> f64 {
         let largest = (&self.reactions * weights).amax();
         // Where no force changes, what is left is the rounding of the sums.

@@ -10,8 +10,12 @@ use super::problem::{Entity, RateProblem, Touching};
 use crate::cancel::CancelFlag;
 use nalgebra::{DMatrix, DVector};
 
-/// Products that the sweeps of one sign of the load rate may take.
-const WORK: usize = 400_000_000;
+/// Products that the sweeps of one sign of the load rate may take with one factor of relaxation.
+const WORK: usize = 100_000_000;
+/// Sweeps without a change of any option after which the combination is looked at, the first time.
+const UNCHANGED: usize = 30;
+/// Velocities this much larger than at first do not settle any more.
+const GROWN: f64 = 1e9;
 /// Change of the largest velocity in a sweep, over that velocity, below which the sweeps have settled.
 const SETTLED: f64 = 1e-12;
 /// Factors of relaxation, tried one after another.
@@ -144,7 +148,8 @@ fn settle(
     let mut weights = DVector::zeros(problem.weights());
     weights[problem.weights() - 1] = load;
     let mut chosen = vec![usize::MAX; locals.len()];
-    let mut worked = 0;
+    let (mut worked, mut unchanged, mut enough) = (0, 0, UNCHANGED);
+    let mut first: Option<f64> = None;
     loop {
         if cancel.is_cancelled() || worked > WORK {
             return None;
@@ -166,11 +171,16 @@ fn settle(
                 largest = largest.max(own.abs());
             }
         }
-        if !largest.is_finite() {
+        let most = GROWN * *first.get_or_insert(largest.max(f64::MIN_POSITIVE));
+        if !largest.is_finite() || largest > most {
             return None;
         }
-        if same && change <= SETTLED * largest {
+        unchanged = if same { unchanged + 1 } else { 0 };
+        if same && change <= SETTLED * largest || unchanged >= enough && problem.is_feasible(&chosen) {
             return Some(chosen);
+        }
+        if unchanged >= enough {
+            enough *= 2;
         }
     }
 }

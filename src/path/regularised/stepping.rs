@@ -69,15 +69,15 @@ impl RegularisedPath<'_> {
     }
 
     fn correct(&mut self, predictor: Change, control: Control) -> Result<Converged, Failure> {
-        let mut work = self.work;
+        let mut work = self.totals.work;
         let limits = Limits {
             tolerance: self.settings.tolerance,
             most_iterations: PATIENCE * self.settings.desired_iterations,
-            force_scale: self.force_scale,
+            force_scale: self.totals.force_scale,
             cancel: &self.cancel,
         };
         let converged = self.system().correct(&self.here, predictor, control, &limits, &mut work);
-        self.work = work;
+        self.totals.work = work;
         converged
     }
 

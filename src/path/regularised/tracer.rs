@@ -8,16 +8,16 @@ use super::system::{Point, System};
 use crate::cancel::CancelFlag;
 use crate::linear_algebra::Factorisation;
 use crate::model::request::Regularised;
-use crate::path::advance::Work;
-use crate::path::increment::{Energy, Increment, PointKind};
+use crate::path::increment::{self, Increment, PointKind};
 use crate::path::loading::{LoadPattern, Loading};
 use crate::path::name_event::{describe_change, describe_start};
+use crate::path::progress::{Phase, StageCounts};
 use crate::path::record::{self, Row};
 use crate::path::report::Report;
-use crate::path::scene::{End, Scene};
+use crate::path::scene::Scene;
 use crate::path::state::State;
-use crate::path::stepping::NO_ENERGY;
 use crate::path::stop::StopReason;
+use crate::path::totals::{Added, Totals};
 use std::time::Instant;
 
 /// A path being traced by the regularised method.
@@ -28,6 +28,10 @@ pub struct RegularisedPath<'a> {
     began: Instant,
     phase: Phase,
     pub(super) stage: usize,
+    /// The running stage has its first row.
+    begun: bool,
+    /// The stage ended at the present point; the next one begins with the next increment.
+    stage_over: bool,
     held: LoadPattern,
     pub(super) here: Point,
     /// Tangent at the present point; `None` where it is singular.
@@ -38,29 +42,9 @@ pub struct RegularisedPath<'a> {
     load_sign: f64,
     /// Arc length that the next step tries.
     pub(super) step: f64,
-    index: u64,
-    arc_length: f64,
-    energy: Energy,
     initial_strain: f64,
-    largest_energy: f64,
-    pub(super) force_scale: f64,
-    counts: Counts,
-    pub(super) work: Work,
-    report: Report,
-}
-
-#[derive(Default)]
-struct Counts {
-    increments: u64,
-    limit_points: u64,
-    contact_changes: u64,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Phase {
-    NotStarted,
-    Running,
-    Ended,
+    pub(super) totals: Totals,
+    counts: StageCounts,
 }
 
 impl<'a> RegularisedPath<'a> {
@@ -73,37 +57,29 @@ impl<'a> RegularisedPath<'a> {
             began: Instant::now(),
             phase: Phase::NotStarted,
             stage: 0,
+            begun: false,
+            stage_over: false,
             held: scene.stages.first().map(|stage| stage.pattern.zeroed()).unwrap_or_default(),
             tangent: None,
             previous: None,
             load_sign: 1.0,
             step: scene.analysis.arc_length.initial,
-            index: 0,
-            arc_length: 0.0,
-            energy: Energy::default(),
             initial_strain: scene.structure.strain_energy(&state.displacement),
             here: Point { state, contacts },
-            largest_energy: 0.0,
-            force_scale: 0.0,
-            counts: Counts::default(),
-            work: Work::default(),
-            report: Report::begun(),
+            totals: Totals::begun(),
+            counts: StageCounts::default(),
             scene,
         }
     }
 
     /// Present when the path has ended, that is when `next` has returned `None`.
     pub fn report(&self) -> Option<Report> {
-        (self.phase == Phase::Ended).then(|| self.report.clone())
+        (self.phase == Phase::Ended).then(|| self.totals.report.clone())
     }
 
     fn end(&mut self, reason: StopReason) {
         self.phase = Phase::Ended;
-        self.report.stop_reason = reason;
-        self.report.sentence = reason.sentence().to_owned();
-        self.report.elapsed_s = self.began.elapsed().as_secs_f64();
-        self.report.factorisations = self.work.factorisations;
-        self.report.newton_iterations = self.work.newton_iterations;
+        self.totals.end(reason, self.began.elapsed().as_secs_f64());
     }
 
     pub(super) fn system(&self) -> System<'_> {
@@ -119,28 +95,39 @@ impl<'a> RegularisedPath<'a> {
         }
     }
 
-    fn start_row(&mut self) -> Increment {
+    /// The row with which a stage begins. Where a bound of the stage is met already, it ends there too.
+    fn begin_stage(&mut self) -> Increment {
         let evaluation = self.system().evaluate(&self.here, &self.here.state);
-        self.work.factorisations += 1;
-        self.tangent = Factorisation::new(evaluation.tangent);
-        self.here = self.system().point(self.here.state.clone(), evaluation.contacts);
+        let residual = self.system().relative_residual(&evaluation, self.totals.force_scale);
+        if self.phase == Phase::NotStarted {
+            self.totals.work.factorisations += 1;
+            self.tangent = Factorisation::new(evaluation.tangent);
+            self.here = self.system().point(self.here.state.clone(), evaluation.contacts);
+        } else {
+            self.totals.index += 1;
+        }
         self.phase = Phase::Running;
+        self.begun = true;
+        let ends = &self.scene.stages[self.stage].ends;
+        self.stage_over = ends.iter().any(|end| end.left(&self.here).is_some_and(|left| left <= 0.0));
+        let event = describe_start(self.scene, self.stage, self.stage_over);
         let before = self.here.clone();
-        self.emit(&before, PointKind::Start, Some(describe_start(self.scene)), 0.0, 0.0)
+        self.emit(&before, PointKind::Start, Some(event), 0.0, residual)
     }
 
     /// Makes a converged increment the present point and says what changed within it.
     fn accept(&mut self, accepted: Accepted) -> Increment {
         let Accepted { converged, stage_ends } = accepted;
         let before = std::mem::replace(&mut self.here, converged.point);
-        let (work, dissipated) = work_and_dissipation(&self.system(), &before, &self.here);
-        self.energy.external_work += work;
-        self.energy.dissipated += dissipated;
-        self.energy.strain = self.scene.structure.strain_energy(&self.here.state.displacement) - self.initial_strain;
-        self.force_scale = self.force_scale.max(converged.force_scale);
+        let (external_work, dissipated) = work_and_dissipation(&self.system(), &before, &self.here);
         let step = self.here.state.distance(&before.state);
-        self.arc_length += step;
-        self.index += 1;
+        self.totals.add(&Added {
+            step,
+            external_work,
+            dissipated,
+            strain: self.scene.structure.strain_energy(&self.here.state.displacement) - self.initial_strain,
+            force_scale: converged.force_scale,
+        });
         self.counts.increments += 1;
         self.tangent = converged.tangent;
         self.previous = Some(converged.change);
@@ -157,7 +144,7 @@ impl<'a> RegularisedPath<'a> {
             events.push(format!("{} within the step", describe_change(self.scene, &old, Some(&new), &[])));
             self.counts.contact_changes += 1;
         }
-        let stage_ends = stage_ends || self.count_ends_stage();
+        let stage_ends = stage_ends || self.counts.end_stage(&self.scene.stages[self.stage].ends);
         if stage_ends {
             if kind == PointKind::Regular {
                 kind = PointKind::End;
@@ -165,11 +152,8 @@ impl<'a> RegularisedPath<'a> {
             events.push(format!("stage \"{}\" ends", self.scene.stages[self.stage].name));
         }
         let event = (!events.is_empty()).then(|| events.join("; "));
-        let row = self.emit(&before, kind, event, step, converged.residual);
-        if stage_ends {
-            self.next_stage();
-        }
-        row
+        self.stage_over = stage_ends;
+        self.emit(&before, kind, event, step, converged.residual)
     }
 
     /// Takes the sign of the load rate at a new point and says whether it has changed.
@@ -178,80 +162,42 @@ impl<'a> RegularisedPath<'a> {
         before * sign < 0.0
     }
 
-    fn count_ends_stage(&self) -> bool {
-        self.scene.stages[self.stage].ends.iter().any(|end| match end {
-            End::LimitPoints(count) => self.counts.limit_points >= *count,
-            End::ContactChanges(count) => self.counts.contact_changes >= *count,
-            End::Increments(count) => self.counts.increments >= *count,
-            End::Load { .. } | End::Displacement { .. } => false,
-        })
-    }
-
-    /// Holds what the stage reached and goes to the next whose end is not met already.
-    fn next_stage(&mut self) {
-        loop {
-            if self.stage + 1 == self.scene.stages.len() {
-                return self.end(StopReason::StagesCompleted);
-            }
-            self.held.add(self.here.state.load, &self.scene.stages[self.stage].pattern);
-            self.stage += 1;
-            self.here.state.load = 0.0;
-            self.previous = None;
-            self.load_sign = 1.0;
-            self.counts = Counts::default();
-            self.step = self.step.min(self.scene.analysis.arc_length.initial);
-            let ends = &self.scene.stages[self.stage].ends;
-            if !ends.iter().any(|end| end.left(&self.here).is_some_and(|left| left <= 0.0)) {
-                return;
-            }
+    /// Holds what the stage reached and goes to the next; `false` where there is none.
+    fn next_stage(&mut self) -> bool {
+        if self.stage + 1 == self.scene.stages.len() {
+            self.end(StopReason::StagesCompleted);
+            return false;
         }
+        self.held.add(self.here.state.load, &self.scene.stages[self.stage].pattern);
+        self.stage += 1;
+        self.begun = false;
+        self.here.state.load = 0.0;
+        self.previous = None;
+        self.load_sign = 1.0;
+        self.counts = StageCounts::default();
+        self.step = self.step.min(self.scene.analysis.arc_length.initial);
+        true
     }
 
     fn emit(&mut self, before: &Point, kind: PointKind, event: Option<String>, step: f64, residual: f64) -> Increment {
-        let energy = self.energy;
-        for value in [energy.external_work, energy.strain, energy.dissipated] {
-            self.largest_energy = self.largest_energy.max(value.abs());
-        }
-        let imbalance = (energy.external_work - energy.strain - energy.dissipated).abs();
-        let size = self.largest_energy.max(NO_ENERGY * self.force_scale);
-        let energy_error = if size > 0.0 { imbalance / size } else { 0.0 };
         let system = self.system();
-        let row = record::increment(
-            self.scene,
-            &Row {
-                index: self.index,
-                stage: self.stage,
-                loading: system.loading,
-                state: &self.here.state,
-                before: &before.state,
-                modes: &modes(&self.here),
-                arc_length: self.arc_length,
-                step,
-                point: crate::path::increment::Point {
-                    kind,
-                    bifurcation: false,
-                    event,
-                    better_direction: false,
-                    unexplored_modes: 0,
-                    degenerate: false,
-                },
-                options: &[],
-                taken: None,
-                list_directions: false,
-                energy,
-                residual,
-                error_estimate: give(&system, &self.here),
-                energy_error,
-                force_scale: self.force_scale,
-                elapsed_s: self.began.elapsed().as_secs_f64(),
-                work: self.work,
-                mode_named: None,
-            },
-        );
-        self.report.increments = self.index;
-        self.report.largest_residual = self.report.largest_residual.max(row.diagnostics.residual);
-        self.report.largest_complementarity = self.report.largest_complementarity.max(row.diagnostics.complementarity);
-        self.report.largest_energy_error = self.report.largest_energy_error.max(energy_error);
+        let row = Row {
+            stage: self.stage,
+            loading: system.loading,
+            state: &self.here.state,
+            before: &before.state,
+            modes: &modes(&self.here),
+            step,
+            point: &increment::Point::plain(kind, event),
+            options: &[],
+            taken: None,
+            residual,
+            error_estimate: give(&system, &self.here),
+            elapsed_s: self.began.elapsed().as_secs_f64(),
+            mode_named: None,
+        };
+        let row = record::increment(self.scene, &self.totals, &row);
+        self.totals.note(&row);
         row
     }
 }
@@ -262,16 +208,22 @@ impl Iterator for RegularisedPath<'_> {
     fn next(&mut self) -> Option<Increment> {
         match self.phase {
             Phase::Ended => return None,
-            Phase::NotStarted => return Some(self.start_row()),
+            Phase::NotStarted => return Some(self.begin_stage()),
             Phase::Running => {}
+        }
+        if std::mem::take(&mut self.stage_over) && !self.next_stage() {
+            return None;
         }
         if self.cancel.is_cancelled() {
             self.end(StopReason::Cancelled);
             return None;
         }
-        if self.index >= self.scene.analysis.max_increments {
+        if self.totals.index >= self.scene.analysis.max_increments {
             self.end(StopReason::MaxIncrements);
             return None;
+        }
+        if !self.begun {
+            return Some(self.begin_stage());
         }
         match self.step() {
             Ok(accepted) => Some(self.accept(accepted)),

@@ -15,7 +15,7 @@ pub(super) async fn claim(store: &SqliteStore, worker: &str, lease: Duration) ->
         "UPDATE jobs SET status = 'running', worker = ?1, lease_until = ?2, attempt = attempt + 1, \
          started_at = coalesce(started_at, ?3), updated_at = ?3 \
          WHERE id = (SELECT id FROM jobs WHERE status = 'queued' ORDER BY priority DESC, id LIMIT 1) \
-         RETURNING id, attempt, request, max_increments, last_index, parent, parent_increment, parent_direction, family",
+         RETURNING id, task, attempt, request, max_increments, last_index, parent, parent_increment, parent_direction, family",
     )
     .bind(worker)
     .bind(after(lease))
@@ -30,6 +30,7 @@ pub(super) async fn claim(store: &SqliteStore, worker: &str, lease: Duration) ->
     };
     let claim = Claim {
         lease: Lease { job, worker: worker.to_owned(), attempt: row.try_get("attempt")? },
+        task: rows::task(&row)?,
         request: row.try_get("request")?,
         max_increments: unsigned(row.try_get("max_increments")?)?,
         last_index: row.try_get::<Option<i64>, _>("last_index")?.map(unsigned).transpose()?,

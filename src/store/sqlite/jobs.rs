@@ -11,7 +11,7 @@ pub(super) async fn submit(store: &SqliteStore, job: NewJob) -> Result<Submitted
     let id = Uuid::now_v7();
     let inserted = sqlx::query(
         "INSERT INTO jobs (id, name, status, priority, request, idempotency_key, plan, max_increments, max_attempts, \
-         created_at, updated_at, family) VALUES (?1, ?2, 'queued', ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?9, ?10) \
+         created_at, updated_at, family, task) VALUES (?1, ?2, 'queued', ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?9, ?10, ?11) \
          ON CONFLICT (idempotency_key) DO NOTHING",
     )
     .bind(id)
@@ -24,6 +24,7 @@ pub(super) async fn submit(store: &SqliteStore, job: NewJob) -> Result<Submitted
     .bind(job.max_attempts)
     .bind(now())
     .bind(job.explore.map(|_| id))
+    .bind(job.task.name())
     .execute(&mut *transaction)
     .await?;
     if inserted.rows_affected() > 0 {
@@ -47,7 +48,8 @@ pub(super) async fn submit(store: &SqliteStore, job: NewJob) -> Result<Submitted
     transaction.rollback().await?;
     let record = rows::job(&row)?;
     // A job that follows another has that one's request, and is another job.
-    let same = record.parent.is_none() && row.try_get::<String, _>("request")? == job.request;
+    let same =
+        record.task == job.task && record.parent.is_none() && row.try_get::<String, _>("request")? == job.request;
     Ok(if same { Submitted::Repeated(record) } else { Submitted::KeyReused })
 }
 
@@ -74,28 +76,31 @@ pub(super) async fn list(store: &SqliteStore, filter: ListFilter) -> Result<Vec<
         (Some(parent), status) => sqlx::query(concat!(
             "SELECT ",
             job_columns!(),
-            " FROM jobs WHERE parent = ?3 AND (?4 IS NULL OR status = ?4) AND (?1 IS NULL OR id < ?1) \
+            " FROM jobs WHERE task = ?5 AND parent = ?3 AND (?4 IS NULL OR status = ?4) AND (?1 IS NULL OR id < ?1) \
              ORDER BY id DESC LIMIT ?2"
         ))
         .bind(filter.before)
         .bind(filter.limit)
         .bind(parent)
-        .bind(status.map(Status::name)),
+        .bind(status.map(Status::name))
+        .bind(filter.task.name()),
         (None, Some(status)) => sqlx::query(concat!(
             "SELECT ",
             job_columns!(),
-            " FROM jobs WHERE status = ?3 AND (?1 IS NULL OR id < ?1) ORDER BY id DESC LIMIT ?2"
+            " FROM jobs WHERE task = ?4 AND status = ?3 AND (?1 IS NULL OR id < ?1) ORDER BY id DESC LIMIT ?2"
         ))
         .bind(filter.before)
         .bind(filter.limit)
-        .bind(status.name()),
+        .bind(status.name())
+        .bind(filter.task.name()),
         (None, None) => sqlx::query(concat!(
             "SELECT ",
             job_columns!(),
-            " FROM jobs WHERE (?1 IS NULL OR id < ?1) ORDER BY id DESC LIMIT ?2"
+            " FROM jobs WHERE task = ?3 AND (?1 IS NULL OR id < ?1) ORDER BY id DESC LIMIT ?2"
         ))
         .bind(filter.before)
-        .bind(filter.limit),
+        .bind(filter.limit)
+        .bind(filter.task.name()),
     };
     query.fetch_all(&store.readers).await?.iter().map(rows::job).collect()
 }

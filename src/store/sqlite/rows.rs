@@ -1,7 +1,7 @@
 //! Rows to records, and numbers to what SQLite can hold.
 
 use crate::model::request::Explore;
-use crate::store::{JobRecord, Membership, Parent, Result, Status, StoreError};
+use crate::store::{JobRecord, Membership, Parent, Result, Status, StoreError, Task};
 use jiff::Timestamp;
 use sqlx::Row;
 use sqlx::sqlite::SqliteRow;
@@ -9,7 +9,7 @@ use sqlx::sqlite::SqliteRow;
 /// The columns [`job`] reads.
 macro_rules! job_columns {
     () => {
-        "id, name, status, plan, report, stop_reason, error, max_increments, last_index, attempt, max_attempts, \
+        "id, task, name, status, plan, report, stop_reason, error, max_increments, last_index, attempt, max_attempts, \
          cancel_requested, created_at, started_at, ended_at, parent, parent_increment, parent_direction, \
          (SELECT count(*) FROM jobs AS child WHERE child.parent = jobs.id) AS children, \
          family, generation, explored, not_queued, \
@@ -26,6 +26,7 @@ pub(super) fn job(row: &SqliteRow) -> Result<JobRecord> {
     let last_index: Option<i64> = row.try_get("last_index")?;
     Ok(JobRecord {
         id: row.try_get("id")?,
+        task: task(row)?,
         name: row.try_get("name")?,
         status: Status::from_name(&status).ok_or_else(|| damaged(format!("status {status:?}")))?,
         plan: row.try_get("plan")?,
@@ -44,6 +45,12 @@ pub(super) fn job(row: &SqliteRow) -> Result<JobRecord> {
         children: unsigned(row.try_get("children")?)?,
         membership: membership(row)?,
     })
+}
+
+/// Of a row with the column `task`.
+pub(super) fn task(row: &SqliteRow) -> Result<Task> {
+    let name: String = row.try_get("task")?;
+    Task::from_name(&name).ok_or_else(|| damaged(format!("task {name:?}")))
 }
 
 /// Of a row with the columns `parent`, `parent_increment` and `parent_direction`.

@@ -2,10 +2,11 @@
 
 use super::axis::Axis;
 use super::curve::{Curve, StageCurve};
-use super::labels::{Map, Place};
 use super::legend::{LISTED_EVENTS, Legend};
-use super::shapes::{self, DrawingError, Drawn, FINE, INK, Lettering, MARKER, PAPER, Sheet, Stroke};
-use plotters::prelude::{ChartBuilder, IntoDrawingArea, PathElement, RGBColor, SVGBackend};
+use super::strokes::{MARKER, Stroke, leader, marker};
+use crate::picture::labels::Map;
+use crate::picture::shapes::{self, DrawingError, Drawn, FINE, INK, Lettering, Place, Sheet};
+use plotters::prelude::{ChartBuilder, PathElement, RGBColor};
 use plotters::style::Color;
 
 /// Widths, in pixels.
@@ -44,18 +45,10 @@ pub fn draw(curve: &Curve) -> Result<String, DrawingError> {
     let load = Axis::showing(curve.places().map(|place| place.1), TICKS);
     let legend = Legend::new(curve, &load);
     let height = LOWEST.max(legend.height() + CAPTION + 2 * MARGIN);
-    let shown = ((CHART + LEGEND).unsigned_abs(), height.unsigned_abs());
-    let fine = (shown.0 * FINE.unsigned_abs(), shown.1 * FINE.unsigned_abs());
-    let mut text = String::new();
-    {
-        let sheet = SVGBackend::with_string(&mut text, fine).into_drawing_area();
-        sheet.fill(&PAPER)?;
-        draw_chart(&sheet, curve, &displacement, &load, height.min(HIGHEST))?;
-        legend.draw(&sheet, (CHART * FINE, (CAPTION + MARGIN / 2) * FINE))?;
-        sheet.present()?;
-    }
-    let size = |(width, height): (u32, u32)| format!("width=\"{width}\" height=\"{height}\"");
-    Ok(text.replacen(&size(fine), &size(shown), 1))
+    shapes::svg(CHART + LEGEND, height, |sheet| {
+        draw_chart(sheet, curve, &displacement, &load, height.min(HIGHEST))?;
+        legend.draw(sheet, (CHART * FINE, (CAPTION + MARGIN / 2) * FINE))
+    })
 }
 
 fn draw_chart(sheet: &Sheet<'_>, curve: &Curve, displacement: &Axis, load: &Axis, height: i32) -> Drawn {
@@ -146,12 +139,12 @@ fn draw_events(sheet: &Sheet<'_>, curve: &Curve, on_sheet: &impl Fn((f64, f64)) 
             // The line ends where the letter begins.
             let short = 1.0 - f64::from(HALF_HEIGHT + 2 * FINE) / distance;
             let along = |from: i32, to: i32| from + (f64::from(to - from) * short).round() as i32;
-            shapes::leader(sheet, place, (along(place.0, middle.0), along(place.1, middle.1)))?;
+            leader(sheet, place, (along(place.0, middle.0), along(place.1, middle.1)))?;
         }
         letters.push((middle, event.label.as_str()));
     }
     for event in &curve.events {
-        shapes::marker(sheet, event.kind, on_sheet(event.at))?;
+        marker(sheet, event.kind, on_sheet(event.at))?;
     }
     for (middle, label) in letters {
         LETTER.write(sheet, middle, label, LONGEST)?;

@@ -1,15 +1,15 @@
 //! The picture of a path: load factor against one displacement component, its events lettered.
 //!
-//! `curve` takes from the increments what is drawn, `axis` finds ranges and tick texts, `labels` looks for room for the
-//! letters, `legend` says what they mean, `draw` puts it all on paper. Called by `solve` alone.
+//! `curve` takes from the increments what is drawn, `axis` finds ranges and tick texts, `legend` says what the letters
+//! mean, `strokes` are lines and marks, `draw` puts it all on paper. Called by `solve` alone.
 
 mod axis;
 mod curve;
 mod draw;
-mod labels;
 mod legend;
-mod shapes;
+mod strokes;
 
+use super::PlotError;
 use crate::model::names::{quoted, suggestion};
 use crate::model::{Model, request::Component};
 use crate::path::Increment;
@@ -30,15 +30,6 @@ pub struct Against {
 pub struct UnknownDisplacement {
     asked: String,
     suggestion: String,
-}
-
-/// Why there is no picture.
-#[derive(Debug, thiserror::Error)]
-pub enum PlotError {
-    #[error("a path without increments cannot be drawn")]
-    Empty,
-    #[error("the path could not be drawn: {0}")]
-    Drawing(String),
 }
 
 impl Against {

@@ -80,20 +80,10 @@ impl Curve {
 
     fn add_point(&mut self, increment: &Increment, at: (f64, f64)) {
         let point = CurvePoint { at, bifurcation: increment.point.bifurcation };
-        let last = self.stages.last().and_then(|stage| stage.points.last().map(|point| (stage, point)));
-        let mut begun = Vec::new();
-        if let Some((stage, last)) = last {
-            if stage.name == increment.stage {
-                if let Some(stage) = self.stages.last_mut() {
-                    stage.points.push(point);
-                }
-                return;
-            }
-            // A stage starts where the one before it ended, at load factor 0; no increment of its own says so.
-            begun.push(CurvePoint { at: (last.at.0, 0.0), bifurcation: point.bifurcation });
+        match self.stages.last_mut() {
+            Some(stage) if stage.name == increment.stage => stage.points.push(point),
+            _ => self.stages.push(StageCurve { name: Arc::clone(&increment.stage), points: vec![point] }),
         }
-        begun.push(point);
-        self.stages.push(StageCurve { name: Arc::clone(&increment.stage), points: begun });
     }
 
     fn add_event(&mut self, increment: &Increment, at: (f64, f64)) {

@@ -1,7 +1,6 @@
 //! Room for the letters: each stands near its point, where it covers least.
 
-/// In the picture's own fine units.
-pub type Place = (i32, i32);
+use super::shapes::Place;
 
 /// Side of a cell of the map, in fine units.
 const CELL: i32 = 30;

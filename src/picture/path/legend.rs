@@ -2,8 +2,8 @@
 
 use super::axis::Axis;
 use super::curve::{Curve, Event};
-use super::labels::Place;
-use super::shapes::{Drawn, FAINT_INK, FINE, INK, Lettering, Sheet, Stroke, marker};
+use super::strokes::{Stroke, marker};
+use crate::picture::shapes::{Drawn, FAINT_INK, FINE, INK, Lettering, Place, Sheet};
 
 /// Stages and events that are listed; the rest is counted.
 const LISTED_STAGES: usize = 20;

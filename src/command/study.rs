@@ -1,0 +1,138 @@
+//! `arcslip study`: a scene over a ladder of settings and over methods, error against run time.
+
+use super::{Failure, Outcome, input, say};
+use crate::cancel::CancelFlag;
+use crate::model::StudyRequest;
+use crate::model::decode;
+use crate::model::request::Method;
+use crate::picture;
+use crate::studies::{self, Report, Run};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::IsTerminal;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Trace a scene with several settings and methods: error against run time.
+///
+/// FILE is a study, or a job request, which is studied with the defaults.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    model: input::Model,
+    /// Arc lengths in place of the study's, falling, with commas between.
+    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', conflicts_with_all = ["tolerances", "penalties"])]
+    arc_lengths: Option<Vec<f64>>,
+    /// Tolerances of the regularised method in place of the study's, falling.
+    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', conflicts_with = "penalties")]
+    tolerances: Option<Vec<f64>>,
+    /// Penalties of the regularised method in place of the study's, rising.
+    #[arg(long, value_name = "NUMBERS", value_delimiter = ',')]
+    penalties: Option<Vec<f64>>,
+    /// Methods in place of the study's, with commas between.
+    #[arg(long, value_name = "NAMES", value_enum, value_delimiter = ',')]
+    methods: Option<Vec<MethodName>>,
+    /// Times that each path is timed, in place of the study's.
+    #[arg(long, value_name = "N")]
+    repeats: Option<u64>,
+    /// Write the table here rather than to standard output.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+    /// Draw error against time here, as an SVG.
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Format {
+    /// Columns for a reader.
+    Text,
+    /// A table with named columns.
+    Csv,
+    /// The whole report as one JSON object.
+    Json,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum MethodName {
+    Auto,
+    Mpec,
+    Regularised,
+}
+
+impl From<MethodName> for Method {
+    fn from(name: MethodName) -> Self {
+        match name {
+            MethodName::Auto => Self::Auto,
+            MethodName::Mpec => Self::Mpec,
+            MethodName::Regularised => Self::Regularised,
+        }
+    }
+}
+
+pub fn run(arguments: &Arguments) -> Outcome {
+    let request = arguments.request()?;
+    let plan = studies::plan(&request).map_err(input::refused)?;
+    let progress = progress_bar(plan.runs);
+    progress.tick();
+    let accept = &mut |run: &Run| {
+        progress.set_position(run.index + 1);
+        ControlFlow::Continue(())
+    };
+    let report = studies::run(&request, Vec::new(), &CancelFlag::default(), accept).map_err(input::refused)?;
+    progress.finish_and_clear();
+    let Some(report) = report else {
+        return Err(Failure::Other("the reference's path ended without a report".to_owned()));
+    };
+    let text = match arguments.format {
+        Format::Text => report.text(),
+        Format::Csv => report.csv(),
+        Format::Json => serde_json::to_string_pretty(&report).map(|text| text + "\n"),
+    };
+    let text = text.map_err(Failure::other)?;
+    match &arguments.out {
+        Some(file) => write(file, &text)?,
+        None => say(text)?,
+    }
+    if let Some(file) = &arguments.plot {
+        draw(file, &report)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+impl Arguments {
+    fn request(&self) -> Result<StudyRequest, Failure> {
+        let mut request = decode::study(&self.model.text()?).map_err(input::refused)?;
+        let study = &mut request.study;
+        if self.arc_lengths.is_some() || self.tolerances.is_some() || self.penalties.is_some() {
+            study.arc_lengths.clone_from(&self.arc_lengths);
+            study.tolerances.clone_from(&self.tolerances);
+            study.penalties.clone_from(&self.penalties);
+        }
+        if let Some(methods) = &self.methods {
+            study.methods = Some(methods.iter().copied().map(Method::from).collect());
+        }
+        study.repeats = self.repeats.unwrap_or(study.repeats);
+        Ok(request)
+    }
+}
+
+fn draw(file: &Path, report: &Report) -> Result<(), Failure> {
+    write(file, &picture::study::svg(report).map_err(Failure::other)?)
+}
+
+fn write(file: &Path, text: &str) -> Result<(), Failure> {
+    std::fs::write(file, text).map_err(|error| Failure::Other(format!("{}: {error}", file.display())))
+}
+
+/// On a terminal, where it does not disturb the table: that comes when all is done.
+fn progress_bar(runs: u64) -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{bar:40} {pos} of {len} paths, {elapsed}")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(runs).with_style(style)
+}

@@ -1,0 +1,203 @@
+//! Studies: submit, list, read, follow, cancel, delete; their table and picture.
+
+use super::extract::{JobId, JsonText, Parameters, Taken, bounded, idempotency_key};
+use super::jobs::{LIST_DEFAULT, LIST_LARGEST, SubmitParameters};
+use super::problem::Problem;
+use super::view_study::{Study, StudyList, StudyWithReport, address};
+use super::{Service, document};
+use crate::model::StudyRequest;
+use crate::picture::{self, PlotError};
+use crate::store::{ListFilter, Status, Task};
+use crate::studies::{Plan, Report, Run};
+use axum::Json;
+use axum::extract::State;
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
+use uuid::Uuid;
+
+/// Queue a study, or only check it.
+///
+/// One scene is traced over a ladder of arc lengths, tolerances or penalties and by several methods; errors are measured
+/// against the exact solution where one is known, and against a self-converged path otherwise. A job request is a study
+/// too, with the defaults.
+#[utoipa::path(
+    post, path = "/v1/studies", tag = document::STUDIES, operation_id = "submit_study",
+    params(
+        SubmitParameters,
+        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255,
+         description = "Sent again with the same body, it answers the study of the first time; with another body it is refused.")
+    ),
+    request_body = StudyRequest,
+    responses(
+        (status = 202, description = "Queued, or queued before under the same idempotency key.", body = Study,
+         headers(("Location" = String, description = "The study's address."))),
+        (status = 200, description = "With `validate=true`: what would be done.", body = Plan),
+    )
+)]
+pub async fn submit(
+    State(service): State<Service>,
+    Parameters(parameters): Parameters<SubmitParameters>,
+    headers: HeaderMap,
+    JsonText(request): JsonText,
+) -> Result<Response, Problem> {
+    if parameters.validate {
+        return Ok(Json(service.jobs.validate_study(request).await?).into_response());
+    }
+    let study = service.jobs.submit_study(request, idempotency_key(&headers)?).await?;
+    let location = address(study.id);
+    Ok((StatusCode::ACCEPTED, [(header::LOCATION, location)], Json(Study::try_from(study)?)).into_response())
+}
+
+#[derive(Debug, Deserialize, utoipa::IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub struct ListStudies {
+    /// Only studies with this status.
+    status: Option<Status>,
+    /// `next_cursor` of the page before.
+    cursor: Option<Uuid>,
+    #[param(minimum = 1, maximum = 200, default = 50)]
+    limit: Option<u32>,
+}
+
+impl Taken for ListStudies {
+    const TAKEN: &'static [(&'static str, &'static str)] = &[
+        ("status", "`queued`, `running`, `completed`, `cancelled` or `failed`"),
+        ("cursor", "the `next_cursor` of the page before, a UUID,"),
+        ("limit", "a whole number from 1 to 200"),
+    ];
+}
+
+/// List studies, newest first.
+#[utoipa::path(
+    get, path = "/v1/studies", tag = document::STUDIES, operation_id = "list_studies", params(ListStudies),
+    responses((status = 200, description = "A page of studies.", body = StudyList))
+)]
+pub async fn list(
+    State(service): State<Service>,
+    Parameters(parameters): Parameters<ListStudies>,
+) -> Result<Json<StudyList>, Problem> {
+    let limit = bounded("limit", parameters.limit, LIST_DEFAULT, LIST_LARGEST)?;
+    let ListStudies { status, cursor, .. } = parameters;
+    // One more than asked for tells whether there is a next page.
+    let filter = ListFilter { task: Task::Study, status, parent: None, before: cursor, limit: limit + 1 };
+    let mut records = service.jobs.store().jobs(filter).await?;
+    let more = records.len() > limit as usize;
+    records.truncate(limit as usize);
+    let next_cursor = records.last().map(|study| study.id).filter(|_| more);
+    let studies = records.into_iter().map(Study::try_from).collect::<Result<_, _>>()?;
+    Ok(Json(StudyList { studies, next_cursor }))
+}
+
+/// One study: status, plan, progress, and what it has found so far.
+#[utoipa::path(
+    get, path = "/v1/studies/{id}", tag = document::STUDIES, operation_id = "get_study",
+    params(("id" = Uuid, Path, description = "The study's id.")),
+    responses((status = 200, description = "The study.", body = StudyWithReport))
+)]
+pub async fn get(State(service): State<Service>, JobId(id): JobId) -> Result<Json<StudyWithReport>, Problem> {
+    let study = service.jobs.find(Task::Study, id).await?;
+    if study.report.is_some() {
+        return Ok(Json(study.try_into()?));
+    }
+    let report = service.jobs.study_so_far(&study).await?;
+    Ok(Json(StudyWithReport::so_far(study, report.as_ref())?))
+}
+
+/// Follow a study: its rows as paths are traced, then its end.
+///
+/// Server-sent events: `row` events, one a path, whose id is its number and whose row is the row as it stands then; the
+/// first round has every row's errors, later ones add times. Then one `end` event with the study and its report.
+/// `Last-Event-ID`, a service that goes down and `Accept: application/x-ndjson` are as for a job's stream.
+#[utoipa::path(
+    get, path = "/v1/studies/{id}/stream", tag = document::STUDIES, operation_id = "stream_study",
+    params(
+        ("id" = Uuid, Path, description = "The study's id."),
+        ("Last-Event-ID" = Option<u64>, Header, description = "Index of the last row received.")
+    ),
+    responses((status = 200, description = "Paths in order of their index.", content(
+        (String = "text/event-stream"),
+        (Run = "application/x-ndjson")
+    )))
+)]
+pub async fn stream(State(service): State<Service>, JobId(id): JobId, headers: HeaderMap) -> Result<Response, Problem> {
+    super::stream::answer(service, Task::Study, id, &headers).await
+}
+
+/// Stop a study within one iteration; what it has found is kept. An ended study stays as it is.
+#[utoipa::path(
+    post, path = "/v1/studies/{id}/cancel", tag = document::STUDIES, operation_id = "cancel_study",
+    params(("id" = Uuid, Path, description = "The study's id.")),
+    responses((status = 202, description = "The study; a running one ends shortly.", body = Study))
+)]
+pub async fn cancel(State(service): State<Service>, JobId(id): JobId) -> Result<(StatusCode, Json<Study>), Problem> {
+    let study = service.jobs.cancel(Task::Study, id).await?;
+    Ok((StatusCode::ACCEPTED, Json(study.try_into()?)))
+}
+
+/// Stop a study and drop what is stored.
+#[utoipa::path(
+    delete, path = "/v1/studies/{id}", tag = document::STUDIES, operation_id = "delete_study",
+    params(("id" = Uuid, Path, description = "The study's id.")),
+    responses((status = 204, description = "The study is gone."))
+)]
+pub async fn delete(State(service): State<Service>, JobId(id): JobId) -> Result<StatusCode, Problem> {
+    service.jobs.delete(Task::Study, id).await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// The rows found so far, as CSV.
+#[utoipa::path(
+    get, path = "/v1/studies/{id}/table.csv", tag = document::STUDIES, operation_id = "get_study_table_csv",
+    params(("id" = Uuid, Path, description = "The study's id.")),
+    responses((status = 200, description = "The table; one line a row.", body = String, content_type = "text/csv"))
+)]
+pub async fn table_csv(State(service): State<Service>, JobId(id): JobId) -> Result<Response, Problem> {
+    let headers = [
+        (header::CONTENT_TYPE, "text/csv; charset=utf-8".to_owned()),
+        (header::CONTENT_DISPOSITION, format!("attachment; filename=\"study-{id}.csv\"")),
+    ];
+    Ok((headers, found(&service, id).await?.csv()?).into_response())
+}
+
+/// The rows found so far, as columns of text.
+#[utoipa::path(
+    get, path = "/v1/studies/{id}/table.txt", tag = document::STUDIES, operation_id = "get_study_table_txt",
+    params(("id" = Uuid, Path, description = "The study's id.")),
+    responses((status = 200, description = "The table, for a reader.", body = String, content_type = "text/plain"))
+)]
+pub async fn table_txt(State(service): State<Service>, JobId(id): JobId) -> Result<Response, Problem> {
+    let headers = [(header::CONTENT_TYPE, "text/plain; charset=utf-8")];
+    Ok((headers, found(&service, id).await?.text()?).into_response())
+}
+
+/// Error against time so far, on logarithmic scales, one line a method.
+#[utoipa::path(
+    get, path = "/v1/studies/{id}/picture.svg", tag = document::STUDIES, operation_id = "get_study_picture",
+    params(("id" = Uuid, Path, description = "The study's id.")),
+    responses((status = 200, description = "The picture.", body = String, content_type = "image/svg+xml"))
+)]
+pub async fn picture(State(service): State<Service>, JobId(id): JobId) -> Result<Response, Problem> {
+    let report = found(&service, id).await?;
+    match picture::study::svg(&report) {
+        Ok(svg) => Ok(([(header::CONTENT_TYPE, "image/svg+xml")], svg).into_response()),
+        Err(PlotError::Drawing(error)) => {
+            tracing::error!(%error, study = %id, "a picture cannot be drawn");
+            Err(Problem::new(super::problem::Kind::Internal, "the log has more under this answer's x-request-id"))
+        }
+        Err(PlotError::NoTimes | PlotError::Empty) => {
+            Err(Problem::not_found(format_args!("picture of study {id}: no path of it has been timed yet")))
+        }
+    }
+}
+
+/// What a study has found so far; a problem before its first path.
+async fn found(service: &Service, id: Uuid) -> Result<Report, Problem> {
+    let study = service.jobs.find(Task::Study, id).await?;
+    if let Some(report) = &study.report {
+        return Ok(serde_json::from_str(report)?);
+    }
+    let report = service.jobs.study_so_far(&study).await?;
+    report.ok_or_else(|| Problem::not_found(format_args!("table of study {id}: no path of it has been traced yet")))
+}

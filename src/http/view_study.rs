@@ -1,0 +1,123 @@
+//! Studies as they are answered.
+
+use crate::store::{JobRecord, Status};
+use crate::studies::{Plan, Report};
+use jiff::Timestamp;
+use serde::Serialize;
+use serde_json::value::{RawValue, to_raw_value};
+use utoipa::ToSchema;
+use uuid::Uuid;
+
+/// A study, without what it has found.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Study {
+    pub id: Uuid,
+    /// The model's own name.
+    pub name: Option<String>,
+    /// Never `stopped`: how a path ends is a finding.
+    pub status: Status,
+    pub progress: StudyProgress,
+    #[schema(value_type = Plan)]
+    pub plan: Box<RawValue>,
+    /// Why the study failed.
+    pub error: Option<String>,
+    /// A cancel was asked for; the study ends within one iteration.
+    pub cancel_requested: bool,
+    /// Times the study was started.
+    pub attempt: u32,
+    pub max_attempts: u32,
+    #[schema(value_type = String, format = DateTime)]
+    pub created_at: Timestamp,
+    #[schema(value_type = Option<String>, format = DateTime)]
+    pub started_at: Option<Timestamp>,
+    #[schema(value_type = Option<String>, format = DateTime)]
+    pub ended_at: Option<Timestamp>,
+    pub links: StudyLinks,
+}
+
+/// A study with what it has found so far.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct StudyWithReport {
+    #[serde(flatten)]
+    pub study: Study,
+    /// Null before the first path.
+    #[schema(value_type = Option<Report>)]
+    pub report: Option<Box<RawValue>>,
+}
+
+#[derive(Debug, Serialize, ToSchema)]
+pub struct StudyProgress {
+    /// Paths traced so far.
+    pub runs: u64,
+    /// Paths in all, but for the reference's.
+    pub of: u64,
+}
+
+/// Addresses of what belongs to a study.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct StudyLinks {
+    #[serde(rename = "self")]
+    pub itself: String,
+    pub stream: String,
+    pub table_csv: String,
+    pub table_txt: String,
+    pub picture: String,
+}
+
+#[derive(Debug, Serialize, ToSchema)]
+pub struct StudyList {
+    /// Newest first.
+    pub studies: Vec<Study>,
+    /// Pass it as `cursor` for the next page; null on the last one.
+    pub next_cursor: Option<Uuid>,
+}
+
+impl TryFrom<JobRecord> for Study {
+    type Error = serde_json::Error;
+
+    fn try_from(record: JobRecord) -> Result<Self, serde_json::Error> {
+        let itself = address(record.id);
+        Ok(Self {
+            id: record.id,
+            name: record.name,
+            status: record.status,
+            progress: StudyProgress { runs: record.last_index.map_or(0, |index| index + 1), of: record.max_increments },
+            plan: RawValue::from_string(record.plan)?,
+            error: record.error,
+            cancel_requested: record.cancel_requested,
+            attempt: record.attempt,
+            max_attempts: record.max_attempts,
+            created_at: record.created_at,
+            started_at: record.started_at,
+            ended_at: record.ended_at,
+            links: StudyLinks {
+                stream: format!("{itself}/stream"),
+                table_csv: format!("{itself}/table.csv"),
+                table_txt: format!("{itself}/table.txt"),
+                picture: format!("{itself}/picture.svg"),
+                itself,
+            },
+        })
+    }
+}
+
+/// With the report that was stored at the end.
+impl TryFrom<JobRecord> for StudyWithReport {
+    type Error = serde_json::Error;
+
+    fn try_from(mut record: JobRecord) -> Result<Self, serde_json::Error> {
+        let report = record.report.take().map(RawValue::from_string).transpose()?;
+        Ok(Self { study: record.try_into()?, report })
+    }
+}
+
+impl StudyWithReport {
+    /// With the report as it is now.
+    pub fn so_far(record: JobRecord, report: Option<&Report>) -> Result<Self, serde_json::Error> {
+        Ok(Self { study: record.try_into()?, report: report.map(to_raw_value).transpose()? })
+    }
+}
+
+pub fn address(id: Uuid) -> String {
+    format!("/v1/studies/{id}")
+}

@@ -1,0 +1,25 @@
+//! A path put down at a point together with what its judge remembers.
+
+use super::report::MeasureReport;
+use crate::measure::{History, HistoryError};
+use crate::path::{Checkpoint, CheckpointError};
+use serde::{Deserialize, Serialize};
+
+/// A judged path at one of its points. The parts carry their versions.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct JudgedCheckpoint {
+    pub path: Checkpoint,
+    pub history: History,
+    /// What the measure has said of the path up to here.
+    pub measure: MeasureReport,
+}
+
+/// Why a judged path cannot be taken up, or a direction of it not followed.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum JudgedCheckpointError {
+    #[error(transparent)]
+    Path(#[from] CheckpointError),
+    #[error(transparent)]
+    History(#[from] HistoryError),
+}

@@ -1,0 +1,24 @@
+//! The path as it leaves the solver: every increment with what the measure says of it, the report with the maxima.
+//!
+//! Solver and measure meet here and nowhere else: [`path`](crate::path) does not know that it is judged, and
+//! [`measure`](crate::measure) reads increments as anybody may. Whatever prints, stores or streams increments takes them
+//! from a [`JudgedPath`].
+//!
+//! | file | what it does |
+//! |---|---|
+//! | `path` | the iterator: traces, judges, goes on from a checkpoint |
+//! | `increment`, `report` | what it gives |
+//! | `checkpoint` | a path put down together with the judge's memory of it |
+//! | `schema` | their JSON Schema |
+
+pub mod checkpoint;
+pub mod increment;
+pub mod path;
+pub mod report;
+#[cfg(feature = "server")]
+mod schema;
+
+pub use checkpoint::{JudgedCheckpoint, JudgedCheckpointError};
+pub use increment::JudgedIncrement;
+pub use path::JudgedPath;
+pub use report::{JudgedReport, MeasureReport, OFF_MEASURE};

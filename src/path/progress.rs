@@ -1,0 +1,111 @@
+//! Everything that decides how a path goes on from its present point: what a checkpoint holds.
+
+use super::follow::{Followed, Listed};
+use super::loading::LoadPattern;
+use super::scene::{End, Scene};
+use super::singular::Signature;
+use super::state::{Rate, State};
+use super::totals::Totals;
+use crate::contact::Mode;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// A path at its present point.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Progress {
+    pub phase: Phase,
+    pub stage: usize,
+    /// The stage ended at the present point; the next one begins with the next increment.
+    pub stage_over: bool,
+    pub held: LoadPattern,
+    pub here: Here,
+    /// Arc length that the next step tries.
+    pub step: f64,
+    pub totals: Totals,
+    pub counts: StageCounts,
+    /// States at which a direction was taken, for telling a cycle.
+    pub visited: Vec<Arc<Visited>>,
+    /// Where the stage began and the direction it took.
+    pub begun: Option<(State, Rate)>,
+    /// Directions listed with the present point.
+    pub listed: Option<Listed>,
+    /// Where a path that follows another's direction begins.
+    pub followed: Option<Followed>,
+}
+
+/// The present point and how the path goes on.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Here {
+    pub state: State,
+    pub modes: Vec<Mode>,
+    /// Direction in `modes`; `None` before the stage's first decision.
+    pub rate: Option<Rate>,
+    pub load_sign: f64,
+    /// Error of the path up to here, where it has one.
+    pub drift: Option<Rate>,
+    /// Signs that tell smooth bifurcations; `None` until known in these modes.
+    pub signature: Option<Signature>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Visited {
+    pub stage: usize,
+    pub state: State,
+    pub modes: Vec<Mode>,
+}
+
+/// What has been counted in the running stage.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+pub(super) struct StageCounts {
+    pub increments: u64,
+    pub limit_points: u64,
+    pub contact_changes: u64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum Phase {
+    NotStarted,
+    Running,
+    Ended,
+}
+
+impl Progress {
+    /// Before the first increment.
+    pub fn new(scene: &Scene) -> Self {
+        let contacts = scene.contacts.len();
+        Self {
+            phase: Phase::NotStarted,
+            stage: 0,
+            stage_over: false,
+            held: scene.stages[0].pattern.zeroed(),
+            here: Here {
+                state: State::at_rest(&scene.structure, contacts),
+                modes: vec![Mode::Free; contacts],
+                rate: None,
+                load_sign: 0.0,
+                drift: None,
+                signature: None,
+            },
+            step: scene.analysis.arc_length.initial,
+            totals: Totals::begun(),
+            counts: StageCounts::default(),
+            visited: Vec::new(),
+            begun: None,
+            listed: None,
+            followed: None,
+        }
+    }
+}
+
+impl StageCounts {
+    /// Whether one of the counts ends the stage.
+    pub fn end_stage(&self, ends: &[End]) -> bool {
+        ends.iter().any(|end| match end {
+            End::LimitPoints(count) => self.limit_points >= *count,
+            End::ContactChanges(count) => self.contact_changes >= *count,
+            End::Increments(count) => self.increments >= *count,
+            End::Load { .. } | End::Displacement { .. } => false,
+        })
+    }
+}
