@@ -159,7 +159,19 @@ pub fn null_space(matrix: &DMatrix<f64>, tolerance: f64) -> Option<DMatrix<f64>>
 }
 
 /// The same without a change of the rows' sizes: a row that is nothing but round-off counts as zero.
-pub fn null_space_as_scaled(mut work: DMatrix<f64>, tolerance: f64) -> Option<DMatrix<f64>> {
+pub fn null_space_as_scaled(work: DMatrix<f64>, tolerance: f64) -> Option<DMatrix<f64>> {
+    let most = work.ncols();
+    eliminated(work, tolerance, most)
+}
+
+/// So many vectors that come nearest to a null space: the elimination ends at the rank that leaves them.
+pub fn nearest_null_space(work: DMatrix<f64>, dimension: usize) -> Option<DMatrix<f64>> {
+    let most = work.ncols().checked_sub(dimension)?;
+    eliminated(work, 0.0, most)
+}
+
+/// Complete pivoting until the pivots are small or the rank is reached; a basis of the null space of what was eliminated.
+fn eliminated(mut work: DMatrix<f64>, tolerance: f64, most: usize) -> Option<DMatrix<f64>> {
     let (rows, columns) = work.shape();
     if !work.iter().all(|value| value.is_finite()) {
         return None;
@@ -167,7 +179,7 @@ pub fn null_space_as_scaled(mut work: DMatrix<f64>, tolerance: f64) -> Option<DM
     let mut order: Vec<usize> = (0..columns).collect();
     let mut rank = 0;
     let mut first_pivot = 0.0_f64;
-    while rank < rows.min(columns) {
+    while rank < rows.min(columns).min(most) {
         let (mut best, mut place) = (0.0_f64, (rank, rank));
         for column in rank..columns {
             for row in rank..rows {

@@ -48,7 +48,18 @@ pub(super) fn confirm(
     candidate: &Candidate,
     force_scale: f64,
 ) -> Option<(Vec<Mode>, f64)> {
-    let trial = Trial { loading, state, candidate, force_scale };
+    confirm_by(loading, state, candidate, force_scale, &TRIAL_STEPS)
+}
+
+/// The same by steps of other lengths.
+pub(super) fn confirm_by(
+    loading: Loading<'_>,
+    state: &State,
+    candidate: &Candidate,
+    force_scale: f64,
+    steps: &[f64],
+) -> Option<(Vec<Mode>, f64)> {
+    let trial = Trial { loading, state, candidate, force_scale, steps };
     let mut tried = BTreeSet::new();
     let mut places = vec![0; candidate.alternatives.len()];
     // Every contact in doubt may be changed a few times before it is given up.
@@ -106,6 +117,8 @@ struct Trial<'a> {
     state: &'a State,
     candidate: &'a Candidate,
     force_scale: f64,
+    /// Arc lengths, tried one after another until it is clear.
+    steps: &'a [f64],
 }
 
 impl Trial<'_> {
@@ -116,8 +129,8 @@ impl Trial<'_> {
             alternatives[place].iter().for_each(|(contact, mode)| modes[*contact] = *mode);
         }
         let mut later_load = 0.0;
-        for step in TRIAL_STEPS {
-            match self.step(&modes, step) {
+        for step in self.steps {
+            match self.step(&modes, *step) {
                 Verdict::Holds(load) => return Ok((modes, load)),
                 Verdict::Fails(culprits) => return Err(culprits),
                 Verdict::Unclear(load) => later_load = load,
@@ -130,7 +143,7 @@ impl Trial<'_> {
     /// step is short, so that such events come after it as a rule: where many contacts change close together, a long one
     /// would judge a motion that does not happen.
     fn step(&self, modes: &[Mode], step: f64) -> Verdict {
-        let Self { loading, state, candidate, force_scale } = *self;
+        let Self { loading, state, candidate, force_scale, .. } = *self;
         let nobody = || Verdict::Fails(Vec::new());
         let system = ModeSystem::new(loading, modes, state);
         let guess = state.advanced(&candidate.rate, step);

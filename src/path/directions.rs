@@ -59,6 +59,8 @@ pub struct Found {
     pub candidates: Vec<Candidate>,
     /// Modes that were not examined.
     pub unexplored: u64,
+    /// Those of them in which nodes begin to slip at once in space, in directions that are not proven to be all.
+    pub slips_in_doubt: u64,
     /// Some mode has more than one independent direction.
     pub degenerate: bool,
     /// Some direction set contains a motion that no element resists.

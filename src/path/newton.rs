@@ -1,10 +1,11 @@
 //! Newton's method on the equations of a mode, and the path's direction at the point found.
 
-use super::mode_system::{Iterate, Kind, ModeSystem};
+use super::mode_system::{Iterate, Kind, ModeSystem, Role};
 use super::singular::UNCERTAIN;
 use super::state::{Rate, State};
+use super::track;
 use crate::contact::Mode;
-use crate::contact::vector::Vector;
+use crate::contact::vector::{Vector, add, dot};
 use nalgebra::{DMatrix, DVector};
 
 /// The last equation: where on the branch the point is to be.
@@ -186,18 +187,33 @@ impl ModeSystem<'_> {
         } else {
             return None;
         };
-        let certain = factorisation.pivot_ratio() > UNCERTAIN && !self.has_tracks();
+        let certain = factorisation.pivot_ratio() > UNCERTAIN;
         Some((rate, error, certain.then(|| factorisation.determinant_sign())))
     }
 
-    /// A point as it is, with its residual.
+    /// A point as it is, with its residual. Slips in planes have the directions that their tractions oppose.
     pub fn judged(&self, state: State, force_scale: f64) -> Corrected {
         let mut iterate = self.iterate(state);
+        for (contact, role) in self.roles.iter().enumerate() {
+            if let Role::Plane { .. } = role {
+                let normal = self.loading.frame(contact, &iterate.state).normal;
+                let traction = iterate.state.reactions[contact].tangential;
+                let traction = add(&traction, -dot(&traction, &normal), &normal);
+                iterate.directions[contact] = track::direction_of(&traction, &iterate.directions[contact]);
+            }
+        }
+        self.judged_as_state(iterate, &[], force_scale)
+    }
+
+    /// The same of an iterate, without the equations in some rows.
+    pub(super) fn judged_as_state(&self, mut iterate: Iterate, without: &[usize], force_scale: f64) -> Corrected {
         self.make_consistent(&mut iterate);
         let mut left_over = DVector::zeros(self.size);
         let mut force = vec![0.0; self.loading.structure.freedoms()];
         let (largest, forces) = self.residual(&iterate, &mut left_over, &mut force);
-        let geometric = left_over.iter().skip(self.loading.structure.unknowns()).fold(0.0_f64, |m, v| m.max(v.abs()));
+        let geometric = (self.loading.structure.unknowns()..left_over.len())
+            .filter(|row| !without.contains(row))
+            .fold(0.0_f64, |largest, row| largest.max(left_over[row].abs()));
         let residual = (largest / forces.max(force_scale).max(f64::MIN_POSITIVE)).max(geometric);
         self.share(&mut iterate.state);
         Corrected {
@@ -210,6 +226,13 @@ impl ModeSystem<'_> {
             left_over,
             force_scale: forces,
         }
+    }
+}
+
+impl ModeSystem<'_> {
+    /// How far the chords of slips in planes are from where their directions would have them, in these rows.
+    pub(super) fn off_track(&self, corrected: &Corrected, rows: &[usize]) -> f64 {
+        rows.iter().fold(0.0, |largest, row| largest.max(corrected.left_over[*row].abs()))
     }
 }
 
