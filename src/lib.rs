@@ -41,6 +41,7 @@ pub mod path;
 pub mod scenes;
 pub mod structure;
 pub mod studies;
+pub mod verify;
 
 #[cfg(feature = "server")]
 pub mod command;

@@ -41,12 +41,12 @@ async fn increments_report_and_table_carry_the_measure() {
     let id = server.submit(&scene("klarbring")).await;
     let job = server.ended(&id).await;
     let path = increments(&server, &id).await;
-    let largest = path.iter().map(|judged| judged.measure.equilibrium).fold(0.0, f64::max);
+    let largest = path.iter().map(|judged| judged.measure.arc_length).fold(0.0, f64::max);
     assert!(largest > 0.0 && path.iter().all(|judged| judged.measure.largest_of_state() <= 1e-10));
     let measure = &job["report"]["measure"];
-    assert_eq!(measure["largest"]["equilibrium"]["value"], largest);
-    let index = measure["largest"]["equilibrium"]["index"].as_u64().expect("an index");
-    assert!(path[index as usize].measure.equilibrium == largest);
+    assert_eq!(measure["largest"]["arc_length"]["value"], largest);
+    let index = measure["largest"]["arc_length"]["index"].as_u64().expect("an index");
+    assert!(path[index as usize].measure.arc_length == largest);
     assert_eq!((&measure["bar"], &measure["off_measure"]), (&json!(1e-9), &json!(0)));
 
     let columns = measure_columns(&server, &id).await;

@@ -10,6 +10,7 @@ mod scenes;
 mod serve;
 mod solve;
 mod study;
+mod verify;
 
 use clap::{Parser, Subcommand};
 use std::io::Write;
@@ -33,6 +34,7 @@ enum Command {
     Study(study::Arguments),
     Check(check::Arguments),
     Scenes(scenes::Arguments),
+    Verify(verify::Arguments),
     Health(health::Arguments),
     #[command(hide = true)]
     Openapi(openapi::Arguments),
@@ -68,6 +70,7 @@ pub fn run() -> ExitCode {
         Command::Study(arguments) => study::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Scenes(arguments) => scenes::run(&arguments),
+        Command::Verify(arguments) => verify::run(&arguments),
         Command::Health(arguments) => health::run(&arguments),
         Command::Openapi(arguments) => openapi::run(&arguments),
     };

@@ -7,8 +7,23 @@ use nalgebra::{DMatrix, DVector, Dyn, LU};
 
 /// An LU factorisation with partial pivoting of a square matrix whose rows were brought to unit size first.
 pub struct Factorisation {
+    /// Rows of the matrix that was asked for; the rest are those of [`Stiffener`]s.
+    size: usize,
     row_scales: DVector<f64>,
     lu: LU<f64, Dyn, Dyn>,
+    /// Sign by which the determinant of what is factorised differs from the one of the matrix asked for.
+    sign: f64,
+}
+
+/// A summand `k r cᵀ` of a matrix, kept apart from it.
+#[derive(Debug, Clone)]
+pub struct Stiffener {
+    /// Not zero.
+    pub stiffness: f64,
+    /// Entries of `r`.
+    pub rows: Vec<(usize, f64)>,
+    /// Entries of `c`.
+    pub columns: Vec<(usize, f64)>,
 }
 
 /// Pivots below this fraction of the largest one count as zero (rows have unit size).
@@ -44,14 +59,30 @@ impl Factorisation {
             largest = largest.max(pivot);
         }
         let regular = size == 0 || (smallest.is_finite() && smallest > SMALLEST_PIVOT * largest);
-        regular.then_some(Self { row_scales, lu })
+        regular.then_some(Self { size, row_scales, lu, sign: 1.0 })
+    }
+
+    /// Factorises `A + Σ k r cᵀ` as `[[A, R], [Cᵀ, -1/K]]`, where large and small stiffnesses are never added, so that
+    /// the small ones keep their digits (a mixed formulation: the new unknowns are the forces `k c·x`).
+    pub fn stiffened(matrix: DMatrix<f64>, stiffeners: &[Stiffener]) -> Option<Self> {
+        let (size, added) = (matrix.nrows(), stiffeners.len());
+        let mut matrix = matrix.resize(size + added, size + added, 0.0);
+        let mut sign = 1.0;
+        for (index, stiffener) in stiffeners.iter().enumerate() {
+            let place = size + index;
+            stiffener.rows.iter().for_each(|(row, value)| matrix[(*row, place)] += value);
+            stiffener.columns.iter().for_each(|(column, value)| matrix[(place, *column)] += value);
+            matrix[(place, place)] = -1.0 / stiffener.stiffness;
+            sign *= -stiffener.stiffness.signum();
+        }
+        Self::new(matrix).map(|whole| Self { size, sign, ..whole })
     }
 
     /// Sign of the determinant: 1 or -1.
     pub fn determinant_sign(&self) -> f64 {
         let factors = self.lu.lu_internal();
         let sign: f64 = self.lu.p().determinant();
-        (0..factors.nrows()).fold(sign, |sign, index| sign * factors[(index, index)].signum())
+        (0..factors.nrows()).fold(self.sign * sign, |sign, index| sign * factors[(index, index)].signum())
     }
 
     /// Smallest pivot over the largest one.
@@ -64,6 +95,16 @@ impl Factorisation {
 
     /// Solves for one right-hand side, overwritten by the solution; `false` when the result is not finite.
     pub fn solve(&self, right_hand_side: &mut DVector<f64>) -> bool {
+        if self.size < self.row_scales.len() {
+            let mut whole = right_hand_side.clone().resize_vertically(self.row_scales.len(), 0.0);
+            let solved = self.solve_scaled(&mut whole);
+            right_hand_side.copy_from(&whole.rows(0, self.size));
+            return solved;
+        }
+        self.solve_scaled(right_hand_side)
+    }
+
+    fn solve_scaled(&self, right_hand_side: &mut DVector<f64>) -> bool {
         right_hand_side.component_div_assign(&self.row_scales);
         self.lu.solve_mut(right_hand_side) && right_hand_side.iter().all(|value| value.is_finite())
     }
@@ -118,7 +159,19 @@ pub fn null_space(matrix: &DMatrix<f64>, tolerance: f64) -> Option<DMatrix<f64>>
 }
 
 /// The same without a change of the rows' sizes: a row that is nothing but round-off counts as zero.
-pub fn null_space_as_scaled(mut work: DMatrix<f64>, tolerance: f64) -> Option<DMatrix<f64>> {
+pub fn null_space_as_scaled(work: DMatrix<f64>, tolerance: f64) -> Option<DMatrix<f64>> {
+    let most = work.ncols();
+    eliminated(work, tolerance, most)
+}
+
+/// So many vectors that come nearest to a null space: the elimination ends at the rank that leaves them.
+pub fn nearest_null_space(work: DMatrix<f64>, dimension: usize) -> Option<DMatrix<f64>> {
+    let most = work.ncols().checked_sub(dimension)?;
+    eliminated(work, 0.0, most)
+}
+
+/// Complete pivoting until the pivots are small or the rank is reached; a basis of the null space of what was eliminated.
+fn eliminated(mut work: DMatrix<f64>, tolerance: f64, most: usize) -> Option<DMatrix<f64>> {
     let (rows, columns) = work.shape();
     if !work.iter().all(|value| value.is_finite()) {
         return None;
@@ -126,7 +179,7 @@ pub fn null_space_as_scaled(mut work: DMatrix<f64>, tolerance: f64) -> Option<DM
     let mut order: Vec<usize> = (0..columns).collect();
     let mut rank = 0;
     let mut first_pivot = 0.0_f64;
-    while rank < rows.min(columns) {
+    while rank < rows.min(columns).min(most) {
         let (mut best, mut place) = (0.0_f64, (rank, rank));
         for column in rank..columns {
             for row in rank..rows {
@@ -196,6 +249,19 @@ mod tests {
         let mut solution = DVector::from_vec(vec![5e-18, 11e18]);
         assert!(factorisation.solve(&mut solution));
         assert!((solution[0] - 1.0).abs() < 1e-12 && (solution[1] - 2.0).abs() < 1e-12);
+    }
+
+    /// Springs 1 and 1e15 in series, pulled by 1: `x = (1, 1 + 1e-15)`. Added up, 1 and 1e15 lose the soft one.
+    #[test]
+    fn a_stiffness_kept_apart_spares_the_soft_one() {
+        let soft = DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, 0.0]);
+        let along = vec![(0, -1.0), (1, 1.0)];
+        let stiff = Stiffener { stiffness: 1e15, rows: along.clone(), columns: along };
+        let factorisation = Factorisation::stiffened(soft, &[stiff]).unwrap();
+        let mut solution = DVector::from_vec(vec![0.0, 1.0]);
+        assert!(factorisation.solve(&mut solution));
+        assert!((solution[0] - 1.0).abs() < 1e-15 && (solution[1] - 1.0).abs() < 2e-15);
+        assert_eq!(factorisation.determinant_sign(), 1.0);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Forces and strain energy of the posted elements, for the measure alone.
 
-use super::vector::{Vector, add, dot, norm, padded, scaled};
+use super::vector::{Vector, add, dot, largest, norm, padded, scaled};
 use crate::model::request::{Element as Posted, Model, Strain};
 
 /// An element with its nodes numbered.
@@ -33,7 +33,12 @@ pub(super) struct Response {
     /// On the second node.
     pub force: Vector,
     pub energy: f64,
+    /// What the rounding of the displacements (and of a bar's places, over its length) puts into the force.
+    pub rounding: f64,
 }
+
+/// Multiple of unit round-off that a difference of two rounded numbers, made from rounded ones, may be off by.
+const ROUNDINGS: f64 = 16.0;
 
 impl Element {
     /// `None` where a node is unknown.
@@ -82,7 +87,11 @@ impl Element {
                 };
                 let force = scaled(&deformed, (stiffness * elastic + prestress) / length);
                 let energy = 0.5 * stiffness * rest * measure * measure + prestress * elongation;
-                Response { first: Some(ends[0]), second: ends[1], force, energy }
+                // The tangent of Green strain grows with the square of the stretch.
+                let tangent = stiffness / rest * stretch.max(1.0).powi(2);
+                let moved = largest(&u[ends[0]]).max(largest(&u[ends[1]]));
+                let rounding = ROUNDINGS * f64::EPSILON * tangent * moved;
+                Response { first: Some(ends[0]), second: ends[1], force, energy, rounding }
             }
             Self::Spring { node, other, stiffness } => {
                 let relative = match other {
@@ -91,7 +100,11 @@ impl Element {
                 };
                 let force =
                     [dot(&stiffness[0], &relative), dot(&stiffness[1], &relative), dot(&stiffness[2], &relative)];
-                Response { first: *other, second: *node, force, energy: 0.5 * dot(&force, &relative) }
+                let row = |row: &Vector| row.iter().map(|value| value.abs()).sum::<f64>();
+                let most = stiffness.iter().map(row).fold(0.0, f64::max);
+                let moved = largest(&u[*node]).max(other.map_or(0.0, |other| largest(&u[other])));
+                let rounding = ROUNDINGS * f64::EPSILON * most * moved;
+                Response { first: *other, second: *node, force, energy: 0.5 * dot(&force, &relative), rounding }
             }
         }
     }

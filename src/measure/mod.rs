@@ -15,6 +15,10 @@
 //! slip_direction  3D: angle between the slip and the sum of the unit directions -r_t/|r_t| at its two ends
 //! ```
 //!
+//! What the rounding of the numbers that are given puts into a gap or a balance of forces is no error of the state: of a
+//! bar, unit round-off times `EA/L0` times its displacements and places; of a spring, times `|K|` and its displacements.
+//! Both count only where stiff elements move far.
+//!
 //! `ℓ` and `σ` are the plan's displacement and load scales. (Natural map: F. Facchinei, J.-S. Pang, *Finite-Dimensional
 //! Variational Inequalities and Complementarity Problems*, Springer 2003, section 1.5; of Coulomb's law: P. Alart,
 //! A. Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353, doi:10.1016/0045-7825(91)90022-X.) `W` and `D` are the
@@ -77,6 +81,8 @@ struct Workspace {
     displacements: Vec<Vector>,
     /// Unbalanced force, one a node.
     balance: Vec<Vector>,
+    /// What rounding puts into it.
+    rounding: Vec<f64>,
     frames: Vec<Frame>,
 }
 
@@ -87,7 +93,7 @@ impl Judge {
         let posted = Posted::new(request, load_scales);
         let none = Loading::none(&posted);
         let nodes = posted.nodes.len();
-        let (displacements, balance) = (vec![ZERO; nodes], vec![ZERO; nodes]);
+        let (displacements, balance, rounding) = (vec![ZERO; nodes], vec![ZERO; nodes], vec![0.0; nodes]);
         let frames = Vec::with_capacity(posted.contacts.len());
         let initial_strain = posted.elements.iter().map(|element| element.response(&displacements).energy).sum();
         Self {
@@ -99,7 +105,7 @@ impl Judge {
             largest_force: 0.0,
             largest_energy: 0.0,
             initial_strain,
-            work: Workspace { loading: none, displacements, balance, frames },
+            work: Workspace { loading: none, displacements, balance, rounding, frames },
             posted,
         }
     }
@@ -165,6 +171,7 @@ impl Judge {
     fn forces(&mut self, increment: &Increment) -> f64 {
         let (posted, work) = (&self.posted, &mut self.work);
         let mut most = self.largest_force;
+        work.rounding.fill(0.0);
         for (balance, load) in work.balance.iter_mut().zip(&work.loading.forces) {
             *balance = scaled(load, -1.0);
             most = most.max(largest(load));
@@ -176,8 +183,10 @@ impl Judge {
             most = most.max(largest(&response.force));
             if let Some(first) = response.first {
                 work.balance[first] = add(&work.balance[first], -1.0, &response.force);
+                work.rounding[first] += response.rounding;
             }
             work.balance[response.second] = add(&work.balance[response.second], 1.0, &response.force);
+            work.rounding[response.second] += response.rounding;
         }
         work.frames.clear();
         for contact in &posted.contacts {
@@ -199,8 +208,10 @@ impl Judge {
 
     /// The largest unbalanced force on a free component.
     fn unbalanced(&self) -> f64 {
-        let components = self.posted.nodes.iter().zip(&self.work.balance).flat_map(|(node, balance)| {
-            (0..self.posted.dimension).filter(|k| !node.held[*k]).map(|k| balance[k].abs())
+        let sums = self.work.balance.iter().zip(&self.work.rounding);
+        let components = self.posted.nodes.iter().zip(sums).flat_map(|(node, (balance, rounding))| {
+            let beyond = |k: usize| balance[k].abs() - rounding.min(balance[k].abs());
+            (0..self.posted.dimension).filter(|k| !node.held[*k]).map(beyond)
         });
         components.fold(0.0, worse)
     }

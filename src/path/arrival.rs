@@ -1,6 +1,6 @@
 //! What a point turned out to be, and how the path goes on from it.
 
-use super::branches::branches;
+use super::branches;
 use super::critical::Crossing;
 use super::decide::{self, Before, Choice};
 use super::increment::{Point, PointKind};
@@ -10,7 +10,7 @@ use super::state::Rate;
 use super::stop::StopReason;
 use super::tracer::Path;
 use super::watch::Watch;
-use crate::contact::{Reaction, all_continue};
+use crate::contact::{Mode, Reaction, all_continue};
 use crate::model::request::Method;
 use std::sync::Arc;
 
@@ -88,21 +88,51 @@ impl Path<'_> {
 
     /// An eigenvalue crosses zero within the mode: the path goes on in its own direction, the branches are listed.
     fn smooth_bifurcation(&mut self, crossing: Crossing, incoming: &Rate, stage_ends: bool) -> Arrival {
+        if crossing.eigenvalues == 0 {
+            return self.undetermined();
+        }
         self.at.here.rate = Some(incoming.clone());
         let rules = self.rules();
-        let here = &self.at.here;
-        let found = branches(self.loading(), &here.modes, &here.state, incoming, rules.force_scale);
-        let mut options = found.options;
-        let standings = self.standings(&here.state);
-        let (mut unexplored_modes, mut degenerate) = (0, found.degenerate);
+        let standings = self.standings(&self.at.here.state);
+        let modes = &self.at.here.modes;
+        let here = branches::Here {
+            loading: self.loading(),
+            state: &self.at.here.state,
+            standings: &standings,
+            force_scale: rules.force_scale,
+        };
+        let mut found = if crossing.grazing {
+            let loose: Vec<Mode> = modes
+                .iter()
+                .zip(&standings)
+                .map(|(mode, standing)| if *standing == Standing::Touching { Mode::Free } else { *mode })
+                .collect();
+            let mut found = branches::branches(here, &loose, incoming, crossing.eigenvalues);
+            // The way on and the way back as they were.
+            let own = found.options.iter_mut().filter(|option| option.rate.product(incoming).abs() > branches::SAME);
+            own.for_each(|option| option.modes.clone_from(modes));
+            found
+        } else {
+            branches::branches(here, modes, incoming, crossing.eigenvalues)
+        };
         if !standings.iter().all(|standing| matches!(standing, Standing::Settled(_))) {
             // Other modes of the contacts that can change; in the current mode, singular here, the branches are it.
             let before = Before::Incoming(incoming);
-            let (others, found) = decide::list(self.loading(), &here.state, &standings, before, rules);
-            options.extend(others.into_iter().filter(|other| other.modes != here.modes));
-            unexplored_modes = found.unexplored;
-            degenerate |= found.mechanism;
+            let (others, listed) = decide::list(self.loading(), &self.at.here.state, &standings, before, rules);
+            if listed.degenerate && others.is_empty() {
+                branches::in_other_modes(here, modes, &mut found);
+            } else {
+                let known = |other: &Choice| {
+                    other.modes == *modes
+                        || found.options.iter().any(|one| one.rate.product(&other.rate) > branches::SAME)
+                };
+                let others: Vec<Choice> = others.into_iter().filter(|other| !known(other)).collect();
+                found.options.extend(others);
+                found.unexplored = listed.unexplored;
+            }
+            found.degenerate |= listed.mechanism;
         }
+        let branches::Branches { options, degenerate, unexplored } = found;
         let kept = options[0].dissipation + 1e-8 * rules.force_scale;
         let point = Point {
             kind: PointKind::SmoothBifurcation,
@@ -113,10 +143,24 @@ impl Path<'_> {
                 count => format!("{count} eigenvalues cross zero together"),
             }),
             better_direction: options.iter().any(|option| !option.retrace && option.dissipation > kept),
-            unexplored_modes,
+            unexplored_modes: unexplored,
             degenerate: degenerate || options.len() % 2 == 1,
         };
         Arrival { point, options, taken: Some(0), stop: None, stage_ends, unconfirmed: false }
+    }
+
+    /// The slip and the load may go on at any rates, each against the other: a family of paths leaves.
+    fn undetermined(&self) -> Arrival {
+        let point = Point {
+            kind: PointKind::End,
+            bifurcation: false,
+            event: Some("direction not determined: slip and load rate are free of each other".to_owned()),
+            better_direction: false,
+            unexplored_modes: 0,
+            degenerate: true,
+        };
+        let stop = Some(StopReason::Degenerate);
+        Arrival { point, options: Vec::new(), taken: None, stop, stage_ends: false, unconfirmed: false }
     }
 
     /// A contact has reached the end of its mode: list the directions and take one.
@@ -136,8 +180,9 @@ impl Path<'_> {
         let mut confirmed_one = true;
         if self.scene.analysis.method == Method::Mpec && decision.taken.is_some() {
             let confirmed = self.confirmed_by_program(&decision.options);
-            let best = decide::preferred(&decision.options, incoming, self.rules(), |index| confirmed[index]);
-            confirmed_one = best.is_some();
+            let open = |index: usize| confirmed[index] != Some(false) && !decision.options[index].retrace;
+            let best = decide::preferred(&decision.options, incoming, self.rules(), open);
+            confirmed_one = best.is_some_and(|best| confirmed[best] == Some(true));
             decision.taken = best.or(decision.taken);
         }
         let old_modes = self.at.here.modes.clone();

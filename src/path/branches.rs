@@ -12,27 +12,48 @@
 //! `F''` comes from central differences of the tangent. Where `Q_φφ = 0` (a pitchfork) the direction is the null vector
 //! itself. Several null vectors: points of the branches on a small sphere are sought by Newton's method from
 //! directions spread over their plane. Those found are branches; that they are all is not claimed. For three and more
-//! the list is marked `degenerate`. Every direction that is listed was tried with a small step.
+//! the list is marked `degenerate`, and so is a plane with more directions than the equations have isolated roots: a
+//! continuum of branches, of which the list holds samples.
+//!
+//! Where a direction leaves a contact's inequalities at equality (on the cone: the load rate along a branch is zero at first
+//! order, and its sign at second order decides whether the contact slips on or sticks) a small step tells its mode.
+//! Every direction that is listed was tried with a small step.
+//!
+//! Other modes of contacts that can change have branches of their own here where their equations are singular, too:
+//! `in_other_modes`.
 
-use super::advance::MOST_TURN;
+use super::confirm::confirm_by;
 use super::critical::SINGULAR;
 use super::decide::{Choice, potential_rate, sign_of};
+use super::directions::{Alternative, Candidate};
 use super::loading::Loading;
 use super::mode_system::ModeSystem;
 use super::newton::Place;
 use super::singular::scaled_rows;
+use super::standing::Standing;
 use super::state::{Rate, State};
-use super::watch::{self, Watch};
-use crate::contact::Mode;
-use crate::linear_algebra::null_space_as_scaled;
+use crate::contact::vector::{add, dot};
+use crate::contact::{Mode, Reaction};
+use crate::linear_algebra::{nearest_null_space, null_space_as_scaled};
 use nalgebra::{DMatrix, DVector};
 
 /// Branches at a point.
 pub struct Branches {
     /// The path's own direction first.
     pub options: Vec<Choice>,
-    /// Some branch may be missing.
+    /// Some branch may be missing, or they are a continuum.
     pub degenerate: bool,
+    /// Modes that were not examined.
+    pub unexplored: u64,
+}
+
+/// A point and what is true there.
+#[derive(Clone, Copy)]
+pub struct Here<'a> {
+    pub loading: Loading<'a>,
+    pub state: &'a State,
+    pub standings: &'a [Standing],
+    pub force_scale: f64,
 }
 
 /// Difference step (dimensionless) for the second derivative.
@@ -46,9 +67,13 @@ const SOUGHT_AT: f64 = 1e-2;
 /// Directions around the plane of two null vectors.
 const AROUND: usize = 36;
 /// Directions closer than this (cosine) are one.
-const SAME: f64 = 1.0 - 1e-5;
-/// Sliding backward beyond this (unit arc length) is not feasible.
-const BACKWARD: f64 = 1e-9;
+pub const SAME: f64 = 1.0 - 1e-5;
+/// Inequalities (of unit arc length) that hold within this are in doubt.
+const DOUBT: f64 = 1e-7;
+/// Two cubics in two ratios have no more isolated roots, each taken in both senses, besides the path.
+const MOST_ISOLATED: usize = 8;
+/// Modes that are examined besides the path's own.
+const MOST_MODES: u64 = 64;
 
 /// A null vector in both forms.
 #[derive(Clone)]
@@ -58,84 +83,188 @@ struct Null {
 }
 
 struct Point<'a> {
-    loading: Loading<'a>,
+    here: Here<'a>,
     modes: &'a [Mode],
-    state: &'a State,
     system: ModeSystem<'a>,
-    force_scale: f64,
+    /// Eigenvalues that are zero, where known.
+    eigenvalues: Option<usize>,
 }
 
-/// Lists the directions in the current mode; `tangent` is the path's own.
-pub fn branches<'a>(
-    loading: Loading<'a>,
-    modes: &'a [Mode],
-    state: &'a State,
-    tangent: &Rate,
-    force_scale: f64,
-) -> Branches {
-    let system = ModeSystem::new(loading, modes, state);
-    let point = Point { loading, modes, state, system, force_scale };
+/// Lists the directions in the current mode, in which so many eigenvalues are zero; `tangent` is the path's own.
+pub fn branches(here: Here<'_>, modes: &[Mode], tangent: &Rate, eigenvalues: usize) -> Branches {
+    let system = ModeSystem::new(here.loading, modes, here.state);
+    let point = Point { here, modes, system, eigenvalues: Some(eigenvalues) };
     let mut back = tangent.clone();
     back.scale(-1.0);
-    let mut found = Branches { options: Vec::new(), degenerate: false };
-    found.options.push(point.choice(tangent.clone(), None, false));
-    if point.slides_forward(&back) {
-        found.options.push(point.choice(back, None, true));
+    let mut found = Branches { options: Vec::new(), degenerate: false, unexplored: 0 };
+    found.options.push(point.choice(tangent.clone(), modes.to_vec(), None, false));
+    let keeps = |alternatives: Vec<Vec<Alternative>>| {
+        alternatives.iter().all(|all| all.iter().any(|one| one.iter().all(|(contact, mode)| modes[*contact] == *mode)))
+    };
+    if point.alternatives(&back).is_some_and(keeps) {
+        found.options.push(point.choice(back, modes.to_vec(), None, true));
     }
     let Some(directions) = point.directions(tangent, &mut found.degenerate) else {
         found.degenerate = true;
         return found;
     };
     for direction in directions {
-        if !point.slides_forward(&direction) {
-            continue;
-        }
-        match point.tried(&direction) {
-            Some(sign) => found.options.push(point.choice(direction, Some(sign), false)),
-            None => found.degenerate = true,
-        }
+        point.add_if_tried(direction, &mut found);
     }
     found
 }
 
-impl Point<'_> {
-    fn choice(&self, rate: Rate, later: Option<f64>, retrace: bool) -> Choice {
-        let first = sign_of(rate.load);
-        let load_sign = if first == 0.0 { later.unwrap_or(0.0) } else { first };
-        let dissipation = (0..self.modes.len())
-            .map(|contact| {
-                self.loading.contacts[contact].friction
-                    * self.state.reactions[contact].normal
-                    * self.sliding(contact, &rate)
+/// Adds the directions in other modes of the contacts that can change, with those of `found` as the known ones.
+///
+/// For points at which the structure with these contacts held is singular, so that the rate problem cannot be condensed
+/// on them: every combination is taken by itself.
+pub fn in_other_modes(here: Here<'_>, modes: &[Mode], found: &mut Branches) {
+    let options: Vec<Vec<Mode>> = here
+        .standings
+        .iter()
+        .zip(here.loading.contacts)
+        .zip(modes)
+        .map(|((standing, contact), mode)| match standing {
+            Standing::OnCone { direction } => vec![Mode::Stick, Mode::Slip { direction: *direction }],
+            Standing::Touching if contact.tangents() > 0 => vec![Mode::Stick, Mode::Free],
+            Standing::Touching => vec![Mode::Slip { direction: [0.0; 3] }, Mode::Free],
+            Standing::Settled(_) | Standing::Cornered { .. } => vec![*mode],
+        })
+        .collect();
+    let total = options.iter().fold(1u64, |total, options| total.saturating_mul(options.len() as u64));
+    found.unexplored = found.unexplored.saturating_add(total.saturating_sub(MOST_MODES));
+    // Of touches with friction only sticking is examined, and of corners nothing.
+    let partly = here.standings.iter().zip(here.loading.contacts).filter(|(standing, contact)| match standing {
+        Standing::Touching => contact.tangents() > 0,
+        Standing::Cornered { .. } => true,
+        Standing::OnCone { .. } | Standing::Settled(_) => false,
+    });
+    found.unexplored = found.unexplored.saturating_add(partly.count() as u64);
+    for number in 0..total.min(MOST_MODES) {
+        let mut rest = number;
+        let chosen: Vec<Mode> = options
+            .iter()
+            .map(|options| {
+                let mode = options[(rest % options.len() as u64) as usize];
+                rest /= options.len() as u64;
+                mode
             })
-            .sum();
-        let potential_rate = potential_rate(self.loading, self.state, &rate, dissipation);
-        let modes = self.modes.to_vec();
+            .collect();
+        if chosen == modes {
+            continue;
+        }
+        let system = ModeSystem::new(here.loading, &chosen, here.state);
+        let point = Point { here, modes: &chosen, system, eigenvalues: None };
+        match point.all_directions(&mut found.degenerate) {
+            Some(directions) => directions.into_iter().for_each(|direction| point.add_if_tried(direction, found)),
+            None => found.degenerate = true,
+        }
+    }
+}
+
+impl Point<'_> {
+    fn choice(&self, rate: Rate, modes: Vec<Mode>, later: Option<f64>, retrace: bool) -> Choice {
+        let Here { loading, state, .. } = self.here;
+        let first = sign_of(rate.load);
+        let load_sign = if first == 0.0 { later.map_or(0.0, sign_of) } else { first };
+        let slides = |(contact, mode): (usize, &Mode)| match mode {
+            Mode::Slip { direction } => {
+                loading.contacts[contact].friction
+                    * state.reactions[contact].normal
+                    * dot(direction, &loading.relative_rate(contact, &rate))
+            }
+            Mode::Free | Mode::Stick => 0.0,
+        };
+        let dissipation = modes.iter().enumerate().map(slides).sum();
+        let potential_rate = potential_rate(loading, state, &rate, dissipation);
         Choice { rate, modes, dissipation, potential_rate, load_sign, retrace, mechanism: false }
     }
 
-    fn sliding(&self, contact: usize, rate: &Rate) -> f64 {
-        match self.modes[contact] {
-            Mode::Slip { .. } => Watch::Sliding(contact).value(self.loading, self.modes, self.state, rate),
-            Mode::Free | Mode::Stick => 0.0,
+    /// Adds a direction that is not known yet, if its inequalities hold and a small step stays on a branch that leaves
+    /// this way.
+    fn add_if_tried(&self, direction: Rate, found: &mut Branches) {
+        let Here { loading, state, force_scale, .. } = self.here;
+        let Some(alternatives) = self.alternatives(&direction) else { return };
+        let forces = direction.largest_reaction().max(f64::MIN_POSITIVE);
+        let same = |known: &Choice| {
+            let pairs = known.rate.reactions.iter().zip(&direction.reactions);
+            let reactions =
+                |(one, other): (&Reaction, &Reaction)| one.difference(other) <= 1e-4 * forces.max(force_scale);
+            known.rate.product(&direction) > SAME && pairs.into_iter().all(reactions)
+        };
+        if found.options.iter().any(same) {
+            return;
+        }
+        let modes = self.modes.to_vec();
+        // Only rays of the rate problem are told apart by their forces.
+        let forces = Vec::new();
+        let candidate = Candidate { rate: direction, forces, modes, alternatives, weak: true, dissipation: 0.0 };
+        let tried = RADII.iter().find_map(|radius| confirm_by(loading, state, &candidate, force_scale, &[*radius]));
+        match tried {
+            Some((modes, later)) => found.options.push(self.choice(candidate.rate, modes, Some(later), false)),
+            None => found.degenerate = true,
         }
     }
 
-    fn slides_forward(&self, rate: &Rate) -> bool {
-        watch::of_mode(self.loading, self.modes)
-            .iter()
-            .filter(|watch| matches!(watch, Watch::Sliding(_)))
-            .all(|watch| watch.value(self.loading, self.modes, self.state, rate) >= -BACKWARD)
+    /// What each contact that can change may do along a direction; `None` where some can do nothing.
+    fn alternatives(&self, rate: &Rate) -> Option<Vec<Vec<Alternative>>> {
+        let Here { loading, state, standings, force_scale } = self.here;
+        let forces = DOUBT * rate.largest_reaction().max(force_scale);
+        let mut all = Vec::new();
+        for (contact, standing) in standings.iter().enumerate() {
+            let (motion, change) = (loading.relative_rate(contact, rate), &rate.reactions[contact]);
+            let normal = loading.frame(contact, state).normal;
+            let friction = loading.contacts[contact].friction;
+            // Each mode with what is zero in it, a velocity and a force, and what is not negative.
+            let options = match standing {
+                Standing::Settled(_) | Standing::Cornered { .. } => continue,
+                Standing::OnCone { direction } => {
+                    let slack = friction * change.normal + dot(direction, &change.tangential);
+                    let along = dot(direction, &motion);
+                    let slip = Mode::Slip { direction: *direction };
+                    [(Mode::Stick, [along, 0.0], [0.0, slack]), (slip, [0.0, slack], [along, 0.0])]
+                }
+                Standing::Touching => {
+                    let opening = dot(&normal, &motion);
+                    let (closed, still, slack) = if loading.contacts[contact].tangents() > 0 {
+                        let along = add(&motion, -opening, &normal);
+                        (Mode::Stick, dot(&along, &along).sqrt(), friction * change.normal - change.tangential_size())
+                    } else {
+                        (Mode::Slip { direction: [0.0; 3] }, 0.0, change.normal)
+                    };
+                    let held = opening.abs().max(still);
+                    [(closed, [held, 0.0], [0.0, slack]), (Mode::Free, [0.0, change.size()], [opening, 0.0])]
+                }
+            };
+            let holds = |(_, zero, least): &(Mode, [f64; 2], [f64; 2])| {
+                zero[0].abs() <= DOUBT && zero[1].abs() <= forces && least[0] >= -DOUBT && least[1] >= -forces
+            };
+            let alternatives: Vec<Alternative> =
+                options.iter().filter(|option| holds(option)).map(|(mode, ..)| vec![(contact, *mode)]).collect();
+            if alternatives.is_empty() {
+                return None;
+            }
+            all.push(alternatives);
+        }
+        Some(all)
+    }
+
+    /// Left and right null vectors, the left ones for the equations as they are.
+    fn null_vectors(&self) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
+        let (matrix, sizes) = scaled_rows(&self.system, self.here.loading, self.here.state);
+        let (mut left, right) = match self.eigenvalues {
+            Some(count) => (nearest_null_space(matrix.transpose(), count)?, nearest_null_space(matrix, count + 1)?),
+            None => (null_space_as_scaled(matrix.transpose(), SINGULAR)?, null_space_as_scaled(matrix, SINGULAR)?),
+        };
+        for mut column in left.column_iter_mut() {
+            column.component_div_assign(&sizes);
+        }
+        Some((left, right))
     }
 
     /// The branches' directions other than the path's own two. `None` where the null vectors cannot be had.
     fn directions(&self, tangent: &Rate, degenerate: &mut bool) -> Option<Vec<Rate>> {
-        let (matrix, sizes) = scaled_rows(&self.system, self.loading, self.state);
-        let mut left = null_space_as_scaled(matrix.transpose(), SINGULAR)?;
-        let basis = null_space_as_scaled(matrix, SINGULAR)?;
-        for mut column in left.column_iter_mut() {
-            column.component_div_assign(&sizes);
-        }
+        let (left, basis) = self.null_vectors()?;
         let (own, others) = self.split(&basis, tangent)?;
         if others.is_empty() || left.ncols() != others.len() {
             return None;
@@ -146,8 +275,54 @@ impl Point<'_> {
         *degenerate |= others.len() > 2;
         let curved = self.is_curved(&left, &own, &others);
         let found = self.sought(tangent, &own, &others, curved);
-        *degenerate |= found.is_empty() || found.len() % 2 == 1;
+        *degenerate |= found.is_empty() || found.len() % 2 == 1 || found.len() > MOST_ISOLATED;
         Some(found)
+    }
+
+    /// All directions of a mode none of which is known: of a line, or the roots of the bifurcation equation of a plane.
+    fn all_directions(&self, degenerate: &mut bool) -> Option<Vec<Rate>> {
+        let (left, basis) = self.null_vectors()?;
+        let both = |null: &Null| {
+            let size = null.rate.size();
+            let mut ahead = null.rate.clone();
+            ahead.scale(1.0 / size);
+            let mut back = ahead.clone();
+            back.scale(-1.0);
+            [ahead, back]
+        };
+        let rates: Vec<Rate> =
+            basis.column_iter().map(|column| self.system.rate_from(self.here.state, &column.into_owned())).collect();
+        let largest = rates.iter().max_by(|a, b| a.load.abs().total_cmp(&b.load.abs()));
+        let Some(first) = largest else { return Some(Vec::new()) };
+        if first.size() <= SINGULAR * first.largest_reaction() {
+            return None;
+        }
+        let (own, others) = self.split(&basis, first)?;
+        match (&others[..], left.ncols()) {
+            ([], _) => Some(both(&own).to_vec()),
+            ([other], 1) => {
+                let left = left.column(0).into_owned();
+                let (along_own, along) = (self.second_derivative(&own.rate), self.second_derivative(&other.rate));
+                let size = left.amax() * along_own.amax().max(along.amax());
+                let flat = |value: f64| if value.abs() <= NO_CURVATURE * size { 0.0 } else { value };
+                let own_own = flat(left.dot(&(&along_own * &own.values)));
+                let mixed = flat(left.dot(&(&along * &own.values)));
+                let pure = flat(left.dot(&(&along * &other.values)));
+                if own_own == 0.0 && mixed == 0.0 && pure == 0.0 {
+                    *degenerate = true;
+                }
+                let discriminant = mixed * mixed - own_own * pure;
+                if discriminant < 0.0 {
+                    return Some(Vec::new());
+                }
+                let sum = -(mixed + discriminant.sqrt().copysign(mixed));
+                // With the equation own² + 2 mixed m + pure m² = 0 in m: m = sum/pure and own/sum.
+                let roots = [[pure, sum], [sum, own_own]].into_iter().filter(|root| root[0] != 0.0 || root[1] != 0.0);
+                let combined = |root: [f64; 2]| self.combined(&[own.clone(), other.clone()], &root);
+                Some(roots.flat_map(|root| both(&combined(root))).collect())
+            }
+            _ => None,
+        }
     }
 
     /// The null space as the path's direction and orthonormal null vectors without load.
@@ -156,7 +331,7 @@ impl Point<'_> {
             .column_iter()
             .map(|column| {
                 let values = column.into_owned();
-                Null { rate: self.system.rate_from(self.state, &values), values }
+                Null { rate: self.system.rate_from(self.here.state, &values), values }
             })
             .collect();
         let count = nulls.len();
@@ -195,13 +370,13 @@ impl Point<'_> {
         for (null, weight) in nulls.iter().zip(weights) {
             values.axpy(*weight, &null.values, 1.0);
         }
-        Null { rate: self.system.rate_from(self.state, &values), values }
+        Null { rate: self.system.rate_from(self.here.state, &values), values }
     }
 
     /// `F''(v, ·)` by central differences.
     fn second_derivative(&self, along: &Rate) -> DMatrix<f64> {
-        let ahead = self.system.matrix(&self.state.advanced(along, DIFFERENCE));
-        let behind = self.system.matrix(&self.state.advanced(along, -DIFFERENCE));
+        let ahead = self.system.matrix(&self.here.state.advanced(along, DIFFERENCE));
+        let behind = self.system.matrix(&self.here.state.advanced(along, -DIFFERENCE));
         let rows = self.system.size() - 1;
         (ahead - behind).rows(0, rows) / (2.0 * DIFFERENCE)
     }
@@ -290,27 +465,14 @@ impl Point<'_> {
         let mut ahead = direction.clone();
         let size = ahead.size();
         ahead.scale(1.0 / size);
-        let guess = self.state.advanced(&ahead, radius);
-        let place = Place::ArcLength { from: self.state, step: radius };
-        let corrected = self.system.correct(guess, place, self.force_scale).ok()?;
-        let mut chord = self.state.chord(&corrected.state);
+        let Here { state, force_scale, .. } = self.here;
+        let guess = state.advanced(&ahead, radius);
+        let place = Place::ArcLength { from: state, step: radius };
+        let corrected = self.system.correct(guess, place, force_scale).ok()?;
+        let mut chord = state.chord(&corrected.state);
         let size = chord.size();
         chord.scale(1.0 / size);
         Some(chord)
-    }
-
-    /// Whether a small step along a direction stays on a branch that leaves this way: the sign of the load rate after it.
-    fn tried(&self, direction: &Rate) -> Option<f64> {
-        RADII.iter().find_map(|&radius| {
-            let guess = self.state.advanced(direction, radius);
-            let place = Place::ArcLength { from: self.state, step: radius };
-            let corrected = self.system.correct(guess, place, self.force_scale).ok()?;
-            if self.state.angle_of_chord(&corrected.state, direction) > 0.5 * MOST_TURN {
-                return None;
-            }
-            let rate = self.system.tangent(&corrected, direction)?;
-            Some(sign_of(rate.load))
-        })
     }
 }
 

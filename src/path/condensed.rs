@@ -8,18 +8,19 @@ use super::changeable::{Changeable, Forms, Outcome};
 use super::corner::whole_rates;
 use super::directions::{Alternative, Candidate, Found, RANK, WEAK, is_mechanism, merge, sort};
 use super::loading::Loading;
-use super::mode_system::ModeSystem;
+use super::mode_system::{Kind, ModeSystem};
 use super::rates::{self, RateProblem, Ray};
 use super::standing::Standing;
 use super::state::{Rate, State};
-use super::turning;
+use super::together;
+use super::turning::{self, Touch, Turning};
 use crate::cancel::CancelFlag;
 use crate::contact::vector::{Vector, add, dot, scaled};
 use crate::contact::{Mode, Reaction};
 use crate::linear_algebra::{Factorisation, null_space};
 use nalgebra::{DMatrix, DVector};
 
-/// Up to so many contacts the search finds its way alone.
+/// Up to so many contacts the search finds its way alone, and slips of unknown direction are sought one by one.
 const FEW: usize = 6;
 
 /// The rate equations condensed on the changeable contacts: column `j` is the full rate for unit `v_j`, the last one
@@ -122,22 +123,38 @@ impl<'a> Condensed<'a> {
             }
         }
         for ray in &findings.rays {
-            self.add(ray, None, held, state, found);
+            self.add(ray, &[], held, state, found);
         }
-        let turning: Vec<usize> =
-            (0..self.changeable.len()).filter(|entry| self.changeable[*entry].may_turn(self.loading)).collect();
-        for &entity in &turning {
-            let contact = self.changeable[entity].contacts[0];
-            let friction = self.loading.contacts[contact].friction;
-            for slip in turning::slips(&self.problem, entity, friction, most_modes, cancel) {
-                let tangents = self.changeable[entity].tangents();
-                let direction = add(&scaled(&tangents[0], slip.direction[0]), slip.direction[1], &tangents[1]);
-                self.add(&slip.ray, Some((contact, direction)), held, state, found);
+        let touches: Vec<Touch> = (0..self.changeable.len())
+            .filter(|entry| self.changeable[*entry].may_turn(self.loading))
+            .filter_map(|entry| {
+                let contact = self.changeable[entry].contacts[0];
+                Touch::of(&self.problem, entry, self.loading.contacts[contact].friction)
+            })
+            .collect();
+        let mut turning: Vec<Turning> = Vec::new();
+        if touches.len() <= FEW {
+            turning.extend(touches.iter().flat_map(|touch| turning::slips(&self.problem, touch, most_modes, cancel)));
+        }
+        if touches.len() > 1 {
+            let at_once = together::slips(&self.problem, &touches, cancel);
+            turning.extend(at_once.rays);
+            if !at_once.complete {
+                found.slips_in_doubt = touches.len() as u64;
+                found.unexplored = found.unexplored.saturating_add(found.slips_in_doubt);
             }
         }
-        if turning.len() > 1 {
-            // Two or more that begin to slip together.
-            found.unexplored = found.unexplored.saturating_add(turning.len() as u64);
+        for slip in &turning {
+            let directions: Vec<(usize, Vector)> = slip
+                .slips
+                .iter()
+                .map(|(entity, parts)| {
+                    let tangents = self.changeable[*entity].tangents();
+                    let direction = add(&scaled(&tangents[0], parts[0]), parts[1], &tangents[1]);
+                    (self.changeable[*entity].contacts[0], direction)
+                })
+                .collect();
+            self.add(&slip.ray, &directions, held, state, found);
         }
     }
 
@@ -201,16 +218,14 @@ impl<'a> Condensed<'a> {
     }
 
     /// Adds a ray as a candidate direction.
-    fn add(&self, ray: &Ray, turning: Option<(usize, Vector)>, held: &[Mode], state: &State, found: &mut Found) {
+    fn add(&self, ray: &Ray, turning: &[(usize, Vector)], held: &[Mode], state: &State, found: &mut Found) {
         let (mut rate, _) = self.combine(&ray.weights);
         let mut modes = held.to_vec();
         for ((entry, outcomes), choice) in self.changeable.iter().zip(&self.outcomes).zip(ray.chosen()) {
             entry.take_reaction_apart(self.loading, &mut rate);
             for (contact, mode) in &outcomes[choice].modes {
-                let mode = match turning {
-                    Some((turning, direction)) if turning == *contact => &Mode::Slip { direction },
-                    _ => mode,
-                };
+                let slips = turning.iter().find(|(turning, _)| turning == contact);
+                let mode = &slips.map_or(*mode, |(_, direction)| Mode::Slip { direction: *direction });
                 modes[*contact] = *mode;
                 let reaction = &mut rate.reactions[*contact];
                 match mode {
@@ -240,14 +255,14 @@ impl<'a> Condensed<'a> {
     fn alternatives(
         &self,
         ray: &Ray,
-        turning: Option<(usize, Vector)>,
+        turning: &[(usize, Vector)],
         modes: &[Mode],
         rate: &Rate,
         force: f64,
     ) -> Vec<Vec<Alternative>> {
         let of_entity = |((entry, outcomes), in_doubt): ((&Changeable, &Vec<Outcome>), &Vec<usize>)| {
             let contact = entry.contacts[0];
-            if turning.is_some_and(|(turning, _)| turning == contact) {
+            if turning.iter().any(|(turning, _)| *turning == contact) {
                 return vec![vec![(contact, modes[contact])]];
             }
             let mut alternatives: Vec<Alternative> =
@@ -316,19 +331,18 @@ fn bordered(
     state: &State,
     incoming: Option<&Rate>,
 ) -> Option<Factorisation> {
-    let matrix = system.matrix(state);
-    let mut by_load = matrix.clone();
-    by_load[(system.size() - 1, loading.structure.unknowns())] = 1.0;
-    if let Some(factorisation) = Factorisation::new(by_load) {
+    let iterate = system.iterate(state.clone());
+    let by_load = |matrix: &mut DMatrix<f64>| matrix[(system.size() - 1, loading.structure.unknowns())] = 1.0;
+    if let Some(factorisation) = system.factorise(&iterate, Kind::Rates, by_load) {
         return Some(factorisation);
     }
-    if let Some(rate) = incoming {
-        let mut by_rate = matrix.clone();
-        system.border(&mut by_rate, rate);
-        if let Some(factorisation) = Factorisation::new(by_rate) {
-            return Some(factorisation);
-        }
+    if let Some(rate) = incoming
+        && let Some(factorisation) =
+            system.factorise(&iterate, Kind::Rates, |matrix: &mut DMatrix<f64>| system.border(matrix, rate))
+    {
+        return Some(factorisation);
     }
+    let matrix = system.matrix(state);
     let basis = null_space(&matrix.rows(0, system.size() - 1).into_owned(), RANK)?;
     if basis.ncols() != 1 {
         return None;

@@ -14,14 +14,19 @@ use super::newton::Place;
 use super::state::State;
 use super::watch::{self, Watch};
 use crate::contact::Mode;
+use crate::contact::vector::size as size_of;
 use std::collections::BTreeSet;
 
 /// Arc lengths of the steps by which a direction of first order is tried, one after another until it is clear.
 const TRIAL_STEPS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
 /// Quantities and slopes below this are zero at first order.
 const IN_DOUBT: f64 = 1e-8;
-/// Slopes beyond this after a trial step have a sign (their round-off is a thousand times smaller).
+/// Slopes of forces beyond this after a trial step have a sign (their round-off is a thousand times smaller).
 const CLEAR: f64 = 1e-9;
+/// The same of velocities, against the node's own: what is less leaves a gap within round-off over the whole path.
+const CLEAR_OF_SPEED: f64 = 1e-13;
+/// Round-off of a velocity (of unit arc length).
+const STILL: f64 = 1e-14;
 /// How far a watched quantity may be negative after a trial step (second order in the step where it is real).
 const TRIAL_TOLERANCE: f64 = 1e-11;
 /// Combinations that are tried in turn.
@@ -43,7 +48,18 @@ pub(super) fn confirm(
     candidate: &Candidate,
     force_scale: f64,
 ) -> Option<(Vec<Mode>, f64)> {
-    let trial = Trial { loading, state, candidate, force_scale };
+    confirm_by(loading, state, candidate, force_scale, &TRIAL_STEPS)
+}
+
+/// The same by steps of other lengths.
+pub(super) fn confirm_by(
+    loading: Loading<'_>,
+    state: &State,
+    candidate: &Candidate,
+    force_scale: f64,
+    steps: &[f64],
+) -> Option<(Vec<Mode>, f64)> {
+    let trial = Trial { loading, state, candidate, force_scale, steps };
     let mut tried = BTreeSet::new();
     let mut places = vec![0; candidate.alternatives.len()];
     // Every contact in doubt may be changed a few times before it is given up.
@@ -101,6 +117,8 @@ struct Trial<'a> {
     state: &'a State,
     candidate: &'a Candidate,
     force_scale: f64,
+    /// Arc lengths, tried one after another until it is clear.
+    steps: &'a [f64],
 }
 
 impl Trial<'_> {
@@ -111,8 +129,8 @@ impl Trial<'_> {
             alternatives[place].iter().for_each(|(contact, mode)| modes[*contact] = *mode);
         }
         let mut later_load = 0.0;
-        for step in TRIAL_STEPS {
-            match self.step(&modes, step) {
+        for step in self.steps {
+            match self.step(&modes, *step) {
                 Verdict::Holds(load) => return Ok((modes, load)),
                 Verdict::Fails(culprits) => return Err(culprits),
                 Verdict::Unclear(load) => later_load = load,
@@ -125,7 +143,7 @@ impl Trial<'_> {
     /// step is short, so that such events come after it as a rule: where many contacts change close together, a long one
     /// would judge a motion that does not happen.
     fn step(&self, modes: &[Mode], step: f64) -> Verdict {
-        let Self { loading, state, candidate, force_scale } = *self;
+        let Self { loading, state, candidate, force_scale, .. } = *self;
         let nobody = || Verdict::Fails(Vec::new());
         let system = ModeSystem::new(loading, modes, state);
         let guess = state.advanced(&candidate.rate, step);
@@ -151,10 +169,21 @@ impl Trial<'_> {
             }
             let last = watch.value(loading, modes, &corrected.state, &rate) / scale;
             let grown = watch.slope(loading, &corrected.state, &rate).map_or(last, |slope| slope / size);
-            if last < -TRIAL_TOLERANCE || grown < -CLEAR {
+            let clear = match watch {
+                // A node on a stiff spring is slow, and its direction is as clear.
+                Watch::Gap(contact) | Watch::Sliding(contact) => {
+                    STILL + CLEAR_OF_SPEED * size_of(&loading.relative_rate(contact, &rate))
+                }
+                Watch::Normal(_)
+                | Watch::Cone { .. }
+                | Watch::Facet { .. }
+                | Watch::LoadRate { .. }
+                | Watch::End(_) => CLEAR,
+            };
+            if last < -TRIAL_TOLERANCE || grown < -clear {
                 culprits.extend(contacts_of(loading, watch));
             }
-            unclear |= grown <= CLEAR;
+            unclear |= grown <= clear;
         }
         if !culprits.is_empty() {
             Verdict::Fails(culprits)

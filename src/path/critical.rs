@@ -6,30 +6,36 @@
 //! with the fourth power of their distance; the residual of the point found is judged like any other's.
 
 use super::advance::{Reached, Start, Work};
+use super::folded;
 use super::mode_system::ModeSystem;
 use super::newton::ACCEPTED_RESIDUAL;
 use super::root::find_root;
-use super::singular::{Change, Signature, bordered_determinant, reduced_tangent, scaled_rows};
+use super::singular::{Change, Signature, bordered_determinant, counted_tangent, scaled_rows};
 use super::state::{Rate, State};
 use crate::linear_algebra::null_space_as_scaled;
 
 /// A smooth bifurcation point at the end of a step.
 #[derive(Debug, Clone, Copy)]
 pub struct Crossing {
-    /// Eigenvalues that are zero there.
+    /// Eigenvalues that are zero there; 0 where it is no bifurcation, but the direction is not determined (`folded`).
     pub eigenvalues: usize,
+    /// It is one only when the contacts that touch here without reaction are free.
+    pub grazing: bool,
     /// Signature just past it.
-    pub after: Option<Signature>,
+    pub after: Signature,
 }
 
 /// Distances of the regular points, over the step.
 const WIDTHS: [f64; 4] = [2e-2, 4e-3, 1e-3, 2e-4];
+/// Parts of a bracket at which it may begin.
+const AHEAD: [f64; 4] = [0.0, 1e-4, 1e-3, 1e-2];
 /// Residual at which closer points gain nothing.
 const GOOD: f64 = 2e-15;
 /// Pivots of the singular equations up to this, relative, are zero.
 pub(super) const SINGULAR: f64 = 1e-8;
-/// How far past the point, over the step, the signature is taken.
-const PAST: f64 = 1e-5;
+/// Eigenvalues that are this small, relative to the largest, where the first crosses are taken to cross with it: closer
+/// than that the branches of one cannot be told from those of the other.
+const TOGETHER: f64 = 1e-10;
 
 /// A point on the path with its place: the distance from the start of the step.
 #[derive(Clone)]
@@ -40,9 +46,20 @@ struct Placed {
     rate: Rate,
 }
 
-/// Finds the first crossing of a step. `None` where none can be made out.
-pub fn locate(start: &Start<'_>, change: Change, reached: &Reached, work: &mut Work) -> Option<(Reached, Crossing)> {
+/// Finds the first crossing of a step, whose start has the signature `before`. `None` where none can be made out.
+pub fn locate(
+    start: &Start<'_>,
+    before: Signature,
+    change: Change,
+    reached: &Reached,
+    work: &mut Work,
+) -> Option<(Reached, Crossing)> {
     let system = ModeSystem::new(start.loading, start.modes, start.state);
+    if system.has_tracks()
+        && let Some(point) = folded::locate(start, reached)
+    {
+        return Some((point, Crossing { eigenvalues: 0, grazing: false, after: before }));
+    }
     let origin = Placed { place: 0.0, state: start.state.clone(), rate: start.rate.clone() };
     let end = placed(start, reached);
     let reference = bordered_determinant(&system, start.loading, &end.state, &unit(&end.rate))?;
@@ -50,9 +67,7 @@ pub fn locate(start: &Start<'_>, change: Change, reached: &Reached, work: &mut W
         match change {
             Change::None => None,
             Change::Count { before, net } => {
-                let tangent = reduced_tangent(&system, start.loading, start.modes, state)?;
-                let mut values: Vec<f64> = tangent.symmetric_eigenvalues().iter().copied().collect();
-                values.sort_by(f64::total_cmp);
+                let values = eigenvalues(start, state)?;
                 if net > 0 { values.get(before).copied() } else { values.get(before.checked_sub(1)?).map(|v| -v) }
             }
             Change::Odd => {
@@ -93,13 +108,23 @@ pub fn locate(start: &Start<'_>, change: Change, reached: &Reached, work: &mut W
         if null.ncols() < 2 || best.as_ref().is_some_and(|(least, ..)| *least <= residual) {
             continue;
         }
-        let (beyond, onward) = between(&left, &right, (root + PAST * end.place).min(right.place));
-        let past = bordered_determinant(&system, start.loading, &beyond, &unit(&onward))?;
-        let after = Signature::with_determinant(start.loading, start.modes, start.state, &beyond, past.sign);
-        let crossing = Crossing { eigenvalues: null.ncols() - 1, after };
+        let eigenvalues = match change {
+            Change::Count { net, .. } => {
+                together(&eigenvalues(start, &corrected.state)?, change)?.min(net.unsigned_abs())
+            }
+            Change::None | Change::Odd => null.ncols() - 1,
+        };
+        let crossing = Crossing { eigenvalues, grazing: false, after: before.past(change, eigenvalues)? };
         let step = corrected.state.distance(start.state);
-        let found =
-            Reached { corrected, rate, step, error_estimate: error, drift: None, event: None, determinant: None };
+        let found = Reached {
+            corrected,
+            rate,
+            step,
+            error_estimate: error,
+            drift: start.drift.cloned(),
+            event: None,
+            determinant: None,
+        };
         best = Some((residual, found, crossing));
         if residual <= GOOD {
             break;
@@ -109,13 +134,36 @@ pub fn locate(start: &Start<'_>, change: Change, reached: &Reached, work: &mut W
     (residual <= ACCEPTED_RESIDUAL).then_some((found, crossing))
 }
 
+/// Eigenvalues of the reduced tangent, the smallest first.
+fn eigenvalues(start: &Start<'_>, state: &State) -> Option<Vec<f64>> {
+    let tangent = counted_tangent(start.loading, start.modes, start.state, state)?;
+    let mut values: Vec<f64> = tangent.symmetric_eigenvalues().iter().copied().collect();
+    values.sort_by(f64::total_cmp);
+    Some(values)
+}
+
+/// How many of the eigenvalues that cross, in the order in which they do, are zero with the first.
+fn together(values: &[f64], change: Change) -> Option<usize> {
+    let Change::Count { before, net } = change else { return None };
+    let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let crossing: Vec<f64> =
+        if net > 0 { values.get(before..)?.to_vec() } else { values.get(..before)?.iter().rev().copied().collect() };
+    let first = *crossing.first()?;
+    Some(crossing.iter().take_while(|value| (*value - first).abs() <= TOGETHER * largest).count())
+}
+
 fn root_between(left: &Placed, right: &Placed, value: &impl Fn(&State, &Rate) -> Option<f64>) -> Option<f64> {
     let evaluate = |place: f64| {
         let (state, rate) = between(left, right, place);
         value(&state, &unit(&rate))
     };
-    let (first, last) = (evaluate(left.place)?, evaluate(right.place)?);
-    (first > 0.0 && last < 0.0).then(|| find_root(evaluate, (left.place, first), (right.place, last), 0.0))?
+    let last = evaluate(right.place)?;
+    // A start that is a bifurcation point itself has no sign: begin a little further on.
+    let first = AHEAD.iter().find_map(|part| {
+        let place = left.place + part * (right.place - left.place);
+        evaluate(place).filter(|value| *value > 0.0).map(|value| (place, value))
+    })?;
+    (last < 0.0).then(|| find_root(evaluate, first, (right.place, last), 0.0))?
 }
 
 fn placed(start: &Start<'_>, reached: &Reached) -> Placed {

@@ -12,7 +12,7 @@
 
 use super::confirm::confirm;
 use super::corner::whole_rates;
-use super::directions::{Candidate, Found, directions, forces_agree, is_mechanism};
+use super::directions::{Candidate, Found, difference_of_forces, directions, is_mechanism};
 use super::energy;
 use super::loading::Loading;
 use super::standing::Standing;
@@ -62,12 +62,14 @@ pub enum Before<'a> {
 pub const STATIONARY: f64 = 1e-9;
 /// Dissipations closer than this, relative to the largest force, tie.
 const TIE: f64 = 1e-8;
-/// Forces that differ by less than this part of the largest are each other's reverse.
-const REVERSED: f64 = 1e-4;
+/// Difference to the incoming direction reversed, of unit arc length, within which a direction may be the way back.
+const BACK: f64 = 4e-5;
+/// The same of the forces on the nodes, relative to the largest.
+const BACK_FORCES: f64 = 1e-4;
 /// Displacement rates along the incoming one that differ by less than this part of their sizes tie.
 const TIE_OF_MOTIONS: f64 = 1e-9;
 /// Displacement rates below this part of a direction are no motion.
-const STILL: f64 = 1e-15;
+const STILL: f64 = 1e-12;
 
 /// Settings and scales of a decision.
 #[derive(Debug, Clone, Copy)]
@@ -93,6 +95,7 @@ pub fn list(
     let mut found = directions(loading, state, standings, incoming, rules.most_modes, rules.cancel);
     let candidates = std::mem::take(&mut found.candidates);
     let mut options = Vec::with_capacity(candidates.len());
+    let mut off = Vec::with_capacity(candidates.len());
     for candidate in candidates {
         let mechanism = is_mechanism(loading, state, &candidate.rate);
         let confirmed = if candidate.weak && !mechanism {
@@ -102,7 +105,7 @@ pub fn list(
         };
         let Some((modes, later_load)) = confirmed else { continue };
         let load_sign = sign_of(if sign_of(candidate.rate.load) == 0.0 { later_load } else { candidate.rate.load });
-        let retrace = incoming.is_some_and(|incoming| is_reverse(loading, state, &candidate, incoming));
+        off.push(incoming.and_then(|incoming| off_reverse(loading, state, &candidate, incoming)));
         let potential_rate = potential_rate(loading, state, &candidate.rate, candidate.dissipation);
         options.push(Choice {
             rate: candidate.rate,
@@ -110,9 +113,14 @@ pub fn list(
             dissipation: candidate.dissipation,
             potential_rate,
             load_sign,
-            retrace,
+            retrace: false,
             mechanism,
         });
+    }
+    // Several may run close to the way back; that is the closest.
+    let back = options.iter_mut().zip(off).filter_map(|(option, off)| Some((off?, option)));
+    if let Some((_, option)) = back.min_by(|a, b| a.0.total_cmp(&b.0)) {
+        option.retrace = true;
     }
     (options, found)
 }
@@ -133,10 +141,13 @@ pub fn sign_of(load: f64) -> f64 {
     if load.abs() <= STATIONARY { 0.0 } else { load.signum() }
 }
 
-/// Whether a direction is the incoming one reversed, forces on the nodes included.
-fn is_reverse(loading: Loading<'_>, state: &State, candidate: &Candidate, incoming: &Rate) -> bool {
-    candidate.rate.product(incoming) < -1.0 + 1e-9
-        && forces_agree(&candidate.forces, &whole_rates(loading, state, incoming), -1.0, REVERSED)
+/// How far a direction is from the incoming one reversed, forces on the nodes included; `None` where it is another.
+fn off_reverse(loading: Loading<'_>, state: &State, candidate: &Candidate, incoming: &Rate) -> Option<f64> {
+    let mut sum = candidate.rate.clone();
+    sum.add(incoming, 1.0);
+    let motion = sum.size();
+    let forces = difference_of_forces(&candidate.forces, &whole_rates(loading, state, incoming), -1.0);
+    (motion <= BACK && forces <= BACK_FORCES).then(|| motion.max(forces))
 }
 
 /// Lists the directions and takes one.
@@ -171,7 +182,8 @@ pub fn decide(
         Some(index) if options[index].mechanism => Some(StopReason::Mechanism),
         Some(_) => None,
         None if found.corner_not_available => Some(StopReason::CornerNotAvailable),
-        None if found.unexplored > 0 => Some(StopReason::ModeLimit),
+        None if found.unexplored > found.slips_in_doubt => Some(StopReason::ModeLimit),
+        None if found.unexplored > 0 => Some(StopReason::SlipsNotFound),
         None if found.mechanism => Some(StopReason::Mechanism),
         None if found.degenerate => Some(StopReason::Degenerate),
         None => Some(StopReason::NoDirection),

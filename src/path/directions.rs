@@ -59,6 +59,8 @@ pub struct Found {
     pub candidates: Vec<Candidate>,
     /// Modes that were not examined.
     pub unexplored: u64,
+    /// Those of them in which nodes begin to slip at once in space, in directions that are not proven to be all.
+    pub slips_in_doubt: u64,
     /// Some mode has more than one independent direction.
     pub degenerate: bool,
     /// Some direction set contains a motion that no element resists.
@@ -131,7 +133,7 @@ pub fn is_mechanism(loading: Loading<'_>, state: &State, rate: &Rate) -> bool {
 pub(super) fn merge(found: &mut Found, candidate: Candidate) {
     for known in &mut found.candidates {
         let same_motion = (1.0 - known.rate.product(&candidate.rate)) < 0.5 * SAME * SAME;
-        if same_motion && forces_agree(&known.forces, &candidate.forces, 1.0, SAME) {
+        if same_motion && difference_of_forces(&known.forces, &candidate.forces, 1.0) <= SAME {
             for (alternatives, others) in known.alternatives.iter_mut().zip(candidate.alternatives) {
                 for other in others {
                     if !alternatives.contains(&other) {
@@ -147,10 +149,13 @@ pub(super) fn merge(found: &mut Found, candidate: Candidate) {
     found.candidates.push(candidate);
 }
 
-/// Whether forces are others times a factor, within a part of the largest.
-pub(super) fn forces_agree(forces: &[Vector], others: &[Vector], factor: f64, part: f64) -> bool {
+/// Largest difference of forces to others times a factor, over the largest of all.
+pub(super) fn difference_of_forces(forces: &[Vector], others: &[Vector], factor: f64) -> f64 {
     let largest = forces.iter().chain(others).fold(f64::MIN_POSITIVE, |largest, force| largest.max(size(force)));
-    forces.iter().zip(others).all(|(force, other)| size(&add(force, -factor, other)) <= part * largest)
+    forces
+        .iter()
+        .zip(others)
+        .fold(0.0, |most, (force, other)| f64::max(most, size(&add(force, -factor, other)) / largest))
 }
 
 /// More sticking contacts first.

@@ -12,9 +12,10 @@
 //! | `track`, `drift` | slip in a plane: its rule of fourth order; the error that is left |
 //! | `watch`, `root`, `advance` | what ends a mode; one step, ended exactly at the first event |
 //! | `singular`, `critical`, `branches` | whether a step passes a smooth bifurcation; where; which directions leave it |
+//! | `folded` | points of slip in a plane at which the direction is not determined |
 //! | `standing`, `directions`, `condensed` | which contacts can change; every direction |
 //! | `confirm`, `decide` | those that hold beyond first order; which one is taken |
-//! | `rates`, `turning` | all rays of a rate problem, linear forms only; slip whose direction is unknown |
+//! | `rates`, `turning`, `together` | all rays of a rate problem, linear forms only; slip whose direction is unknown, of one node and of several at once |
 //! | `program`, `naming` | the MPEC of an increment; where it names the mode |
 //! | `energy`, `record`, `increment`, `report`, `stop` | balances, rows, totals, reasons |
 //! | `tracer`, `stages`, `stepping`, `arrival` | the iterator; how a stage begins; how far a step goes; what a point turned out to be |
@@ -38,6 +39,7 @@ mod drift;
 mod energy;
 #[cfg(test)]
 mod exhaustive;
+mod folded;
 mod follow;
 pub mod increment;
 mod loading;
@@ -61,6 +63,7 @@ mod standing;
 mod state;
 mod stepping;
 pub mod stop;
+mod together;
 mod totals;
 mod traced;
 pub mod tracer;

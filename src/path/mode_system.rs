@@ -20,7 +20,8 @@ use super::state::{Rate, State};
 use super::track::{self, Start, Turn};
 use crate::contact::vector::{Vector, add, cross, dot, scaled};
 use crate::contact::{Frame, Mode, Reaction};
-use crate::linear_algebra::Factorisation;
+use crate::linear_algebra::{Factorisation, Stiffener};
+use crate::structure::Stretching;
 use nalgebra::{DMatrix, DVector};
 
 /// What a contact contributes to the equations.
@@ -53,6 +54,16 @@ pub(super) enum Kind {
     /// Of the increment: its chord lies between the directions at both ends.
     Increment,
 }
+
+/// Where the elements' resistance to being stretched is.
+#[derive(Debug, Clone, Copy)]
+enum Stretch {
+    Within,
+    Apart,
+}
+
+/// Smallest pivot over the largest below which digits are worth the larger system that saves them.
+const SPREAD: f64 = 1e-4;
 
 /// A state on the way to convergence, with the directions of slip (one a contact; empty where none is unknown).
 #[derive(Debug, Clone)]
@@ -192,19 +203,23 @@ impl<'a> ModeSystem<'a> {
 
     /// All rows but the last.
     pub(super) fn assemble(&self, iterate: &Iterate, kind: Kind) -> DMatrix<f64> {
+        self.assemble_parts(iterate, kind, Stretch::Within)
+    }
+
+    fn assemble_parts(&self, iterate: &Iterate, kind: Kind, stretch: Stretch) -> DMatrix<f64> {
         let structure = self.loading.structure;
         let (state, unknowns) = (&iterate.state, structure.unknowns());
         let mut matrix = DMatrix::zeros(self.size, self.size);
-        if self.loading.pattern.supports.is_empty() {
-            structure.add_tangent(&state.displacement, &mut matrix);
-        } else {
-            structure.each_stiffness(&state.displacement, &mut |row, column, value| {
-                let Some(row) = structure.unknown_of[row] else { return };
-                match structure.unknown_of[column] {
-                    Some(column) => matrix[(row, column)] += value,
-                    None => matrix[(row, unknowns)] += value * self.loading.support_rate(column),
-                }
-            });
+        let mut add = |row: usize, column: usize, value: f64| {
+            let Some(row) = structure.unknown_of[row] else { return };
+            match structure.unknown_of[column] {
+                Some(column) => matrix[(row, column)] += value,
+                None => matrix[(row, unknowns)] += value * self.loading.support_rate(column),
+            }
+        };
+        match stretch {
+            Stretch::Within => structure.each_stiffness(&state.displacement, &mut add),
+            Stretch::Apart => structure.each_stiffness_across(&state.displacement, &mut add),
         }
         for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
             matrix[(unknown, unknowns)] -= self.loading.pattern.forces[*freedom];
@@ -219,6 +234,40 @@ impl<'a> ModeSystem<'a> {
             }
         }
         matrix
+    }
+
+    /// Factorises the equations at an iterate with a last row that the caller puts in. Where stiff and soft parts meet, so
+    /// that their sum would cost too many digits, the stiff ones are kept apart.
+    pub(super) fn factorise(
+        &self,
+        iterate: &Iterate,
+        kind: Kind,
+        put_last: impl Fn(&mut DMatrix<f64>),
+    ) -> Option<Factorisation> {
+        let mut matrix = self.assemble(iterate, kind);
+        put_last(&mut matrix);
+        let plain = Factorisation::new(matrix)?;
+        if plain.pivot_ratio() >= SPREAD {
+            return Some(plain);
+        }
+        let structure = self.loading.structure;
+        let unknowns = structure.unknowns();
+        let stiffener = |stretching: Stretching| {
+            let unknown = |(freedom, value): &(usize, f64)| Some((structure.unknown_of[*freedom]?, *value));
+            let rows: Vec<(usize, f64)> = stretching.along.iter().filter_map(unknown).collect();
+            let driven = |(freedom, value): &(usize, f64)| match structure.unknown_of[*freedom] {
+                None => value * self.loading.support_rate(*freedom),
+                Some(_) => 0.0,
+            };
+            let by_load: f64 = stretching.along.iter().map(driven).sum();
+            let columns = rows.iter().copied().chain(std::iter::once((unknowns, by_load))).collect();
+            (!rows.is_empty()).then_some(Stiffener { stiffness: stretching.stiffness, rows, columns })
+        };
+        let stretchings = structure.stretching(&iterate.state.displacement);
+        let stiffeners: Vec<Stiffener> = stretchings.into_iter().filter_map(stiffener).collect();
+        let mut apart = self.assemble_parts(iterate, kind, Stretch::Apart);
+        put_last(&mut apart);
+        Factorisation::stiffened(apart, &stiffeners).or(Some(plain))
     }
 
     /// A row `vector·(relative motion)`.
@@ -573,9 +622,7 @@ impl<'a> ModeSystem<'a> {
     }
 
     pub(super) fn bordered(&self, iterate: &Iterate, towards: &Rate) -> Option<Factorisation> {
-        let mut matrix = self.assemble(iterate, Kind::Rates);
-        self.border(&mut matrix, towards);
-        Factorisation::new(matrix)
+        self.factorise(iterate, Kind::Rates, |matrix| self.border(matrix, towards))
     }
 
     pub(super) fn tangent_by(&self, factorisation: &Factorisation, iterate: &Iterate) -> Option<Rate> {

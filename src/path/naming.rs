@@ -3,13 +3,19 @@
 use super::corner::agree;
 use super::decide::Choice;
 use super::program::{IncrementProgram, Named};
+use super::standing::ZERO;
 use super::state::{Rate, State};
 use super::tracer::Path;
+use super::watch;
 use crate::contact::Mode;
 use crate::mpec::Problem;
 
 /// Arc length at which a direction is first put to the program, as a fraction of the path's next step.
 const FIRST_TRIAL: f64 = 0.25;
+/// The part of the way to the next change of a contact that it may go.
+const WITHIN: f64 = 0.5;
+/// Arc length below which changes are not told apart by the program, whose products end at a relaxation of 1e-8.
+const RESOLVED: f64 = 1e-8;
 /// How often that arc length is shortened until the program names the direction's own mode.
 const TRIALS: usize = 5;
 
@@ -30,6 +36,22 @@ impl Path<'_> {
             tried *= 0.3;
         }
         false
+    }
+
+    /// Arc length to the first change of a contact along a direction, to first order: an increment that goes on past it
+    /// ends in another mode. Infinite where none is ahead.
+    fn way_to_next_change(&self, modes: &[Mode], rate: &Rate) -> f64 {
+        let (loading, state) = (self.loading(), &self.at.here.state);
+        let forces = self.at.totals.force_scale;
+        watch::of_mode(loading, modes)
+            .into_iter()
+            .filter_map(|watch| {
+                let value = watch.value(loading, modes, state, rate);
+                let slope = watch.slope(loading, state, rate)?;
+                // What is zero here is not ahead.
+                (value > ZERO * watch.scale(forces) && slope < 0.0).then(|| value / -slope)
+            })
+            .fold(f64::INFINITY, f64::min)
     }
 
     fn name(&mut self, base: &State, expected: &Rate, modes: &[Mode], step: f64) -> Option<Named> {
@@ -54,21 +76,22 @@ impl Path<'_> {
     }
 
     /// Which of the directions at the present point the program confirms: started along the direction, it ends in the
-    /// direction's own mode.
+    /// direction's own mode. `None` where the next change is too near for the program to tell.
     ///
     /// The forward term rewards the direction that is tried, not the one in which the path came: where the path turns
     /// against its past (a contact closes, the load turns), that term would hold the increment back at zero.
-    pub(super) fn confirmed_by_program(&mut self, options: &[Choice]) -> Vec<bool> {
+    pub(super) fn confirmed_by_program(&mut self, options: &[Choice]) -> Vec<Option<bool>> {
         let state = self.at.here.state.clone();
         let mut confirmed = Vec::with_capacity(options.len());
         for option in options {
-            let mut step = FIRST_TRIAL * self.at.step;
-            let mut agrees = false;
-            if !option.retrace && !option.mechanism {
+            let within = WITHIN * self.way_to_next_change(&option.modes, &option.rate);
+            let mut step = (FIRST_TRIAL * self.at.step).min(within);
+            let mut agrees = (within >= RESOLVED).then_some(false);
+            if !option.retrace && !option.mechanism && agrees.is_some() {
                 for _ in 0..TRIALS {
                     let named = self.name(&state, &option.rate, &option.modes, step);
                     if named.is_some_and(|named| agree(self.loading(), &named.modes, &option.modes)) {
-                        agrees = true;
+                        agrees = Some(true);
                         break;
                     }
                     step *= 0.1;

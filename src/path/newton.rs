@@ -1,12 +1,12 @@
 //! Newton's method on the equations of a mode, and the path's direction at the point found.
 
-use super::mode_system::{Iterate, Kind, ModeSystem};
+use super::mode_system::{Iterate, Kind, ModeSystem, Role};
 use super::singular::UNCERTAIN;
 use super::state::{Rate, State};
+use super::track;
 use crate::contact::Mode;
-use crate::contact::vector::Vector;
-use crate::linear_algebra::Factorisation;
-use nalgebra::DVector;
+use crate::contact::vector::{Vector, add, dot};
+use nalgebra::{DMatrix, DVector};
 
 /// The last equation: where on the branch the point is to be.
 #[derive(Debug, Clone, Copy)]
@@ -28,7 +28,8 @@ pub struct Corrected {
     pub iterations: u64,
     /// Iterations until the error was small; those after it polish, and their number is round-off's.
     pub iterations_to_small: u64,
-    /// Equilibrium residual over the force scale.
+    /// Equilibrium residual over the force scale; where the rounding of the displacements alone leaves more than is
+    /// accepted, what is beyond it.
     pub residual: f64,
     /// Equilibrium and contact equations left over, one a row.
     left_over: DVector<f64>,
@@ -52,6 +53,10 @@ pub const ACCEPTED_RESIDUAL: f64 = 1e-11;
 const ROUND_OFF: f64 = 1e-15;
 /// Error below which Newton's method is as good as converged.
 const SMALL: f64 = 1e-6;
+/// Multiple of the bound on rounding within which what is left over counts as rounding.
+const ROOM: f64 = 8.0;
+/// Corrections that fall by less than this factor are rounding themselves.
+const NO_FALL: f64 = 0.25;
 
 impl ModeSystem<'_> {
     /// Newton's method from a guess, to round-off.
@@ -75,6 +80,9 @@ impl ModeSystem<'_> {
         let mut iterations = 0;
         let mut iterations_to_small = None;
         let mut best: Option<(f64, Iterate, Figures)> = None;
+        // Sizes of the last correction and the one before.
+        let (mut correction, mut before) = (f64::INFINITY, f64::INFINITY);
+        let mut small_by_correction = None;
         loop {
             let (largest, forces) = self.residual(&iterate, &mut values, &mut force);
             let scale = forces.max(force_scale).max(f64::MIN_POSITIVE);
@@ -99,17 +107,33 @@ impl ModeSystem<'_> {
             if settled && iterations > 0 {
                 break;
             }
-            if iterations == MOST_ITERATIONS {
+            let ended = iterations == MOST_ITERATIONS;
+            if least > ACCEPTED_RESIDUAL && iterations > 0 && (ended || correction >= NO_FALL * before) {
+                // Stiff elements next to large displacements: no displacements in this precision leave less. The point
+                // is the one whose correction no longer falls.
+                if let Some(residual) = self.left_by_rounding(&iterate.state, &values, scale) {
+                    let figures = Figures { iterations, residual, left_over: values.clone(), force_scale: forces };
+                    best = Some((residual, iterate, figures));
+                    iterations_to_small = iterations_to_small.or(small_by_correction);
+                    break;
+                }
+            }
+            if ended {
                 if least <= ACCEPTED_RESIDUAL {
                     break;
                 }
                 return Err(Failure::NotConverged);
             }
-            let mut matrix = self.assemble(&iterate, Kind::Increment);
-            self.place(&iterate.state, place, Some(&mut matrix));
-            let factorisation = Factorisation::new(matrix).ok_or(Failure::Singular)?;
+            let put_place = |matrix: &mut DMatrix<f64>| {
+                self.place(&iterate.state, place, Some(matrix));
+            };
+            let factorisation = self.factorise(&iterate, Kind::Increment, put_place).ok_or(Failure::Singular)?;
             if !factorisation.solve(&mut values) {
                 return Err(Failure::Singular);
+            }
+            (before, correction) = (correction, values.rows(0, self.loading.structure.unknowns() + 1).norm());
+            if correction <= SMALL {
+                small_by_correction.get_or_insert(iterations);
             }
             iterate = self.corrected_by(&iterate, &values);
             iterations += 1;
@@ -135,6 +159,21 @@ impl ModeSystem<'_> {
         })
     }
 
+    /// Whether what is left over of each equation is within the rounding of the state's numbers; then the largest
+    /// equilibrium residual beyond it, over the force scale.
+    fn left_by_rounding(&self, state: &State, values: &DVector<f64>, scale: f64) -> Option<f64> {
+        let structure = self.loading.structure;
+        let rounding = structure.rounding(&state.displacement);
+        let mut residual = 0.0_f64;
+        for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
+            residual = residual.max((values[unknown].abs() - ROOM * rounding[*freedom]) / scale);
+        }
+        let reach = state.displacement.iter().fold(state.load.abs(), |reach, value| reach.max(value.abs()));
+        let geometric = values.iter().skip(structure.unknowns()).fold(0.0_f64, |m, v| m.max(v.abs()));
+        let within = geometric <= ACCEPTED_RESIDUAL + ROOM * f64::EPSILON * reach;
+        (residual <= ACCEPTED_RESIDUAL && within).then_some(residual)
+    }
+
     /// The path's direction at a converged point, and an estimate of the point's error: the size of one more Newton
     /// correction across the path. With them the sign of the bordered determinant, where it is certain.
     pub fn tangent_and_error(&self, corrected: &Corrected, towards: &Rate) -> Option<(Rate, f64, Option<f64>)> {
@@ -148,18 +187,33 @@ impl ModeSystem<'_> {
         } else {
             return None;
         };
-        let certain = factorisation.pivot_ratio() > UNCERTAIN && !self.has_tracks();
+        let certain = factorisation.pivot_ratio() > UNCERTAIN;
         Some((rate, error, certain.then(|| factorisation.determinant_sign())))
     }
 
-    /// A point as it is, with its residual.
+    /// A point as it is, with its residual. Slips in planes have the directions that their tractions oppose.
     pub fn judged(&self, state: State, force_scale: f64) -> Corrected {
         let mut iterate = self.iterate(state);
+        for (contact, role) in self.roles.iter().enumerate() {
+            if let Role::Plane { .. } = role {
+                let normal = self.loading.frame(contact, &iterate.state).normal;
+                let traction = iterate.state.reactions[contact].tangential;
+                let traction = add(&traction, -dot(&traction, &normal), &normal);
+                iterate.directions[contact] = track::direction_of(&traction, &iterate.directions[contact]);
+            }
+        }
+        self.judged_as_state(iterate, &[], force_scale)
+    }
+
+    /// The same of an iterate, without the equations in some rows.
+    pub(super) fn judged_as_state(&self, mut iterate: Iterate, without: &[usize], force_scale: f64) -> Corrected {
         self.make_consistent(&mut iterate);
         let mut left_over = DVector::zeros(self.size);
         let mut force = vec![0.0; self.loading.structure.freedoms()];
         let (largest, forces) = self.residual(&iterate, &mut left_over, &mut force);
-        let geometric = left_over.iter().skip(self.loading.structure.unknowns()).fold(0.0_f64, |m, v| m.max(v.abs()));
+        let geometric = (self.loading.structure.unknowns()..left_over.len())
+            .filter(|row| !without.contains(row))
+            .fold(0.0_f64, |largest, row| largest.max(left_over[row].abs()));
         let residual = (largest / forces.max(force_scale).max(f64::MIN_POSITIVE)).max(geometric);
         self.share(&mut iterate.state);
         Corrected {
@@ -172,6 +226,13 @@ impl ModeSystem<'_> {
             left_over,
             force_scale: forces,
         }
+    }
+}
+
+impl ModeSystem<'_> {
+    /// How far the chords of slips in planes are from where their directions would have them, in these rows.
+    pub(super) fn off_track(&self, corrected: &Corrected, rows: &[usize]) -> f64 {
+        rows.iter().fold(0.0, |largest, row| largest.max(corrected.left_over[*row].abs()))
     }
 }
 

@@ -2,8 +2,9 @@
 //!
 //! Lengths are divided by `displacement_scale` `ℓ`, forces by `force_scale` `φ`, each stage's load factor by its
 //! `load_scale` `σ`; a pattern `f` becomes `f σ/φ`. By default `ℓ` is the longest bar and `φ` the smallest axial
-//! stiffness; without bars, `φ` is the largest force of any stage, or the largest spring stiffness (Frobenius norm) times
-//! the largest prescribed motion if that is more, and `ℓ` that force over that stiffness.
+//! stiffness; without bars, `φ` is the largest force of any stage at the load factor at which the stage is to end (1 where
+//! it names none), or the largest spring stiffness (Frobenius norm) times the largest prescribed motion if that is more,
+//! and `ℓ` that force over that stiffness.
 //! `σ` is the smaller of `φ / max |f|` and `ℓ / max |motion|`. All follow the units of the input, so that a change of units changes nothing but round-off.
 
 use super::corner::Corner;
@@ -267,6 +268,12 @@ fn norm(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum::<f64>().sqrt()
 }
 
+/// The load factor at which a stage is to end, if it says so; else 1.
+fn expected_load_factor(stage: &request::Stage) -> f64 {
+    let bounds = stage.until.iter().flat_map(|until| [until.load_above, until.load_below]);
+    bounds.flatten().map(f64::abs).reduce(f64::max).unwrap_or(1.0)
+}
+
 /// `ℓ` and `φ`.
 fn scales(model: &Model, analysis: &Analysis) -> (f64, f64) {
     let (mut longest, mut softest, mut spring) = (0.0_f64, f64::INFINITY, 0.0_f64);
@@ -283,11 +290,16 @@ fn scales(model: &Model, analysis: &Analysis) -> (f64, f64) {
             }
         }
     }
-    let loads = model.stages.iter().flat_map(|stage| stage.forces.values());
-    let largest_load = loads.fold(0.0_f64, |largest, force| largest.max(norm(force)));
-    let motions =
-        model.stages.iter().flat_map(|stage| stage.displacements.values().chain(stage.obstacle_motion.values()));
-    let largest_motion = motions.fold(0.0_f64, |largest, motion| largest.max(norm(motion)));
+    let (mut largest_load, mut largest_motion) = (0.0_f64, 0.0_f64);
+    for stage in &model.stages {
+        let factor = expected_load_factor(stage);
+        for force in stage.forces.values() {
+            largest_load = largest_load.max(factor * norm(force));
+        }
+        for motion in stage.displacements.values().chain(stage.obstacle_motion.values()) {
+            largest_motion = largest_motion.max(factor * norm(motion));
+        }
+    }
     let (mut length, mut force) = if longest > 0.0 {
         (longest, softest)
     } else if spring > 0.0 && largest_load.max(spring * largest_motion) > 0.0 {
@@ -307,11 +319,7 @@ fn scales(model: &Model, analysis: &Analysis) -> (f64, f64) {
 
 fn build_structure(model: &Model, numbers: &HashMap<&str, usize>, length: f64, force: f64) -> Structure {
     let dimension = model.dimension;
-    // Measured from the first node: a place far from the origin costs no digits.
-    let origin = model.nodes.values().next().cloned().unwrap_or_default();
-    let local = |node: &Vec<f64>| -> Vec<f64> { node.iter().zip(&origin).map(|(x, x0)| (x - x0) / length).collect() };
-    let reference: Vec<f64> = model.nodes.values().flat_map(local).collect();
-    let mut supported = vec![false; reference.len()];
+    let mut supported = vec![false; model.nodes.len() * dimension];
     for (name, components) in &model.supports {
         for component in components {
             supported[numbers[name.as_str()] * dimension + component.index()] = true;
@@ -323,13 +331,14 @@ fn build_structure(model: &Model, numbers: &HashMap<&str, usize>, length: f64, f
         .map(|element| match element {
             request::Element::Bar { nodes, axial_stiffness, rest_length, prestress, strain } => {
                 let nodes = [numbers[nodes[0].as_str()], numbers[nodes[1].as_str()]];
-                let squared: f64 = (0..dimension)
-                    .map(|k| reference[nodes[1] * dimension + k] - reference[nodes[0] * dimension + k])
-                    .map(|value| value * value)
-                    .sum();
+                let mut vector = [0.0; 3];
+                // A difference of places as given: a place far from the origin costs no digits.
+                (0..dimension).for_each(|k| vector[k] = (model.nodes[nodes[1]][k] - model.nodes[nodes[0]][k]) / length);
+                let squared: f64 = vector.iter().map(|value| value * value).sum();
                 let rest = rest_length.map_or(squared.sqrt(), |rest| rest / length);
                 Element::Bar(Bar {
                     nodes,
+                    reference: vector,
                     axial_stiffness: axial_stiffness / force,
                     rest_length: rest,
                     initial_elongation: squared.sqrt() - rest,
@@ -352,7 +361,7 @@ fn build_structure(model: &Model, numbers: &HashMap<&str, usize>, length: f64, f
             }
         })
         .collect();
-    Structure::new(dimension, reference, &supported, elements)
+    Structure::new(dimension, &supported, elements)
 }
 
 /// The contacts that are solved for, and those of the request.

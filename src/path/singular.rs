@@ -6,22 +6,27 @@
 //!   and changes sign exactly where an odd number of branches' null vectors joins (H. B. Keller, in: Applications of
 //!   Bifurcation Theory, Academic Press 1977, 359). It comes with the factorisation that gives the direction, and holds
 //!   for unsymmetric matrices (frictional slip) as well.
-//! * where the mode has no frictional slip, the number of negative eigenvalues of the tangent reduced to the motions
+//! * the number of negative eigenvalues of the tangent reduced to the motions
 //!   that the mode allows, `Zᵀ K Z` with `Z` a basis of the null space of the closed contacts' equations (Sylvester's
 //!   law: any basis will do). It sees two eigenvalues cross together, where the determinant keeps its sign. At a limit
 //!   point it changes by one; the determinant tells that change from a bifurcation's.
 //!
-//! In a mode with frictional slip two eigenvalues that cross at once are not seen. Nor are, in any mode, eigenvalues
-//! that cross one step to and fro, nor those within the first step from a singular start. Modes with slip in a plane,
-//! whose direction is an unknown of the increment, are not watched.
+//! Contacts that touch without reaction all along a step do nothing to the path in whatever mode, but hold back what may
+//! leave it: the mode in which they are free is watched as well.
+//!
+//! In a mode with frictional slip the eigenvalues are those of the structure with the slipping contacts held: two that
+//! cross at once are seen where their motions do not move these contacts. Others are not. Nor are, in any mode,
+//! eigenvalues that cross one step to and fro, nor those within the first step from a singular start. Under slip in a plane the
+//! determinant changes its sign also where the direction is not determined (`folded`).
 
 use super::advance::{Reached, Start, Work};
 use super::directions::RANK;
 use super::loading::Loading;
 use super::mode_system::ModeSystem;
+use super::standing::ZERO;
 use super::state::{Rate, State};
 use super::watch::Watch;
-use crate::contact::Mode;
+use crate::contact::{Contact, Mode};
 use crate::linear_algebra::{Determinant, determinant, inertia, null_space};
 use crate::structure::element::Element;
 use nalgebra::{DMatrix, DVector};
@@ -54,26 +59,40 @@ pub const UNCERTAIN: f64 = 1e-10;
 /// Pivots below this fraction of the largest entry count as zero.
 const ZERO_PIVOT: f64 = 1e-13;
 
-/// The tangent reduced to the motions that the mode allows. `None` where the mode's matrix is unsymmetric, where fewer
-/// than two motions remain (the determinant says all), and where the tangent cannot change.
-pub fn reduced_tangent(
-    system: &ModeSystem<'_>,
-    loading: Loading<'_>,
-    modes: &[Mode],
-    state: &State,
-) -> Option<DMatrix<f64>> {
-    let slips = |(mode, contact): (&Mode, &crate::contact::Contact)| {
-        matches!(mode, Mode::Slip { .. }) && contact.tangents() > 0
-    };
+/// Whether some contact slips with friction.
+fn slips(loading: Loading<'_>, modes: &[Mode]) -> bool {
+    let slips = |(mode, contact): (&Mode, &Contact)| matches!(mode, Mode::Slip { .. }) && contact.tangents() > 0;
+    modes.iter().zip(loading.contacts).any(slips)
+}
+
+/// The tangent whose negative eigenvalues are counted: reduced to the motions that the mode allows, those of contacts
+/// that slip with friction left out. `None` where fewer than two motions remain (the determinant says all), and where the
+/// tangent cannot change.
+pub fn counted_tangent(loading: Loading<'_>, modes: &[Mode], start: &State, state: &State) -> Option<DMatrix<f64>> {
     let unknowns = loading.structure.unknowns();
     if unknowns < 2
         || (loading.structure.elements.iter().all(Element::is_linear)
             && !loading.contacts.iter().any(|contact| contact.obstacle.is_curved()))
-        || modes.iter().zip(loading.contacts).any(slips)
     {
         return None;
     }
+    if !slips(loading, modes) {
+        return reduced_tangent(&ModeSystem::new(loading, modes, start), loading, state);
+    }
+    let held: Vec<Mode> = modes
+        .iter()
+        .zip(loading.contacts)
+        .map(|(mode, contact)| if mode.is_active() && contact.tangents() > 0 { Mode::Stick } else { *mode })
+        .collect();
+    reduced_tangent(&ModeSystem::new(loading, &held, state), loading, state)
+}
+
+fn reduced_tangent(system: &ModeSystem<'_>, loading: Loading<'_>, state: &State) -> Option<DMatrix<f64>> {
+    let unknowns = loading.structure.unknowns();
     let constraints = system.size() - 1 - unknowns;
+    if constraints + 2 > unknowns {
+        return None;
+    }
     let matrix = system.matrix(state);
     let tangent = matrix.view((0, 0), (unknowns, unknowns));
     if constraints == 0 {
@@ -85,6 +104,23 @@ pub fn reduced_tangent(
     Some((&reduced + reduced.transpose()) * 0.5)
 }
 
+/// The modes of a step with every contact free that touches without reaction at both of its ends; `None` where there is
+/// none. Free or closed, such a contact lets the path go the same way, but a branch may leave it.
+pub fn loosened(start: &Start<'_>, reached: &Reached) -> Option<Vec<Mode>> {
+    let touches = |state: &State, contact: usize| {
+        let zero = ZERO * start.force_scale.max(reached.corrected.force_scale);
+        state.reactions[contact].size() <= zero && start.loading.gap(contact, state) <= ZERO
+    };
+    let grazes = |(contact, mode): &(usize, &Mode)| {
+        mode.is_active() && touches(start.state, *contact) && touches(&reached.corrected.state, *contact)
+    };
+    let mut loose = start.modes.to_vec();
+    for (contact, _) in start.modes.iter().enumerate().filter(grazes) {
+        loose[contact] = Mode::Free;
+    }
+    (loose != start.modes).then_some(loose)
+}
+
 impl Signature {
     /// At a point whose bordered determinant's sign is known; `None` where the reduced tangent is singular.
     pub fn with_determinant(
@@ -94,20 +130,29 @@ impl Signature {
         state: &State,
         sign: f64,
     ) -> Option<Self> {
-        let system = ModeSystem::new(loading, modes, start);
-        let negative = match reduced_tangent(&system, loading, modes, state) {
+        let negative = match counted_tangent(loading, modes, start, state) {
             Some(tangent) => Some(inertia(tangent, ZERO_PIVOT)?.negative),
             None => None,
         };
         Some(Self { determinant: sign, negative })
     }
 
+    /// Just past a point where so many eigenvalues cross, from the signature before it.
+    pub fn past(self, change: Change, eigenvalues: usize) -> Option<Self> {
+        let turns = if eigenvalues % 2 == 1 { -1.0 } else { 1.0 };
+        let negative = match (change, self.negative) {
+            (Change::Count { net, .. }, Some(negative)) => {
+                let by = isize::try_from(eigenvalues).ok()?;
+                Some(negative.checked_add_signed(if net > 0 { by } else { -by })?)
+            }
+            _ => None,
+        };
+        Some(Self { determinant: turns * self.determinant, negative })
+    }
+
     /// At a point from which a step is to start; `None` where the equations are singular.
     pub fn at(loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate, work: &mut Work) -> Option<Self> {
         let system = ModeSystem::new(loading, modes, state);
-        if system.has_tracks() {
-            return None;
-        }
         work.factorisations += 1;
         let determinant = bordered_determinant(&system, loading, state, rate)?;
         if determinant.pivot_ratio <= UNCERTAIN {
@@ -165,6 +210,17 @@ pub fn compare(start: &Start<'_>, before: Signature, reached: &Reached) -> (Opti
         return (Some(after), if odd { Change::Odd } else { Change::None });
     };
     let mut net = last as isize - first as isize;
+    if slips(start.loading, start.modes) {
+        // The count is of the structure with these contacts held. It tells of two at once; where an odd number crosses,
+        // the determinant knows where.
+        let change = match (odd, net) {
+            (true, _) => Change::Odd,
+            (false, 0) => Change::None,
+            (false, _) if net % 2 == 0 => Change::Count { before: first, net },
+            (false, _) => Change::None,
+        };
+        return (Some(after), change);
+    }
     if let Some(Watch::LoadRate { sign }) = reached.event {
         // K u̇ = ṡ f: the eigenvalue that vanishes at the limit point goes the way of the load, times the sign of f·u̇.
         let system = ModeSystem::new(start.loading, start.modes, start.state);

@@ -14,7 +14,7 @@ use super::stop::StopReason;
 use super::totals::{Added, NO_ENERGY};
 use super::tracer::Path;
 use super::watch::Watch;
-use crate::contact::all_continue;
+use crate::contact::{Mode, all_continue};
 use crate::model::request::Method;
 
 /// The turn of the path (radians) that a step aims at.
@@ -52,8 +52,52 @@ fn quantised(factor: f64) -> f64 {
     ((factor.log2() * 8.0).floor() / 8.0).exp2()
 }
 
-/// Ends a step at the first smooth bifurcation in it; with the signs past its end.
+/// Ends a step at the first smooth bifurcation in it, of its own mode or of that in which contacts that touch without
+/// reaction all along are free; with the signs past its end.
 fn first_crossing(
+    start: &Start<'_>,
+    before: Option<Signature>,
+    reached: Reached,
+    may_refuse: bool,
+    work: &mut Work,
+) -> Result<(Reached, Option<Crossing>, Option<Signature>), Refused> {
+    let (reached, crossing, after) = crossing_in_mode(start, before, reached, may_refuse, work)?;
+    match singular::loosened(start, &reached).and_then(|loose| crossing_when_loose(start, &loose, &reached, work)) {
+        Some((point, crossing)) => Ok((point, Some(crossing), before)),
+        None => Ok((reached, crossing, after)),
+    }
+}
+
+/// The first smooth bifurcation of a step in looser modes.
+fn crossing_when_loose(
+    start: &Start<'_>,
+    loose: &[Mode],
+    reached: &Reached,
+    work: &mut Work,
+) -> Option<(Reached, Crossing)> {
+    let loosened = Start { modes: loose, ..*start };
+    let before = Signature::at(start.loading, loose, start.state, start.rate, work)?;
+    let mut end = loosened.reach_near(reached.corrected.state.clone(), reached.step, work).ok()?;
+    end.event = reached.event;
+    let (_, change) = singular::compare(&loosened, before, &end);
+    if change == Change::None {
+        return None;
+    }
+    let (mut point, crossing) = critical::locate(&loosened, before, change, &end, work)?;
+    if point.step >= reached.step || crossing.eigenvalues == 0 {
+        return None;
+    }
+    for (contact, mode) in point.corrected.modes.iter_mut().enumerate() {
+        if loose[contact] != start.modes[contact] {
+            *mode = start.modes[contact];
+        }
+    }
+    point.corrected.iterations_to_small = reached.corrected.iterations_to_small;
+    Some((point, Crossing { grazing: true, ..crossing }))
+}
+
+/// Ends a step at the first smooth bifurcation in its own mode.
+fn crossing_in_mode(
     start: &Start<'_>,
     before: Option<Signature>,
     reached: Reached,
@@ -75,10 +119,10 @@ fn first_crossing(
     if change == Change::None {
         return Ok((reached, None, after));
     }
-    match critical::locate(start, change, &reached, work) {
-        Some((mut point, crossing)) if point.step < reached.step => {
+    match critical::locate(start, before, change, &reached, work) {
+        Some((mut point, crossing)) if point.step < reached.step || crossing.eigenvalues == 0 => {
             point.corrected.iterations_to_small = reached.corrected.iterations_to_small;
-            Ok((point, Some(crossing), crossing.after))
+            Ok((point, Some(crossing), Some(crossing.after)))
         }
         Some(_) => Ok((reached, None, Some(before))),
         None if may_refuse => Err(Refused::Unresolved),

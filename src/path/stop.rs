@@ -30,6 +30,8 @@ pub enum StopReason {
     ContactViolated,
     /// More contact modes than `max_modes` would have to be examined to go on.
     ModeLimit,
+    /// Several nodes that touch in space without reaction may begin to slip at once, and no such direction was found.
+    SlipsNotFound,
     /// The caller asked for it.
     Cancelled,
 }
@@ -56,7 +58,8 @@ impl StopReason {
             | Self::Degenerate
             | Self::CornerNotAvailable
             | Self::ContactViolated
-            | Self::ModeLimit => Outcome::Stopped,
+            | Self::ModeLimit
+            | Self::SlipsNotFound => Outcome::Stopped,
         }
     }
 
@@ -81,6 +84,10 @@ impl StopReason {
                 "no step of at least arc_length.min leads to a point that keeps to the laws of contact and friction"
             }
             Self::ModeLimit => "more contact modes than max_modes would have to be examined to go on",
+            Self::SlipsNotFound => {
+                "several nodes that touch in space without reaction may begin to slip at once, and no direction in which \
+                 they do was found"
+            }
             Self::Cancelled => "cancelled",
         }
     }

@@ -8,8 +8,8 @@
 //!
 //! For a given angle of `d` all but `d⊥·Ṙ_t = 0` are linear forms; the rays under them are found as any others, and the
 //! angles at which the remaining form vanishes on one of them by scanning the circle and Chandrupatla's method. With one
-//! such node this finds every slip that a scan of the circle tells apart. Of several, each is taken to begin to slip
-//! while the others stick or leave; that is counted as not explored.
+//! such node this finds every slip that a scan of the circle tells apart. Of several, each is taken here to begin to
+//! slip while the others stick or leave; `together` finds those that begin at once.
 
 use super::rates::{self, Choice, Entity, RateProblem, Ray, Signed};
 use super::root::find_root;
@@ -18,39 +18,29 @@ use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
 /// Angles at which the circle is scanned.
-const SECTORS: usize = 64;
+pub(super) const SECTORS: usize = 64;
 /// Least cosine between the motions of rays at neighbouring angles that belong together.
 const TOGETHER: f64 = 0.9;
 /// Misfit (over the force rates) at which an angle is a root.
 const ROOT: f64 = 1e-9;
 
-/// A ray whose contact begins to slip.
+/// A ray along which entities begin to slip.
 pub(super) struct Turning {
     pub ray: Ray,
-    /// Components of the direction along the two tangents.
-    pub direction: [f64; 2],
+    /// The entities, with the components of their directions along their two tangents.
+    pub slips: Vec<(usize, [f64; 2])>,
 }
 
-/// Forms of the touching entity, as [normal, first tangent, second tangent].
-struct Touch {
-    entity: usize,
-    velocities: [usize; 3],
-    forces: [usize; 3],
-    friction: f64,
+/// Forms of a touching entity, as [normal, first tangent, second tangent].
+pub(super) struct Touch {
+    pub entity: usize,
+    pub velocities: [usize; 3],
+    pub forces: [usize; 3],
+    pub friction: f64,
 }
 
-/// All rays along which the entity, whose options are stick and free, slips instead.
-pub(super) fn slips(
-    problem: &RateProblem,
-    entity: usize,
-    friction: f64,
-    most: u64,
-    cancel: &CancelFlag,
-) -> Vec<Turning> {
-    let [stick, free] = &problem.entities[entity].options[..] else { return Vec::new() };
-    let three = |forms: &[usize]| <[usize; 3]>::try_from(forms).ok();
-    let (Some(velocities), Some(forces)) = (three(&stick.zero), three(&free.zero)) else { return Vec::new() };
-    let touch = Touch { entity, velocities, forces, friction };
+/// All rays along which a touching entity slips while the others take one of their options.
+pub(super) fn slips(problem: &RateProblem, touch: &Touch, most: u64, cancel: &CancelFlag) -> Vec<Turning> {
     let mut found: Vec<Turning> = Vec::new();
     let mut before: Vec<(Ray, f64)> = Vec::new();
     for sector in 0..=SECTORS {
@@ -95,6 +85,13 @@ fn cosine(problem: &RateProblem, first: &Ray, second: &Ray) -> f64 {
 }
 
 impl Touch {
+    /// Of an entity whose options are stick and free.
+    pub fn of(problem: &RateProblem, entity: usize, friction: f64) -> Option<Self> {
+        let [stick, free] = &problem.entities[entity].options[..] else { return None };
+        let three = |forms: &[usize]| <[usize; 3]>::try_from(forms).ok();
+        Some(Self { entity, velocities: three(&stick.zero)?, forces: three(&free.zero)?, friction })
+    }
+
     /// The rays for one angle, and how far the traction is from the direction, over the size of the force rates.
     fn rays(&self, problem: &RateProblem, angle: f64, most: u64, cancel: &CancelFlag) -> Vec<(Ray, f64)> {
         let (sine, cosine) = angle.sin_cos();
@@ -144,7 +141,7 @@ impl Touch {
     fn keep(&self, found: &mut Vec<Turning>, problem: &RateProblem, ray: Ray, angle: f64) {
         let known = |one: &Turning| one.ray.chosen() == ray.chosen() && cosine(problem, &one.ray, &ray) > 1.0 - 1e-12;
         if !found.iter().any(known) {
-            found.push(Turning { ray, direction: [angle.cos(), angle.sin()] });
+            found.push(Turning { ray, slips: vec![(self.entity, [angle.cos(), angle.sin()])] });
         }
     }
 }

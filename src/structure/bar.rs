@@ -11,12 +11,15 @@
 //! `N = ∂W/∂L` is the axial force in the deformed direction `d`; the tangent is `N' d dᵀ + (N/L)(I - d dᵀ)`.
 //! (Crisfield, *Non-linear Finite Element Analysis of Solids and Structures* 1, Wiley 1991, chapter 3.)
 
-use super::Structure;
+use super::{Stretching, Structure};
 use crate::model::request::Strain;
 
 #[derive(Debug, Clone)]
 pub struct Bar {
     pub nodes: [usize; 2],
+    /// Undeformed vector from the first node to the second; from the places as given, so that close nodes far from the
+    /// origin keep their digits.
+    pub reference: [f64; 3],
     pub axial_stiffness: f64,
     pub rest_length: f64,
     /// Undeformed distance of the nodes minus the rest length; kept apart so that small strains lose no digits.
@@ -25,6 +28,7 @@ pub struct Bar {
     pub strain: Strain,
 }
 
+#[derive(Clone, Copy)]
 struct Deformed {
     direction: [f64; 3],
     length: f64,
@@ -40,7 +44,7 @@ impl Bar {
         let mut direction = [0.0; 3];
         let (mut squared, mut reference_squared, mut change) = (0.0, 0.0, 0.0);
         for component in 0..dimension {
-            let reference = structure.reference[second + component] - structure.reference[first + component];
+            let reference = self.reference[component];
             let relative = displacement[second + component] - displacement[first + component];
             direction[component] = reference + relative;
             squared += direction[component] * direction[component];
@@ -95,7 +99,41 @@ impl Bar {
     pub fn add_stiffness(&self, structure: &Structure, displacement: &[f64], add: &mut dyn FnMut(usize, usize, f64)) {
         let deformed = self.deformed(structure, displacement);
         let (_, axial, slope) = self.response(deformed.elongation);
-        let geometric = axial / deformed.length;
+        self.add_parts(structure, &deformed, slope, axial / deformed.length, add);
+    }
+
+    /// `(N/L)(I - d dᵀ)` alone.
+    pub fn add_stiffness_across(
+        &self,
+        structure: &Structure,
+        displacement: &[f64],
+        add: &mut dyn FnMut(usize, usize, f64),
+    ) {
+        let deformed = self.deformed(structure, displacement);
+        let (_, axial, _) = self.response(deformed.elongation);
+        self.add_parts(structure, &deformed, 0.0, axial / deformed.length, add);
+    }
+
+    /// `N' d dᵀ`
+    pub fn stretching(&self, structure: &Structure, displacement: &[f64]) -> Option<Stretching> {
+        let deformed = self.deformed(structure, displacement);
+        let (_, _, stiffness) = self.response(deformed.elongation);
+        let end = |node: usize, sign: f64| {
+            (0..structure.dimension)
+                .map(move |component| (node * structure.dimension + component, sign * deformed.direction[component]))
+        };
+        let along = end(self.nodes[0], -1.0).chain(end(self.nodes[1], 1.0)).collect();
+        (stiffness != 0.0).then_some(Stretching { stiffness, along })
+    }
+
+    fn add_parts(
+        &self,
+        structure: &Structure,
+        deformed: &Deformed,
+        slope: f64,
+        geometric: f64,
+        add: &mut dyn FnMut(usize, usize, f64),
+    ) {
         let dimension = structure.dimension;
         let (first, second) = (self.nodes[0] * dimension, self.nodes[1] * dimension);
         for row in 0..dimension {
@@ -109,6 +147,17 @@ impl Bar {
                 add(second + row, first + column, -value);
             }
         }
+    }
+
+    /// What the rounding of the displacements puts into the nodal forces, added to each component.
+    pub fn add_rounding(&self, structure: &Structure, displacement: &[f64], rounding: &mut [f64]) {
+        let deformed = self.deformed(structure, displacement);
+        let (_, axial, slope) = self.response(deformed.elongation);
+        let dimension = structure.dimension;
+        let freedoms = || self.nodes.iter().flat_map(|node| node * dimension..(node + 1) * dimension);
+        let reach = freedoms().fold(0.0_f64, |reach, freedom| reach.max(displacement[freedom].abs()));
+        let stiffness = slope.abs() + axial.abs() / deformed.length;
+        freedoms().for_each(|freedom| rounding[freedom] += f64::EPSILON * stiffness * reach);
     }
 
     pub fn energy(&self, structure: &Structure, displacement: &[f64]) -> f64 {

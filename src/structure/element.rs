@@ -1,6 +1,6 @@
 //! The kinds of elements, and what each must be able to do.
 
-use super::{Structure, bar::Bar, spring::Spring};
+use super::{Stretching, Structure, bar::Bar, spring::Spring};
 
 /// One element.
 #[derive(Debug, Clone)]
@@ -18,12 +18,42 @@ impl Element {
         }
     }
 
+    /// Adds what the rounding of the displacements puts into the element's nodal forces.
+    pub fn add_rounding(&self, structure: &Structure, displacement: &[f64], rounding: &mut [f64]) {
+        match self {
+            Self::Bar(bar) => bar.add_rounding(structure, displacement, rounding),
+            Self::Spring(spring) => spring.add_rounding(structure, displacement, rounding),
+        }
+    }
+
     /// Calls `add(row, column, value)` for every entry of the element's tangent, rows and columns being degrees of
     /// freedom.
     pub fn add_stiffness(&self, structure: &Structure, displacement: &[f64], add: &mut dyn FnMut(usize, usize, f64)) {
         match self {
             Self::Bar(bar) => bar.add_stiffness(structure, displacement, add),
             Self::Spring(spring) => spring.add_stiffness(structure, add),
+        }
+    }
+
+    /// The element's tangent without what [`Self::stretching`] lists.
+    pub fn add_stiffness_across(
+        &self,
+        structure: &Structure,
+        displacement: &[f64],
+        add: &mut dyn FnMut(usize, usize, f64),
+    ) {
+        match self {
+            Self::Bar(bar) => bar.add_stiffness_across(structure, displacement, add),
+            Self::Spring(spring) if spring.other.is_some() => {}
+            Self::Spring(spring) => spring.add_stiffness(structure, add),
+        }
+    }
+
+    /// The summands `k c cᵀ` of the tangent by which the element resists being stretched; none for springs to the ground.
+    pub fn stretching(&self, structure: &Structure, displacement: &[f64]) -> Vec<Stretching> {
+        match self {
+            Self::Bar(bar) => bar.stretching(structure, displacement).into_iter().collect(),
+            Self::Spring(spring) => spring.stretching(structure),
         }
     }
 

@@ -14,12 +14,19 @@ pub mod spring;
 use element::Element;
 use nalgebra::DMatrix;
 
+/// A summand `k c cᵀ` of the tangent: the stiffness `k` against motions along `c`.
+#[derive(Debug, Clone)]
+pub struct Stretching {
+    /// Not zero.
+    pub stiffness: f64,
+    /// Entries of `c`, one a degree of freedom.
+    pub along: Vec<(usize, f64)>,
+}
+
 /// A checked structure. Degrees of freedom are numbered node by node: `node * dimension + component`.
 #[derive(Debug, Clone)]
 pub struct Structure {
     pub dimension: usize,
-    /// Undeformed coordinates, one a degree of freedom.
-    pub reference: Vec<f64>,
     /// The unknown of each degree of freedom; `None` where it is supported.
     pub unknown_of: Vec<Option<usize>>,
     /// The degree of freedom of each unknown.
@@ -28,8 +35,8 @@ pub struct Structure {
 }
 
 impl Structure {
-    pub fn new(dimension: usize, reference: Vec<f64>, supported: &[bool], elements: Vec<Element>) -> Self {
-        let mut unknown_of = vec![None; reference.len()];
+    pub fn new(dimension: usize, supported: &[bool], elements: Vec<Element>) -> Self {
+        let mut unknown_of = vec![None; supported.len()];
         let mut freedom_of = Vec::new();
         for (freedom, held) in supported.iter().enumerate() {
             if !held {
@@ -37,7 +44,7 @@ impl Structure {
                 freedom_of.push(freedom);
             }
         }
-        Self { dimension, reference, unknown_of, freedom_of, elements }
+        Self { dimension, unknown_of, freedom_of, elements }
     }
 
     /// Number of unknown displacements.
@@ -47,7 +54,7 @@ impl Structure {
 
     /// Number of degrees of freedom, supported ones included.
     pub fn freedoms(&self) -> usize {
-        self.reference.len()
+        self.unknown_of.len()
     }
 
     /// Writes `f_int(u)` over all degrees of freedom and returns the largest force any element carries.
@@ -58,6 +65,16 @@ impl Structure {
             largest = largest.max(element.add_force(self, displacement, force));
         }
         largest
+    }
+
+    /// What the rounding of the displacements puts into `f_int(u)`, one bound a degree of freedom: stiffness times unit
+    /// round-off times the displacements that meet there. No state can be closer to equilibrium than this.
+    pub fn rounding(&self, displacement: &[f64]) -> Vec<f64> {
+        let mut rounding = vec![0.0; self.freedoms()];
+        for element in &self.elements {
+            element.add_rounding(self, displacement, &mut rounding);
+        }
+        rounding
     }
 
     /// Calls `add(row, column, value)` for every entry of every element's tangent; rows and columns are degrees of
@@ -75,6 +92,18 @@ impl Structure {
                 matrix[(row, column)] += value;
             }
         });
+    }
+
+    /// Calls `add` for every entry of every element's tangent without the parts that [`Self::stretching`] lists.
+    pub fn each_stiffness_across(&self, displacement: &[f64], add: &mut dyn FnMut(usize, usize, f64)) {
+        for element in &self.elements {
+            element.add_stiffness_across(self, displacement, add);
+        }
+    }
+
+    /// The summands `k c cᵀ` of the tangent by which elements resist being stretched, `c` over degrees of freedom.
+    pub fn stretching(&self, displacement: &[f64]) -> Vec<Stretching> {
+        self.elements.iter().flat_map(|element| element.stretching(self, displacement)).collect()
     }
 
     /// The smallest stretch `L/L0` of any bar; infinite without bars.

@@ -1,7 +1,8 @@
 //! A constant symmetric stiffness matrix between a node and the ground, or between two nodes: `f = K Δu`,
 //! `W = ½ Δuᵀ K Δu`. It does not follow rotation.
 
-use super::Structure;
+use super::{Stretching, Structure};
+use nalgebra::DMatrix;
 
 #[derive(Debug, Clone)]
 pub struct Spring {
@@ -60,6 +61,43 @@ impl Spring {
                     add(node + row, other + column, -value);
                     add(other + row, node + column, -value);
                 }
+            }
+        }
+    }
+
+    /// Between two nodes `K = Σ k v vᵀ` over its eigenvectors, each a resistance of its own.
+    pub fn stretching(&self, structure: &Structure) -> Vec<Stretching> {
+        let dimension = structure.dimension;
+        let Some(other) = self.other else { return Vec::new() };
+        let matrix = DMatrix::from_fn(dimension, dimension, |row, column| self.stiffness[row][column]);
+        let eigen = matrix.symmetric_eigen();
+        let along = |vector: usize| {
+            let entry = |node: usize, component: usize, sign: f64| {
+                (node * dimension + component, sign * eigen.eigenvectors[(component, vector)])
+            };
+            let ends = [(self.node, 1.0), (other, -1.0)];
+            ends.into_iter()
+                .flat_map(|(node, sign)| (0..dimension).map(move |component| entry(node, component, sign)))
+                .collect()
+        };
+        let resists = |vector: &usize| eigen.eigenvalues[*vector] != 0.0;
+        (0..dimension)
+            .filter(resists)
+            .map(|vector| Stretching { stiffness: eigen.eigenvalues[vector], along: along(vector) })
+            .collect()
+    }
+
+    /// What the rounding of the displacements puts into the nodal forces, added to each component.
+    pub fn add_rounding(&self, structure: &Structure, displacement: &[f64], rounding: &mut [f64]) {
+        let dimension = structure.dimension;
+        let size = |component: usize| {
+            let at = |node: usize| displacement[node * dimension + component].abs();
+            f64::EPSILON * at(self.node).max(self.other.map_or(0.0, at))
+        };
+        for (row, stiffness) in self.stiffness.iter().enumerate().take(dimension) {
+            let force: f64 = (0..dimension).map(|column| stiffness[column].abs() * size(column)).sum();
+            for node in std::iter::once(self.node).chain(self.other) {
+                rounding[node * dimension + row] += force;
             }
         }
     }

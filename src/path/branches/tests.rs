@@ -46,8 +46,12 @@ fn followed(scene: &Scene) -> Vec<Vec<Increment>> {
         let mut path = Path::new(scene, CancelFlag::default());
         let point = path.by_ref().find(|i| i.point.kind == PointKind::SmoothBifurcation).unwrap();
         let tangent = path.at.here.rate.clone().unwrap();
-        let here = &path.at.here;
-        let found = super::branches(path.loading(), &here.modes, &here.state, &tangent, path.rules().force_scale);
+        let state = &path.at.here.state;
+        let standings = path.standings(state);
+        let (loading, force_scale) = (path.loading(), path.rules().force_scale);
+        let here = super::Here { loading, state, standings: &standings, force_scale };
+        let eigenvalues = if point.point.event.as_deref() == Some("one eigenvalue crosses zero") { 1 } else { 2 };
+        let found = super::branches(here, &path.at.here.modes, &tangent, eigenvalues);
         assert_eq!(found.options.len(), point.directions.unwrap().len());
         if all.len() == found.options.len() {
             return all;

@@ -44,6 +44,7 @@ impl OneBar {
         let length = (0..3).map(|k| (tip[k] - pin[k]).powi(2)).sum::<f64>().sqrt();
         let bar = Bar {
             nodes: [0, 1],
+            reference: [0, 1, 2].map(|k| tip[k] - pin[k]),
             axial_stiffness: 1.0,
             rest_length: length,
             initial_elongation: 0.0,
@@ -51,10 +52,9 @@ impl OneBar {
             strain: Strain::Engineering,
         };
         let supported = [true, true, true, false, false, false];
-        let reference = pin.into_iter().chain(tip).collect();
         let floor = Obstacle::Plane { normal: [0.0, 0.0, 1.0] };
         Self {
-            structure: Structure::new(3, reference, &supported, vec![Element::Bar(bar)]),
+            structure: Structure::new(3, &supported, vec![Element::Bar(bar)]),
             contacts: vec![Contact {
                 node: 1,
                 obstacle: floor,

@@ -30,9 +30,7 @@ impl Chain {
         let mut matrix = [[0.0; 3]; 3];
         (0..3).for_each(|k| matrix[k][k] = stiffness);
         let tie = |block: usize| Element::Spring(Spring { node: block, other: Some(block + 1), stiffness: matrix });
-        let reference = (0..blocks).flat_map(|block| [-(block as f64) * pull[0], -(block as f64) * pull[1], 0.0]);
-        let structure =
-            Structure::new(3, reference.collect(), &vec![false; 3 * blocks], (0..blocks - 1).map(tie).collect());
+        let structure = Structure::new(3, &vec![false; 3 * blocks], (0..blocks - 1).map(tie).collect());
         let floor = Obstacle::Plane { normal: [0.0, 0.0, 1.0] };
         let contact =
             |node| Contact { node, obstacle: floor.clone(), initial_gap: 0.0, friction, sliding: Sliding::Plane };

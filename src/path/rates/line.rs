@@ -29,7 +29,7 @@ pub enum Line {
 
 impl RateProblem {
     /// Arc length of a vector of weights.
-    pub(super) fn size(&self, weights: &DVector<f64>) -> f64 {
+    pub(in crate::path) fn size(&self, weights: &DVector<f64>) -> f64 {
         (&self.motion * weights).norm()
     }
 
@@ -65,7 +65,7 @@ impl RateProblem {
         }
     }
 
-    fn force_tolerance(&self, weights: &DVector<f64>) -> f64 {
+    pub(in crate::path) fn force_tolerance(&self, weights: &DVector<f64>) -> f64 {
         let largest = (&self.reactions * weights).amax();
         // Where no force changes, what is left is the rounding of the sums.
         let terms =
@@ -109,12 +109,12 @@ impl RateProblem {
 
     /// The options of each entity under which a ray of unit arc length, found under the chosen ones, is feasible. As
     /// every option speaks of its own entity only, the ray is feasible under every combination of them.
-    pub(super) fn fitting(&self, chosen: &[usize], weights: &DVector<f64>) -> Vec<Vec<usize>> {
+    pub(in crate::path) fn fitting(&self, chosen: &[usize], weights: &DVector<f64>) -> Vec<Vec<usize>> {
         self.within(WEAK, chosen, weights)
     }
 
     /// The same where what is small counts as zero.
-    pub(super) fn in_doubt(&self, chosen: &[usize], weights: &DVector<f64>) -> Vec<Vec<usize>> {
+    pub(in crate::path) fn in_doubt(&self, chosen: &[usize], weights: &DVector<f64>) -> Vec<Vec<usize>> {
         self.within(IN_DOUBT, chosen, weights)
     }
 
@@ -134,7 +134,7 @@ impl RateProblem {
 
     /// The entities whose inequalities a vector of weights violates under a combination: below zero by more
     /// than the weak tolerance.
-    pub(super) fn violated(&self, chosen: &[usize], weights: &DVector<f64>) -> Vec<usize> {
+    pub(in crate::path) fn violated(&self, chosen: &[usize], weights: &DVector<f64>) -> Vec<usize> {
         let force = self.force_tolerance(weights);
         let is_violated = |choice: &Choice| {
             choice.nonnegative.iter().any(|signed| {
@@ -146,7 +146,7 @@ impl RateProblem {
     }
 
     /// Whether some inequality of a ray of unit arc length holds with equality under the first of its options.
-    pub(super) fn is_weak(&self, fitting: &[Vec<usize>], weights: &DVector<f64>) -> bool {
+    pub(in crate::path) fn is_weak(&self, fitting: &[Vec<usize>], weights: &DVector<f64>) -> bool {
         let force = self.force_tolerance(weights);
         self.entities.iter().zip(fitting).any(|(entity, options)| {
             entity.options[options[0]].nonnegative.iter().any(|signed| {

@@ -41,4 +41,4 @@ pub(super) use tests::every_combination;
 pub use branch::{Ray, explore};
 pub use near::near;
 pub use problem::{Choice, Entity, RateProblem, Signed, Touching};
-pub use sweeps::sweeps;
+pub use sweeps::{Local, own_column, rising, sweeps};

@@ -27,40 +27,36 @@ const ROUND_OFF: f64 = 1e-12;
 /// The combinations that the sweeps settle on, for a rising and a falling load; none where the entities are not plain
 /// contacts or the sweeps do not settle.
 pub fn sweeps(problem: &RateProblem, cancel: &CancelFlag) -> Vec<Vec<usize>> {
-    let last = problem.weights() - 1;
-    let load = problem.motion.row(problem.motion.nrows() - 1);
-    let by_load = load[last] != 0.0 && (0..last).all(|column| load[column].abs() <= 1e-9 * load[last].abs());
     let Some(locals) = problem.entities.iter().map(|entity| Local::of(problem, entity)).collect::<Option<Vec<_>>>()
     else {
         return Vec::new();
     };
-    if !by_load {
-        return Vec::new();
-    }
+    let Some(rising) = rising(problem) else { return Vec::new() };
     let settled = |sign: f64| {
-        let from = sign * load[last].signum();
+        let from = sign * rising;
         RELAXATIONS.iter().find_map(|relaxation| settle(problem, &locals, from, *relaxation, cancel))
     };
     [1.0, -1.0].into_iter().filter_map(settled).collect()
 }
 
+/// The sign of the last weight for which the load rises; `None` where other weights change the load as well.
+pub fn rising(problem: &RateProblem) -> Option<f64> {
+    let last = problem.weights() - 1;
+    let load = problem.motion.row(problem.motion.nrows() - 1);
+    let alone = load[last] != 0.0 && (0..last).all(|column| load[column].abs() <= 1e-9 * load[last].abs());
+    alone.then(|| load[last].signum())
+}
+
 /// An entity with the columns of its velocities.
-enum Local {
+pub enum Local {
     Pair { force: usize, velocity: usize },
     Touching { forms: Touching, normal: usize, tangential: usize },
 }
 
 impl Local {
-    fn of(problem: &RateProblem, entity: &Entity) -> Option<Self> {
-        let own = |form: usize| {
-            let row = problem.forms.row(form);
-            // One up to the rounding of a frame that is not along the axes.
-            let mut filled = (0..row.len()).filter(|column| row[*column].abs() > ROUND_OFF);
-            match (filled.next(), filled.next()) {
-                (Some(column), None) if (row[column] - 1.0).abs() < ROUND_OFF => Some(column),
-                _ => None,
-            }
-        };
+    /// `None` where the entity is no plain contact.
+    pub fn of(problem: &RateProblem, entity: &Entity) -> Option<Self> {
+        let own = |form: usize| own_column(problem, form);
         match entity.touching {
             Some(forms) => Some(Self::Touching { forms, normal: own(forms.gap)?, tangential: own(forms.along)? }),
             None => {
@@ -81,7 +77,7 @@ impl Local {
     }
 
     /// Puts the entity's velocities where its own conditions hold; its option.
-    fn solve(&self, forms: &DMatrix<f64>, weights: &mut DVector<f64>) -> Option<usize> {
+    pub fn solve(&self, forms: &DMatrix<f64>, weights: &mut DVector<f64>) -> Option<usize> {
         let value = |form: usize, weights: &DVector<f64>| -> f64 {
             (0..weights.len()).map(|column| forms[(form, column)] * weights[column]).sum()
         };
@@ -130,6 +126,17 @@ impl Local {
     }
 }
 
+/// The weight that a velocity is.
+pub fn own_column(problem: &RateProblem, form: usize) -> Option<usize> {
+    let row = problem.forms.row(form);
+    // One up to the rounding of a frame that is not along the axes.
+    let mut filled = (0..row.len()).filter(|column| row[*column].abs() > ROUND_OFF);
+    match (filled.next(), filled.next()) {
+        (Some(column), None) if (row[column] - 1.0).abs() < ROUND_OFF => Some(column),
+        _ => None,
+    }
+}
+
 fn settle(
     problem: &RateProblem,
     locals: &[Local],
@@ -164,7 +171,8 @@ fn settle(
                 largest = largest.max(own.abs());
             }
         }
-        if !(largest <= GROWN * *first.get_or_insert(largest.max(f64::MIN_POSITIVE))) {
+        let most = GROWN * *first.get_or_insert(largest.max(f64::MIN_POSITIVE));
+        if !largest.is_finite() || largest > most {
             return None;
         }
         unchanged = if same { unchanged + 1 } else { 0 };
