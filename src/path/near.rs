@@ -305,7 +305,7 @@ mod tests {
             rows
         };
         let none = rows(0, true);
-        assert!(none.len() > 20 && none.iter().any(|row| row.contacts[1].normal_reaction > 0.0));
+        assert!(none.len() > 10 && none.iter().any(|row| row.contacts[1].normal_reaction > 0.0));
         for others in [rows(0, false), rows(30, false), rows(30, true)] {
             assert_eq!(others.len(), none.len());
             for (other, row) in others.iter().zip(&none) {
