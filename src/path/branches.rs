@@ -22,6 +22,7 @@
 //! Other modes of contacts that can change have branches of their own here where their equations are singular, too:
 //! `in_other_modes`.
 
+use super::combinations::{combinations, count};
 use super::confirm::confirm_by;
 use super::critical::SINGULAR;
 use super::decide::{Choice, potential_rate, sign_of};
@@ -131,8 +132,7 @@ pub fn in_other_modes(here: Here<'_>, modes: &[Mode], found: &mut Branches) {
             Standing::Settled(_) | Standing::Cornered { .. } => vec![*mode],
         })
         .collect();
-    let total = options.iter().fold(1u64, |total, options| total.saturating_mul(options.len() as u64));
-    found.unexplored = found.unexplored.saturating_add(total.saturating_sub(MOST_MODES));
+    found.unexplored = found.unexplored.saturating_add(count(&options).saturating_sub(MOST_MODES));
     // Of touches with friction only sticking is examined, and of corners nothing.
     let partly = here.standings.iter().zip(here.loading.contacts).filter(|(standing, contact)| match standing {
         Standing::Touching => contact.tangents() > 0,
@@ -140,16 +140,7 @@ pub fn in_other_modes(here: Here<'_>, modes: &[Mode], found: &mut Branches) {
         Standing::OnCone { .. } | Standing::Settled(_) => false,
     });
     found.unexplored = found.unexplored.saturating_add(partly.count() as u64);
-    for number in 0..total.min(MOST_MODES) {
-        let mut rest = number;
-        let chosen: Vec<Mode> = options
-            .iter()
-            .map(|options| {
-                let mode = options[(rest % options.len() as u64) as usize];
-                rest /= options.len() as u64;
-                mode
-            })
-            .collect();
+    for chosen in combinations(&options, MOST_MODES) {
         if chosen == modes {
             continue;
         }

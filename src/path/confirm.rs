@@ -7,6 +7,7 @@
 //! bound.
 
 use super::advance::MOST_TURN;
+use super::combinations;
 use super::directions::Candidate;
 use super::loading::Loading;
 use super::mode_system::ModeSystem;
@@ -84,26 +85,16 @@ pub(super) fn confirm_by(
             break;
         }
     }
-    let mut combinations = combinations(candidate);
+    let mut combinations = in_order(candidate);
     combinations.retain(|places| !tried.contains(places));
     combinations.iter().find_map(|places| trial.judge(places).ok())
 }
 
 /// The first combinations of alternatives, those with more sticking contacts first.
-fn combinations(candidate: &Candidate) -> Vec<Vec<usize>> {
-    let sizes = || candidate.alternatives.iter().map(|alternatives| alternatives.len() as u64);
-    let total = sizes().fold(1u64, u64::saturating_mul);
-    let numbered = |number: u64| {
-        let mut rest = number;
-        sizes()
-            .map(|size| {
-                let place = (rest % size) as usize;
-                rest /= size;
-                place
-            })
-            .collect::<Vec<usize>>()
-    };
-    let mut all: Vec<Vec<usize>> = (0..total.min(MOST_COMBINATIONS)).map(numbered).collect();
+fn in_order(candidate: &Candidate) -> Vec<Vec<usize>> {
+    let places: Vec<Vec<usize>> =
+        candidate.alternatives.iter().map(|alternatives| (0..alternatives.len()).collect()).collect();
+    let mut all: Vec<Vec<usize>> = combinations::combinations(&places, MOST_COMBINATIONS).collect();
     let sliding = |places: &Vec<usize>| {
         let modes = places.iter().zip(&candidate.alternatives).flat_map(|(&place, all)| &all[place]);
         modes.filter(|(_, mode)| *mode != Mode::Stick).count()

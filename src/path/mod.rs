@@ -14,6 +14,7 @@
 //! | `singular`, `critical`, `branches` | whether a step passes a smooth bifurcation; where; which directions leave it |
 //! | `folded` | points of slip in a plane at which the direction is not determined |
 //! | `standing`, `directions`, `condensed` | which contacts can change; every direction |
+//! | `combinations` | one of each of several lists, in one order |
 //! | `confirm`, `decide` | those that hold beyond first order; which one is taken |
 //! | `rates`, `turning`, `together` | all rays of a rate problem, linear forms only; slip whose direction is unknown, of one node and of several at once |
 //! | `program`, `naming` | the MPEC of an increment; where it names the mode |
@@ -28,6 +29,7 @@ mod arrival;
 mod branches;
 mod changeable;
 pub mod checkpoint;
+mod combinations;
 mod condensed;
 mod confirm;
 mod contact_law;

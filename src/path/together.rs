@@ -14,6 +14,7 @@
 //! contact alone would do, up to a bound. Where no contact feels another these are all directions; otherwise that is not
 //! claimed.
 
+use super::combinations::{combinations, count};
 use super::rates::{Local, RateProblem, Ray, Signed, own_column, rising};
 use super::root::find_root;
 use super::turning::{SECTORS, Touch, Turning};
@@ -30,7 +31,7 @@ pub(super) struct AtOnce {
 }
 
 /// Combinations of what each contact alone would do from which the sweeps start.
-const MOST_STARTS: usize = 64;
+const MOST_STARTS: u64 = 64;
 /// Sweeps from one start.
 const MOST_SWEEPS: usize = 2000;
 /// Change of a sweep, over the largest velocity, from which Newton's method goes on.
@@ -61,20 +62,17 @@ pub(super) fn slips(problem: &RateProblem, touches: &[Touch], cancel: &CancelFla
         let mut weights = DVector::zeros(problem.weights());
         weights[problem.weights() - 1] = load;
         let alone: Vec<Vec<Solution>> = system.nodes.iter().map(|node| node.solutions(problem, &weights)).collect();
-        let combinations = alone.iter().fold(1usize, |total, one| total.saturating_mul(one.len().max(1)));
-        complete &= combinations <= MOST_STARTS;
-        for number in 0..combinations.min(MOST_STARTS) {
+        let places: Vec<Vec<usize>> = alone.iter().map(|one| (0..one.len().max(1)).collect()).collect();
+        complete &= count(&places) <= MOST_STARTS;
+        for chosen in combinations(&places, MOST_STARTS) {
             if cancel.is_cancelled() {
                 return AtOnce { rays, complete: false };
             }
             let mut start = weights.clone();
-            let mut rest = number;
-            for (node, solutions) in system.nodes.iter().zip(&alone) {
-                let count = solutions.len().max(1);
-                if let Some(solution) = solutions.get(rest % count) {
+            for ((node, solutions), place) in system.nodes.iter().zip(&alone).zip(chosen) {
+                if let Some(solution) = solutions.get(place) {
                     node.place(&mut start, solution);
                 }
-                rest /= count;
             }
             let found = system.swept(start, cancel).and_then(|(pattern, start)| system.refined(pattern, start));
             let Some(found) = found else {

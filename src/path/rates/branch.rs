@@ -12,6 +12,7 @@ use super::dictionary::{Dictionary, Feasibility};
 use super::line::Line;
 use super::problem::{Choice, Entity, RateProblem, Signed};
 use crate::cancel::CancelFlag;
+use crate::path::combinations::{combinations, count};
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeSet;
 use std::rc::Rc;
@@ -212,17 +213,8 @@ impl Search<'_> {
                 Examined::Nothing | Examined::Before => break,
             }
         }
-        let total = options.iter().fold(1u64, |total, options| total.saturating_mul(options.len() as u64));
-        for number in 0..total.min(MOST_LABELS) {
-            let mut rest = number;
-            let chosen: Vec<usize> = options
-                .iter()
-                .map(|options| {
-                    let choice = options[(rest % options.len() as u64) as usize];
-                    rest /= options.len() as u64;
-                    choice
-                })
-                .collect();
+        let total = count(options);
+        for chosen in combinations(options, MOST_LABELS) {
             let known = self.findings.rays.iter().find(|ray| ray.is_under(&chosen));
             match known.map(|ray| -&ray.weights) {
                 None => settled |= matches!(self.examine(&chosen), Examined::Rays),

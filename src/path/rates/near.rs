@@ -1,6 +1,7 @@
 //! Combinations that a known vector of weights points to, such as the direction along which the path came.
 
 use super::problem::{Choice, RateProblem};
+use crate::path::combinations::combinations;
 use nalgebra::DVector;
 
 /// Misfits (against unit arc length, or the largest force) below this leave an option in doubt.
@@ -33,18 +34,5 @@ pub fn near(problem: &RateProblem, weights: &DVector<f64>) -> Vec<Vec<usize>> {
             order.into_iter().filter(|(misfit, _)| *misfit <= least + DOUBT).map(|(_, index)| index).collect()
         })
         .collect();
-    let total = options.iter().fold(1u64, |total, options| total.saturating_mul(options.len() as u64));
-    (0..total.min(MOST))
-        .map(|number| {
-            let mut rest = number;
-            options
-                .iter()
-                .map(|options| {
-                    let choice = options[(rest % options.len() as u64) as usize];
-                    rest /= options.len() as u64;
-                    choice
-                })
-                .collect()
-        })
-        .collect()
+    combinations(&options, MOST).collect()
 }

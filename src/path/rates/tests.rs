@@ -4,6 +4,7 @@ use super::branch::Findings;
 use super::line::Line;
 use super::*;
 use crate::cancel::CancelFlag;
+use crate::path::combinations::combinations;
 use nalgebra::{DMatrix, DVector};
 
 /// Whether the vectors of a plane (two columns) that satisfy a combination's inequalities fill more than a line.
@@ -28,18 +29,8 @@ fn plane_is_wide(problem: &RateProblem, chosen: &[usize], basis: &DMatrix<f64>) 
 /// Every combination, one after another.
 pub(in crate::path) fn every_combination(problem: &RateProblem) -> Findings {
     let mut findings = Findings::default();
-    let total = problem.combinations();
-    for number in 0..total {
-        let mut rest = number;
-        let chosen: Vec<usize> = problem
-            .entities
-            .iter()
-            .map(|entity| {
-                let choice = rest % entity.options.len() as u64;
-                rest /= entity.options.len() as u64;
-                choice as usize
-            })
-            .collect();
+    let options: Vec<Vec<usize>> = problem.entities.iter().map(|entity| (0..entity.options.len()).collect()).collect();
+    for chosen in combinations(&options, u64::MAX) {
         match problem.line(&chosen) {
             Line::Nothing => {}
             Line::Along(weights) => {
@@ -161,13 +152,6 @@ fn random_problem(random: &mut Random, kinds: &[bool], numbers: Numbers) -> Rate
     }
 }
 
-fn combinations(options: &[Vec<usize>]) -> Vec<Vec<usize>> {
-    options.iter().fold(vec![Vec::new()], |known, options| {
-        let with = |choice: &usize| known.iter().map(|one| [&one[..], &[*choice]].concat()).collect::<Vec<_>>();
-        options.iter().flat_map(with).collect()
-    })
-}
-
 /// Every ray of one list is in the other; a list may name one motion under several combinations.
 fn compare(problem: &RateProblem, found: &Findings, exact: &Findings, what: &str) {
     assert_eq!(found.unexplored, 0, "{what}");
@@ -181,7 +165,7 @@ fn compare(problem: &RateProblem, found: &Findings, exact: &Findings, what: &str
         let is_plane = || matches!(problem.line(&ray.chosen()), Line::Plane(_));
         let known = exact.rays.iter().any(|other| near(ray, other) && ray.is_under(&other.chosen()));
         assert!(known || is_plane(), "{what}: {:?} {:?} is none", ray.fitting, ray.weights);
-        for combination in combinations(&ray.fitting) {
+        for combination in combinations(&ray.fitting, u64::MAX) {
             let listed = exact.rays.iter().any(|other| near(ray, other) && other.chosen() == combination);
             let is_plane = || matches!(problem.line(&combination), Line::Plane(_));
             assert!(listed || is_plane(), "{what}: {combination:?} is no label of {:?}", ray.weights);
