@@ -3,8 +3,9 @@
 mod common;
 
 use arcslip::model::JobRequest;
-use arcslip::model::request::{Contact, Obstacle, Side};
+use arcslip::model::request::{Contact, ContactRange, Obstacle, Record, RecordedContact, RecordedContacts, Side};
 use arcslip::path::Increment;
+use arcslip::path::increment::Status;
 use common::paths::{Traced, judged, scene};
 
 const SAME: f64 = 1e-10;
@@ -86,6 +87,51 @@ fn far_contacts_change_nothing() {
         let far = increments[0].contacts.len() > alone.increments[0].contacts.len();
         assert_eq!(far, plan.left_out.iter().any(|left| left.what.contains("until the path comes near")) && far);
     }
+}
+
+/// The request with so much of its contacts recorded.
+fn recording(mut request: JobRequest, contacts: Option<RecordedContacts>) -> JobRequest {
+    request.analysis.record = Some(Record { contacts, ..Record::default() });
+    request
+}
+
+#[test]
+fn of_many_contacts_those_out_of_reach_have_no_row_unless_asked_for() {
+    let mut listed = 0;
+    for name in ["one-bar-truss", "arch-type-truss", "curving-slip"] {
+        let many = with_far_contacts(scene(name), 150);
+        let own = scene(name).model.contacts.len();
+        let short = judged(&many);
+        assert!(
+            short.plan.left_out.iter().any(|left| left.what.starts_with("rows of contacts out of reach")),
+            "{name}"
+        );
+        assert!(short.errors.iter().all(|errors| errors.largest_of_state() <= 1e-10), "{name}");
+        let all = judged(&recording(many.clone(), Some(RecordedContacts::Range(ContactRange::All))));
+        assert_eq!(short.increments.len(), all.increments.len());
+        for (short, all) in short.increments.iter().zip(&all.increments) {
+            assert_eq!(all.contacts.len(), own + 150);
+            assert!(short.contacts.len() <= own, "only the scene's own are reached");
+            let kept: Vec<bool> = all.contacts.iter().map(|row| short.contacts.contains(row)).collect();
+            let rest = all.contacts.iter().zip(&kept).filter(|(_, kept)| !**kept);
+            assert!(rest.clone().all(|(row, _)| row.status == Status::Free && row.gap > 0.0));
+            for (short, all) in short.directions.iter().flatten().zip(all.directions.iter().flatten()) {
+                let statuses = all.contacts.iter().zip(&kept).filter(|(_, kept)| **kept);
+                assert!(statuses.map(|(status, _)| status).eq(&short.contacts));
+                listed += 1;
+            }
+        }
+        if name == "arch-type-truss" {
+            let Contact { node, obstacle, .. } = many.model.contacts[own + 15].clone();
+            let asked = RecordedContacts::Named(vec![RecordedContact { node, obstacle }]);
+            let named = judged(&recording(many, Some(asked)));
+            for (named, all) in named.increments.iter().zip(&all.increments) {
+                assert_eq!(named.contacts.last(), Some(&all.contacts[own + 15]));
+                assert!(named.contacts.len() <= own + 1);
+            }
+        }
+    }
+    assert!(listed > 0, "directions are listed by the contacts that have rows");
 }
 
 #[test]

@@ -133,7 +133,9 @@ fn each_fault_shows_in_its_figure() {
     assert!(spoiled(&|i| i.contacts[0].status = Status::Free).reported > big);
     assert!(spoiled(&|i| i.contacts[0].tangential_reaction[0] *= -1.0).friction > big);
     // What does not fit the model is an error without bound, and no panic.
-    assert_eq!(spoiled(&|i| i.contacts.clear()).reported, f64::MAX);
+    assert!(spoiled(&|i| i.contacts.clear()).equilibrium > big);
+    assert_eq!(spoiled(&|i| i.contacts[0].obstacle = "another".into()).reported, f64::MAX);
+    assert_eq!(spoiled(&|i| i.contacts.extend_from_within(..)).reported, f64::MAX);
     assert_eq!(spoiled(&|i| i.contacts[0].slip.clear()).reported, f64::MAX);
     assert_eq!(spoiled(&|i| i.stage = "another".into()).reported, f64::MAX);
     assert_eq!(spoiled(&|i| _ = i.displacements.shift_remove("tip")).reported, f64::MAX);
@@ -255,4 +257,37 @@ fn motions_of_obstacles_and_supports_are_followed() {
     assert!(last(&request, &[lowered(-0.1)]).support == 0.0);
     assert!(last(&request, &[lowered(-0.1)]).equilibrium < 1e-13);
     assert!(last(&request, &[lowered(-0.2)]).support > 1e-2);
+}
+
+#[test]
+fn a_contact_without_a_row_has_to_be_open() {
+    let request = typed(json!({
+        "model": {
+            "dimension": 2, "nodes": {"tip": [0, 1]},
+            "elements": [{"kind": "spring", "nodes": ["tip"], "stiffness": [[1, 0], [0, 1]]}],
+            "obstacles": {"floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]},
+                          "lid": {"kind": "plane", "point": [0, 3], "normal": [0, -1]}},
+            "contacts": [{"node": "tip", "obstacle": "lid"}, {"node": "tip", "obstacle": "floor"}],
+            "stages": [{"name": "press", "forces": {"tip": [0, -1]}},
+                       {"name": "lower", "obstacle_motion": {"lid": [0, -1]}}],
+        }
+    }));
+    let pressed = |load: f64| {
+        let mut pressed = increment(&request, "press", load, &[("tip", vec![0.0, -load])], &[]);
+        pressed.contacts.clear();
+        pressed
+    };
+    let open = last(&request, &[pressed(0.0), pressed(0.25), pressed(0.5), pressed(0.9)]);
+    assert!(open.largest_of_state() < 1e-15, "{open:?}");
+    let through = last(&request, &[pressed(0.0), pressed(0.25), pressed(0.5), pressed(0.9), pressed(1.5)]);
+    assert!((through.contact - 0.5).abs() < 1e-15 && through.equilibrium < 1e-15, "{through:?}");
+    let lowered = |load: f64| {
+        let mut lowered = increment(&request, "lower", load, &[("tip", vec![0.0, -0.5])], &[]);
+        lowered.contacts.clear();
+        lowered
+    };
+    let beside = last(&request, &[pressed(0.0), pressed(0.5), lowered(0.0), lowered(2.25)]);
+    assert!(beside.contact == 0.0, "{beside:?}");
+    let crushed = last(&request, &[pressed(0.0), pressed(0.5), lowered(0.0), lowered(2.25), lowered(2.75)]);
+    assert!((crushed.contact - 0.25).abs() < 1e-15, "{crushed:?}");
 }

@@ -5,7 +5,7 @@ mod common;
 use arcslip::cancel::CancelFlag;
 use arcslip::judged::{JudgedIncrement, JudgedPath, JudgedReport};
 use arcslip::model::JobRequest;
-use arcslip::model::request::{Record, RecordedContact};
+use arcslip::model::request::{Record, RecordedContact, RecordedContacts};
 use arcslip::path::increment::PointKind;
 use arcslip::path::{Increment, Scene};
 use common::paths::scene;
@@ -115,7 +115,7 @@ fn nodes_contacts_and_directions_are_cut_after_the_judgement() {
     let contact = RecordedContact { node: "b4".to_owned(), obstacle: "floor".to_owned() };
     let record = Record {
         nodes: Some(vec!["b4".to_owned(), "b2".to_owned()]),
-        contacts: Some(vec![contact]),
+        contacts: Some(RecordedContacts::Named(vec![contact])),
         ..Record::default()
     };
     let cut = whole(&recorded("arch-type-truss", record));
@@ -141,7 +141,8 @@ fn nodes_contacts_and_directions_are_cut_after_the_judgement() {
     let without = whole(&recorded("arch-type-truss", Record { directions: false, ..Record::default() }));
     assert!(without.junctions.is_empty() && without.increments.iter().all(|row| row.increment.directions.is_none()));
     assert_eq!(without.report, all.report);
-    let nothing = Record { nodes: Some(Vec::new()), contacts: Some(Vec::new()), every: 1_000, directions: false };
+    let none = RecordedContacts::Named(Vec::new());
+    let nothing = Record { nodes: Some(Vec::new()), contacts: Some(none), every: 1_000, directions: false };
     let bytes = |whole: &Whole| serde_json::to_string(&whole.increments).expect("written").len();
     assert!(4 * bytes(&whole(&recorded("arch-type-truss", nothing))) < bytes(&all));
 }

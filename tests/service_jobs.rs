@@ -176,7 +176,7 @@ async fn the_path_is_a_table_with_named_columns() {
     let mut lines = text.lines();
     let header: Vec<&str> = lines.next().expect("a header").split(',').collect();
     assert_eq!(
-        header[..12],
+        header[..14],
         [
             "index",
             "stage",
@@ -186,6 +186,8 @@ async fn the_path_is_a_table_with_named_columns() {
             "point",
             "bifurcation",
             "event",
+            "pin.x",
+            "pin.y",
             "tip.x",
             "tip.y",
             "tip/floor.status",

@@ -49,7 +49,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         eprintln!("explore: the directions not taken are followed by `arcslip serve` only; this traces one path");
     }
     let mut picture = Picture::planned(arguments, &request)?;
-    let mut writer = Writer::open(arguments)?;
+    let mut writer = Writer::open(arguments, &request)?;
     let progress = progress_bar(request.analysis.max_increments, arguments.out.is_some());
     let mut unwritten = None;
     let report = PathSolver
@@ -105,32 +105,31 @@ fn progress_bar(max_increments: u64, to_file: bool) -> ProgressBar {
 struct Writer {
     to: Box<dyn Write>,
     format: Format,
-    table: Option<Table>,
+    table: Table,
+    begun: bool,
 }
 
 impl Writer {
-    fn open(arguments: &Arguments) -> Result<Self, Failure> {
+    fn open(arguments: &Arguments, request: &JobRequest) -> Result<Self, Failure> {
         let to: Box<dyn Write> = match &arguments.out {
             Some(file) => {
                 Box::new(File::create(file).map_err(|error| Failure::Other(format!("{}: {error}", file.display())))?)
             }
             None => Box::new(std::io::stdout()),
         };
-        Ok(Self { to, format: arguments.format, table: None })
+        Ok(Self { to, format: arguments.format, table: Table::of(request), begun: false })
     }
 
     /// Each increment is written in one piece and at once.
     fn write(&mut self, judged: &JudgedIncrement) -> std::io::Result<()> {
         let text = match self.format {
             Format::Ndjson => json_line(judged)? + "\n",
-            Format::Csv => match &self.table {
-                Some(table) => table.row(&judged.increment, Some(&judged.measure)),
-                None => {
-                    let table = self.table.insert(Table::fitting(&judged.increment));
-                    table.header() + &table.row(&judged.increment, Some(&judged.measure))
-                }
-            },
+            Format::Csv => {
+                let header = if self.begun { String::new() } else { self.table.header() };
+                header + &self.table.row(&judged.increment, Some(&judged.measure))
+            }
         };
+        self.begun = true;
         self.to.write_all(text.as_bytes())?;
         self.to.flush()
     }

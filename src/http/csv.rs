@@ -53,20 +53,17 @@ struct Stored {
 fn rows(service: Service, id: Uuid) -> impl Stream<Item = io::Result<String>> {
     try_stream! {
         let mut after = None;
-        let mut table: Option<Table> = None;
+        let request = service.jobs.store().request(id).await.map_err(io::Error::other)?;
+        let request = request.ok_or_else(|| io::Error::other("the job has been deleted"))?;
+        let table = Table::of(&serde_json::from_str(&request)?);
         loop {
             let page = service.jobs.store().increments(id, after, PAGE).await.map_err(io::Error::other)?;
             let Some(last) = page.last() else { break };
+            let mut text = if after.is_none() { table.header() } else { String::new() };
             after = Some(last.index);
-            let mut text = String::new();
             for line in &page {
                 let Stored { increment, measure } = serde_json::from_str(&line.body)?;
-                let columns = table.get_or_insert_with(|| {
-                    let columns = Table::fitting(&increment);
-                    text.push_str(&columns.header());
-                    columns
-                });
-                text.push_str(&columns.row(&increment, measure.as_ref()));
+                text.push_str(&table.row(&increment, measure.as_ref()));
             }
             yield text;
         }

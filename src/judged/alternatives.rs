@@ -12,6 +12,7 @@
 
 use crate::path::Increment;
 use crate::path::increment::{Direction, PointKind, Status};
+use std::sync::Arc;
 
 /// Load rates below this fraction of the largest one listed have no sign.
 const STATIONARY: f64 = 1e-9;
@@ -27,7 +28,8 @@ pub struct Alternatives {
 /// By what an alternative is known again at the next increment.
 #[derive(Debug, Clone, PartialEq)]
 struct Kind {
-    contacts: Vec<Status>,
+    /// Those that are not free: others may come into reach meanwhile.
+    held: Vec<(Arc<str>, Arc<str>, Status)>,
     load: i8,
     /// Among several with the same statuses and sign.
     place: usize,
@@ -59,8 +61,13 @@ impl Alternatives {
                 continue;
             }
             let load = sign(direction, largest);
-            let alike = |kind: &&Kind| kind.contacts == direction.contacts && kind.load == load;
-            let kind = Kind { contacts: direction.contacts.clone(), load, place: kinds.iter().filter(alike).count() };
+            let rows = increment.contacts.iter().zip(&direction.contacts);
+            let held = rows.filter(|(_, status)| **status != Status::Free);
+            let held: Vec<_> =
+                held.map(|(row, status)| (Arc::clone(&row.node), Arc::clone(&row.obstacle), *status)).collect();
+            let alike = |kind: &&Kind| kind.held == held && kind.load == load;
+            let place = kinds.iter().filter(alike).count();
+            let kind = Kind { held, load, place };
             if !(same_stretch && self.before.contains(&kind)) {
                 found.push(index);
             }
@@ -80,7 +87,7 @@ fn sign(direction: &Direction, largest: f64) -> i8 {
 #[cfg(test)]
 mod tests {
     use super::Alternatives;
-    use crate::path::increment::{Diagnostics, Direction, Energy, Increment, Point, PointKind, Status};
+    use crate::path::increment::{ContactState, Diagnostics, Direction, Energy, Increment, Point, PointKind, Status};
 
     fn direction(contacts: Status, load_rate: f64) -> Direction {
         let contacts = vec![contacts];
@@ -90,6 +97,16 @@ mod tests {
     fn increment(index: u64, kind: PointKind, bifurcation: bool, mut directions: Vec<Direction>) -> Increment {
         directions.insert(0, Direction { taken: true, ..direction(Status::Slip, -0.1) });
         let (event, better_direction, unexplored_modes, degenerate) = (None, false, 0, false);
+        let contact = ContactState {
+            node: "tip".into(),
+            obstacle: "floor".into(),
+            status: Status::Slip,
+            gap: 0.0,
+            normal_reaction: 1.0,
+            tangential_reaction: vec![-0.3],
+            slip: vec![0.1],
+            indeterminate: false,
+        };
         Increment {
             index,
             stage: "push".into(),
@@ -97,7 +114,7 @@ mod tests {
             arc_length: 0.0,
             step: 0.1,
             displacements: indexmap::IndexMap::new(),
-            contacts: Vec::new(),
+            contacts: vec![contact],
             point: Point { kind, bifurcation, event, better_direction, unexplored_modes, degenerate },
             directions: Some(directions),
             energy: Energy::default(),

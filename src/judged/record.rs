@@ -2,15 +2,16 @@
 
 use crate::model::JobRequest;
 use crate::path::Increment;
-use crate::path::increment::PointKind;
+use crate::path::increment::{ContactState, PointKind};
+use std::collections::HashSet;
 
-/// A request's `record` with places for names.
+/// A request's `record`, made ready.
 #[derive(Debug, Clone)]
 pub(super) struct Recorder {
     /// One a node; `None`: all are kept.
     nodes: Option<Vec<bool>>,
-    /// One a contact; `None`: all are kept.
-    contacts: Option<Vec<bool>>,
+    /// Node and obstacle of the contacts that are named, in the model's order; `None`: every row is kept.
+    contacts: Option<Vec<(String, String)>>,
     every: u64,
     directions: bool,
 }
@@ -20,20 +21,18 @@ impl Recorder {
     pub fn new(request: &JobRequest) -> Self {
         let record = request.analysis.record.clone().unwrap_or_default();
         let model = &request.model;
-        let nodes = record.nodes.map(|asked| {
+        let nodes = record.nodes.as_ref().map(|asked| {
             let mut kept = vec![false; model.nodes.len()];
             for node in asked.iter().filter_map(|name| model.nodes.get_index_of(name)) {
                 kept[node] = true;
             }
             kept
         });
-        let contacts = record.contacts.map(|asked| {
-            let asked: std::collections::HashSet<(&str, &str)> =
-                asked.iter().map(|one| (one.node.as_str(), one.obstacle.as_str())).collect();
-            let is_asked = |contact: &crate::model::request::Contact| {
-                asked.contains(&(contact.node.as_str(), contact.obstacle.as_str()))
-            };
-            model.contacts.iter().map(is_asked).collect()
+        let contacts = record.named_contacts().map(|named| {
+            let named: HashSet<(&str, &str)> =
+                named.iter().map(|one| (one.node.as_str(), one.obstacle.as_str())).collect();
+            let names = model.contacts.iter().map(|contact| (contact.node.clone(), contact.obstacle.clone()));
+            names.filter(|(node, obstacle)| named.contains(&(node.as_str(), obstacle.as_str()))).collect()
         });
         Self { nodes, contacts, every: record.every, directions: record.directions }
     }
@@ -59,10 +58,16 @@ impl Recorder {
         if !self.directions {
             increment.directions = None;
         }
-        if let Some(kept) = &self.contacts {
-            retain(&mut increment.contacts, kept);
+        if let Some(named) = &self.contacts {
+            // Rows and names are in the model's order, and what is named has a row.
+            let mut named = named.iter().peekable();
+            let is_next = |row: &ContactState| {
+                named.next_if(|(node, obstacle)| **node == *row.node && **obstacle == *row.obstacle).is_some()
+            };
+            let kept: Vec<bool> = increment.contacts.iter().map(is_next).collect();
+            retain(&mut increment.contacts, &kept);
             for direction in increment.directions.iter_mut().flatten() {
-                retain(&mut direction.contacts, kept);
+                retain(&mut direction.contacts, &kept);
             }
         }
         increment

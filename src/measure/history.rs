@@ -7,14 +7,14 @@ use super::vector::{Vector, ZERO};
 use serde::{Deserialize, Serialize};
 
 /// Changes when a history of before would be read as something else.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// The point before, as far as the next increment is judged by it.
 #[derive(Debug, Clone)]
 pub(super) struct Before {
     pub displacements: Vec<Vector>,
     pub shifts: Vec<Vector>,
-    /// `-r_t/|r_t|` in space of each contact that is on its cone; in 3D only.
+    /// `-r_t/|r_t|` in space of each contact, if it has a row and is on its cone; in 3D only.
     pub directions: Vec<Option<Vector>>,
     /// Load factor in the running stage.
     pub load: f64,
@@ -25,7 +25,7 @@ impl Before {
     pub fn at_rest(posted: &Posted) -> Self {
         Self {
             displacements: vec![ZERO; posted.nodes.len()],
-            shifts: vec![ZERO; posted.obstacles.len()],
+            shifts: vec![ZERO; posted.moving],
             directions: vec![None; posted.contacts.len()],
             load: 0.0,
             arc_length: 0.0,
@@ -44,8 +44,8 @@ pub struct History {
     arc_length: f64,
     /// One a node.
     displacements: Vec<Vector>,
-    /// One a contact.
-    directions: Vec<Option<Vector>>,
+    /// Directions of slip of the contacts that have one, in order.
+    directions: Vec<(usize, Vector)>,
     largest_force: f64,
     largest_energy: f64,
 }
@@ -61,13 +61,14 @@ pub enum HistoryError {
 
 impl Judge {
     pub fn history(&self) -> History {
+        let directions = self.before.directions.iter().enumerate();
         History {
             version: VERSION,
             reached: self.reached.clone(),
             load: self.before.load,
             arc_length: self.before.arc_length,
             displacements: self.before.displacements.clone(),
-            directions: self.before.directions.clone(),
+            directions: directions.filter_map(|(contact, direction)| Some((contact, (*direction)?))).collect(),
             largest_force: self.largest_force,
             largest_energy: self.largest_energy,
         }
@@ -84,9 +85,10 @@ impl Judge {
             return Err(HistoryError::Version { found: version });
         }
         let posted = &self.posted;
+        let contacts = posted.contacts.len();
         for (what, found, expected) in [
             ("nodes", displacements.len(), posted.nodes.len()),
-            ("contacts", directions.len(), posted.contacts.len()),
+            ("contacts", directions.iter().fold(contacts, |most, (contact, _)| most.max(contact + 1)), contacts),
             ("finished stages", reached.len(), reached.len().min(posted.stages.len().saturating_sub(1))),
         ] {
             if found != expected {
@@ -103,7 +105,11 @@ impl Judge {
         self.stage = reached.len();
         self.reached = reached;
         self.held = held;
-        self.before = Before { displacements, shifts: loading.shifts, directions, load, arc_length };
+        let mut before = Before { displacements, shifts: loading.shifts, load, arc_length, ..Before::at_rest(posted) };
+        for (contact, direction) in directions {
+            before.directions[contact] = Some(direction);
+        }
+        self.before = before;
         self.largest_force = largest_force;
         self.largest_energy = largest_energy;
         Ok(self)

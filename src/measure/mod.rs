@@ -35,14 +35,17 @@
 //! | `errors` | the figures and their maxima |
 //! | `posted`, `elements`, `obstacles`, `vector` | the model as posted, with numbers for names |
 //! | `contacts` | one contact |
+//! | `rows`, `apart` | which contacts an increment has rows of; those that it has none of |
 //! | `history` | what a judge remembers, put down and taken up |
 
+mod apart;
 mod contacts;
 mod elements;
 mod errors;
 mod history;
 mod obstacles;
 mod posted;
+mod rows;
 mod vector;
 
 pub use errors::{Errors, Largest, Maxima};
@@ -50,11 +53,13 @@ pub use history::{History, HistoryError};
 
 use crate::model::JobRequest;
 use crate::path::increment::Increment;
+use apart::Apart;
 use contacts::Seen;
 use errors::worse;
 use history::Before;
 use obstacles::Frame;
 use posted::{Loading, Posted};
+use rows::{Change, Rows};
 use vector::{Vector, ZERO, add, largest, padded, scaled};
 
 /// Judges the increments of one path, in order.
@@ -71,6 +76,8 @@ pub struct Judge {
     largest_force: f64,
     largest_energy: f64,
     initial_strain: f64,
+    rows: Rows,
+    apart: Apart,
     /// What the increment at hand is computed in.
     work: Workspace,
 }
@@ -94,7 +101,7 @@ impl Judge {
         let none = Loading::none(&posted);
         let nodes = posted.nodes.len();
         let (displacements, balance, rounding) = (vec![ZERO; nodes], vec![ZERO; nodes], vec![0.0; nodes]);
-        let frames = Vec::with_capacity(posted.contacts.len());
+        let frames = Vec::new();
         let initial_strain = posted.elements.iter().map(|element| element.response(&displacements).energy).sum();
         Self {
             length: displacement_scale,
@@ -105,6 +112,8 @@ impl Judge {
             largest_force: 0.0,
             largest_energy: 0.0,
             initial_strain,
+            rows: Rows::new(request),
+            apart: Apart::new(&posted, displacement_scale),
             work: Workspace { loading: none, displacements, balance, rounding, frames },
             posted,
         }
@@ -120,22 +129,26 @@ impl Judge {
         let force = if self.largest_force > 0.0 { self.largest_force } else { 1.0 };
         errors.equilibrium = worse(0.0, self.unbalanced() / force);
         errors.support = self.off_support();
-        errors.arc_length = self.off_arc(increment);
-        for index in 0..self.posted.contacts.len().min(increment.contacts.len()) {
-            let contact = self.posted.contacts[index];
-            let (node, obstacle) = (contact.node, contact.obstacle);
-            let moved = add(&self.work.displacements[node], -1.0, &self.before.displacements[node]);
-            let shifted = add(&self.work.loading.shifts[obstacle], -1.0, &self.before.shifts[obstacle]);
+        let distance = self.distance(increment);
+        let of_step = (distance - increment.step).abs();
+        let of_sum = (increment.arc_length - (self.before.arc_length + increment.step)).abs();
+        errors.arc_length = worse(worse(0.0, of_step), of_sum);
+        for ((state, index), frame) in increment.contacts.iter().zip(self.rows.contacts()).zip(&self.work.frames) {
+            let contact = self.posted.contacts[*index];
+            let moved = add(&self.work.displacements[contact.node], -1.0, &self.before.displacements[contact.node]);
+            let before = contact.motion.map_or(ZERO, |place| self.before.shifts[place]);
+            let shifted = add(&self.work.loading.shift(&contact), -1.0, &before);
             let seen = Seen {
-                state: &increment.contacts[index],
-                frame: &self.work.frames[index],
+                state,
+                frame,
                 friction: contact.friction,
                 motion: add(&moved, -1.0, &shifted),
-                direction_before: self.before.directions[index],
+                direction_before: self.before.directions[*index],
                 dimension: self.posted.dimension,
             };
-            self.before.directions[index] = seen.judge(self.length, force, &mut errors);
+            self.before.directions[*index] = seen.judge(self.length, force, &mut errors);
         }
+        self.apart.judge(&self.posted, &self.work.loading, &self.work.displacements, distance, &mut errors);
         self.energy(increment, strain, &mut errors);
         std::mem::swap(&mut self.before.displacements, &mut self.work.displacements);
         self.before.shifts.copy_from_slice(&self.work.loading.shifts);
@@ -156,7 +169,12 @@ impl Judge {
             self.before.load = 0.0;
         }
         self.work.loading.set(&self.held, &posted.stages[self.stage], increment.load_factor);
-        let mut fits = known.is_some() && increment.contacts.len() == posted.contacts.len();
+        let mut fits = known.is_some();
+        match self.rows.read(&increment.contacts) {
+            Change::None => {}
+            Change::Others => self.apart.without(posted, self.rows.contacts()),
+            Change::Unknown => fits = false,
+        }
         for (index, (node, displacement)) in posted.nodes.iter().zip(&mut self.work.displacements).enumerate() {
             let in_place = increment.displacements.get_index(index).filter(|(name, _)| ***name == node.name);
             let found = in_place.map(|(_, values)| values).or_else(|| increment.displacements.get(node.name.as_str()));
@@ -189,14 +207,12 @@ impl Judge {
             work.rounding[response.second] += response.rounding;
         }
         work.frames.clear();
-        for contact in &posted.contacts {
-            let (shift, place) = (&work.loading.shifts[contact.obstacle], &posted.nodes[contact.node].place);
-            let obstacle = &posted.obstacles[contact.obstacle];
-            work.frames.push(obstacle.frame(posted.dimension, shift, place, &work.displacements[contact.node]));
-        }
-        for ((contact, frame), state) in posted.contacts.iter().zip(&work.frames).zip(&increment.contacts) {
+        let rows = self.rows.contacts().iter().map(|index| &posted.contacts[*index]);
+        for (contact, state) in rows.zip(&increment.contacts) {
+            let frame = posted.frame(contact, &work.loading, &work.displacements);
+            work.frames.push(frame);
             let balance = &mut work.balance[contact.node];
-            *balance = add(balance, -1.0, &contacts::force(state, frame));
+            *balance = add(balance, -1.0, &contacts::force(state, &frame));
             most = most.max(state.normal_reaction.abs());
         }
         // An error without bound is one already; what scales the others stays a number.
@@ -224,15 +240,15 @@ impl Judge {
         worse(0.0, components.fold(0.0, worse) / self.length)
     }
 
-    fn off_arc(&self, increment: &Increment) -> f64 {
+    /// The dimensionless distance from the increment before.
+    fn distance(&self, increment: &Increment) -> f64 {
         let mut squared =
             ((increment.load_factor - self.before.load) / self.posted.stages[self.stage].load_scale).powi(2);
         for (after, before) in self.work.displacements.iter().zip(&self.before.displacements) {
             let change = scaled(&add(after, -1.0, before), 1.0 / self.length);
             squared += vector::dot(&change, &change);
         }
-        let of_step = (squared.sqrt() - increment.step).abs();
-        worse(worse(0.0, of_step), (increment.arc_length - (self.before.arc_length + increment.step)).abs())
+        squared.sqrt()
     }
 
     fn energy(&mut self, increment: &Increment, strain: f64, errors: &mut Errors) {

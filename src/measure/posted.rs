@@ -1,10 +1,10 @@
 //! The posted model with its names replaced by numbers, so that judging an increment looks nothing up.
 
 use super::elements::Element;
-use super::obstacles::Obstacle;
+use super::obstacles::{Frame, Obstacle};
 use super::vector::{Vector, ZERO, add, padded};
 use crate::model::request::JobRequest;
-use indexmap::IndexMap;
+use indexmap::{IndexMap, IndexSet};
 
 #[derive(Debug, Clone)]
 pub(super) struct Posted {
@@ -13,6 +13,8 @@ pub(super) struct Posted {
     pub elements: Vec<Element>,
     pub obstacles: Vec<Obstacle>,
     pub contacts: Vec<Contact>,
+    /// Obstacles that move in some stage.
+    pub moving: usize,
     pub stages: Vec<Stage>,
 }
 
@@ -28,6 +30,8 @@ pub(super) struct Node {
 pub(super) struct Contact {
     pub node: usize,
     pub obstacle: usize,
+    /// Its obstacle's place among those that move.
+    pub motion: Option<usize>,
     pub friction: f64,
 }
 
@@ -41,10 +45,10 @@ pub(super) struct Stage {
     pub load_scale: f64,
 }
 
-/// Nodes or obstacles and what the load factor multiplies there.
+/// Nodes or moving obstacles and what the load factor multiplies there.
 type Pattern = Vec<(usize, Vector)>;
 
-/// What acts on the structure: one vector a node, one a node, one an obstacle.
+/// What acts on the structure: one vector a node, one a node, one a moving obstacle.
 #[derive(Debug, Clone)]
 pub(super) struct Loading {
     pub forces: Vec<Vector>,
@@ -62,17 +66,20 @@ impl Posted {
             }
             Node { name: name.clone(), place: padded(place), held }
         };
+        let moved = model.stages.iter().flat_map(|stage| stage.obstacle_motion.keys());
+        let moving: IndexSet<&str> = moved.map(String::as_str).collect();
         let contact = |contact: &crate::model::request::Contact| {
             let node = model.nodes.get_index_of(&contact.node)?;
             let obstacle = model.obstacles.get_index_of(&contact.obstacle)?;
-            Some(Contact { node, obstacle, friction: contact.friction })
+            let motion = moving.get_index_of(contact.obstacle.as_str());
+            Some(Contact { node, obstacle, motion, friction: contact.friction })
         };
         let scales = load_scales.iter().copied().chain(std::iter::repeat(1.0));
         let stage = |(stage, load_scale): (&crate::model::request::Stage, f64)| Stage {
             name: stage.name.clone(),
             forces: pattern(&stage.forces, &|name| model.nodes.get_index_of(name)),
             displacements: pattern(&stage.displacements, &|name| model.nodes.get_index_of(name)),
-            motions: pattern(&stage.obstacle_motion, &|name| model.obstacles.get_index_of(name)),
+            motions: pattern(&stage.obstacle_motion, &|name| moving.get_index_of(name)),
             load_scale,
         };
         Self {
@@ -81,8 +88,18 @@ impl Posted {
             elements: model.elements.iter().filter_map(|element| Element::new(model, element)).collect(),
             obstacles: model.obstacles.values().map(Obstacle::new).collect(),
             contacts: model.contacts.iter().filter_map(contact).collect(),
+            moving: moving.len(),
             stages: model.stages.iter().zip(scales).map(stage).collect(),
         }
+    }
+}
+
+impl Posted {
+    /// How a contact's obstacle lies to its node.
+    pub fn frame(&self, contact: &Contact, loading: &Loading, displacements: &[Vector]) -> Frame {
+        let place = &self.nodes[contact.node].place;
+        let obstacle = &self.obstacles[contact.obstacle];
+        obstacle.frame(self.dimension, &loading.shift(contact), place, &displacements[contact.node])
     }
 }
 
@@ -90,10 +107,23 @@ fn pattern(posted: &IndexMap<String, Vec<f64>>, number: &dyn Fn(&str) -> Option<
     posted.iter().filter_map(|(name, values)| Some((number(name)?, padded(values)))).collect()
 }
 
+impl Stage {
+    /// Motion of a contact's obstacle by unit load factor (length).
+    pub fn motion(&self, contact: &Contact) -> Vector {
+        let of_this = |(place, _): &&(usize, Vector)| Some(*place) == contact.motion;
+        self.motions.iter().find(of_this).map_or(ZERO, |(_, motion)| *motion)
+    }
+}
+
 impl Loading {
     pub fn none(posted: &Posted) -> Self {
-        let (nodes, obstacles) = (posted.nodes.len(), posted.obstacles.len());
-        Self { forces: vec![ZERO; nodes], displacements: vec![ZERO; nodes], shifts: vec![ZERO; obstacles] }
+        let nodes = posted.nodes.len();
+        Self { forces: vec![ZERO; nodes], displacements: vec![ZERO; nodes], shifts: vec![ZERO; posted.moving] }
+    }
+
+    /// How far a contact's obstacle has moved.
+    pub fn shift(&self, contact: &Contact) -> Vector {
+        contact.motion.map_or(ZERO, |place| self.shifts[place])
     }
 
     /// Becomes what is held with a stage under a load factor on top.

@@ -17,6 +17,8 @@ pub const MAX_ELEMENTS: usize = 100_000;
 pub const MAX_OBSTACLES: usize = 10_000;
 /// Contacts of a model.
 pub const MAX_CONTACTS: usize = 10_000;
+/// Contacts up to which every increment has a row of each; of more, those out of reach have none unless asked for.
+pub const MAX_ROWS_UNASKED: usize = 100;
 /// Stages of a model.
 pub const MAX_STAGES: usize = 1_000;
 /// Free displacement components; the linear algebra is dense, so memory goes with the square and time with the cube.

@@ -1,45 +1,50 @@
 //! Increments as CSV (RFC 4180, lines ended by a single line feed).
 //!
-//! The columns come from the first increment: a column for every component of every node, and a group of columns for
-//! every contact, so `tip.x`, `tip.y`, `tip/floor.status`, `tip/floor.gap`. Later rows find their values by name; what
-//! they lack is an empty cell.
+//! The columns come from the request: a column for every component of every node that is recorded, and a group of columns
+//! for every contact that may have a row, so `tip.x`, `tip.y`, `tip/floor.status`, `tip/floor.gap`. Rows find their values
+//! by name; what they lack is an empty cell.
 
 use super::csv::CsvRow;
 use crate::measure::Errors;
+use crate::model::JobRequest;
+use crate::model::request::{Contact, Record};
 use crate::path::Increment;
-use crate::path::increment::{ContactState, PointKind, Status};
-use std::sync::Arc;
+use crate::path::increment::{PointKind, Status};
+use std::collections::HashSet;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The columns of one path.
 #[derive(Debug, Clone)]
 pub struct Table {
-    nodes: Vec<(Arc<str>, usize)>,
+    dimension: usize,
+    nodes: Vec<String>,
     contacts: Vec<ContactColumns>,
 }
 
 #[derive(Debug, Clone)]
 struct ContactColumns {
-    node: Arc<str>,
-    obstacle: Arc<str>,
-    tangents: usize,
+    node: String,
+    obstacle: String,
 }
 
 impl Table {
-    /// The table that fits this increment and those that follow it.
-    pub fn fitting(first: &Increment) -> Self {
-        let nodes = first.displacements.iter().map(|(name, values)| (Arc::clone(name), values.len())).collect();
-        let contacts = first
-            .contacts
-            .iter()
-            .map(|contact| ContactColumns {
-                node: Arc::clone(&contact.node),
-                obstacle: Arc::clone(&contact.obstacle),
-                tangents: contact.tangential_reaction.len().max(contact.slip.len()),
-            })
-            .collect();
-        Self { nodes, contacts }
+    /// The table of a request's path.
+    pub fn of(request: &JobRequest) -> Self {
+        let (model, record) = (&request.model, request.analysis.record.as_ref());
+        let named = record.and_then(|record| record.nodes.as_ref());
+        let named: Option<HashSet<&String>> = named.map(|nodes| nodes.iter().collect());
+        let is_named = |name: &&String| named.as_ref().is_none_or(|named| named.contains(*name));
+        let nodes = model.nodes.keys().filter(is_named).cloned().collect();
+        let named = record.and_then(Record::named_contacts);
+        let named: Option<HashSet<(&str, &str)>> =
+            named.map(|named| named.iter().map(|one| (one.node.as_str(), one.obstacle.as_str())).collect());
+        let contacts = model.contacts.iter().filter(|contact| {
+            named.as_ref().is_none_or(|named| named.contains(&(contact.node.as_str(), contact.obstacle.as_str())))
+        });
+        let columns =
+            |contact: &Contact| ContactColumns { node: contact.node.clone(), obstacle: contact.obstacle.clone() };
+        Self { dimension: model.dimension, nodes, contacts: contacts.map(columns).collect() }
     }
 
     /// The first line, its line feed included.
@@ -48,17 +53,18 @@ impl Table {
         for name in ["index", "stage", "load_factor", "arc_length", "step", "point", "bifurcation", "event"] {
             line.text(name);
         }
-        for (node, size) in &self.nodes {
-            for axis in AXES.iter().take(*size) {
+        let tangents = self.dimension - 1;
+        for node in &self.nodes {
+            for axis in AXES.iter().take(self.dimension) {
                 line.text(&format!("{node}.{axis}"));
             }
         }
-        for ContactColumns { node, obstacle, tangents } in &self.contacts {
+        for ContactColumns { node, obstacle } in &self.contacts {
             for name in ["status", "gap", "normal_reaction"] {
                 line.text(&format!("{node}/{obstacle}.{name}"));
             }
             for name in ["tangential_reaction", "slip"] {
-                for tangent in 1..=*tangents {
+                for tangent in 1..=tangents {
                     line.text(&format!("{node}/{obstacle}.{name}.{tangent}"));
                 }
             }
@@ -89,17 +95,20 @@ impl Table {
         line.raw(point_kind(increment.point.kind));
         line.raw(if increment.point.bifurcation { "true" } else { "false" });
         line.text(increment.point.event.as_deref().unwrap_or_default());
-        for (node, size) in &self.nodes {
-            let values = increment.displacements.get(node).map(Vec::as_slice).unwrap_or_default();
-            line.numbers(values, *size);
+        let tangents = self.dimension - 1;
+        for node in &self.nodes {
+            let values = increment.displacements.get(node.as_str()).map(Vec::as_slice).unwrap_or_default();
+            line.numbers(values, self.dimension);
         }
-        for (place, columns) in self.contacts.iter().enumerate() {
-            let state = columns.find(place, &increment.contacts);
+        // Rows and columns are in the model's order.
+        let mut rows = increment.contacts.iter().peekable();
+        for columns in &self.contacts {
+            let state = rows.next_if(|row| *row.node == columns.node && *row.obstacle == columns.obstacle);
             line.raw(state.map_or("", |state| status(state.status)));
             line.optional(state.map(|state| state.gap));
             line.optional(state.map(|state| state.normal_reaction));
-            line.numbers(state.map(|state| state.tangential_reaction.as_slice()).unwrap_or_default(), columns.tangents);
-            line.numbers(state.map(|state| state.slip.as_slice()).unwrap_or_default(), columns.tangents);
+            line.numbers(state.map(|state| state.tangential_reaction.as_slice()).unwrap_or_default(), tangents);
+            line.numbers(state.map(|state| state.slip.as_slice()).unwrap_or_default(), tangents);
         }
         let (energy, diagnostics) = (&increment.energy, &increment.diagnostics);
         for value in [energy.external_work, energy.strain, energy.dissipated] {
@@ -121,14 +130,6 @@ impl Table {
         }
         line.numbers(measure.map(Errors::values).as_ref().map_or(&[], <[f64; _]>::as_slice), Errors::NAMES.len());
         line.end()
-    }
-}
-
-impl ContactColumns {
-    /// A pair of node and obstacle may be listed twice, so the place counts first.
-    fn find<'a>(&self, place: usize, contacts: &'a [ContactState]) -> Option<&'a ContactState> {
-        let fits = |state: &&ContactState| state.node == self.node && state.obstacle == self.obstacle;
-        contacts.get(place).filter(fits).or_else(|| contacts.iter().find(fits))
     }
 }
 

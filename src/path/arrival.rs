@@ -10,7 +10,7 @@ use super::state::Rate;
 use super::stop::StopReason;
 use super::tracer::Path;
 use super::watch::Watch;
-use crate::contact::{Mode, Reaction, all_continue};
+use crate::contact::{Mode, Reaction};
 use crate::model::request::Method;
 use std::sync::Arc;
 
@@ -226,17 +226,8 @@ impl Path<'_> {
     /// Whether the path has left this very state in these modes before; remembers it if not.
     fn is_cycle(&mut self) -> bool {
         let here = self.visit();
-        let known = self.at.visited.iter().any(|visited| {
-            visited.stage == here.stage
-                && all_continue(&visited.modes, &here.modes)
-                && visited.state.distance(&here.state) < SAME_STATE
-                && visited
-                    .state
-                    .reactions
-                    .iter()
-                    .zip(&here.state.reactions)
-                    .all(|(a, b)| a.difference(b) < SAME_STATE * self.at.totals.force_scale)
-        });
+        let force = SAME_STATE * self.at.totals.force_scale;
+        let known = self.at.visited.iter().any(|visited| visited.is(&here, SAME_STATE, force));
         self.at.visited.push(Arc::new(here));
         known
     }

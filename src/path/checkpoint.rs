@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Changes when a checkpoint of before would be read as something else.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 
 /// A path at one of its points.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -99,11 +99,10 @@ impl Checkpoint {
             return same("contacts", near.last().map_or(0, |last| last + 1), all);
         }
         let contacts = near.len();
-        let state_of = |contacts: usize, state: &State| {
+        let state = |state: &State| {
             same("degrees of freedom", state.displacement.len(), freedoms)?;
             same("contacts", state.reactions.len(), contacts)
         };
-        let state = |state: &State| state_of(contacts, state);
         let rate = |rate: &Rate| {
             same("degrees of freedom", rate.displacement.len(), freedoms)?;
             same("contacts", rate.reactions.len(), contacts)
@@ -124,8 +123,9 @@ impl Checkpoint {
         self.at.here.rate.iter().try_for_each(rate)?;
         self.at.here.drift.iter().try_for_each(rate)?;
         self.at.visited.iter().try_for_each(|visited| {
-            state_of(all, &visited.state)?;
-            same("contacts", visited.modes.len(), all)
+            same("degrees of freedom", visited.displacement.len(), freedoms)?;
+            let last = visited.held.iter().map(|held| held.contact).max();
+            last.filter(|last| *last >= all).map_or(Ok(()), |last| same("contacts", last + 1, all))
         })?;
         self.at.listed.iter().try_for_each(listed)?;
         self.at.followed.iter().try_for_each(|followed| listed(&followed.listed))

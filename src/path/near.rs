@@ -12,15 +12,17 @@ use super::corner::Corner;
 use super::follow::Listed;
 use super::loading::{LoadPattern, Loading};
 use super::plan::LeftOut;
-use super::progress::{Progress, Visited};
+use super::progress::{Held, Progress, Visited};
 use super::scene::Scene;
 use super::state::{Rate, State};
 use super::tracer::Path;
 use crate::contact::vector::size;
 use crate::contact::{Contact, Mode, Reaction};
-use crate::model::request::Method;
+use crate::model::JobRequest;
+use crate::model::limits::MAX_ROWS_UNASKED;
+use crate::model::request::{ContactRange, Method, RecordedContacts};
 use std::cmp::Ordering;
-use std::collections::BinaryHeap;
+use std::collections::{BinaryHeap, HashSet};
 use std::sync::Arc;
 
 /// A contact is in reach that this many steps could close: more than the one that is taken, so that what is tried past
@@ -38,6 +40,8 @@ pub(super) struct Near {
     held: LoadPattern,
     /// For each contact of the scene its place among those in reach.
     places: Vec<Option<usize>>,
+    /// The request's contacts that have a row in the increments: those in reach and those that are asked for.
+    rows: Vec<usize>,
     far: BinaryHeap<Far>,
 }
 
@@ -77,19 +81,58 @@ fn fastest(scene: &Scene, contact: usize) -> f64 {
 }
 
 /// What the plan says of the contacts that are out of reach where the path begins.
-pub(super) fn left_out(scene: &Scene) -> Option<LeftOut> {
+pub(super) fn left_out(scene: &Scene) -> Vec<LeftOut> {
     let analysis = &scene.analysis;
     if analysis.keep_all || analysis.method == Method::Regularised {
-        return None;
+        return Vec::new();
     }
     let reach = REACH * analysis.arc_length.initial;
     let gap = |contact: usize| scene.contacts[contact].gap(&[0.0; 3]);
     let is_far = |contact: &usize| gap(*contact) / fastest(scene, *contact) > reach;
     let far = (0..scene.contacts.len()).filter(is_far).count();
-    (far > 0).then(|| LeftOut {
-        what: format!("{far} of {} contacts, each until the path comes near it", scene.contacts.len()),
-        why: format!("their gaps cannot close within {REACH} steps"),
-    })
+    let mut left_out = Vec::new();
+    if far > 0 {
+        left_out.push(LeftOut {
+            what: format!("{far} of {} contacts, each until the path comes near it", scene.contacts.len()),
+            why: format!("their gaps cannot close within {REACH} steps"),
+        });
+    }
+    if let (true, Some(asked)) = (far > 0, &scene.asked_rows)
+        && asked.is_empty()
+    {
+        left_out.push(LeftOut {
+            what: "rows of contacts out of reach, each until the path comes near it".to_owned(),
+            why: match analysis.record.as_ref().and_then(|record| record.contacts.as_ref()) {
+                None => {
+                    format!("of more than {MAX_ROWS_UNASKED} contacts, only rows in `record.contacts` are given before")
+                }
+                Some(_) => "`record.contacts` asks for those in reach".to_owned(),
+            },
+        });
+    }
+    left_out
+}
+
+/// Which contacts of the request have a row in every increment, in reach or not; `None`: all.
+pub(super) fn asked_rows(request: &JobRequest) -> Option<Vec<usize>> {
+    let (analysis, contacts) = (&request.analysis, &request.model.contacts);
+    if analysis.keep_all || analysis.method == Method::Regularised {
+        return None;
+    }
+    match analysis.record.as_ref().and_then(|record| record.contacts.as_ref()) {
+        None if contacts.len() <= MAX_ROWS_UNASKED => None,
+        Some(RecordedContacts::Range(ContactRange::All)) => None,
+        None | Some(RecordedContacts::Range(ContactRange::InReach)) => Some(Vec::new()),
+        Some(RecordedContacts::Named(named)) => {
+            let named: HashSet<(&str, &str)> =
+                named.iter().map(|one| (one.node.as_str(), one.obstacle.as_str())).collect();
+            let is_named = |index: &usize| {
+                let contact = &contacts[*index];
+                named.contains(&(contact.node.as_str(), contact.obstacle.as_str()))
+            };
+            Some((0..contacts.len()).filter(is_named).collect())
+        }
+    }
 }
 
 /// The loading of all contacts; a state's reactions are not to be read through it.
@@ -123,12 +166,19 @@ impl Near {
         // Looked at before the first step, whatever the gap.
         let far = (0..scene.contacts.len()).filter(|contact| places[*contact].is_none());
         let far = far.map(|contact| Far { until: f64::NEG_INFINITY, contact }).collect();
+        let asked: Box<dyn Fn(usize) -> bool> = match &scene.asked_rows {
+            None => Box::new(|_| true),
+            Some(asked) => Box::new(|row| asked.binary_search(&row).is_ok()),
+        };
+        let has_row = |row: &usize| asked(*row) || places[scene.reported[*row].contact].is_some();
+        let rows = (0..scene.reported.len()).filter(has_row).collect();
         Self {
             contacts: at.near.iter().map(|contact| scene.contacts[*contact].clone()).collect(),
             corners: corners.collect(),
             pattern: chosen(stage),
             held: chosen(&at.held),
             places,
+            rows,
             far,
         }
     }
@@ -146,6 +196,11 @@ impl Near {
     /// For each contact of the scene its place among those in reach.
     pub fn places(&self) -> &[Option<usize>] {
         &self.places
+    }
+
+    /// The request's contacts that have a row in the increments, in its order.
+    pub fn rows(&self) -> &[usize] {
+        &self.rows
     }
 }
 
@@ -188,12 +243,19 @@ impl Path<'_> {
         self.at.near.iter().map(|contact| &self.scene.contact_names[*contact])
     }
 
-    /// The present state and modes of all contacts.
+    /// The present state, as it is remembered: a contact that is free has no reaction and is not named.
     pub(super) fn visit(&self) -> Visited {
-        let mut state = self.at.here.state.clone();
-        let near = std::mem::take(&mut state.reactions);
-        state.reactions = spread(&near, self.near.places());
-        Visited { stage: self.at.stage, state, modes: spread_modes(&self.at.here.modes, self.near.places()) }
+        let State { displacement, load, reactions } = &self.at.here.state;
+        let held = self.at.near.iter().zip(&self.at.here.modes).zip(reactions);
+        let held = held.filter(|((_, mode), _)| mode.is_active());
+        Visited {
+            stage: self.at.stage,
+            displacement: displacement.clone(),
+            load: *load,
+            held: held
+                .map(|((contact, mode), reaction)| Held { contact: *contact, mode: *mode, reaction: *reaction })
+                .collect(),
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use super::scene::{End, Scene};
 use super::singular::Signature;
 use super::state::{Rate, State};
 use super::totals::Totals;
-use crate::contact::Mode;
+use crate::contact::{Mode, Reaction};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -27,7 +27,7 @@ pub(super) struct Progress {
     pub step: f64,
     pub totals: Totals,
     pub counts: StageCounts,
-    /// States at which a direction was taken, of every contact of the scene, for telling a cycle.
+    /// States at which a direction was taken, for telling a cycle.
     pub visited: Vec<Arc<Visited>>,
     /// Where the stage began and the direction it took.
     pub begun: Option<(State, Rate)>,
@@ -51,11 +51,43 @@ pub(super) struct Here {
     pub signature: Option<Signature>,
 }
 
+/// A state that the path has passed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Visited {
     pub stage: usize,
-    pub state: State,
-    pub modes: Vec<Mode>,
+    pub displacement: Vec<f64>,
+    pub load: f64,
+    /// The contacts that are not free, in order.
+    pub held: Vec<Held>,
+}
+
+/// A contact of the scene that sticks or slips.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Held {
+    pub contact: usize,
+    pub mode: Mode,
+    pub reaction: Reaction,
+}
+
+impl Visited {
+    /// Whether another state is this one, but for differences below `distance` (of displacements and load together) and
+    /// `force`.
+    pub fn is(&self, other: &Self, distance: f64, force: f64) -> bool {
+        let alike = |(one, other): (&Held, &Held)| {
+            one.contact == other.contact
+                && one.mode.continues(other.mode)
+                && one.reaction.difference(&other.reaction) < force
+        };
+        let apart = |(one, other): (&f64, &f64)| (one - other).powi(2);
+        self.stage == other.stage
+            && self.held.len() == other.held.len()
+            && self.held.iter().zip(&other.held).all(alike)
+            && self.displacement.iter().zip(&other.displacement).map(apart).sum::<f64>()
+                + (self.load - other.load).powi(2)
+                < distance * distance
+    }
 }
 
 /// What has been counted in the running stage.

@@ -4,7 +4,7 @@ use super::contact_law;
 use super::decide::{Choice, is_worth_listing};
 use super::increment::{ContactState, Diagnostics, Direction, Energy, Increment, Point, Status};
 use super::loading::Loading;
-use super::scene::Scene;
+use super::scene::{Reported, Scene};
 use super::state::State;
 use super::totals::Totals;
 use crate::contact::vector::{add, dot};
@@ -19,6 +19,8 @@ pub(super) struct Row<'a> {
     pub whole: Loading<'a>,
     /// For each of them its place among those that state and modes are of; without one it is free.
     pub places: &'a [Option<usize>],
+    /// The request's contacts that have a row.
+    pub rows: &'a [usize],
     pub state: &'a State,
     /// The point before; the state itself at the start.
     pub before: &'a State,
@@ -59,9 +61,7 @@ pub(super) fn increment(scene: &Scene, totals: &Totals, row: &Row<'_>) -> Increm
     let (contacts, complementarity) = contact_rows(scene, row, totals.force_scale);
     let directions = is_worth_listing(row.options).then(|| {
         let direction = |(index, option): (usize, &Choice)| Direction {
-            contacts: scene
-                .reported
-                .iter()
+            contacts: reported(scene, row)
                 .map(|one| row.places[one.contact].map_or(Status::Free, |place| status(option.modes[place])))
                 .collect(),
             load_rate: option.rate.load * stage.load_scale,
@@ -102,16 +102,19 @@ pub(super) fn increment(scene: &Scene, totals: &Totals, row: &Row<'_>) -> Increm
     }
 }
 
+/// The request's contacts that have a row, in its order.
+fn reported<'a>(scene: &'a Scene, row: &Row<'a>) -> impl Iterator<Item = &'a Reported> {
+    row.rows.iter().map(|index| &scene.reported[*index])
+}
+
 /// Contact rows in the user's units, and the largest violation of contact and friction (dimensionless).
 fn contact_rows(scene: &Scene, row: &Row<'_>, force_scale: f64) -> (Vec<ContactState>, f64) {
     let plan = scene.plan();
     let (length, force) = (plan.displacement_scale, plan.force_scale);
     let dimension = scene.structure.dimension;
-    let mut rows = Vec::with_capacity(scene.reported.len());
+    let mut rows = Vec::with_capacity(row.rows.len());
     let loading = row.loading;
-    let members = |contact: usize| scene.reported.iter().filter(|one| one.contact == contact).count();
-    let coincident = scene.reported.len() > scene.contacts.len();
-    for one in &scene.reported {
+    for one in reported(scene, row) {
         let frame = row.whole.frame(one.contact, row.state);
         let mut contact = ContactState {
             node: Arc::clone(&one.node),
@@ -140,8 +143,7 @@ fn contact_rows(scene: &Scene, row: &Row<'_>, force_scale: f64) -> (Vec<ContactS
                 for (value, tangent) in contact.slip.iter_mut().zip(&tangents) {
                     *value = dot(&moved, tangent) * length;
                 }
-                contact.indeterminate =
-                    (coincident && members(one.contact) > 1) || held_by_too_many(loading, row.modes, index);
+                contact.indeterminate = one.shared || held_by_too_many(loading, row.modes, index);
             }
         }
         rows.push(contact);

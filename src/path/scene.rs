@@ -41,6 +41,8 @@ pub struct Scene {
     pub(super) node_names: Vec<Arc<str>>,
     pub(super) stages: Vec<StageLoad>,
     pub(super) analysis: Analysis,
+    /// Which of the request's contacts have a row in every increment, in reach or not; `None`: all.
+    pub(super) asked_rows: Option<Vec<usize>>,
     plan: Plan,
 }
 
@@ -54,6 +56,8 @@ pub(super) struct Reported {
     /// Shares of the reaction's parts; 1 but for coincident contacts.
     pub normal_share: f64,
     pub tangential_share: f64,
+    /// Others of the request share that contact.
+    pub shared: bool,
 }
 
 /// A stage's load pattern over all degrees of freedom and its ends, dimensionless.
@@ -139,8 +143,19 @@ impl Scene {
         };
         let node_names = model.nodes.keys().map(|name| Arc::from(name.as_str())).collect();
         let analysis = request.analysis.clone();
-        let mut scene =
-            Self { structure, contacts, contact_names, reported, corners, node_names, stages, analysis, plan };
+        let asked_rows = super::near::asked_rows(request);
+        let mut scene = Self {
+            structure,
+            contacts,
+            contact_names,
+            reported,
+            corners,
+            node_names,
+            stages,
+            analysis,
+            asked_rows,
+            plan,
+        };
         scene.plan.left_out.extend(super::near::left_out(&scene));
         scene.refuse_mechanism()?;
         scene.refuse_imbalance()?;
@@ -414,7 +429,14 @@ fn build_contacts(
             members.push(Vec::new());
         }
         members[place].push(index);
-        reported.push(Reported { node, obstacle, contact: place, normal_share: 1.0, tangential_share: 1.0 });
+        reported.push(Reported {
+            node,
+            obstacle,
+            contact: place,
+            normal_share: 1.0,
+            tangential_share: 1.0,
+            shared: false,
+        });
     }
     for (contact, members) in contacts.iter_mut().zip(&members).filter(|(_, members)| members.len() > 1) {
         // Pressed equally, which is least; each carries of the traction what its friction bears.
@@ -422,7 +444,8 @@ fn build_contacts(
         let total: f64 = members.iter().map(|member| model.contacts[*member].friction).sum();
         for member in members {
             let part = if total > 0.0 { model.contacts[*member].friction / total } else { 1.0 / number };
-            (reported[*member].normal_share, reported[*member].tangential_share) = (1.0 / number, part);
+            let one = &mut reported[*member];
+            (one.normal_share, one.tangential_share, one.shared) = (1.0 / number, part, true);
         }
         if contact.sliding.directions() > 0 {
             contact.friction = total / number;

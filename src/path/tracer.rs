@@ -170,6 +170,7 @@ impl<'a> Path<'a> {
             loading: self.loading(),
             whole: self.whole_loading(),
             places: self.near.places(),
+            rows: self.near.rows(),
             state: &self.at.here.state,
             before: emitted.before,
             modes: emitted.modes,

@@ -51,7 +51,7 @@ pub(super) fn recorded(record: &Record, model: &Model, at: &Place, mistakes: &mu
     let contacts: HashSet<(&str, &str)> =
         model.contacts.iter().map(|contact| (contact.node.as_str(), contact.obstacle.as_str())).collect();
     let mut seen = HashSet::new();
-    for (index, RecordedContact { node, obstacle }) in record.contacts.iter().flatten().enumerate() {
+    for (index, RecordedContact { node, obstacle }) in record.named_contacts().into_iter().flatten().enumerate() {
         let at = &at.member("contacts");
         let at = at.index(index);
         let pair = (node.as_str(), obstacle.as_str());

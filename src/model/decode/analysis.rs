@@ -3,7 +3,8 @@
 use super::reader::{Choices, Fields, Input, boolean, count, number, text};
 use crate::model::mistakes::Mistakes;
 use crate::model::request::{
-    Analysis, ArcLength, Events, Explore, LoadSign, Method, Record, RecordedContact, Regularised, Selection,
+    Analysis, ArcLength, ContactRange, Events, Explore, LoadSign, Method, Record, RecordedContact, RecordedContacts,
+    Regularised, Selection,
 };
 
 const ANALYSIS: Fields = Fields {
@@ -30,6 +31,11 @@ const EXPLORE: Fields = Fields { what: "an exploration", known: &["depth", "max_
 
 const RECORD: Fields = Fields { what: "a record", known: &["nodes", "contacts", "every", "directions"], later: &[] };
 
+const CONTACT_RANGE: Choices<ContactRange> = Choices {
+    what: "a range of contacts",
+    known: &[("all", ContactRange::All), ("in_reach", ContactRange::InReach)],
+    later: &[],
+};
 const RECORDED_CONTACT: Fields = Fields { what: "a recorded contact", known: &["node", "obstacle"], later: &[] };
 
 const REGULARISED: Fields = Fields {
@@ -115,10 +121,20 @@ fn record(input: &Input, mistakes: &mut Mistakes) -> Option<Record> {
     let object = input.object(&RECORD, mistakes)?;
     let default = Record::default();
     let nodes = object.optional("nodes", mistakes, |input, mistakes| input.list(mistakes, text));
-    let contacts = object.optional("contacts", mistakes, |input, mistakes| input.list(mistakes, recorded_contact));
+    let contacts = object.optional("contacts", mistakes, recorded_contacts);
     let every = object.with_default("every", default.every, mistakes, count);
     let directions = object.with_default("directions", default.directions, mistakes, boolean);
     Some(Record { nodes: nodes?, contacts: contacts?, every: every?, directions: directions? })
+}
+
+fn recorded_contacts(input: &Input, mistakes: &mut Mistakes) -> Option<RecordedContacts> {
+    if input.is_text() {
+        return input.choice(&CONTACT_RANGE, mistakes).map(RecordedContacts::Range);
+    }
+    if !input.is_list() {
+        return input.refuse("\"all\", \"in_reach\" or a list of contacts", mistakes);
+    }
+    input.list(mistakes, recorded_contact).map(RecordedContacts::Named)
 }
 
 fn recorded_contact(input: &Input, mistakes: &mut Mistakes) -> Option<RecordedContact> {

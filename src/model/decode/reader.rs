@@ -46,6 +46,14 @@ impl<'a> Input<'a> {
         None
     }
 
+    pub fn is_text(&self) -> bool {
+        matches!(self.value, Json::Text(_))
+    }
+
+    pub fn is_list(&self) -> bool {
+        matches!(self.value, Json::Array(_))
+    }
+
     pub fn list<T>(
         &self,
         mistakes: &mut Mistakes,

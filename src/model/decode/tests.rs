@@ -133,7 +133,11 @@ fn analysis() -> impl Strategy<Value = Analysis> {
     let events = one_of([Events::Auto, Events::All]);
     let explore = of((any::<u64>(), any::<u64>()).prop_map(|(depth, max_jobs)| Explore { depth, max_jobs }));
     let contact = (name(), name()).prop_map(|(node, obstacle)| RecordedContact { node, obstacle });
-    let record = (of(vec(name(), 0..3)), of(vec(contact, 0..3)), any::<u64>(), any::<bool>())
+    let contacts = prop_oneof![
+        one_of([ContactRange::All, ContactRange::InReach]).prop_map(RecordedContacts::Range),
+        vec(contact, 0..3).prop_map(RecordedContacts::Named),
+    ];
+    let record = (of(vec(name(), 0..3)), of(contacts), any::<u64>(), any::<bool>())
         .prop_map(|(nodes, contacts, every, directions)| Record { nodes, contacts, every, directions });
     let counts = (any::<u64>(), any::<u64>(), any::<bool>());
     (method, selection, events, arc_length, counts, explore, of(record), of(regularised)).prop_map(

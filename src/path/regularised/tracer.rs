@@ -185,11 +185,13 @@ impl<'a> RegularisedPath<'a> {
     fn emit(&mut self, before: &Point, kind: PointKind, event: Option<String>, step: f64, residual: f64) -> Increment {
         let system = self.system();
         let places: Vec<Option<usize>> = (0..self.scene.contacts.len()).map(Some).collect();
+        let rows: Vec<usize> = (0..self.scene.reported.len()).collect();
         let row = Row {
             stage: self.stage,
             loading: system.loading,
             whole: system.loading,
             places: &places,
+            rows: &rows,
             state: &self.here.state,
             before: &before.state,
             modes: &modes(&self.here),

@@ -19,6 +19,18 @@ pub fn record() -> Vec<BadDocument> {
         ),
         spoilt("a node recorded twice", "/analysis/record/nodes/1", json!({"nodes": ["tip", "tip"]}), "twice"),
         spoilt(
+            "an unknown range of contacts",
+            "/analysis/record/contacts",
+            json!({"contacts": "in_rech"}),
+            "did you mean `in_reach`?",
+        ),
+        spoilt(
+            "recorded contacts as a number",
+            "/analysis/record/contacts",
+            json!({"contacts": 3}),
+            "\"all\", \"in_reach\" or a list of contacts",
+        ),
+        spoilt(
             "a recorded contact as text",
             "/analysis/record/contacts/0",
             json!({"contacts": ["tip"]}),
