@@ -37,7 +37,7 @@ fn a_bar_that_shrinks_to_a_point_is_named() {
 
 #[test]
 fn the_number_of_increments_is_kept() {
-    let mut request = scene("klarbring");
+    let mut request = scene("one-bar-truss");
     request.analysis.max_increments = 17;
     let (increments, report) = trace(&request);
     assert_eq!((increments.len(), report.stop_reason), (18, StopReason::MaxIncrements));

@@ -68,13 +68,46 @@ fn kept(mut request: JobRequest) -> JobRequest {
 fn every_scene_has_one_path_with_and_without_savings() {
     let mut left_out = 0;
     for built_in in arcslip::scenes::ALL {
-        let request = scene(built_in.name);
+        let mut request = scene(built_in.name);
+        request.analysis.arc_length.jump = false;
         let (saving, keeping) = (judged(&request), judged(&kept(request)));
         assert_same(&saving.increments, &keeping.increments, built_in.name);
         assert_eq!(saving.report.stop_reason, keeping.report.stop_reason);
         left_out += usize::from(saving.plan.left_out.len() > keeping.plan.left_out.len());
     }
     assert!(left_out > 0, "some scene has a contact that is out of reach at first");
+}
+
+#[test]
+fn linear_structures_jump_from_event_to_event() {
+    for (name, most) in [("slider-chain", 8), ("klarbring", 12)] {
+        let request = scene(name);
+        let (jumping, keeping) = (judged(&request), judged(&kept(request)));
+        assert!(jumping.plan.left_out.iter().any(|left| left.what.starts_with("increments between events")), "{name}");
+        assert!(jumping.increments.len() <= most && keeping.increments.len() >= 20, "{name}");
+        assert!(jumping.errors.iter().all(|errors| errors.largest_of_state() <= 1e-12), "{name}");
+        let events = |path: &[Increment]| {
+            let named = path.iter().filter(|increment| increment.point.event.is_some());
+            named.map(|increment| (increment.point.clone(), increment.stage.clone())).collect::<Vec<_>>()
+        };
+        assert_eq!(events(&jumping.increments), events(&keeping.increments), "{name}");
+        // Every point of the path in steps lies on the straight line between two of the other.
+        for point in &keeping.increments {
+            let after = jumping
+                .increments
+                .iter()
+                .position(|jump| jump.stage == point.stage && jump.arc_length >= point.arc_length - 1e-12);
+            let after = &jumping.increments[after.expect("as long a path")];
+            let before = &jumping.increments[after.index.saturating_sub(1) as usize];
+            let part = (after.arc_length - point.arc_length) / after.step.max(f64::MIN_POSITIVE);
+            let place = format!("{name}, increment {}", point.index);
+            near(after.load_factor + part * (before.load_factor - after.load_factor), point.load_factor, &place);
+            let ends = after.displacements.values().flatten().zip(before.displacements.values().flatten());
+            for ((after, before), found) in ends.zip(point.displacements.values().flatten()) {
+                near(after + part * (before - after), *found, &place);
+            }
+        }
+    }
 }
 
 #[test]

@@ -80,7 +80,7 @@ async fn a_follower_is_judged_as_its_parent_goes_on() {
         let follower = queued["id"].as_str().unwrap_or_else(|| panic!("{queued}"));
         let job = server.ended(follower).await;
         let followed = increments(&server, follower).await;
-        assert!(followed.len() > 3 && followed.iter().all(|judged| judged.measure.largest_of_state() <= 1e-10));
+        assert!(followed.len() > 1 && followed.iter().all(|judged| judged.measure.largest_of_state() <= 1e-10));
         assert_eq!(job["report"]["measure"]["off_measure"], 0);
         if listed.taken {
             let parent = &path[index as usize + 1..];

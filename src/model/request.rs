@@ -454,11 +454,15 @@ pub struct ArcLength {
     /// Load factor (dimensionless, or as the pattern has it); computed from the scene when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub load_scale: Option<f64>,
+    /// Whether straight stretches are one increment, however long: where every element is linear, every contact in reach a
+    /// plane's and no slip turns, up to the next event, but not along stretches of bifurcations. Absent: true if `max` is
+    /// absent.
+    pub jump: bool,
 }
 
 impl Default for ArcLength {
     fn default() -> Self {
-        Self { initial: 0.02, min: 1e-9, max: 0.5, displacement_scale: None, load_scale: None }
+        Self { initial: 0.02, min: 1e-9, max: 0.5, displacement_scale: None, load_scale: None, jump: true }
     }
 }
 
@@ -471,6 +475,6 @@ impl ArcLength {
         let lower = min.unwrap_or_else(|| given.clone().fold(default.min, f64::min));
         let upper = max.unwrap_or_else(|| given.fold(default.max, f64::max));
         let initial = initial.unwrap_or_else(|| default.initial.min(upper).max(lower));
-        Self { initial, min: lower, max: upper, ..default }
+        Self { initial, min: lower, max: upper, jump: max.is_none(), ..default }
     }
 }

@@ -179,6 +179,7 @@ impl StudyRequest {
 fn set_arc_length(analysis: &mut Analysis, value: f64, longest: f64) {
     analysis.arc_length.initial = value;
     analysis.arc_length.max = value;
+    analysis.arc_length.jump = false;
     // What overflows the integer is cut to its largest value; the check bounds it before.
     let more = (longest / value).ceil().max(1.0);
     analysis.max_increments = (analysis.max_increments as f64 * more) as u64;

@@ -65,6 +65,7 @@ mod standing;
 mod state;
 mod stepping;
 pub mod stop;
+mod straight;
 mod together;
 mod totals;
 mod traced;

@@ -330,7 +330,7 @@ mod tests {
                     {"name": "slide", "obstacle_motion": {"wall": [-1, 0]}, "until": {"load_above": 1}},
                 ],
             },
-            "analysis": {"keep_all": keep_all},
+            "analysis": {"keep_all": keep_all, "arc_length": {"jump": false}},
         }))
         .expect("a request")
     }

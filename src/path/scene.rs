@@ -43,6 +43,8 @@ pub struct Scene {
     pub(super) analysis: Analysis,
     /// Which of the request's contacts have a row in every increment, in reach or not; `None`: all.
     pub(super) asked_rows: Option<Vec<usize>>,
+    /// Straight stretches are one increment.
+    pub(super) jumps: bool,
     plan: Plan,
 }
 
@@ -144,6 +146,7 @@ impl Scene {
         let node_names = model.nodes.keys().map(|name| Arc::from(name.as_str())).collect();
         let analysis = request.analysis.clone();
         let asked_rows = super::near::asked_rows(request);
+        let jumps = super::straight::jumps(&analysis, &structure);
         let mut scene = Self {
             structure,
             contacts,
@@ -154,9 +157,11 @@ impl Scene {
             stages,
             analysis,
             asked_rows,
+            jumps,
             plan,
         };
         scene.plan.left_out.extend(super::near::left_out(&scene));
+        scene.plan.left_out.extend(super::straight::left_out(&scene));
         scene.refuse_mechanism()?;
         scene.refuse_imbalance()?;
         scene.refuse_dragged_supports(model)?;

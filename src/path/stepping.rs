@@ -134,7 +134,8 @@ impl Path<'_> {
     /// Steps until a point is accepted.
     pub(super) fn step(&mut self) -> Result<Accepted, StopReason> {
         let (least, most) = (self.scene.analysis.arc_length.min, self.scene.analysis.arc_length.max);
-        let mut step = self.at.step.min(most);
+        let jump = self.way_to_next_event();
+        let mut step = jump.unwrap_or(self.at.step.min(most));
         self.look_ahead(step);
         let mut unresolved = 0;
         let mut known = self.at.here.signature;
@@ -185,7 +186,9 @@ impl Path<'_> {
                     accepted.mode_named = named_as_kept.map(|kept| kept || accepted.reached.event.is_some());
                     let factor = self.next_step_factor(&rate, &accepted, step);
                     if factor > REJECTED || step * factor < least {
-                        self.at.step = (step * factor).clamp(least, most);
+                        if jump != Some(step) {
+                            self.at.step = (step * factor).clamp(least, most);
+                        }
                         return Ok(accepted);
                     }
                     step *= factor;

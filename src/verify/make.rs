@@ -133,7 +133,7 @@ impl Make {
 
     pub fn longest_step(mut self, step: f64) -> Self {
         let arc_length = &mut self.0.analysis.arc_length;
-        (arc_length.initial, arc_length.max) = (arc_length.initial.min(step), step);
+        (arc_length.initial, arc_length.max, arc_length.jump) = (arc_length.initial.min(step), step, false);
         self
     }
 

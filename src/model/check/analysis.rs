@@ -86,7 +86,7 @@ fn regularised(regularised: &Regularised, at: &Place, mistakes: &mut Mistakes) {
 }
 
 fn arc_length(arc_length: &ArcLength, at: &Place, mistakes: &mut Mistakes) {
-    let &ArcLength { initial, min, max, displacement_scale, load_scale } = arc_length;
+    let &ArcLength { initial, min, max, displacement_scale, load_scale, jump: _ } = arc_length;
     let mut sane = true;
     for (field, value) in [("initial", initial), ("min", min), ("max", max)] {
         sane &= numbers::positive(value, &at.member(field), mistakes);

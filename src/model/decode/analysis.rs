@@ -24,8 +24,11 @@ const ANALYSIS: Fields = Fields {
     later: &[],
 };
 
-const ARC_LENGTH: Fields =
-    Fields { what: "an arc length", known: &["initial", "min", "max", "displacement_scale", "load_scale"], later: &[] };
+const ARC_LENGTH: Fields = Fields {
+    what: "an arc length",
+    known: &["initial", "min", "max", "displacement_scale", "load_scale", "jump"],
+    later: &[],
+};
 
 const EXPLORE: Fields = Fields { what: "an exploration", known: &["depth", "max_jobs"], later: &[] };
 
@@ -106,8 +109,10 @@ fn arc_length(input: &Input, mistakes: &mut Mistakes) -> Option<ArcLength> {
     let max = object.optional("max", mistakes, number);
     let displacement_scale = object.optional("displacement_scale", mistakes, number);
     let load_scale = object.optional("load_scale", mistakes, number);
+    let jump = object.optional("jump", mistakes, boolean);
     let bounds = ArcLength::with_defaults(initial?, min?, max?);
-    Some(ArcLength { displacement_scale: displacement_scale?, load_scale: load_scale?, ..bounds })
+    let jump = jump?.unwrap_or(bounds.jump);
+    Some(ArcLength { displacement_scale: displacement_scale?, load_scale: load_scale?, jump, ..bounds })
 }
 
 fn explore(input: &Input, mistakes: &mut Mistakes) -> Option<Explore> {

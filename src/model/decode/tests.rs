@@ -108,13 +108,14 @@ fn model() -> impl Strategy<Value = Model> {
 }
 
 fn analysis() -> impl Strategy<Value = Analysis> {
-    let arc_length = (number(), number(), number(), of(number()), of(number())).prop_map(
-        |(initial, min, max, displacement_scale, load_scale)| ArcLength {
+    let arc_length = (number(), number(), number(), of(number()), of(number()), any::<bool>()).prop_map(
+        |(initial, min, max, displacement_scale, load_scale, jump)| ArcLength {
             initial,
             min,
             max,
             displacement_scale,
             load_scale,
+            jump,
         },
     );
     let method = one_of([Method::Auto, Method::Mpec, Method::Regularised]);

@@ -1,0 +1,90 @@
+//! Straight stretches of a path, which are one increment.
+//!
+//! Where every element is linear, every contact in reach a plane's and no slip can turn, the tangent of a mode is constant
+//! and everything that is watched is linear in the arc length: the place of the next event is known from where the path
+//! stands, and nothing lies in between. Along stretches of bifurcations the increments are kept, because from any of
+//! them another direction can be followed.
+
+use super::plan::LeftOut;
+use super::scene::{End, Scene};
+use super::tracer::Path;
+use super::watch::{self, Watch};
+use crate::contact::obstacle::Obstacle;
+use crate::contact::{Contact, Sliding};
+use crate::model::request::{Analysis, Method};
+use crate::structure::Structure;
+use crate::structure::element::Element;
+
+/// How far past the event the step is tried, over the way there: the event is then seen to be passed.
+const PAST: f64 = 1.0 / 64.0;
+/// A quantity that changes by less than this fraction of its scale by unit arc length does not change.
+const CONSTANT: f64 = 1e-10;
+/// What counts as zero, over a quantity's scale.
+const ZERO: f64 = 1e-12;
+
+/// Whether straight stretches are jumped over.
+pub(super) fn jumps(analysis: &Analysis, structure: &Structure) -> bool {
+    analysis.arc_length.jump
+        && !analysis.keep_all
+        && analysis.method != Method::Regularised
+        && structure.elements.iter().all(Element::is_linear)
+}
+
+/// What the plan says of it.
+pub(super) fn left_out(scene: &Scene) -> Option<LeftOut> {
+    (scene.jumps && scene.contacts.iter().all(is_straight)).then(|| LeftOut {
+        what: "increments between events, but for stretches of bifurcations".to_owned(),
+        why: "the path is straight from event to event; give `arc_length.max` to have points in between".to_owned(),
+    })
+}
+
+/// Whether nothing about a contact bends a path of linear elements.
+fn is_straight(contact: &Contact) -> bool {
+    let plane = matches!(contact.obstacle, Obstacle::Plane { .. });
+    plane && (contact.friction == 0.0 || contact.sliding != Sliding::Plane)
+}
+
+impl Path<'_> {
+    /// The arc length of a step past the next event, where the path is straight up to there.
+    pub(super) fn way_to_next_event(&mut self) -> Option<f64> {
+        if !self.scene.jumps || self.at.listed.as_ref().is_some_and(|listed| listed.point.bifurcation) {
+            return None;
+        }
+        loop {
+            let way = self.straight_way()?;
+            let contacts = self.at.near.len();
+            self.look_ahead(way);
+            if self.at.near.len() == contacts {
+                return Some(way);
+            }
+        }
+    }
+
+    fn straight_way(&self) -> Option<f64> {
+        let (loading, here) = (self.loading(), &self.at.here);
+        let rate = here.rate.as_ref()?;
+        if !loading.contacts.iter().all(is_straight) {
+            return None;
+        }
+        let ends = &self.scene.stages[self.at.stage].ends;
+        if ends.iter().any(|end| matches!(end, End::Increments(_))) {
+            return None;
+        }
+        let mut watches = watch::of_mode(loading, &here.modes);
+        watches.extend(ends.iter().map(|end| Watch::End(*end)));
+        let ahead = here.state.advanced(rate, 1.0);
+        let mut nearest = f64::INFINITY;
+        for watch in watches {
+            let scale = watch.scale(self.at.totals.force_scale);
+            let now = watch.value(loading, &here.modes, &here.state, rate);
+            let change = watch.value(loading, &here.modes, &ahead, rate) - now;
+            if change < -CONSTANT * scale {
+                if now <= ZERO * scale {
+                    return None;
+                }
+                nearest = nearest.min(now / -change);
+            }
+        }
+        nearest.is_finite().then_some(nearest * (1.0 + PAST))
+    }
+}
