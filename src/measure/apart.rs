@@ -21,8 +21,12 @@ pub(super) struct Apart {
     fastest: Vec<f64>,
     /// Distance that the path has gone.
     travelled: f64,
-    /// Contacts without a row, the one that may close first on top.
+    /// Contacts without a row, and perhaps some that have one by now; the one that may close first on top.
     waiting: BinaryHeap<Reverse<Waiting>>,
+    /// For each contact, whether it has a row.
+    has_row: Vec<bool>,
+    /// Those that have.
+    rows: Vec<usize>,
 }
 
 /// A contact, and the distance that the path has to go before its gap can have closed.
@@ -56,18 +60,36 @@ impl Apart {
             if contact.motion.is_none() { length } else { length.hypot(of_stage(contact)) }
         };
         let fastest = posted.contacts.iter().map(fastest).collect();
-        Self { length, fastest, travelled: 0.0, waiting: Self::all(posted, &[]) }
+        let has_row = vec![false; posted.contacts.len()];
+        let waiting = BinaryHeap::new();
+        Self { length, fastest, travelled: 0.0, waiting, has_row, rows: Vec::new() }
     }
 
-    /// All contacts but some, which are in order, to be looked at next.
-    fn all(posted: &Posted, but: &[usize]) -> BinaryHeap<Reverse<Waiting>> {
-        let waiting = (0..posted.contacts.len()).filter(|contact| but.binary_search(contact).is_err());
-        waiting.map(|contact| Reverse(Waiting { until: f64::NEG_INFINITY, contact })).collect()
+    /// Begins with no rows at all, where everything is now.
+    pub fn begin(&mut self, posted: &Posted, loading: &Loading, displacements: &[Vector]) {
+        let waiting = |(contact, posted_contact)| {
+            let gap = posted.frame(posted_contact, loading, displacements).gap;
+            Reverse(self.waiting(contact, gap))
+        };
+        let waiting = posted.contacts.iter().enumerate().map(waiting).collect();
+        self.waiting = waiting;
+        self.has_row.fill(false);
+        self.rows.clear();
     }
 
-    /// From now on these contacts, which are in order, have rows, and all others none.
-    pub fn without(&mut self, posted: &Posted, rows: &[usize]) {
-        self.waiting = Self::all(posted, rows);
+    fn waiting(&self, contact: usize, gap: f64) -> Waiting {
+        let way = gap.max(0.0) / self.fastest[contact];
+        Waiting { until: self.travelled + way - ROUNDING * (self.travelled + way), contact }
+    }
+
+    /// From now on these contacts have rows, and all others none.
+    pub fn rows_are(&mut self, rows: &[usize]) {
+        let before = std::mem::replace(&mut self.rows, rows.to_vec());
+        before.iter().for_each(|contact| self.has_row[*contact] = false);
+        rows.iter().for_each(|contact| self.has_row[*contact] = true);
+        // They wait again; one that has never been taken off waits twice, and does no harm.
+        let lost = before.iter().filter(|contact| !self.has_row[**contact]);
+        self.waiting.extend(lost.map(|contact| Reverse(Waiting { until: f64::NEG_INFINITY, contact: *contact })));
     }
 
     /// Takes into `errors` the gaps that are not open at the end of an increment of this length.
@@ -91,11 +113,12 @@ impl Apart {
         let mut looked_at = Vec::new();
         while self.waiting.peek().is_some_and(|Reverse(first)| first.until <= self.travelled) {
             let Some(Reverse(Waiting { contact, .. })) = self.waiting.pop() else { break };
+            if self.has_row[contact] {
+                continue;
+            }
             let gap = posted.frame(&posted.contacts[contact], loading, displacements).gap;
             errors.contact = worse(errors.contact, if gap > 0.0 { 0.0 } else { gap.abs() / self.length });
-            let way = gap.max(0.0) / self.fastest[contact];
-            looked_at
-                .push(Reverse(Waiting { until: self.travelled + way - ROUNDING * (self.travelled + way), contact }));
+            looked_at.push(Reverse(self.waiting(contact, gap)));
         }
         self.waiting.extend(looked_at);
     }

@@ -105,11 +105,13 @@ impl Judge {
         self.stage = reached.len();
         self.reached = reached;
         self.held = held;
-        let mut before = Before { displacements, shifts: loading.shifts, load, arc_length, ..Before::at_rest(posted) };
+        let mut before =
+            Before { displacements, shifts: loading.shifts.clone(), load, arc_length, ..Before::at_rest(posted) };
         for (contact, direction) in directions {
             before.directions[contact] = Some(direction);
         }
         self.before = before;
+        self.apart.begin(&self.posted, &loading, &self.before.displacements);
         self.largest_force = largest_force;
         self.largest_energy = largest_energy;
         Ok(self)

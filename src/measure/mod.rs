@@ -102,6 +102,8 @@ impl Judge {
         let nodes = posted.nodes.len();
         let (displacements, balance, rounding) = (vec![ZERO; nodes], vec![ZERO; nodes], vec![0.0; nodes]);
         let frames = Vec::new();
+        let mut apart = Apart::new(&posted, displacement_scale);
+        apart.begin(&posted, &none, &displacements);
         let initial_strain = posted.elements.iter().map(|element| element.response(&displacements).energy).sum();
         Self {
             length: displacement_scale,
@@ -113,7 +115,7 @@ impl Judge {
             largest_energy: 0.0,
             initial_strain,
             rows: Rows::new(request),
-            apart: Apart::new(&posted, displacement_scale),
+            apart,
             work: Workspace { loading: none, displacements, balance, rounding, frames },
             posted,
         }
@@ -172,7 +174,7 @@ impl Judge {
         let mut fits = known.is_some();
         match self.rows.read(&increment.contacts) {
             Change::None => {}
-            Change::Others => self.apart.without(posted, self.rows.contacts()),
+            Change::Others => self.apart.rows_are(self.rows.contacts()),
             Change::Unknown => fits = false,
         }
         for (index, (node, displacement)) in posted.nodes.iter().zip(&mut self.work.displacements).enumerate() {

@@ -2,12 +2,15 @@
 
 use crate::model::JobRequest;
 use crate::path::increment::ContactState;
+use std::collections::HashMap;
 
 /// The contacts of the last increment's rows.
 #[derive(Debug, Clone)]
 pub(super) struct Rows {
     /// Node and obstacle of every contact of the model.
     names: Vec<(String, String)>,
+    /// By node and obstacle, the contacts of these names, in order.
+    named: HashMap<String, HashMap<String, Vec<usize>>>,
     /// For each row its contact.
     contacts: Vec<usize>,
 }
@@ -23,9 +26,14 @@ pub(super) enum Change {
 
 impl Rows {
     pub fn new(request: &JobRequest) -> Self {
-        let contacts = request.model.contacts.iter();
-        let names = contacts.map(|contact| (contact.node.clone(), contact.obstacle.clone())).collect();
-        Self { names, contacts: Vec::new() }
+        let mut named: HashMap<String, HashMap<String, Vec<usize>>> = HashMap::new();
+        let mut names = Vec::with_capacity(request.model.contacts.len());
+        for (index, contact) in request.model.contacts.iter().enumerate() {
+            let (node, obstacle) = (contact.node.clone(), contact.obstacle.clone());
+            named.entry(node.clone()).or_default().entry(obstacle.clone()).or_default().push(index);
+            names.push((node, obstacle));
+        }
+        Self { names, named, contacts: Vec::new() }
     }
 
     pub fn contacts(&self) -> &[usize] {
@@ -41,8 +49,13 @@ impl Rows {
         if rows.len() == self.contacts.len() && rows.iter().zip(&self.contacts).all(is_of) {
             return Change::None;
         }
-        let mut contacts = 0..self.names.len();
-        let found = rows.iter().map(|row| contacts.find(|contact| is_of((row, contact))));
+        let mut next = 0;
+        let found = rows.iter().map(|row| {
+            let of_names = self.named.get(&*row.node)?.get(&*row.obstacle)?;
+            let contact = *of_names.iter().find(|contact| **contact >= next)?;
+            next = contact + 1;
+            Some(contact)
+        });
         let found: Option<Vec<usize>> = found.collect();
         match found {
             Some(found) => {

@@ -42,12 +42,14 @@ pub(super) struct Near {
     places: Vec<Option<usize>>,
     /// The request's contacts that have a row in the increments: those in reach and those that are asked for.
     rows: Vec<usize>,
-    far: BinaryHeap<Far>,
 }
+
+/// The contacts out of reach, the one that may be reached first on top.
+pub(super) type FarContacts = BinaryHeap<Far>;
 
 /// A contact out of reach.
 #[derive(Debug, Clone, Copy)]
-struct Far {
+pub(super) struct Far {
     /// Arc length of the path before which its gap cannot close.
     until: f64,
     contact: usize,
@@ -146,6 +148,22 @@ fn whole<'a>(scene: &'a Scene, at: &'a Progress) -> Loading<'a> {
     }
 }
 
+/// The contacts that `at` has out of reach.
+pub(super) fn far_contacts(scene: &Scene, at: &Progress) -> FarContacts {
+    let loading = whole(scene, at);
+    let far = |contact: &usize| at.near.binary_search(contact).is_err();
+    let waiting = |contact: usize| Far::at(scene, contact, loading.gap(contact, &at.here.state), at.totals.arc_length);
+    (0..scene.contacts.len()).filter(far).map(waiting).collect()
+}
+
+impl Far {
+    /// With this gap after the path has gone so far.
+    fn at(scene: &Scene, contact: usize, gap: f64, travelled: f64) -> Self {
+        let way = gap / fastest(scene, contact);
+        Self { until: travelled + way - ROUNDING * (travelled + way), contact }
+    }
+}
+
 impl Near {
     /// The contacts that `at` has in reach.
     pub fn of(scene: &Scene, at: &Progress) -> Self {
@@ -163,9 +181,6 @@ impl Near {
             let contacts: Vec<usize> = corner.contacts.iter().filter_map(|contact| places[*contact]).collect();
             (contacts.len() > 1).then_some(Corner { contacts })
         });
-        // Looked at before the first step, whatever the gap.
-        let far = (0..scene.contacts.len()).filter(|contact| places[*contact].is_none());
-        let far = far.map(|contact| Far { until: f64::NEG_INFINITY, contact }).collect();
         let asked: Box<dyn Fn(usize) -> bool> = match &scene.asked_rows {
             None => Box::new(|_| true),
             Some(asked) => Box::new(|row| asked.binary_search(&row).is_ok()),
@@ -179,7 +194,6 @@ impl Near {
             held: chosen(&at.held),
             places,
             rows,
-            far,
         }
     }
 
@@ -214,28 +228,25 @@ impl Path<'_> {
     pub(super) fn look_ahead(&mut self, step: f64) {
         let (reach, travelled) = (REACH * step, self.at.totals.arc_length);
         let (mut reached, mut left) = (Vec::new(), Vec::new());
-        while self.near.far.peek().is_some_and(|next| next.until <= travelled + reach) {
-            let Some(Far { contact, .. }) = self.near.far.pop() else { break };
+        while self.far.peek().is_some_and(|next| next.until <= travelled + reach) {
+            let Some(Far { contact, .. }) = self.far.pop() else { break };
             let gap = self.whole_loading().gap(contact, &self.at.here.state);
-            let way = gap / fastest(self.scene, contact);
-            if way <= reach {
+            if gap / fastest(self.scene, contact) <= reach {
                 reached.push(contact);
             } else {
-                left.push(Far { until: travelled + way - ROUNDING * (travelled + way), contact });
+                left.push(Far::at(self.scene, contact, gap, travelled));
             }
         }
-        self.near.far.extend(left);
+        self.far.extend(left);
         if !reached.is_empty() {
             self.at.admit(&reached);
-            let far = std::mem::take(&mut self.near.far);
-            self.near = Near { far, ..Near::of(self.scene, &self.at) };
+            self.near = Near::of(self.scene, &self.at);
         }
     }
 
     /// The loading of the running stage, after a change of stage.
     pub(super) fn load_anew(&mut self) {
-        let far = std::mem::take(&mut self.near.far);
-        self.near = Near { far, ..Near::of(self.scene, &self.at) };
+        self.near = Near::of(self.scene, &self.at);
     }
 
     /// Names of the nodes and obstacles of the contacts in reach.
@@ -347,7 +358,7 @@ mod tests {
             if seen.last() != Some(&path.at.near) {
                 seen.push(path.at.near.clone());
             }
-            looks += path.near.far.iter().filter(|far| far.until <= path.at.totals.arc_length).count();
+            looks += path.far.iter().filter(|far| far.until <= path.at.totals.arc_length).count();
         }
         assert_eq!(seen, [vec![500], vec![500, 501]], "the floor, then the wall too");
         assert_eq!(looks, 0, "no far contact was looked at again");

@@ -9,7 +9,7 @@ use super::decide::{Choice, Decision, Rules};
 use super::follow::{Arriving, Listed};
 use super::increment::{Increment, Point, PointKind};
 use super::loading::Loading;
-use super::near::Near;
+use super::near::{self, FarContacts, Near};
 use super::progress::{Phase, Progress};
 use super::record::{self, Row};
 use super::report::Report;
@@ -33,6 +33,7 @@ pub struct Path<'a> {
     pub(super) initial_strain: f64,
     pub(super) at: Progress,
     pub(super) near: Near,
+    pub(super) far: FarContacts,
 }
 
 impl<'a> Path<'a> {
@@ -45,7 +46,8 @@ impl<'a> Path<'a> {
         let undeformed = vec![0.0; scene.structure.freedoms()];
         let initial_strain = scene.structure.strain_energy(&undeformed);
         let near = Near::of(scene, &at);
-        Self { scene, cancel, began: Instant::now(), elapsed_before, initial_strain, at, near }
+        let far = near::far_contacts(scene, &at);
+        Self { scene, cancel, began: Instant::now(), elapsed_before, initial_strain, at, near, far }
     }
 
     /// Present when the path has ended, that is when `next` has returned `None`.

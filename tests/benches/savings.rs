@@ -1,82 +1,137 @@
-//! What is saved by leaving contacts out of reach out: time per increment of a scene as it is, among 9,999 more contacts
-//! that it never comes near, and the same with `keep_all`. Medians of whole paths, with the same points by all three. In
-//! small scenes what is left among far contacts is their rows in the increments.
+//! What is saved by leaving out what a scene does not need: each scene as it is, and with the saving switched off
+//! (`keep_all`). Time is of whole judged paths, set up and serialised rows apart, the median of several taken in turn;
+//! memory is the most that is allocated at once while a path is traced, its set-up included.
 //!
 //! `cargo bench --bench savings`
 
+use allocation_counter::measure;
 use arcslip::cancel::CancelFlag;
+use arcslip::judged::JudgedPath;
 use arcslip::model::JobRequest;
-use arcslip::model::limits::MAX_CONTACTS;
-use arcslip::model::request::{Contact, Obstacle, Side};
-use arcslip::path::{Path, Scene};
+use arcslip::model::limits::{MAX_CONTACTS, MAX_OBSTACLES};
+use arcslip::model::request::{Contact, Obstacle, Record, RecordedContacts, Side};
+use arcslip::path::Scene;
 use serde_json::json;
 use std::time::Instant;
 
-/// Whole paths traced; the median is printed.
-const REPEATS: usize = 5;
-/// Increments of a path that are timed at most: with every contact kept each takes long.
+/// Whole paths traced of each; the median is printed.
+const REPEATS: usize = 9;
+/// Increments of a path that are timed at most among many contacts: with every contact kept each takes long.
 const MOST_INCREMENTS: u64 = 40;
 
 fn main() {
     println!(
-        "{:<22} {:>8} {:>10} {:>12} {:>12} {:>8} {:>14} {:>8}",
-        "scene", "unknowns", "increments", "alone us", "among far us", "ratio", "keep_all us", "ratio"
+        "{:<44} {:<30} {:>10} {:>10} {:>9} {:>10} {:>9} {:>7} {:>7} {:>7}",
+        "scene",
+        "what is left out",
+        "increments",
+        "time us",
+        "memory kB",
+        "kept us",
+        "kept kB",
+        "time",
+        "memory",
+        "written"
     );
     for name in ["one-bar-truss", "arch-type-truss", "three-snapping-bars", "curving-slip"] {
-        let Some(built_in) = arcslip::scenes::find(name) else { continue };
-        match arcslip::model::decode::decode(built_in.request.as_bytes()) {
-            Ok(request) => compare(name, request),
-            Err(errors) => panic!("{errors}"),
-        }
+        among_far_contacts(name, scene(name));
     }
-    compare("chain of 60 blocks", chain(60));
+    among_far_contacts("chain of 20 blocks", chain(20));
+    for name in ["arch-type-truss", "two-snapping-bars"] {
+        compare(name, "contacts out of reach at first", &scene(name), &kept(scene(name)));
+    }
+    for name in ["klarbring", "slider-chain"] {
+        compare(name, "straight stretches", &scene(name), &kept(scene(name)));
+    }
+    for name in ["one-bar-truss", "arch-type-truss"] {
+        let mut recorded = scene(name);
+        let contacts = Some(RecordedContacts::Named(Vec::new()));
+        recorded.analysis.record = Some(Record { nodes: Some(Vec::new()), contacts, every: 1_000, directions: false });
+        compare(name, "outputs (record)", &recorded, &scene(name));
+    }
 }
 
-fn compare(name: &str, mut request: JobRequest) {
+fn scene(name: &str) -> JobRequest {
+    let built_in = arcslip::scenes::find(name).unwrap_or_else(|| panic!("there is no scene {name}"));
+    arcslip::model::decode::decode(built_in.request.as_bytes()).unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+fn kept(mut request: JobRequest) -> JobRequest {
+    request.analysis.keep_all = true;
+    request
+}
+
+/// The scene among far contacts beside the scene alone, then with every contact kept.
+fn among_far_contacts(name: &str, mut request: JobRequest) {
     request.analysis.max_increments = MOST_INCREMENTS;
-    let (alone, increments, unknowns) = timed(&request);
-    let mut among = with_far_contacts(request);
-    let (saving, with_far, _) = timed(&among);
-    among.analysis.keep_all = true;
-    let (keeping, with_all, _) = timed(&among);
-    assert!(increments == with_far && increments == with_all, "one path");
+    let among = with_far_contacts(request.clone(), MAX_CONTACTS);
+    compare(&format!("{name}, and among 10,000 far"), "nothing: what far ones cost", &request, &among);
+    let among = with_far_contacts(request, 200);
+    compare(&format!("{name} among 200 far"), "contacts out of reach", &among, &kept(among.clone()));
+}
+
+struct Figures {
+    /// Of a path (microseconds).
+    time: f64,
+    /// Most that is allocated at once (kB).
+    memory: f64,
+    increments: usize,
+    /// Bytes of all rows, written out.
+    written: usize,
+}
+
+/// One line: a request, and the same with something kept.
+fn compare(name: &str, what: &str, saving: &JobRequest, keeping: &JobRequest) {
+    let requests = [saving, keeping];
+    let scenes = requests.map(|request| Scene::new(request).unwrap_or_else(|errors| panic!("{errors}")));
+    let mut times = [Vec::new(), Vec::new()];
+    for _ in 0..REPEATS {
+        for ((request, scene), times) in requests.iter().zip(&scenes).zip(&mut times) {
+            let mut path = JudgedPath::new(request, scene, CancelFlag::default());
+            let began = Instant::now();
+            path.by_ref().for_each(drop);
+            times.push(began.elapsed().as_secs_f64() * 1e6);
+        }
+    }
+    let figures = [0, 1].map(|side| {
+        let (request, scene) = (requests[side], &scenes[side]);
+        let (mut increments, mut written) = (0, 0);
+        let allocated = measure(|| {
+            for judged in JudgedPath::new(request, scene, CancelFlag::default()) {
+                increments += 1;
+                drop(judged);
+            }
+        });
+        for judged in JudgedPath::new(request, scene, CancelFlag::default()) {
+            written += arcslip::output::json_line(&judged).map_or(0, |line| line.len() + 1);
+        }
+        times[side].sort_by(f64::total_cmp);
+        Figures { time: times[side][REPEATS / 2], memory: allocated.bytes_max as f64 / 1e3, increments, written }
+    });
+    let [saved, whole] = figures;
     println!(
-        "{name:<22} {unknowns:>8} {increments:>10} {alone:>12.1} {saving:>12.1} {:>8.2} {keeping:>14.1} {:>8.2}",
-        saving / alone,
-        keeping / alone
+        "{name:<44} {what:<30} {:>10} {:>10.1} {:>9.1} {:>10.1} {:>9.1} {:>7.2} {:>7.2} {:>7.2}",
+        saved.increments,
+        saved.time,
+        saved.memory,
+        whole.time,
+        whole.memory,
+        whole.time / saved.time,
+        whole.memory / saved.memory,
+        whole.written as f64 / saved.written as f64,
     );
 }
 
-/// Median time per increment (microseconds), increments and unknowns.
-fn timed(request: &JobRequest) -> (f64, u64, u64) {
-    let scene = match Scene::new(request) {
-        Ok(scene) => scene,
-        Err(errors) => panic!("{errors}"),
-    };
-    let mut times = Vec::with_capacity(REPEATS);
-    let mut increments = 0;
-    for _ in 0..REPEATS {
-        let began = Instant::now();
-        increments = Path::new(&scene, CancelFlag::default()).count();
-        times.push(began.elapsed().as_secs_f64() / increments as f64 * 1e6);
-    }
-    times.sort_by(f64::total_cmp);
-    (times[REPEATS / 2], increments as u64, scene.plan().unknowns)
-}
-
-/// As many contacts more as are taken, of the nodes that have one.
-fn with_far_contacts(mut request: JobRequest) -> JobRequest {
+/// So many contacts in all, of the nodes that have one, each with an obstacle of its own.
+fn with_far_contacts(mut request: JobRequest, most: usize) -> JobRequest {
     let model = &mut request.model;
     let nodes: Vec<String> = model.contacts.iter().map(|contact| contact.node.clone()).collect();
     let reach = model.nodes.values().flatten().fold(1.0_f64, |most, value| most.max(value.abs()));
-    for index in 0..MAX_CONTACTS - model.contacts.len() {
+    for index in 0..most.min(MAX_OBSTACLES - model.obstacles.len()) - model.contacts.len() {
         let mut center = vec![1e3 * reach; model.dimension];
         center[0] += reach * index as f64;
-        let name = format!("far {index}");
-        if index < 100 {
-            model.obstacles.insert(name.clone(), Obstacle::Ball { center, radius: reach, side: Side::Outside });
-        }
-        let obstacle = format!("far {}", index % 100);
+        let obstacle = format!("far {index}");
+        model.obstacles.insert(obstacle.clone(), Obstacle::Ball { center, radius: reach, side: Side::Outside });
         model.contacts.push(Contact { node: nodes[index % nodes.len()].clone(), obstacle, friction: 0.5 });
     }
     request
