@@ -66,6 +66,8 @@ pub enum Refused {
 
 /// The direction may turn by this much in a step.
 pub const MOST_TURN: f64 = 0.6;
+/// The turns at the ends of a step may move the chord of a slip by this angle (radians).
+const MOST_CORRECTION: f64 = 0.1;
 /// Solves of an increment in which directions of slip settle.
 const MOST_PASSES: u64 = 12;
 /// Change of their angles (radians) from which they have settled.
@@ -128,6 +130,11 @@ impl Start<'_> {
             let turn = system.largest_turn(&corrected, None);
             if turn > MOST_TURN {
                 return Err(Refused::Turned(turn));
+            }
+            // The series has ended to say anything where the turn changes much within the step.
+            let correction = system.largest_correction(&corrected);
+            if correction > MOST_CORRECTION {
+                return Err(Refused::Turned(correction));
             }
         }
         let Tangent { rate, error: error_estimate, determinant, .. } = tangent;

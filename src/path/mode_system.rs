@@ -172,6 +172,17 @@ impl<'a> ModeSystem<'a> {
         self.roles.iter().enumerate().map(of).fold(0.0, f64::max)
     }
 
+    /// The largest angle (radians) by which turns move the chord of a track that does not settle.
+    pub fn largest_correction(&self, corrected: &Corrected) -> f64 {
+        let of = |(index, role): (usize, &Role)| match role {
+            Role::Plane { turn, .. } if turn.settling.is_none_or(|settling| settling.share() == 0.0) => {
+                turn.correction(size(&self.chord(index, &corrected.state))).abs()
+            }
+            _ => 0.0,
+        };
+        self.roles.iter().enumerate().map(of).fold(0.0, f64::max)
+    }
+
     /// Column of a closed contact's normal reaction; its other unknowns follow. Its rows are one less.
     pub fn column_of(&self, contact: usize) -> usize {
         self.first_of[contact]

@@ -61,6 +61,8 @@ pub enum Failure {
 const MOST_ITERATIONS: u64 = 16;
 /// Relative residual that an accepted point must have.
 pub const ACCEPTED_RESIDUAL: f64 = 1e-11;
+/// Forces (dimensionless) below this are none: what rounding leaves where nothing is loaded.
+const NO_FORCE: f64 = 1e-20;
 /// Relative residual below which iterating on gains nothing.
 const ROUND_OFF: f64 = 1e-15;
 /// Error below which Newton's method is as good as converged.
@@ -97,7 +99,7 @@ impl ModeSystem<'_> {
         let mut small_by_correction = None;
         loop {
             let (largest, forces) = self.residual(&iterate, &mut values, &mut force);
-            let scale = forces.max(force_scale).max(f64::MIN_POSITIVE);
+            let scale = forces.max(force_scale).max(NO_FORCE);
             let residual = largest / scale;
             let last = self.size - 1;
             values[last] = self.place(&iterate.state, place, None);
@@ -237,7 +239,7 @@ impl ModeSystem<'_> {
         let geometric = (self.loading.structure.unknowns()..left_over.len())
             .filter(|row| !without.contains(row))
             .fold(0.0_f64, |largest, row| largest.max(left_over[row].abs()));
-        let residual = (largest / forces.max(force_scale).max(f64::MIN_POSITIVE)).max(geometric);
+        let residual = (largest / forces.max(force_scale).max(NO_FORCE)).max(geometric);
         self.share(&mut iterate.state);
         Corrected {
             modes: self.modes_at(&iterate),

@@ -92,6 +92,17 @@ impl Start {
     }
 }
 
+impl Turn {
+    /// The angle (radians) by which the turns at the ends move the chord away from the bisector of the directions, over
+    /// a track of this length.
+    pub fn correction(&self, length: f64) -> f64 {
+        match (self.at_start, self.at_end) {
+            (Some(first), Some(last)) => length * (first - last) / 12.0,
+            _ => 0.0,
+        }
+    }
+}
+
 impl Settling {
     /// The share of the second rule in the equation.
     pub fn share(&self) -> f64 {
@@ -107,13 +118,13 @@ impl Rule {
             return Self::settling(frame, &carried, turn, &settling, direction, chord);
         }
         let bisector = unit(&add(&carried, 1.0, direction));
+        let length = arc(size(chord), &carried, direction);
         let correction = match (turn.at_start, turn.at_end) {
-            (Some(first), Some(last)) => arc(size(chord), &carried, direction) * (first - last) / 12.0,
             (None, Some(last)) => {
                 let turned = dot(&cross(&carried, direction), &frame.normal).asin();
-                (turned - arc(size(chord), &carried, direction) * last) / 6.0
+                (turned - length * last) / 6.0
             }
-            (_, None) => 0.0,
+            _ => turn.correction(length),
         };
         let across = cross(&frame.normal, &bisector);
         let along = unit(&add(&bisector, correction, &across));

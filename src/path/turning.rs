@@ -15,7 +15,7 @@
 use super::rates::{self, Choice, Entity, RateProblem, Ray};
 use super::root::find_root;
 use crate::cancel::CancelFlag;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use std::f64::consts::TAU;
 
 /// Angles at which the circle is scanned.
