@@ -161,7 +161,6 @@ pub(super) fn difference_of_forces(forces: &[Vector], others: &[Vector], factor:
 /// More sticking contacts first, then more that are closed.
 pub(super) fn sort(alternatives: &mut [Alternative]) {
     let count = |modes: &Alternative, is: fn(&Mode) -> bool| modes.iter().filter(|(_, mode)| is(mode)).count();
-    alternatives.sort_by_key(|modes| {
-        (count(modes, |mode| *mode != Mode::Stick), count(modes, |mode| *mode == Mode::Free))
-    });
+    alternatives
+        .sort_by_key(|modes| (count(modes, |mode| *mode != Mode::Stick), count(modes, |mode| *mode == Mode::Free)));
 }

@@ -57,8 +57,7 @@ impl ModeSystem<'_> {
                         -dot(&before.reactions[contact].tangential, &across) / pressed
                     });
                     let defect = self.defect(contact, start, middle, end).unwrap_or(0.0);
-                    values[row + 1] =
-                        dot(&rule.across, &moved) - rule.by_first_turn * turned - rule.factor * defect;
+                    values[row + 1] = dot(&rule.across, &moved) - rule.by_first_turn * turned - rule.factor * defect;
                 }
             }
         }

@@ -161,7 +161,9 @@ impl<'a> ModeSystem<'a> {
     /// from that at the start.
     pub fn largest_turn(&self, corrected: &Corrected, other: Option<&Corrected>) -> f64 {
         let of = |(index, role): (usize, &Role)| {
-            let (Role::Plane { start, .. }, Mode::Slip { direction }) = (role, corrected.modes[index]) else { return 0.0 };
+            let (Role::Plane { start, .. }, Mode::Slip { direction }) = (role, corrected.modes[index]) else {
+                return 0.0;
+            };
             let normal = self.loading.frame(index, &corrected.state).normal;
             let from = match other.map(|other| other.modes[index]) {
                 Some(Mode::Slip { direction }) => direction,

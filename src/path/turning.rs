@@ -113,11 +113,8 @@ impl Touch {
         let mut is_force = problem.is_force.clone();
         is_force.extend([false, false, true]);
         let mut entities = problem.entities.clone();
-        let slip = Choice {
-            zero: vec![self.velocities[0], base + 1, base + 2],
-            nonnegative: Vec::new(),
-            implied: Vec::new(),
-        };
+        let slip =
+            Choice { zero: vec![self.velocities[0], base + 1, base + 2], nonnegative: Vec::new(), implied: Vec::new() };
         entities[self.entity] = Entity { options: vec![slip], touching: None };
         let turned = RateProblem {
             forms,
