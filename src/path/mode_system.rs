@@ -158,12 +158,15 @@ impl<'a> ModeSystem<'a> {
     }
 
     /// The largest angle (radians) by which the direction of a slip in a plane differs from that of another point, or
-    /// from that at the start.
+    /// from that at the start; a node that is not pressed has none.
     pub fn largest_turn(&self, corrected: &Corrected, other: Option<&Corrected>) -> f64 {
         let of = |(index, role): (usize, &Role)| {
             let (Role::Plane { start, .. }, Mode::Slip { direction }) = (role, corrected.modes[index]) else {
                 return 0.0;
             };
+            if corrected.state.reactions[index].normal <= 0.0 {
+                return 0.0;
+            }
             let normal = self.loading.frame(index, &corrected.state).normal;
             let from = match other.map(|other| other.modes[index]) {
                 Some(Mode::Slip { direction }) => direction,

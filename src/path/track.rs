@@ -215,16 +215,17 @@ pub(super) fn settling(
     let frame = loading.frame(contact, state);
     let friction = loading.contacts[contact].friction;
     let speed = dot(direction, &loading.relative_rate(contact, rate));
-    let pressed = friction * state.reactions[contact].normal.max(0.0);
+    let pressed = friction * state.reactions[contact].normal;
     let across = cross(&frame.normal, direction);
     let turn = -dot(&rate.reactions[contact].tangential, &across);
     let drawn = stiffness * speed + friction * rate.reactions[contact].normal;
-    if speed <= SMALLEST || drawn <= 0.0 {
+    // Past the end of contact there is no friction to follow anything.
+    if speed <= SMALLEST || drawn <= 0.0 || pressed <= 0.0 {
         return None;
     }
     let carried = start.carried_to(&frame.normal);
     let length = arc(chord, &carried, direction);
-    let quickness = drawn * length / (pressed * speed).max(f64::MIN_POSITIVE);
+    let quickness = drawn * length / (pressed * speed);
     let angle = angle(&frame.normal, &carried, direction);
     Some(Settling { angle, quickness: quickness.min(QUICKEST), ahead: turn / drawn })
 }
