@@ -1,4 +1,4 @@
-//! Two hundred random small scenes, of fixed seeds: what must hold of every path holds of theirs.
+//! Random small scenes, of fixed seeds, two hundred and more in space: what must hold of every path holds of theirs.
 
 mod common;
 
@@ -7,11 +7,15 @@ use arcslip::model::request::Method;
 use arcslip::path::increment::PointKind;
 use arcslip::path::{Increment, Scene, StopReason};
 use common::paths::{Traced, judged};
-use common::random::random_scene;
+use common::random::{random_scene, random_space};
 
 const SCENES: u64 = 200;
+const SCENES_IN_SPACE: u64 = 60;
+/// Scenes in space whose slips begin or end hardly pressed, or are pressed only once the node has moved, and go on.
+const HARDLY_PRESSED: [u64; 22] =
+    [110, 123, 131, 192, 196, 218, 233, 264, 297, 312, 313, 330, 361, 422, 479, 541, 544, 581, 690, 778, 853, 895];
 /// Threads that share the scenes: each path is the same whatever runs beside it.
-const THREADS: u64 = 4;
+const THREADS: usize = 4;
 
 fn by(request: &JobRequest, method: Method) -> Traced {
     let mut request = request.clone();
@@ -74,10 +78,10 @@ struct Seen {
     bifurcations: usize,
 }
 
-fn judge_share(share: u64) -> Seen {
+fn judge_share(scene: fn(u64) -> JobRequest, seeds: impl Iterator<Item = u64>) -> Seen {
     let mut seen = Seen::default();
-    for seed in (0..SCENES).filter(|seed| seed % THREADS == share) {
-        let request = random_scene(seed);
+    for seed in seeds {
+        let request = scene(seed);
         // Scenes of more than this version takes are faults like any other, told with their reason.
         if let Err(errors) = Scene::new(&request) {
             seen.faulty.push(format!("{seed}: refused: {}", errors.0[0]));
@@ -100,9 +104,13 @@ fn judge_share(share: u64) -> Seen {
     seen
 }
 
-#[test]
-fn every_path_keeps_the_laws() {
-    let shares: Vec<_> = (0..THREADS).map(|share| std::thread::spawn(move || judge_share(share))).collect();
+fn judge_all(scene: fn(u64) -> JobRequest, seeds: &[u64]) -> Seen {
+    let scenes = seeds.len();
+    let judge = |share: usize| {
+        let own: Vec<u64> = seeds.iter().skip(share).step_by(THREADS).copied().collect();
+        std::thread::spawn(move || judge_share(scene, own.into_iter()))
+    };
+    let shares: Vec<_> = (0..THREADS).map(judge).collect();
     let mut all = Seen::default();
     for share in shares {
         let seen = share.join().expect("no panic in a scene");
@@ -113,16 +121,35 @@ fn every_path_keeps_the_laws() {
         all.bifurcations += seen.bifurcations;
     }
     all.faulty.sort_by_key(|fault| fault.split(':').next().and_then(|seed| seed.parse::<u64>().ok()));
-    let Seen { faulty, degenerate, contact_changes, smooth_limits, bifurcations } = all;
+    let Seen { faulty, degenerate, contact_changes, smooth_limits, bifurcations } = &all;
     println!(
         "{contact_changes} contact changes, {smooth_limits} smooth limits, {bifurcations} bifurcation points; \
-         {degenerate} scenes of {SCENES} report a degenerate point"
+         {degenerate} scenes of {scenes} report a degenerate point"
     );
-    assert!(faulty.is_empty(), "{} of {SCENES} scenes:\n{}", faulty.len(), faulty.join("\n"));
+    assert!(faulty.is_empty(), "{} of {scenes} scenes:\n{}", faulty.len(), faulty.join("\n"));
+    all
+}
+
+#[test]
+fn every_path_keeps_the_laws() {
+    let seeds: Vec<u64> = (0..SCENES).collect();
+    let Seen { degenerate, contact_changes, smooth_limits, bifurcations, .. } = judge_all(random_scene, &seeds);
     // Touches in space and corners end more of them than parity does.
     assert!(degenerate <= 3 * SCENES / 20, "{degenerate} scenes report a degenerate point");
     // The scenes are not idle.
     assert!(contact_changes >= 100 && smooth_limits >= 20 && bifurcations >= 50);
+}
+
+#[test]
+fn every_path_in_space_keeps_the_laws() {
+    let seeds: Vec<u64> = (0..SCENES_IN_SPACE).chain(HARDLY_PRESSED).collect();
+    let Seen { contact_changes, .. } = judge_all(random_space, &seeds);
+    assert!(contact_changes >= 100);
+    for seed in HARDLY_PRESSED {
+        let reason = judged(&random_space(seed)).report.stop_reason;
+        let goes_on = matches!(reason, StopReason::StagesCompleted | StopReason::MaxIncrements);
+        assert!(goes_on, "scene {seed} in space: {reason:?}");
+    }
 }
 
 /// The same seed, the same scene; another seed, another.

@@ -2,9 +2,11 @@
 
 mod common;
 
+use arcslip::model::JobRequest;
+use arcslip::model::request::Method;
 use arcslip::path::StopReason;
 use arcslip::path::increment::Status;
-use common::paths::{close, request, trace};
+use common::paths::{close, request, trace, typed};
 use serde_json::{Value, json};
 
 const FRICTION: f64 = 0.3;
@@ -100,5 +102,126 @@ fn a_chain_of_blocks() {
         let (traction, slip) = (&contact.tangential_reaction, &contact.slip);
         let across = traction[0] * slip[1] - traction[1] * slip[0];
         assert!(across.abs() <= 1e-11 * slip[0].hypot(slip[1]), "{contact:?}");
+    }
+}
+
+/// Two nodes that touch a floor on springs along it, tied by a bar; one is pushed across the bar, and pressed at second
+/// order only, by a bar to a pin straight below. `r_n = EA (1/L₀ - 1/L) h` with that bar's present length, which friction
+/// follows; the other node is drawn along and never pressed.
+fn pressed_by_going(method: Method, step: f64) -> JobRequest {
+    let along = json!([[1, 0, 0], [0, 1, 0], [0, 0, 1]]);
+    let mut request = typed(json!({"model": {
+        "name": "pressed at second order", "dimension": 3,
+        "nodes": {"pushed": [0, 0, 0], "drawn": [2, 0, 0], "pin": [0, 0, -1]}, "supports": {"pin": ["x", "y", "z"]},
+        "elements": [
+            {"kind": "spring", "nodes": ["pushed"], "stiffness": along},
+            {"kind": "spring", "nodes": ["drawn"], "stiffness": along},
+            {"kind": "bar", "nodes": ["pushed", "drawn"], "axial_stiffness": 1},
+            {"kind": "bar", "nodes": ["pin", "pushed"], "axial_stiffness": 1},
+        ],
+        "obstacles": {"floor": {"kind": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}},
+        "contacts": [{"node": "pushed", "obstacle": "floor", "friction": FRICTION},
+                     {"node": "drawn", "obstacle": "floor", "friction": FRICTION}],
+        "stages": [{"name": "push", "forces": {"pushed": [0, 1, 0]}, "until": {"load_above": 1}}]
+    }}));
+    request.analysis.method = method;
+    (request.analysis.arc_length.initial, request.analysis.arc_length.max) = (step, step);
+    request
+}
+
+#[test]
+fn nodes_that_are_pressed_only_once_they_have_moved() {
+    let mut ends: Vec<f64> = Vec::new();
+    for (method, step) in [(Method::Mpec, 0.04), (Method::Auto, 0.04), (Method::Auto, 0.02), (Method::Auto, 0.01)] {
+        let (increments, report) = trace(&pressed_by_going(method, step));
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted);
+        assert!(increments.len() as f64 <= 3.0 + 2.0 / step, "{} increments", increments.len());
+        for increment in &increments[1..] {
+            let [pushed, drawn] = &increment.contacts[..] else { panic!("two contacts") };
+            let u = &increment.displacements["pushed"];
+            let way = u[0].hypot(u[1]);
+            let pressed = 1.0 - 1.0 / way.hypot(1.0);
+            close(pushed.normal_reaction, pressed, 1e-13, "reaction");
+            assert_eq!((pushed.status, drawn.status), (Status::Slip, Status::Slip));
+            assert_eq!(drawn.normal_reaction, 0.0);
+            // Friction opposes the slip, which turns by a few degrees in all.
+            let (traction, slip) = (&pushed.tangential_reaction, &pushed.slip);
+            let across = traction[0] * slip[1] - traction[1] * slip[0];
+            assert!(across.abs() <= step * traction[0].hypot(traction[1]) * slip[0].hypot(slip[1]), "{pushed:?}");
+        }
+        ends.push(increments.last().expect("an end").displacements["pushed"][1]);
+    }
+    close(ends[0], ends[1], 1e-10, "by the program and without");
+    println!("ends {ends:?}");
+    let [coarse, fine] = [1, 2].map(|at| (ends[at] - ends[3]).abs());
+    assert!(coarse <= 1e-8 && fine <= 0.3 * coarse.max(1e-13), "{ends:?}");
+}
+
+/// The same node alone, pushed straight: in the plane and at any angle in space the load is
+/// `s = k x + EA x (1/L₀ - 1/L) + μ r_n`.
+#[test]
+fn a_node_that_is_pressed_only_once_it_has_moved() {
+    let spring = |dimension: usize| -> Vec<Vec<f64>> {
+        (0..dimension).map(|i| (0..dimension).map(|j| f64::from(u8::from(i == j))).collect()).collect()
+    };
+    for method in [Method::Auto, Method::Mpec] {
+        for angle in [None, Some(0.0_f64), Some(0.7), Some(-2.0)] {
+            let dimension = if angle.is_some() { 3 } else { 2 };
+            let placed = |along: f64, up: f64| match angle {
+                None => vec![along, up],
+                Some(angle) => vec![along * angle.cos(), along * angle.sin(), up],
+            };
+            let components = &["x", "y", "z"][..dimension];
+            let mut request = typed(json!({"model": {
+                "name": "pressed at second order", "dimension": dimension,
+                "nodes": {"node": placed(0.0, 0.0), "pin": placed(0.0, -1.0)}, "supports": {"pin": components},
+                "elements": [
+                    {"kind": "spring", "nodes": ["node"], "stiffness": spring(dimension)},
+                    {"kind": "bar", "nodes": ["pin", "node"], "axial_stiffness": 1},
+                ],
+                "obstacles": {"floor": {"kind": "plane", "point": placed(0.0, 0.0), "normal": placed(0.0, 1.0)}},
+                "contacts": [{"node": "node", "obstacle": "floor", "friction": FRICTION}],
+                "stages": [{"name": "push", "forces": {"node": placed(1.0, 0.0)}, "until": {"load_above": 1}}]
+            }}));
+            request.analysis.method = method;
+            let (increments, report) = trace(&request);
+            assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{angle:?}");
+            for increment in &increments[1..] {
+                let u = &increment.displacements["node"];
+                let way = u.iter().map(|value| value * value).sum::<f64>().sqrt();
+                let pressed = 1.0 - 1.0 / way.hypot(1.0);
+                close(increment.load_factor, way + way * pressed + FRICTION * pressed, 1e-12, "load");
+                close(increment.contacts[0].normal_reaction, pressed, 1e-13, "reaction");
+                assert_eq!(increment.contacts[0].status, Status::Slip);
+            }
+        }
+    }
+}
+
+/// A node that goes along the floor and is never pressed slips, in the plane as in space.
+#[test]
+fn a_node_that_goes_along_without_reaction_slips() {
+    for dimension in [2, 3] {
+        let spring: Vec<Vec<f64>> =
+            (0..dimension).map(|i| (0..dimension).map(|j| f64::from(u8::from(i == j))).collect()).collect();
+        let vector = |along: f64, up: f64| {
+            let mut vector = vec![0.0; dimension];
+            (vector[0], vector[dimension - 1]) = (along, up);
+            vector
+        };
+        let (increments, report) = trace(&typed(json!({"model": {
+            "name": "never pressed", "dimension": dimension, "nodes": {"node": vector(0.0, 0.0)},
+            "elements": [{"kind": "spring", "nodes": ["node"], "stiffness": spring}],
+            "obstacles": {"floor": {"kind": "plane", "point": vector(0.0, 0.0), "normal": vector(0.0, 1.0)}},
+            "contacts": [{"node": "node", "obstacle": "floor", "friction": FRICTION}],
+            "stages": [{"name": "push", "forces": {"node": vector(1.0, 0.0)}, "until": {"load_above": 1}}]
+        }})));
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted);
+        for increment in &increments[1..] {
+            let contact = &increment.contacts[0];
+            assert_eq!((contact.status, contact.normal_reaction), (Status::Slip, 0.0), "dimension {dimension}");
+            assert!(contact.slip[0] > 0.0);
+            close(increment.displacements["node"][0], increment.load_factor, 1e-14, "x");
+        }
     }
 }

@@ -217,3 +217,34 @@ fn a_first_touch_that_slides() {
     }
     assert_eq!(increments.last().expect("an end").contacts[0].status, Status::Slip);
 }
+
+/// A node that touches, pushed almost along the floor: with the stiffness `K` its free motion would be `K⁻¹ f`, a
+/// thirtieth of it downwards, so that it is hardly pressed and slips. The load rises in proportion to the slip; where the
+/// slip is overlooked it can only fall.
+#[test]
+fn a_slip_that_begins_hardly_pressed() {
+    let stiffness = [[1.0, 0.2, 0.4], [0.2, 0.8, 0.1], [0.4, 0.1, 0.9]];
+    let free = [-0.3, 0.5, -0.02];
+    let force: Vec<f64> = stiffness.iter().map(|row| row.iter().zip(&free).map(|(k, u)| k * u).sum()).collect();
+    let request = typed(json!({"model": {
+        "name": "hardly pressed", "dimension": 3, "nodes": {"node": [0, 0, 0]},
+        "elements": [{"kind": "spring", "nodes": ["node"], "stiffness": stiffness}],
+        "obstacles": {"floor": {"kind": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}},
+        "contacts": [{"node": "node", "obstacle": "floor", "friction": 0.7}],
+        "stages": [{"name": "push", "forces": {"node": force}, "until": {"load_above": 1}}]
+    }}));
+    let (increments, report) = trace(&request);
+    assert_eq!(report.stop_reason, StopReason::StagesCompleted);
+    assert!(increments.iter().all(|increment| !increment.point.degenerate));
+    let end = increments.last().expect("an end");
+    assert_eq!(end.load_factor, 1.0);
+    for increment in &increments[1..] {
+        let contact = &increment.contacts[0];
+        assert_eq!(contact.status, Status::Slip);
+        assert!(contact.normal_reaction > 0.0);
+        let share = increment.load_factor;
+        for (u, all) in increment.displacements["node"].iter().zip(&end.displacements["node"]) {
+            close(*u, share * all, 1e-13, "in proportion to the load");
+        }
+    }
+}

@@ -3,7 +3,7 @@
 use super::drift::Pointed;
 use super::loading::Loading;
 use super::mode_system::ModeSystem;
-use super::newton::{Corrected, Failure, Place};
+use super::newton::{Corrected, Failure, Place, Tangent};
 use super::root::find_root;
 use super::scene::End;
 use super::state::{Rate, State};
@@ -66,6 +66,12 @@ pub enum Refused {
 
 /// The direction may turn by this much in a step.
 pub const MOST_TURN: f64 = 0.6;
+/// The turns at the ends of a step may move the chord of a slip by this angle (radians).
+const MOST_CORRECTION: f64 = 0.1;
+/// Solves of an increment in which directions of slip settle.
+const MOST_PASSES: u64 = 12;
+/// Change of their angles (radians) from which they have settled.
+const SETTLED: f64 = 1e-10;
 /// How far a watched quantity may be negative before it counts as passed.
 const PASSED: f64 = 1e-13;
 /// A bound of the stage (dimensionless) within this is reached.
@@ -98,21 +104,40 @@ impl Start<'_> {
         work.newton_iterations += corrected.iterations;
         work.factorisations += corrected.iterations + 1;
         let singular = Refused::Newton(Failure::Singular);
-        let (mut rate, mut error_estimate, mut determinant) =
-            system.tangent_and_error(&corrected, self.rate).ok_or(singular)?;
+        let mut tangent = system.tangent_and_error(&corrected, self.rate).ok_or(singular)?;
         if system.has_tracks() {
-            // Once more, now that the turn of the slips at the end is known.
-            system.set_turns(self.rate, Some((&corrected, &rate)));
-            let again =
-                system.correct_from(system.iterate_of(&corrected), place, self.force_scale).map_err(Refused::Newton)?;
-            work.newton_iterations += again.iterations;
-            work.factorisations += again.iterations + 1;
-            // How hard the increment is shows in the first solve.
-            let hardness = corrected.iterations_to_small;
-            corrected = again;
-            corrected.iterations_to_small = hardness;
-            (rate, error_estimate, determinant) = system.tangent_and_error(&corrected, self.rate).ok_or(singular)?;
+            // Once more, now that the turn of the slips at the end is known; where directions settle, until they do.
+            for pass in 1.. {
+                let settles = system.set_turns(self.rate, &corrected, &tangent);
+                let again = system
+                    .correct_from(system.iterate_of(&corrected), place, self.force_scale)
+                    .map_err(Refused::Newton)?;
+                work.newton_iterations += again.iterations;
+                work.factorisations += again.iterations + 1;
+                // How hard the increment is shows in the first solve.
+                let hardness = corrected.iterations_to_small;
+                let change = system.largest_turn(&again, Some(&corrected));
+                corrected = again;
+                corrected.iterations_to_small = hardness;
+                tangent = system.tangent_and_error(&corrected, self.rate).ok_or(singular)?;
+                if !settles || change <= SETTLED {
+                    break;
+                }
+                if pass == MOST_PASSES {
+                    return Err(Refused::Newton(Failure::NotConverged));
+                }
+            }
+            let turn = system.largest_turn(&corrected, None);
+            if turn > MOST_TURN {
+                return Err(Refused::Turned(turn));
+            }
+            // The series has ended to say anything where the turn changes much within the step.
+            let correction = system.largest_correction(&corrected);
+            if correction > MOST_CORRECTION {
+                return Err(Refused::Turned(correction));
+            }
         }
+        let Tangent { rate, error: error_estimate, determinant, .. } = tangent;
         let step = corrected.state.distance(self.state);
         // The sphere around the start meets the path behind, too, and may meet other branches: the chord has to go the
         // way of both directions.
@@ -182,7 +207,8 @@ impl Start<'_> {
         let end = Pointed { corrected: &reached.corrected, rate: &reached.rate };
         let before = self.drift;
         let drift = if system.has_tracks() {
-            system.set_turns(self.rate, Some((&reached.corrected, &reached.rate)));
+            let tangent = system.tangent_and_error(&reached.corrected, self.rate)?;
+            system.set_turns(self.rate, &reached.corrected, &tangent);
             let middle = self.reach(0.5 * reached.step, work).ok()?;
             system.drift(self.rate, before, Pointed { corrected: &middle.corrected, rate: &middle.rate }, end)
         } else {

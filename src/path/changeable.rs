@@ -6,7 +6,7 @@ use super::loading::Loading;
 use super::rates::{Choice, Entity, Signed, Touching};
 use super::standing::Standing;
 use super::state::{Rate, State};
-use crate::contact::vector::{Vector, add, dot, scaled, unit};
+use crate::contact::vector::{Vector, add, dot, scaled, size, unit};
 use crate::contact::{Frame, Mode, Reaction, Sliding};
 use nalgebra::DVector;
 
@@ -32,6 +32,8 @@ pub(super) struct Outcome {
 
 /// Sine below which a ray lies on the bound of a corner's cone.
 const ON_BOUND: f64 = 1e-9;
+/// Rates of a gap (of unit arc length) up to this are zero at first order, and so are speeds along an obstacle.
+const GRAZING: f64 = 1e-9;
 
 impl Changeable {
     /// `next` is the first free column.
@@ -101,6 +103,18 @@ impl Changeable {
     /// Whether the contact touches in space, so that a slip may begin in any direction.
     pub fn may_turn(&self, loading: Loading<'_>) -> bool {
         self.standing == Standing::Touching && loading.contacts[self.contacts[0]].tangents() == 2
+    }
+
+    /// The slip of a node that touches in space and is free at first order while it goes along the obstacle: it may be
+    /// pressed at second order, and friction then opposes the motion that it has already.
+    pub fn grazing_slip(&self, loading: Loading<'_>, rate: &Rate) -> Option<Mode> {
+        if !self.may_turn(loading) {
+            return None;
+        }
+        let (normal, motion) = (self.frames[0].normal, loading.relative_rate(self.contacts[0], rate));
+        let opening = dot(&normal, &motion);
+        let along = add(&motion, -opening, &normal);
+        (opening.abs() <= GRAZING && size(&along) > GRAZING).then(|| Mode::Slip { direction: unit(&along) })
     }
 
     pub fn tangents(&self) -> [Vector; 2] {

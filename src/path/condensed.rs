@@ -272,6 +272,9 @@ impl<'a> Condensed<'a> {
                 alternative.iter().for_each(|(contact, mode)| modes[*contact] = *mode);
                 entry.is_in_cone(self.loading, &modes, rate, force)
             });
+            if alternatives.contains(&vec![(contact, Mode::Free)]) {
+                alternatives.extend(entry.grazing_slip(self.loading, rate).map(|slip| vec![(contact, slip)]));
+            }
             sort(&mut alternatives);
             alternatives
         };

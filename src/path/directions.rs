@@ -158,7 +158,9 @@ pub(super) fn difference_of_forces(forces: &[Vector], others: &[Vector], factor:
         .fold(0.0, |most, (force, other)| f64::max(most, size(&add(force, -factor, other)) / largest))
 }
 
-/// More sticking contacts first.
+/// More sticking contacts first, then more that are closed.
 pub(super) fn sort(alternatives: &mut [Alternative]) {
-    alternatives.sort_by_key(|modes| modes.iter().filter(|(_, mode)| *mode != Mode::Stick).count());
+    let count = |modes: &Alternative, is: fn(&Mode) -> bool| modes.iter().filter(|(_, mode)| is(mode)).count();
+    alternatives
+        .sort_by_key(|modes| (count(modes, |mode| *mode != Mode::Stick), count(modes, |mode| *mode == Mode::Free)));
 }

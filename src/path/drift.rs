@@ -52,13 +52,12 @@ impl ModeSystem<'_> {
                     let chord = self.chord(contact, &end.corrected.state);
                     let rule = Rule::new(&frame, begun, turn, &direction, &chord);
                     let pressed = self.loading.contacts[contact].friction * self.anchor.reactions[contact].normal;
-                    let turned = before.map_or(0.0, |before| {
+                    let turned = before.filter(|_| pressed > 0.0).map_or(0.0, |before| {
                         let across = cross(&begun.normal, &begun.direction);
                         -dot(&before.reactions[contact].tangential, &across) / pressed
                     });
-                    let half = -rule.by_turn;
                     let defect = self.defect(contact, start, middle, end).unwrap_or(0.0);
-                    values[row + 1] = dot(&rule.across, &moved) + half * turned - defect;
+                    values[row + 1] = dot(&rule.across, &moved) - rule.by_first_turn * turned - rule.factor * defect;
                 }
             }
         }
@@ -71,7 +70,7 @@ impl ModeSystem<'_> {
 
     /// `τ`
     fn defect(&self, contact: usize, start: &Rate, middle: Pointed<'_>, end: Pointed<'_>) -> Option<f64> {
-        let Role::Plane { start: begun, .. } = &self.roles[contact] else { return None };
+        let Role::Plane { start: begun, turn: own } = &self.roles[contact] else { return None };
         let direction_at = |corrected: &Corrected| match corrected.modes[contact] {
             Mode::Slip { direction } => Some(direction),
             Mode::Free | Mode::Stick => None,
@@ -84,8 +83,7 @@ impl ModeSystem<'_> {
         let last_turn = turn(&end.corrected.state, end.rate, &last)?;
         let angle = |corrected: &Corrected, direction: &Vector| {
             let normal = self.loading.frame(contact, &corrected.state).normal;
-            let carried = begun.carried_to(&normal);
-            dot(&cross(&carried, direction), &normal).atan2(dot(&carried, direction))
+            track::angle(&normal, &begun.carried_to(&normal), direction)
         };
         let (last_angle, half_angle) = (angle(end.corrected, &last), angle(middle.corrected, &half));
         let to_end = self.chord(contact, &end.corrected.state);
@@ -98,7 +96,8 @@ impl ModeSystem<'_> {
         }
         let x = first_part / length;
         let y = 1.0 - x;
-        let Some(first_turn) = first_turn else {
+        let settles = own.settling.is_some_and(|settling| settling.share() > 0.0);
+        let Some(first_turn) = first_turn.filter(|_| !settles) else {
             // The quadratic through the end's turn misses what the rule has 2/3 of.
             let square = last_turn * length - last_angle;
             let quadratic = x * (last_angle - square) + x * x * square;

@@ -38,6 +38,18 @@ pub struct Corrected {
     pub(super) directions: Vec<Vector>,
 }
 
+/// The path's direction at a converged point, and what its equations tell besides.
+pub struct Tangent {
+    /// Of unit arc length.
+    pub rate: Rate,
+    /// The point's distance to the branch (dimensionless).
+    pub error: f64,
+    /// Sign of the bordered determinant, where it is certain.
+    pub determinant: Option<f64>,
+    /// For each slip in a plane the force across it per motion across it.
+    pub stiffness_across: Vec<Option<f64>>,
+}
+
 /// Why no point was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Failure {
@@ -49,6 +61,8 @@ pub enum Failure {
 const MOST_ITERATIONS: u64 = 16;
 /// Relative residual that an accepted point must have.
 pub const ACCEPTED_RESIDUAL: f64 = 1e-11;
+/// Forces (dimensionless) below this are none: what rounding leaves where nothing is loaded.
+const NO_FORCE: f64 = 1e-20;
 /// Relative residual below which iterating on gains nothing.
 const ROUND_OFF: f64 = 1e-15;
 /// Error below which Newton's method is as good as converged.
@@ -85,7 +99,7 @@ impl ModeSystem<'_> {
         let mut small_by_correction = None;
         loop {
             let (largest, forces) = self.residual(&iterate, &mut values, &mut force);
-            let scale = forces.max(force_scale).max(f64::MIN_POSITIVE);
+            let scale = forces.max(force_scale).max(NO_FORCE);
             let residual = largest / scale;
             let last = self.size - 1;
             values[last] = self.place(&iterate.state, place, None);
@@ -175,8 +189,8 @@ impl ModeSystem<'_> {
     }
 
     /// The path's direction at a converged point, and an estimate of the point's error: the size of one more Newton
-    /// correction across the path. With them the sign of the bordered determinant, where it is certain.
-    pub fn tangent_and_error(&self, corrected: &Corrected, towards: &Rate) -> Option<(Rate, f64, Option<f64>)> {
+    /// correction across the path.
+    pub fn tangent_and_error(&self, corrected: &Corrected, towards: &Rate) -> Option<Tangent> {
         let iterate = self.iterate_of(corrected);
         let factorisation = self.bordered(&iterate, towards)?;
         let rate = self.tangent_by(&factorisation, &iterate)?;
@@ -187,8 +201,19 @@ impl ModeSystem<'_> {
         } else {
             return None;
         };
+        let mut stiffness_across = vec![None; self.roles.len()];
+        for (contact, role) in self.roles.iter().enumerate() {
+            if let Role::Plane { .. } = role {
+                let mut values = DVector::zeros(self.size);
+                values[self.row_of(contact) + 1] = 1.0;
+                if factorisation.solve(&mut values) {
+                    stiffness_across[contact] = Some(-values[self.column_of(contact) + 1]);
+                }
+            }
+        }
         let certain = factorisation.pivot_ratio() > UNCERTAIN;
-        Some((rate, error, certain.then(|| factorisation.determinant_sign())))
+        let determinant = certain.then(|| factorisation.determinant_sign());
+        Some(Tangent { rate, error, determinant, stiffness_across })
     }
 
     /// A point as it is, with its residual. Slips in planes have the directions that their tractions oppose.
@@ -214,7 +239,7 @@ impl ModeSystem<'_> {
         let geometric = (self.loading.structure.unknowns()..left_over.len())
             .filter(|row| !without.contains(row))
             .fold(0.0_f64, |largest, row| largest.max(left_over[row].abs()));
-        let residual = (largest / forces.max(force_scale).max(f64::MIN_POSITIVE)).max(geometric);
+        let residual = (largest / forces.max(force_scale).max(NO_FORCE)).max(geometric);
         self.share(&mut iterate.state);
         Corrected {
             modes: self.modes_at(&iterate),

@@ -5,6 +5,7 @@ use super::decide::{Choice, is_worth_listing};
 use super::increment::{ContactState, Diagnostics, Direction, Energy, Increment, Point, Status};
 use super::loading::Loading;
 use super::scene::{Reported, Scene};
+use super::standing::ZERO;
 use super::state::State;
 use super::totals::Totals;
 use crate::contact::vector::{add, dot};
@@ -133,13 +134,21 @@ fn contact_rows(scene: &Scene, row: &Row<'_>, force_scale: f64) -> (Vec<ContactS
             } else {
                 tangents_in_space(&frame.normal)
             };
-            contact.status = status(row.modes[index]);
+            // A node that goes along an obstacle without reaction slips, whether a slip or no contact is what is solved.
+            let touches = |state: &State| loading.gap(index, state) <= ZERO;
+            let moved = add(&loading.relative(index, row.state), -1.0, &loading.relative(index, row.before));
+            let grazes = loading.contacts[index].tangents() > 0
+                && touches(row.before)
+                && touches(row.state)
+                && tangents.iter().any(|tangent| dot(&moved, tangent) != 0.0);
+            let is_active = row.modes[index].is_active() || grazes;
+            contact.status =
+                if row.modes[index] == Mode::Free && grazes { Status::Slip } else { status(row.modes[index]) };
             contact.normal_reaction = reaction.normal * one.normal_share * force;
             for (value, tangent) in contact.tangential_reaction.iter_mut().zip(&tangents) {
                 *value = dot(&reaction.tangential, tangent) * one.tangential_share * force;
             }
-            if row.modes[index].is_active() {
-                let moved = add(&loading.relative(index, row.state), -1.0, &loading.relative(index, row.before));
+            if is_active {
                 for (value, tangent) in contact.slip.iter_mut().zip(&tangents) {
                     *value = dot(&moved, tangent) * length;
                 }

@@ -390,7 +390,7 @@ impl Node<'_> {
             }
         }
         if let Some(velocity) = self.stiffness.lu().solve(&-load)
-            && velocity[0] >= 0.0
+            && velocity[0] >= -ROUND_OFF * velocity.amax()
         {
             found.push(Solution { own: Own::Free, velocity });
         }

@@ -6,15 +6,16 @@
 //! v_n = 0,    v_t = λ d,  λ >= 0,    Ṙ_t = -μ Ṙ_n d,  Ṙ_n >= 0,    |d| = 1
 //! ```
 //!
-//! For a given angle of `d` all but `d⊥·Ṙ_t = 0` are linear forms; the rays under them are found as any others, and the
-//! angles at which the remaining form vanishes on one of them by scanning the circle and Chandrupatla's method. With one
-//! such node this finds every slip that a scan of the circle tells apart. Of several, each is taken here to begin to
+//! For a given angle of `d` all but `d⊥·Ṙ_t = 0` are linear forms; the rays under the equations are found as any others,
+//! and the angles at which the remaining form vanishes on one of them by scanning the circle and Chandrupatla's method.
+//! The node's own inequalities are looked at there only: the angles at which they hold may be a sliver (a node that
+//! comes down almost along the obstacle is hardly pressed). With one such node this finds every slip that a scan of the circle tells apart. Of several, each is taken here to begin to
 //! slip while the others stick or leave; `together` finds those that begin at once.
 
-use super::rates::{self, Choice, Entity, RateProblem, Ray, Signed};
+use super::rates::{self, Choice, Entity, RateProblem, Ray};
 use super::root::find_root;
 use crate::cancel::CancelFlag;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use std::f64::consts::TAU;
 
 /// Angles at which the circle is scanned.
@@ -112,11 +113,8 @@ impl Touch {
         let mut is_force = problem.is_force.clone();
         is_force.extend([false, false, true]);
         let mut entities = problem.entities.clone();
-        let slip = Choice {
-            zero: vec![self.velocities[0], base + 1, base + 2],
-            nonnegative: vec![Signed::plus(base), Signed::plus(self.forces[0])],
-            implied: Vec::new(),
-        };
+        let slip =
+            Choice { zero: vec![self.velocities[0], base + 1, base + 2], nonnegative: Vec::new(), implied: Vec::new() };
         entities[self.entity] = Entity { options: vec![slip], touching: None };
         let turned = RateProblem {
             forms,
@@ -126,21 +124,25 @@ impl Touch {
             reactions: problem.reactions.clone(),
         };
         let findings = rates::explore(&turned, &[], most, cancel);
-        let judged = |ray: Ray| {
+        let with_misfit = |ray: Ray| {
             let size = (&problem.reactions * &ray.weights).amax().max(f64::MIN_POSITIVE);
             let misfit = misfit.dot(&ray.weights) / size;
-            // A node that does not move along the direction sticks, and one that is not pressed is free.
-            let forms: &DMatrix<f64> = &turned.forms;
-            let slides = forms.row(base).transpose().dot(&ray.weights) > ROOT;
-            let pressed = forms.row(self.forces[0]).transpose().dot(&ray.weights) > ROOT * size;
-            (slides && pressed).then_some((ray, misfit))
+            (ray, misfit)
         };
-        findings.rays.into_iter().filter_map(judged).collect()
+        findings.rays.into_iter().map(with_misfit).collect()
+    }
+
+    /// Whether the node moves along the direction, otherwise it sticks, and is pressed, otherwise it is free.
+    fn is_slip(&self, problem: &RateProblem, ray: &Ray, angle: f64) -> bool {
+        let value = |form: usize| problem.forms.row(form).transpose().dot(&ray.weights);
+        let along = value(self.velocities[1]) * angle.cos() + value(self.velocities[2]) * angle.sin();
+        let size = (&problem.reactions * &ray.weights).amax().max(f64::MIN_POSITIVE);
+        along > ROOT && value(self.forces[0]) > ROOT * size
     }
 
     fn keep(&self, found: &mut Vec<Turning>, problem: &RateProblem, ray: Ray, angle: f64) {
         let known = |one: &Turning| one.ray.chosen() == ray.chosen() && cosine(problem, &one.ray, &ray) > 1.0 - 1e-12;
-        if !found.iter().any(known) {
+        if self.is_slip(problem, &ray, angle) && !found.iter().any(known) {
             found.push(Turning { ray, slips: vec![(self.entity, [angle.cos(), angle.sin()])] });
         }
     }

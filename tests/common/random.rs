@@ -35,6 +35,14 @@ impl Numbers {
         (0..dimension).map(|_| self.between(-size, size)).collect()
     }
 
+    /// `Aᵀ A + least 1`
+    fn positive_definite(&mut self, least: f64, most: f64) -> Vec<Vec<f64>> {
+        let rows: Vec<Vec<f64>> = (0..3).map(|_| self.vector(3, most.sqrt())).collect();
+        let product = |i: usize, j: usize| rows.iter().map(|row| row[i] * row[j]).sum::<f64>();
+        let entry = |i: usize, j: usize| product(i, j) + if i == j { least } else { 0.0 };
+        (0..3).map(|i| (0..3).map(|j| entry(i, j)).collect()).collect()
+    }
+
     fn friction(&mut self) -> f64 {
         if self.chance(0.2) { 0.0 } else { self.between(0.05, 2.0) }
     }
@@ -131,5 +139,106 @@ pub fn random_scene(seed: u64) -> JobRequest {
             "elements": elements, "obstacles": obstacles, "contacts": contacts, "stages": stages
         },
         "analysis": {"arc_length": {"initial": 0.05, "min": 1e-9, "max": 0.2}, "max_increments": 40}
+    }))
+}
+
+/// One to three tips in space on a floor that may slant, on balls or in bowls that touch them at the apex: on springs
+/// that couple normal and tangential or do not, on bars straight above or below, tied to one another by bars or springs.
+/// Pressed first, or not at all, so that many begin to slip without reaction; then pushed in up to three stages, some
+/// along the obstacle only.
+pub fn random_space(seed: u64) -> JobRequest {
+    let mut numbers = Numbers(seed.wrapping_mul(7919).wrapping_add(1));
+    let tips = 1 + numbers.below(3);
+    let (mut nodes, mut supports, mut elements) = (Map::new(), Map::new(), Vec::new());
+    let (mut obstacles, mut contacts) = (Map::new(), Vec::new());
+    let level = numbers.chance(0.6);
+    let mut normal = numbers.vector(3, 0.3);
+    normal[2] = 1.0;
+    if level {
+        normal[..2].fill(0.0);
+    }
+    obstacles.insert("floor".into(), json!({"kind": "plane", "point": [0, 0, 0], "normal": normal}));
+    for tip in 0..tips {
+        let name = format!("tip{tip}");
+        let mut place = numbers.vector(3, 0.3);
+        place[0] += 1.5 * tip as f64;
+        let on_ball = numbers.chance(0.3);
+        let gap = if numbers.chance(0.75) { 0.0 } else { numbers.between(0.0, 0.1) };
+        place[2] = gap - normal[0] * place[0] - normal[1] * place[1];
+        let friction = if numbers.chance(0.15) { 0.0 } else { numbers.between(0.0, 1.5) };
+        let mut obstacle = "floor".to_owned();
+        if on_ball {
+            let radius = [0.5, 1.0, 2.0][numbers.below(3)];
+            let (side, up) = if numbers.chance(0.5) { ("inside", radius - gap) } else { ("outside", -radius - gap) };
+            let center = [place[0], place[1], place[2] + up];
+            obstacle = format!("ball{tip}");
+            let ball = json!({"kind": "ball", "center": center, "radius": radius, "side": side});
+            obstacles.insert(obstacle.clone(), ball);
+        }
+        contacts.push(json!({"node": name, "obstacle": obstacle, "friction": friction}));
+        let isotropic = |k: f64| json!([[k, 0, 0], [0, k, 0], [0, 0, k]]);
+        let stiffness = match numbers.below(3) {
+            0 => isotropic(numbers.between(0.3, 2.0)),
+            1 => json!(numbers.positive_definite(0.2, 1.0)),
+            _ => {
+                let weak = isotropic(numbers.between(0.05, 0.5));
+                let below = numbers.chance(0.5);
+                let mut pin_place = place.clone();
+                if numbers.chance(0.5) {
+                    pin_place[0] += numbers.between(-1.0, 1.0);
+                    pin_place[1] += numbers.between(-1.0, 1.0);
+                }
+                pin_place[2] += if below { -numbers.between(0.4, 1.5) } else { numbers.between(0.4, 1.5) };
+                let pin = format!("pin{tip}");
+                let ends = [pin.clone(), name.clone()];
+                nodes.insert(pin.clone(), json!(pin_place));
+                supports.insert(pin, json!(["x", "y", "z"]));
+                elements.push(json!({"kind": "bar", "nodes": ends, "axial_stiffness": numbers.between(0.3, 2.0)}));
+                weak
+            }
+        };
+        elements.push(json!({"kind": "spring", "nodes": [name], "stiffness": stiffness}));
+        if tip > 0 {
+            let ends = [format!("tip{}", tip - 1), name.clone()];
+            if numbers.chance(0.6) {
+                elements.push(json!({"kind": "bar", "nodes": ends, "axial_stiffness": numbers.between(0.2, 1.5)}));
+            } else if numbers.chance(0.7) {
+                let stiffness = numbers.positive_definite(0.1, 0.6);
+                elements.push(json!({"kind": "spring", "nodes": ends, "stiffness": stiffness}));
+            }
+        }
+        nodes.insert(name, json!(place));
+    }
+    let mut stages: Vec<Value> = Vec::new();
+    if numbers.chance(0.6) {
+        let press: Map<String, Value> =
+            (0..tips).map(|tip| (format!("tip{tip}"), json!([0, 0, -numbers.between(0.01, 0.3)]))).collect();
+        stages.push(json!({"name": "press", "forces": press, "until": {"load_above": 1}}));
+    }
+    let pushes = 1 + numbers.below(3);
+    for push in 0..pushes {
+        let mut forces = Map::new();
+        for tip in 0..tips {
+            if tip > 0 && numbers.chance(0.3) {
+                continue;
+            }
+            let mut force = numbers.vector(3, 0.6);
+            match numbers.below(4) {
+                0 => force[2] = 0.0,
+                1 => force[2] = -force[2].abs(),
+                2 => force = vec![0.0, if numbers.chance(0.5) { 1.0 } else { -1.0 }, 0.0],
+                _ => {}
+            }
+            forces.insert(format!("tip{tip}"), json!(force));
+        }
+        let until = if push + 1 < pushes { numbers.between(0.2, 1.2) } else { 2.0 };
+        stages.push(json!({"name": format!("push{push}"), "forces": forces, "until": {"load_above": until}}));
+    }
+    typed(json!({
+        "model": {
+            "name": format!("random scene in space {seed}"), "dimension": 3, "nodes": nodes, "supports": supports,
+            "elements": elements, "obstacles": obstacles, "contacts": contacts, "stages": stages
+        },
+        "analysis": {"arc_length": {"initial": 0.05, "min": 1e-9, "max": 0.2}, "max_increments": 60}
     }))
 }
