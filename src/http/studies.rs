@@ -109,7 +109,10 @@ pub async fn get(State(service): State<Service>, JobId(id): JobId) -> Result<Jso
 ///
 /// Server-sent events: `row` events, one a path, whose id is its number and whose row is the row as it stands then; the
 /// first round has every row's errors, later ones add times. Then one `end` event with the study and its report.
-/// `Last-Event-ID`, a service that goes down and `Accept: application/x-ndjson` are as for a job's stream.
+/// `Last-Event-ID` and a service that goes down are as for a job's stream.
+///
+/// With `Accept: application/x-ndjson`: one path a line, and a last line with the study and its report, which has a
+/// `status` and no `index`.
 #[utoipa::path(
     get, path = "/v1/studies/{id}/stream", tag = document::STUDIES, operation_id = "stream_study",
     params(
@@ -173,6 +176,8 @@ pub async fn table_txt(State(service): State<Service>, JobId(id): JobId) -> Resu
 }
 
 /// Error against time so far, on logarithmic scales, one line a method.
+///
+/// Until every row has been timed, and where `repeats` is 0, what is varied stands in the place of the time.
 #[utoipa::path(
     get, path = "/v1/studies/{id}/picture.svg", tag = document::STUDIES, operation_id = "get_study_picture",
     params(("id" = Uuid, Path, description = "The study's id.")),
@@ -186,8 +191,8 @@ pub async fn picture(State(service): State<Service>, JobId(id): JobId) -> Result
             tracing::error!(%error, study = %id, "a picture cannot be drawn");
             Err(Problem::new(super::problem::Kind::Internal, "the log has more under this answer's x-request-id"))
         }
-        Err(PlotError::NoTimes | PlotError::Empty) => {
-            Err(Problem::not_found(format_args!("picture of study {id}: no path of it has been timed yet")))
+        Err(PlotError::NoErrors | PlotError::Empty) => {
+            Err(Problem::not_found(format_args!("picture of study {id}: no path of it has an error yet")))
         }
     }
 }
