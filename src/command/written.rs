@@ -18,11 +18,8 @@ pub fn write(place: &Path, text: &str) -> Result<(), Failure> {
 
 /// Refuses two results on standard output: neither could be read there. Each is an option's name and what it says.
 pub fn one_on_standard_output(results: &[(&str, Option<&Path>)]) -> Result<(), Failure> {
-    let there: Vec<&str> = results
-        .iter()
-        .filter(|(_, place)| place.is_some_and(is_standard_output))
-        .map(|(option, _)| *option)
-        .collect();
+    let there: Vec<&str> =
+        results.iter().filter(|(_, place)| place.is_some_and(is_standard_output)).map(|(option, _)| *option).collect();
     match there.as_slice() {
         [first, second, ..] => Err(Failure::Input(vec![format!(
             "{first} and {second} both go to standard output; give one of them a file"
