@@ -56,6 +56,8 @@ const ROUND_OFF: f64 = 1e-15;
 const SMALL: f64 = 1e-6;
 /// Multiple of the bound on rounding within which what is left over counts as rounding.
 const ROOM: f64 = 8.0;
+/// Rows with forces below this part of the force scale are judged by their own.
+const WEAK: f64 = 1e-3;
 /// Corrections that fall by less than this factor are rounding themselves.
 const NO_FALL: f64 = 0.25;
 
@@ -169,7 +171,8 @@ impl ModeSystem<'_> {
         })
     }
 
-    /// The largest equilibrium residual over the forces of its own row, as far as these are less than the force scale.
+    /// The largest equilibrium residual over the forces of its own row, of the rows where these are far below the force
+    /// scale.
     fn residual_of_rows(&self, state: &State, values: &DVector<f64>, scale: f64) -> f64 {
         let structure = self.loading.structure;
         let mut sizes = structure.force_sizes(&state.displacement, USUAL);
@@ -181,8 +184,10 @@ impl ModeSystem<'_> {
             let first = contact.node * structure.dimension;
             sizes[first..first + structure.dimension].iter_mut().for_each(|size| *size += reaction.size());
         }
-        let rows = structure.freedom_of.iter().zip(values.iter());
-        rows.map(|(freedom, value)| value.abs() / sizes[*freedom].min(scale).max(f64::EPSILON * scale))
+        let rows =
+            structure.freedom_of.iter().zip(values.iter()).map(|(freedom, value)| (sizes[*freedom], value.abs()));
+        rows.filter(|(size, _)| *size < WEAK * scale)
+            .map(|(size, value)| value / size.max(f64::EPSILON * scale))
             .fold(0.0, f64::max)
     }
 
