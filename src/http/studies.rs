@@ -1,7 +1,7 @@
 //! Studies: submit, list, read, follow, cancel, delete; their table and picture.
 
-use super::extract::{JobId, JsonText, Parameters, Taken, bounded, idempotency_key};
-use super::jobs::{LIST_DEFAULT, LIST_LARGEST, SubmitParameters};
+use super::extract::{JobId, JsonText, Parameters, Taken, idempotency_key};
+use super::jobs::{SubmitParameters, accepted, page};
 use super::problem::Problem;
 use super::view_study::{Study, StudyList, StudyWithReport, address};
 use super::{Service, document};
@@ -44,9 +44,7 @@ pub async fn submit(
     if parameters.validate {
         return Ok(Json(service.jobs.validate_study(request).await?).into_response());
     }
-    let study = service.jobs.submit_study(request, idempotency_key(&headers)?).await?;
-    let location = address(study.id);
-    Ok((StatusCode::ACCEPTED, [(header::LOCATION, location)], Json(Study::try_from(study)?)).into_response())
+    accepted::<Study>(service.jobs.submit_study(request, idempotency_key(&headers)?).await?, address)
 }
 
 #[derive(Debug, Deserialize, utoipa::IntoParams)]
@@ -78,15 +76,9 @@ pub async fn list(
     State(service): State<Service>,
     Parameters(parameters): Parameters<ListStudies>,
 ) -> Result<Json<StudyList>, Problem> {
-    let limit = bounded("limit", parameters.limit, LIST_DEFAULT, LIST_LARGEST)?;
-    let ListStudies { status, cursor, .. } = parameters;
-    // One more than asked for tells whether there is a next page.
-    let filter = ListFilter { task: Task::Study, status, parent: None, before: cursor, limit: limit + 1 };
-    let mut records = service.jobs.store().jobs(filter).await?;
-    let more = records.len() > limit as usize;
-    records.truncate(limit as usize);
-    let next_cursor = records.last().map(|study| study.id).filter(|_| more);
-    let studies = records.into_iter().map(Study::try_from).collect::<Result<_, _>>()?;
+    let ListStudies { status, cursor, limit } = parameters;
+    let filter = |limit| ListFilter { task: Task::Study, status, parent: None, before: cursor, limit };
+    let (studies, next_cursor) = page(&service, limit, filter).await?;
     Ok(Json(StudyList { studies, next_cursor }))
 }
 
