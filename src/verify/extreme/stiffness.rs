@@ -53,8 +53,7 @@ fn dragged(ratio: f64) -> Case {
         truss.make().node("hook", &[-0.5, 0.0]).support("hook", &[Component::Y]).bar("tip", "hook", ratio);
     request.0.model.stages.clear();
     let request = request.stage("pull", &[("hook", [1.0, 0.0])], displacement("tip", Component::X, 2.9, 1.0)).request();
-    // The programs of the increments name their modes at 1e9, with hundreds of quadratic programs each; beyond, rounding
-    // leaves less and less of them.
+    // From 1e9 on the programs of the increments need hundreds of quadratic programs each.
     let methods = if ratio <= 1e9 { BOTH } else { AUTO };
     Case::new("stiffness-ratio", format!("one-bar truss pulled by a bar, 1 : {ratio:e}"), request).by(methods).exact(
         1e-10,
