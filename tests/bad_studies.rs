@@ -21,6 +21,8 @@ fn a_study_with_everything_is_accepted() {
         "reference": "self_converged", "refinement": 2});
     let plan = read(&request(full)).unwrap_or_else(|errors| panic!("{errors}"));
     assert_eq!((plan.rows, plan.runs), (4, 16));
+    // Longer than the analysis' own arc length: no reason for more increments.
+    read(&request(json!({"arc_lengths": [1e9, 1e5]}))).unwrap_or_else(|errors| panic!("{errors}"));
     let plan = read(&request(json!({}))).unwrap_or_else(|errors| panic!("{errors}"));
     assert_eq!((plan.rows, plan.runs), (12, 72));
     // Read from what serde writes, it is the same.
@@ -28,6 +30,12 @@ fn a_study_with_everything_is_accepted() {
     let read = decode::study(full.to_string().as_bytes()).expect("a study");
     let written = serde_json::to_vec(&read).expect("JSON");
     assert_eq!(decode::study(&written).expect("the same"), read);
+}
+
+#[test]
+fn an_empty_document_is_no_study() {
+    let detail = decode::study(b" ").unwrap_err().to_string();
+    assert!(detail.contains("a study") && !detail.contains("job"), "{detail}");
 }
 
 #[test]

@@ -4,50 +4,32 @@ mod common;
 
 use arcslip::cancel::CancelFlag;
 use arcslip::model::JobRequest;
+use arcslip::model::request::{Analysis, ArcLength, Element, Method, Regularised, Strain, Until};
 use arcslip::path::increment::PointKind;
 use arcslip::path::{Increment, Scene, TracedPath};
+use arcslip::verify::cases;
 use common::paths::{request, trace};
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
-/// The 12-bar space truss (Green strain, EA = 1).
-fn twelve_bar_truss(strain: &str) -> Value {
-    let nodes = [
-        [-1.697, -1.0, 0.0],
-        [0.0, -1.0, 0.0],
-        [1.697, -1.0, 0.0],
-        [-1.414, 0.0, 1.0],
-        [0.0, 0.0, 1.0],
-        [1.414, 0.0, 1.0],
-        [-1.697, 1.0, 0.0],
-        [0.0, 1.0, 0.0],
-        [1.697, 1.0, 0.0],
-    ];
-    let bars = [(4, 1), (4, 7), (6, 3), (6, 9), (5, 1), (5, 2), (5, 3), (5, 4), (5, 6), (5, 7), (5, 8), (5, 9)];
-    let named: Map<String, Value> = nodes.iter().enumerate().map(|(k, x)| (format!("n{}", k + 1), json!(x))).collect();
-    let supports: Map<String, Value> =
-        [1, 2, 3, 7, 8, 9].iter().map(|k| (format!("n{k}"), json!(["x", "y", "z"]))).collect();
-    let elements: Vec<Value> = bars
-        .iter()
-        .map(|(a, b)| {
-            json!({"kind": "bar", "nodes": [format!("n{a}"), format!("n{b}")], "axial_stiffness": 1.0, "strain": strain})
-        })
-        .collect();
-    json!({
-        "model": {
-            "name": "12-bar space truss", "dimension": 3, "nodes": named, "supports": supports, "elements": elements,
-            "stages": [{
-                "name": "load",
-                "forces": {"n4": [0, 0, -1.5], "n5": [0, 0, -1.0], "n6": [0, 0, -1.5]},
-                "until": {"limit_points": 8}
-            }]
-        },
-        "analysis": {"max_increments": 20000}
-    })
+/// The request of a case of `verify`.
+fn published(family: &str) -> JobRequest {
+    cases().into_iter().find(|case| case.family == family).expect("a case").request
+}
+
+/// The 12-bar space truss (EA = 1) with another strain.
+fn twelve_bar_truss(measure: Strain) -> JobRequest {
+    let mut request = published("twelve-bar-truss");
+    for element in &mut request.model.elements {
+        if let Element::Bar { strain, .. } = element {
+            *strain = measure;
+        }
+    }
+    request
 }
 
 #[test]
 fn twelve_bar_truss_in_space() {
-    let (increments, _) = trace(&request(&twelve_bar_truss("green").to_string()));
+    let (increments, _) = trace(&twelve_bar_truss(Strain::Green));
     let limits: Vec<_> = increments.iter().filter(|i| i.point.kind == PointKind::SmoothLimit).collect();
     let exact = [
         (0.059145, -0.2820, -0.0385),
@@ -64,36 +46,11 @@ fn twelve_bar_truss_in_space() {
     for (found, mirrored) in limits[4..].iter().zip([0.082531, -0.071019, 0.043884, -0.059146]) {
         assert!((found.load_factor - mirrored).abs() < 2e-6, "{} {mirrored}", found.load_factor);
     }
-    let (increments, _) = trace(&request(&twelve_bar_truss("engineering").to_string()));
+    let (increments, _) = trace(&twelve_bar_truss(Strain::Engineering));
     let limits: Vec<_> = increments.iter().filter(|i| i.point.kind == PointKind::SmoothLimit).collect();
     for (found, load) in limits.iter().zip([0.069026, -0.047882, 0.09509, -0.10275]) {
         assert!((found.load_factor - load).abs() < 1e-5, "{} {load}", found.load_factor);
     }
-}
-
-/// The 24-bar star dome (Green strain), load at the apex, with an analysis and an end of its stage.
-fn star_dome(analysis: &Value, until: &Value) -> JobRequest {
-    let mut nodes = Map::new();
-    nodes.insert("apex".into(), json!([0.0, 0.0, 8.216]));
-    let place = |radius: f64, degrees: f64, z: f64| {
-        json!([radius * degrees.to_radians().cos(), radius * degrees.to_radians().sin(), z])
-    };
-    let (mut supports, mut elements) = (Map::new(), Vec::new());
-    let bar = |a: String, b: String| json!({"kind": "bar", "nodes": [a, b], "axial_stiffness": 1.0, "strain": "green"});
-    for k in 0..6 {
-        nodes.insert(format!("ring{k}"), place(25.0, 60.0 * f64::from(k), 6.216));
-        nodes.insert(format!("base{k}"), place(50.0, 30.0 + 60.0 * f64::from(k), 0.0));
-        supports.insert(format!("base{k}"), json!(["x", "y", "z"]));
-        elements.push(bar("apex".into(), format!("ring{k}")));
-        elements.push(bar(format!("ring{k}"), format!("ring{}", (k + 1) % 6)));
-        elements.push(bar(format!("ring{k}"), format!("base{k}")));
-        elements.push(bar(format!("ring{}", (k + 1) % 6), format!("base{k}")));
-    }
-    let model = json!({
-        "name": "star dome", "dimension": 3, "nodes": nodes, "supports": supports, "elements": elements,
-        "stages": [{"name": "load", "forces": {"apex": [0, 0, -1]}, "until": until}]
-    });
-    request(&json!({"model": model, "analysis": analysis}).to_string())
 }
 
 /// Minimising the two-parameter symmetric problem in 20-digit arithmetic gives the first limit load/EA 3.155799708e-4 at
@@ -102,7 +59,7 @@ fn star_dome(analysis: &Value, until: &Value) -> JobRequest {
 /// the blocks of the tangent by symmetry in 30 digits. The printed figures are those of samples: see the next test.
 #[test]
 fn star_dome_located() {
-    let (increments, _) = trace(&star_dome(&json!({}), &json!({"limit_points": 4})));
+    let (increments, _) = trace(&published("star-dome"));
     let limit = increments.iter().find(|i| i.point.kind == PointKind::SmoothLimit).expect("a limit point");
     assert!((limit.load_factor - 3.155799708e-4).abs() < 1e-13, "{}", limit.load_factor);
     assert!((limit.displacements["apex"][2] + 0.76855727).abs() < 1e-8, "{}", limit.displacements["apex"][2]);
@@ -121,11 +78,22 @@ fn star_dome_located() {
 /// the double bifurcation (76.646e-4).
 #[test]
 fn star_dome_in_samples() {
-    let analysis = json!({
-        "method": "regularised", "regularised": {"tolerance": 1e-12}, "max_increments": 1000,
-        "arc_length": {"initial": 0.05, "min": 0.05, "max": 0.05, "displacement_scale": 1.0},
-    });
-    let request = star_dome(&analysis, &json!({"load_above": 78e-4}));
+    let mut request = published("star-dome");
+    request.model.stages[0].until = Some(Until { load_above: Some(78e-4), ..Until::default() });
+    request.analysis = Analysis {
+        method: Method::Regularised,
+        regularised: Some(Regularised { tolerance: 1e-12, ..Regularised::default() }),
+        max_increments: 1000,
+        arc_length: ArcLength {
+            initial: 0.05,
+            min: 0.05,
+            max: 0.05,
+            displacement_scale: Some(1.0),
+            load_scale: None,
+            jump: false,
+        },
+        ..Analysis::default()
+    };
     let scene = Scene::new(&request).expect("a scene");
     let increments: Vec<Increment> = TracedPath::new(&scene, CancelFlag::default()).collect();
     let drop = |i: &Increment| -i.displacements["apex"][2];
@@ -195,8 +163,8 @@ fn prestress_and_rest_length() {
 fn logarithmic_strain() {
     let mut truss = common::paths::scene("von-mises-truss");
     for element in &mut truss.model.elements {
-        if let arcslip::model::request::Element::Bar { strain, .. } = element {
-            *strain = arcslip::model::request::Strain::Log;
+        if let Element::Bar { strain, .. } = element {
+            *strain = Strain::Log;
         }
     }
     let rest = 1.0_f64.hypot(0.5);

@@ -94,7 +94,8 @@ async fn a_study_is_posted_streamed_and_read() {
     assert_eq!((&read["status"], &read["progress"]), (&json!("completed"), &json!({"runs": 18, "of": 18})));
     assert_eq!(read["report"]["complete"], true);
     assert_eq!(timeless(&read["report"]["rows"]), timeless(&rows_of(&request)));
-    assert_eq!(lines(&server, &id).await.len(), 18);
+    let lines = lines(&server, &id).await;
+    assert_eq!((lines.len(), &lines[18]), (19, &read));
     // A client that comes back goes on after what it has.
     let resumed = server.ask(Method::GET, &format!("/v1/studies/{id}/stream")).header("last-event-id", "16");
     let rest = EventStream::of(resumed.send().await.expect("an answer")).rest().await;
@@ -163,6 +164,9 @@ async fn requests_are_checked_and_repeated_ones_known() {
     assert_eq!(bad.status(), StatusCode::UNPROCESSABLE_ENTITY);
     let problem: Value = bad.json().await.expect("a problem");
     assert_eq!(problem["errors"][0]["pointer"], "/study/arc_lengths/1");
+    let empty = server.ask(Method::POST, "/v1/studies").header("content-type", "application/json").body("");
+    let empty: Value = empty.send().await.expect("an answer").json().await.expect("a problem");
+    assert!(empty["detail"].as_str().is_some_and(|detail| detail.contains("a study")), "{empty}");
     let good = study("arch-type-truss", json!({"repeats": 1}));
     let plan: Value = server.post("/v1/studies?validate=true", &good).await.json().await.expect("a plan");
     assert_eq!((&plan["rows"], &plan["runs"], &plan["reference"]), (&json!(12), &json!(24), &json!("self_converged")));
@@ -175,6 +179,21 @@ async fn requests_are_checked_and_repeated_ones_known() {
     assert_eq!(first["id"], again["id"]);
     let job = study_less(&good);
     assert_eq!(keyed("/v1/jobs", &job).await.status(), StatusCode::UNPROCESSABLE_ENTITY);
+}
+
+/// The picture is there from the first path on, and the same where no path is timed at all.
+#[tokio::test]
+async fn a_study_has_a_picture_without_times() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let server = TestServer::start(&folder.path().join("jobs.db"), PathSolver).await;
+    let id = submit(&server, &study("klarbring", json!({"arc_lengths": [0.2, 0.1], "repeats": 0}))).await;
+    assert_eq!(ended(&server, &id).await["status"], "completed");
+    let picture = server.get(&format!("/v1/studies/{id}/picture.svg")).await;
+    assert_eq!(picture.status(), StatusCode::OK);
+    assert!(picture.text().await.expect("a picture").contains("not all paths are timed"));
+    let stream = server.ask(Method::GET, &format!("/v1/studies/{id}/stream")).header("last-event-id", "x");
+    let problem: Value = stream.send().await.expect("an answer").json().await.expect("a problem");
+    assert_eq!(problem["detail"], "Last-Event-ID: the index of the last row received: 0 or more");
 }
 
 #[tokio::test]
@@ -202,7 +221,8 @@ async fn a_study_goes_on_after_a_restart_to_the_same_rows() {
     let server = TestServer::start(&database, PathSolver).await;
     let study = ended(&server, &id).await;
     assert_eq!((&study["status"], &study["attempt"]), (&json!("completed"), &json!(1)), "{study}");
-    let lines = lines(&server, &id).await;
+    let mut lines = lines(&server, &id).await;
+    assert_eq!(lines.pop().expect("a closing line")["status"], "completed");
     let indices: Vec<u64> = lines.iter().map(|line| line["index"].as_u64().expect("an index")).collect();
     assert_eq!(indices, (0..78).collect::<Vec<_>>());
     // Times of both lives are in the medians.

@@ -58,9 +58,40 @@ fn the_picture_has_a_line_a_method() {
     for rung in ["0.2", "0.1"] {
         assert_eq!(texts.iter().filter(|text| *text == rung).count(), 3, "{rung} in {texts:?}");
     }
-    // Without times there is nothing to draw across.
-    let untimed = study(&["klarbring", "--arc-lengths", "0.2", "--repeats", "0", "--plot", picture]);
-    assert_eq!(untimed.status.code(), Some(1), "{untimed:?}");
+}
+
+/// Without times the errors stand against what is varied.
+#[test]
+fn a_study_without_times_has_a_picture() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("table.txt");
+    let table = ["--repeats", "0", "--plot", "-", "--out", out.to_str().expect("a path")];
+    for (varied, across) in [
+        (["--arc-lengths", "0.2,0.1"], "mean arc length of the increments (not all paths are timed)"),
+        (["--penalties", "1e3,1e4"], "penalty (not all paths are timed)"),
+    ] {
+        let svg = text(&study(&[&["klarbring"], &varied[..], &table].concat()));
+        let texts = texts(&svg);
+        assert!(texts.iter().any(|text| text == across), "{texts:?}");
+        assert!(!texts.iter().any(|text| text.contains("(s)") || text.contains("bars")), "{texts:?}");
+    }
+}
+
+/// `-` is standard output for every result, one at a time.
+#[test]
+fn results_go_to_standard_output() {
+    let printed = text(&study(&[&KLARBRING[..], &["--format", "json", "--out", "-"]].concat()));
+    assert!(serde_json::from_str::<Value>(&printed).is_ok(), "{printed}");
+    let both = study(&[&KLARBRING[..], &["--plot", "-"]].concat());
+    assert_eq!(both.status.code(), Some(2), "{both:?}");
+    assert!(String::from_utf8_lossy(&both.stderr).contains("--out and --plot"), "{both:?}");
+}
+
+/// Rungs far beyond any path's length ask for no more increments than others.
+#[test]
+fn arc_lengths_longer_than_the_path_are_taken() {
+    let table = text(&study(&["klarbring", "--arc-lengths", "1e9,1e5", "--methods", "auto", "--repeats", "0"]));
+    assert!(table.contains("stages_completed"), "{table}");
 }
 
 #[test]

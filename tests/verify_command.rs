@@ -38,3 +38,34 @@ fn a_scene_that_is_not_there_is_bad_input() {
     let said = String::from_utf8(output.stderr).expect("text");
     assert!(said.contains("klarbing") && said.contains("`klarbring`"), "{said}");
 }
+
+#[test]
+fn every_scene_that_there_is_is_named() {
+    let output = verify(&["--scene", "nosuch"]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8(output.stderr).expect("text");
+    for case in arcslip::verify::cases() {
+        assert!(said.contains(&format!("`{}`", case.family)), "{} in {said}", case.family);
+    }
+}
+
+/// Rows or picture, and nothing else; the table is beside it.
+#[test]
+fn results_go_to_standard_output() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let of = |option: &str| {
+        let program = Command::new(env!("CARGO_BIN_EXE_arcslip"))
+            .args(["verify", "--scene", "klarbring", option, "-"])
+            .current_dir(folder.path())
+            .output()
+            .expect("the program runs");
+        assert_eq!(program.status.code(), Some(0), "{program:?}");
+        assert!(String::from_utf8_lossy(&program.stderr).contains("pass"), "{program:?}");
+        String::from_utf8(program.stdout).expect("text")
+    };
+    assert!(serde_json::from_str::<Value>(&of("--json")).expect("JSON").is_array());
+    roxmltree::Document::parse(&of("--plot")).expect("well-formed XML");
+    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
+    let both = verify(&["--scene", "klarbring", "--json", "-", "--plot", "-"]);
+    assert_eq!(both.status.code(), Some(2), "{both:?}");
+}

@@ -11,6 +11,7 @@ mod serve;
 mod solve;
 mod study;
 mod verify;
+mod written;
 
 use clap::{Parser, Subcommand};
 use std::io::Write;

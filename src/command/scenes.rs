@@ -1,6 +1,7 @@
 //! `arcslip scenes`: what is built in.
 
 use super::{Failure, Outcome, say};
+use crate::model::names::suggestion_of_all;
 use crate::scenes;
 use std::process::ExitCode;
 
@@ -15,7 +16,10 @@ pub fn run(arguments: &Arguments) -> Outcome {
     match &arguments.name {
         Some(name) => match scenes::find(name) {
             Some(scene) => say(scene.request)?,
-            None => return Err(Failure::Input(vec![format!("{name}: no built-in scene has this name")])),
+            None => {
+                let nearest = suggestion_of_all(name, scenes::ALL.iter().map(|scene| scene.name));
+                return Err(Failure::Input(vec![format!("{name}: no built-in scene has this name{nearest}")]));
+            }
         },
         None => {
             let width = scenes::ALL.iter().map(|scene| scene.name.len()).max().unwrap_or_default();

@@ -1,5 +1,6 @@
 //! `arcslip solve`: a model's path, one line an increment, as it converges.
 
+use super::written::{is_standard_output, one_on_standard_output, write};
 use super::{Failure, Outcome, input};
 use crate::cancel::CancelFlag;
 use crate::jobs::{PathSolver, Solver};
@@ -20,12 +21,12 @@ use std::process::ExitCode;
 pub struct Arguments {
     #[command(flatten)]
     model: input::Model,
-    /// Write increments here rather than to standard output.
-    #[arg(long, value_name = "FILE")]
-    out: Option<PathBuf>,
+    /// Write increments here; `-` is standard output.
+    #[arg(long, value_name = "FILE", default_value = "-")]
+    out: PathBuf,
     #[arg(long, value_enum, default_value_t = Format::Ndjson)]
     format: Format,
-    /// Draw load factor against a displacement here, as an SVG.
+    /// Draw load factor against a displacement here, as an SVG; `-` is standard output.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
     /// The displacement that is drawn, such as `tip.x`. Default: the one that goes farthest.
@@ -42,6 +43,7 @@ enum Format {
 }
 
 pub fn run(arguments: &Arguments) -> Outcome {
+    one_on_standard_output(&[("--out", Some(&arguments.out)), ("--plot", arguments.plot.as_deref())])?;
     let request = arguments.model.read()?;
     // Checked before the file is opened, so that a mistake does not cost an earlier result.
     PathSolver.plan(&request).map_err(input::refused)?;
@@ -50,7 +52,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     }
     let mut picture = Picture::planned(arguments, &request)?;
     let mut writer = Writer::open(arguments, &request)?;
-    let progress = progress_bar(request.analysis.max_increments, arguments.out.is_some());
+    let progress = progress_bar(request.analysis.max_increments, !is_standard_output(&arguments.out));
     let mut unwritten = None;
     let report = PathSolver
         .solve(&request, None, CancelFlag::default(), &mut |judged, _| {
@@ -111,11 +113,11 @@ struct Writer {
 
 impl Writer {
     fn open(arguments: &Arguments, request: &JobRequest) -> Result<Self, Failure> {
-        let to: Box<dyn Write> = match &arguments.out {
-            Some(file) => {
-                Box::new(File::create(file).map_err(|error| Failure::Other(format!("{}: {error}", file.display())))?)
-            }
-            None => Box::new(std::io::stdout()),
+        let file = &arguments.out;
+        let to: Box<dyn Write> = if is_standard_output(file) {
+            Box::new(std::io::stdout())
+        } else {
+            Box::new(File::create(file).map_err(|error| Failure::Other(format!("{}: {error}", file.display())))?)
         };
         Ok(Self { to, format: arguments.format, table: Table::of(request), begun: false })
     }
@@ -158,6 +160,6 @@ impl<'a> Picture<'a> {
 
     fn write(self, model: &Model) -> Result<(), Failure> {
         let svg = svg(model, &self.increments, self.against).map_err(Failure::other)?;
-        std::fs::write(self.file, svg).map_err(|error| Failure::Other(format!("{}: {error}", self.file.display())))
+        write(self.file, &svg)
     }
 }

@@ -1,6 +1,7 @@
 //! `arcslip study`: a scene over a ladder of settings and over methods, error against run time.
 
-use super::{Failure, Outcome, input, say};
+use super::written::{one_on_standard_output, write};
+use super::{Failure, Outcome, input};
 use crate::cancel::CancelFlag;
 use crate::model::StudyRequest;
 use crate::model::decode;
@@ -35,12 +36,12 @@ pub struct Arguments {
     /// Times that each path is timed, in place of the study's.
     #[arg(long, value_name = "N")]
     repeats: Option<u64>,
-    /// Write the table here rather than to standard output.
-    #[arg(long, value_name = "FILE")]
-    out: Option<PathBuf>,
+    /// Write the table here; `-` is standard output.
+    #[arg(long, value_name = "FILE", default_value = "-")]
+    out: PathBuf,
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
-    /// Draw error against time here, as an SVG.
+    /// Draw error against time here, as an SVG; `-` is standard output.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
 }
@@ -73,6 +74,7 @@ impl From<MethodName> for Method {
 }
 
 pub fn run(arguments: &Arguments) -> Outcome {
+    one_on_standard_output(&[("--out", Some(&arguments.out)), ("--plot", arguments.plot.as_deref())])?;
     let request = arguments.request()?;
     let plan = studies::plan(&request).map_err(input::refused)?;
     let progress = progress_bar(plan.runs);
@@ -92,10 +94,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Format::Json => serde_json::to_string_pretty(&report).map(|text| text + "\n"),
     };
     let text = text.map_err(Failure::other)?;
-    match &arguments.out {
-        Some(file) => write(file, &text)?,
-        None => say(text)?,
-    }
+    write(&arguments.out, &text)?;
     if let Some(file) = &arguments.plot {
         draw(file, &report)?;
     }
@@ -121,10 +120,6 @@ impl Arguments {
 
 fn draw(file: &Path, report: &Report) -> Result<(), Failure> {
     write(file, &picture::study::svg(report).map_err(Failure::other)?)
-}
-
-fn write(file: &Path, text: &str) -> Result<(), Failure> {
-    std::fs::write(file, text).map_err(|error| Failure::Other(format!("{}: {error}", file.display())))
 }
 
 /// On a terminal, where it does not disturb the table: that comes when all is done.

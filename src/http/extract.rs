@@ -106,10 +106,11 @@ pub fn idempotency_key(headers: &HeaderMap) -> Result<Option<String>, Problem> {
     if (1..=LONGEST_KEY).contains(&key.len()) { Ok(Some(key.to_owned())) } else { Err(refuse()) }
 }
 
-/// The `Last-Event-ID` header: the index of the last increment the client has.
-pub fn last_event_id(headers: &HeaderMap) -> Result<Option<u64>, Problem> {
+/// The `Last-Event-ID` header: the index of the last event the client has; `event` is its name.
+pub fn last_event_id(event: &str, headers: &HeaderMap) -> Result<Option<u64>, Problem> {
     let Some(value) = headers.get("last-event-id") else { return Ok(None) };
-    let refuse = || Problem::parameter("Last-Event-ID", "the index of the last increment received: 0 or more");
+    let refuse =
+        || Problem::parameter("Last-Event-ID", format_args!("the index of the last {event} received: 0 or more"));
     let text = value.to_str().map_err(|_| refuse())?;
     // Browsers that have seen no event yet may send an empty one.
     if text.is_empty() { Ok(None) } else { text.parse().map(Some).map_err(|_| refuse()) }

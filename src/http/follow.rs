@@ -3,7 +3,7 @@
 use super::extract::{JobId, JsonText, idempotency_key};
 use super::jobs::accepted;
 use super::problem::Problem;
-use super::view::Job;
+use super::view::{Job, address};
 use super::{Service, document};
 use crate::model::FollowRequest;
 use axum::extract::State;
@@ -35,5 +35,5 @@ pub async fn follow(
     headers: HeaderMap,
     JsonText(request): JsonText,
 ) -> Result<Response, Problem> {
-    accepted(service.jobs.follow(id, request, idempotency_key(&headers)?).await?)
+    accepted::<Job>(service.jobs.follow(id, request, idempotency_key(&headers)?).await?, address)
 }

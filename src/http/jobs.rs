@@ -11,11 +11,11 @@ use axum::Json;
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 
-pub(super) const LIST_DEFAULT: u32 = 50;
-pub(super) const LIST_LARGEST: u32 = 200;
+const LIST_DEFAULT: u32 = 50;
+const LIST_LARGEST: u32 = 200;
 
 #[derive(Debug, Deserialize, utoipa::IntoParams)]
 #[serde(deny_unknown_fields)]
@@ -54,14 +54,33 @@ pub async fn submit(
     if parameters.validate {
         return Ok(Json(service.jobs.validate(request).await?).into_response());
     }
-    let job = service.jobs.submit(request, idempotency_key(&headers)?).await?;
-    accepted(job)
+    accepted::<Job>(service.jobs.submit(request, idempotency_key(&headers)?).await?, address)
 }
 
-/// The answer to a job that has been queued.
-pub(super) fn accepted(job: JobRecord) -> Result<Response, Problem> {
-    let location = address(job.id);
-    Ok((StatusCode::ACCEPTED, [(header::LOCATION, location)], Json(Job::try_from(job)?)).into_response())
+/// The answer to what has been queued: where it is, and what it is.
+pub(super) fn accepted<T: View>(record: JobRecord, address: fn(Uuid) -> String) -> Result<Response, Problem> {
+    let location = address(record.id);
+    Ok((StatusCode::ACCEPTED, [(header::LOCATION, location)], Json(T::try_from(record)?)).into_response())
+}
+
+/// A record as it is answered.
+pub(super) trait View: TryFrom<JobRecord, Error = serde_json::Error> + Serialize {}
+
+impl<T: TryFrom<JobRecord, Error = serde_json::Error> + Serialize> View for T {}
+
+/// What is listed, newest first, up to so many, and the cursor of the next page.
+pub(super) async fn page<T: View>(
+    service: &Service,
+    limit: Option<u32>,
+    filter: impl FnOnce(u32) -> ListFilter,
+) -> Result<(Vec<T>, Option<Uuid>), Problem> {
+    let limit = bounded("limit", limit, LIST_DEFAULT, LIST_LARGEST)?;
+    // One more than asked for tells whether there is a next page.
+    let mut records = service.jobs.store().jobs(filter(limit + 1)).await?;
+    let more = records.len() > limit as usize;
+    records.truncate(limit as usize);
+    let next_cursor = records.last().map(|record| record.id).filter(|_| more);
+    Ok((records.into_iter().map(T::try_from).collect::<Result<_, _>>()?, next_cursor))
 }
 
 #[derive(Debug, Deserialize, utoipa::IntoParams)]
@@ -95,15 +114,9 @@ pub async fn list(
     State(service): State<Service>,
     Parameters(parameters): Parameters<ListParameters>,
 ) -> Result<Json<JobList>, Problem> {
-    let limit = bounded("limit", parameters.limit, LIST_DEFAULT, LIST_LARGEST)?;
-    // One more than asked for tells whether there is a next page.
-    let ListParameters { status, parent, cursor, .. } = parameters;
-    let filter = ListFilter { task: Task::Path, status, parent, before: cursor, limit: limit + 1 };
-    let mut records = service.jobs.store().jobs(filter).await?;
-    let more = records.len() > limit as usize;
-    records.truncate(limit as usize);
-    let next_cursor = records.last().map(|job| job.id).filter(|_| more);
-    let jobs = records.into_iter().map(Job::try_from).collect::<Result<_, _>>()?;
+    let ListParameters { status, parent, cursor, limit } = parameters;
+    let filter = |limit| ListFilter { task: Task::Path, status, parent, before: cursor, limit };
+    let (jobs, next_cursor) = page(&service, limit, filter).await?;
     Ok(Json(JobList { jobs, next_cursor }))
 }
 

@@ -59,14 +59,14 @@ pub async fn stream(State(service): State<Service>, JobId(id): JobId, headers: H
 /// The lines of a job of that task as they come.
 pub(super) async fn answer(service: Service, task: Task, id: Uuid, headers: &HeaderMap) -> Result<Response, Problem> {
     let format = Format::accepted(headers)?;
-    let after = last_event_id(headers)?;
+    let after = last_event_id(event_name(task), headers)?;
     service.jobs.find(task, id).await?;
     Ok(match format {
         Format::Events => Sse::new(events(service, task, id, after))
             .keep_alive(KeepAlive::new().interval(KEEP_ALIVE).text("waiting"))
             .into_response(),
         Format::Lines => {
-            ([(header::CONTENT_TYPE, NDJSON)], Body::from_stream(lines(service, id, after))).into_response()
+            ([(header::CONTENT_TYPE, NDJSON)], Body::from_stream(lines(service, task, id, after))).into_response()
         }
     })
 }
@@ -179,7 +179,18 @@ fn end(task: Task, job: JobRecord) -> serde_json::Result<String> {
     }
 }
 
-fn lines(service: Service, id: Uuid, after: Option<u64>) -> impl Stream<Item = io::Result<String>> {
+/// What follows the last line of a path, which says itself that it is the end, or of a study, which does not.
+fn closing_line(task: Task, job: JobRecord) -> Option<io::Result<String>> {
+    match task {
+        Task::Path => None,
+        Task::Study => Some(end(task, job).map(|study| study + "\n").map_err(|error| {
+            tracing::error!(%error, "the end cannot be written");
+            io::Error::other("the study cannot be read")
+        })),
+    }
+}
+
+fn lines(service: Service, task: Task, id: Uuid, after: Option<u64>) -> impl Stream<Item = io::Result<String>> {
     // An error breaks the body off, so that a client can tell a whole path from a part of one.
     let broken = |why: &str| Some(Err(io::Error::other(why.to_owned())));
     let span = tracing::Span::current();
@@ -187,7 +198,7 @@ fn lines(service: Service, id: Uuid, after: Option<u64>) -> impl Stream<Item = i
         let _entered = span.enter();
         match happening {
             Happening::Line(line) => Some(Ok(line.body + "\n")),
-            Happening::Ended(_) => None,
+            Happening::Ended(job) => closing_line(task, *job),
             Happening::Deleted => broken("the job was deleted"),
             Happening::ShuttingDown => broken("the service is going down"),
             Happening::Failed(error) => {

@@ -1,7 +1,7 @@
 //! Studies: submit, list, read, follow, cancel, delete; their table and picture.
 
-use super::extract::{JobId, JsonText, Parameters, Taken, bounded, idempotency_key};
-use super::jobs::{LIST_DEFAULT, LIST_LARGEST, SubmitParameters};
+use super::extract::{JobId, JsonText, Parameters, Taken, idempotency_key};
+use super::jobs::{SubmitParameters, accepted, page};
 use super::problem::Problem;
 use super::view_study::{Study, StudyList, StudyWithReport, address};
 use super::{Service, document};
@@ -44,9 +44,7 @@ pub async fn submit(
     if parameters.validate {
         return Ok(Json(service.jobs.validate_study(request).await?).into_response());
     }
-    let study = service.jobs.submit_study(request, idempotency_key(&headers)?).await?;
-    let location = address(study.id);
-    Ok((StatusCode::ACCEPTED, [(header::LOCATION, location)], Json(Study::try_from(study)?)).into_response())
+    accepted::<Study>(service.jobs.submit_study(request, idempotency_key(&headers)?).await?, address)
 }
 
 #[derive(Debug, Deserialize, utoipa::IntoParams)]
@@ -78,15 +76,9 @@ pub async fn list(
     State(service): State<Service>,
     Parameters(parameters): Parameters<ListStudies>,
 ) -> Result<Json<StudyList>, Problem> {
-    let limit = bounded("limit", parameters.limit, LIST_DEFAULT, LIST_LARGEST)?;
-    let ListStudies { status, cursor, .. } = parameters;
-    // One more than asked for tells whether there is a next page.
-    let filter = ListFilter { task: Task::Study, status, parent: None, before: cursor, limit: limit + 1 };
-    let mut records = service.jobs.store().jobs(filter).await?;
-    let more = records.len() > limit as usize;
-    records.truncate(limit as usize);
-    let next_cursor = records.last().map(|study| study.id).filter(|_| more);
-    let studies = records.into_iter().map(Study::try_from).collect::<Result<_, _>>()?;
+    let ListStudies { status, cursor, limit } = parameters;
+    let filter = |limit| ListFilter { task: Task::Study, status, parent: None, before: cursor, limit };
+    let (studies, next_cursor) = page(&service, limit, filter).await?;
     Ok(Json(StudyList { studies, next_cursor }))
 }
 
@@ -109,7 +101,10 @@ pub async fn get(State(service): State<Service>, JobId(id): JobId) -> Result<Jso
 ///
 /// Server-sent events: `row` events, one a path, whose id is its number and whose row is the row as it stands then; the
 /// first round has every row's errors, later ones add times. Then one `end` event with the study and its report.
-/// `Last-Event-ID`, a service that goes down and `Accept: application/x-ndjson` are as for a job's stream.
+/// `Last-Event-ID` and a service that goes down are as for a job's stream.
+///
+/// With `Accept: application/x-ndjson`: one path a line, and a last line with the study and its report, which has a
+/// `status` and no `index`.
 #[utoipa::path(
     get, path = "/v1/studies/{id}/stream", tag = document::STUDIES, operation_id = "stream_study",
     params(
@@ -173,6 +168,8 @@ pub async fn table_txt(State(service): State<Service>, JobId(id): JobId) -> Resu
 }
 
 /// Error against time so far, on logarithmic scales, one line a method.
+///
+/// Until every row has been timed, and where `repeats` is 0, what is varied stands in the place of the time.
 #[utoipa::path(
     get, path = "/v1/studies/{id}/picture.svg", tag = document::STUDIES, operation_id = "get_study_picture",
     params(("id" = Uuid, Path, description = "The study's id.")),
@@ -186,8 +183,8 @@ pub async fn picture(State(service): State<Service>, JobId(id): JobId) -> Result
             tracing::error!(%error, study = %id, "a picture cannot be drawn");
             Err(Problem::new(super::problem::Kind::Internal, "the log has more under this answer's x-request-id"))
         }
-        Err(PlotError::NoTimes | PlotError::Empty) => {
-            Err(Problem::not_found(format_args!("picture of study {id}: no path of it has been timed yet")))
+        Err(PlotError::NoErrors | PlotError::Empty) => {
+            Err(Problem::not_found(format_args!("picture of study {id}: no path of it has an error yet")))
         }
     }
 }

@@ -9,13 +9,50 @@ use serde_json::value::RawValue;
 use utoipa::ToSchema;
 use uuid::Uuid;
 
-/// A job, without its increments.
+/// What jobs and studies have in common.
 #[derive(Debug, Serialize, ToSchema)]
-pub struct Job {
+pub struct Submitted {
     pub id: Uuid,
     /// The model's own name.
     pub name: Option<String>,
     pub status: Status,
+    /// Why it failed.
+    pub error: Option<String>,
+    /// A cancel was asked for; it ends within one iteration.
+    pub cancel_requested: bool,
+    /// Times it was started.
+    pub attempt: u32,
+    pub max_attempts: u32,
+    #[schema(value_type = String, format = DateTime)]
+    pub created_at: Timestamp,
+    #[schema(value_type = Option<String>, format = DateTime)]
+    pub started_at: Option<Timestamp>,
+    #[schema(value_type = Option<String>, format = DateTime)]
+    pub ended_at: Option<Timestamp>,
+}
+
+impl From<&JobRecord> for Submitted {
+    fn from(record: &JobRecord) -> Self {
+        Self {
+            id: record.id,
+            name: record.name.clone(),
+            status: record.status,
+            error: record.error.clone(),
+            cancel_requested: record.cancel_requested,
+            attempt: record.attempt,
+            max_attempts: record.max_attempts,
+            created_at: record.created_at,
+            started_at: record.started_at,
+            ended_at: record.ended_at,
+        }
+    }
+}
+
+/// A job, without its increments.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Job {
+    #[serde(flatten)]
+    pub submitted: Submitted,
     pub progress: Progress,
     /// What the scene needs, and what is left out and why.
     #[schema(value_type = Plan)]
@@ -25,19 +62,6 @@ pub struct Job {
     pub stop_reason: Option<String>,
     #[schema(value_type = Option<JudgedReport>)]
     pub report: Option<Box<RawValue>>,
-    /// Why the job failed.
-    pub error: Option<String>,
-    /// A cancel was asked for; the job ends within one iteration.
-    pub cancel_requested: bool,
-    /// Times the job was started.
-    pub attempt: u32,
-    pub max_attempts: u32,
-    #[schema(value_type = String, format = DateTime)]
-    pub created_at: Timestamp,
-    #[schema(value_type = Option<String>, format = DateTime)]
-    pub started_at: Option<Timestamp>,
-    #[schema(value_type = Option<String>, format = DateTime)]
-    pub ended_at: Option<Timestamp>,
     /// The direction of another job that this one follows; null for a job that starts at rest.
     pub parent: Option<Parent>,
     /// Jobs that follow a direction of this one; `GET /v1/jobs?parent=` lists them.
@@ -101,9 +125,7 @@ impl TryFrom<JobRecord> for Job {
     fn try_from(record: JobRecord) -> Result<Self, serde_json::Error> {
         let itself = address(record.id);
         Ok(Self {
-            id: record.id,
-            name: record.name,
-            status: record.status,
+            submitted: Submitted::from(&record),
             progress: Progress {
                 increments: record.last_index.map_or(0, |index| index + 1),
                 last_index: record.last_index,
@@ -112,13 +134,6 @@ impl TryFrom<JobRecord> for Job {
             plan: RawValue::from_string(record.plan)?,
             stop_reason: record.stop_reason,
             report: record.report.map(RawValue::from_string).transpose()?,
-            error: record.error,
-            cancel_requested: record.cancel_requested,
-            attempt: record.attempt,
-            max_attempts: record.max_attempts,
-            created_at: record.created_at,
-            started_at: record.started_at,
-            ended_at: record.ended_at,
             parent: record.parent.map(|parent| Parent {
                 job: parent.job,
                 increment: parent.increment,

@@ -1,37 +1,21 @@
 //! Studies as they are answered.
 
-use crate::store::{JobRecord, Status};
+use super::view::Submitted;
+use crate::store::JobRecord;
 use crate::studies::{Plan, Report};
-use jiff::Timestamp;
 use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
 use utoipa::ToSchema;
 use uuid::Uuid;
 
-/// A study, without what it has found.
+/// A study, without what it has found. Its status is never `stopped`: how a path ends is a finding.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct Study {
-    pub id: Uuid,
-    /// The model's own name.
-    pub name: Option<String>,
-    /// Never `stopped`: how a path ends is a finding.
-    pub status: Status,
+    #[serde(flatten)]
+    pub submitted: Submitted,
     pub progress: StudyProgress,
     #[schema(value_type = Plan)]
     pub plan: Box<RawValue>,
-    /// Why the study failed.
-    pub error: Option<String>,
-    /// A cancel was asked for; the study ends within one iteration.
-    pub cancel_requested: bool,
-    /// Times the study was started.
-    pub attempt: u32,
-    pub max_attempts: u32,
-    #[schema(value_type = String, format = DateTime)]
-    pub created_at: Timestamp,
-    #[schema(value_type = Option<String>, format = DateTime)]
-    pub started_at: Option<Timestamp>,
-    #[schema(value_type = Option<String>, format = DateTime)]
-    pub ended_at: Option<Timestamp>,
     pub links: StudyLinks,
 }
 
@@ -78,18 +62,9 @@ impl TryFrom<JobRecord> for Study {
     fn try_from(record: JobRecord) -> Result<Self, serde_json::Error> {
         let itself = address(record.id);
         Ok(Self {
-            id: record.id,
-            name: record.name,
-            status: record.status,
+            submitted: Submitted::from(&record),
             progress: StudyProgress { runs: record.last_index.map_or(0, |index| index + 1), of: record.max_increments },
             plan: RawValue::from_string(record.plan)?,
-            error: record.error,
-            cancel_requested: record.cancel_requested,
-            attempt: record.attempt,
-            max_attempts: record.max_attempts,
-            created_at: record.created_at,
-            started_at: record.started_at,
-            ended_at: record.ended_at,
             links: StudyLinks {
                 stream: format!("{itself}/stream"),
                 table_csv: format!("{itself}/table.csv"),

@@ -32,12 +32,12 @@ pub enum Number {
 }
 
 impl Json {
-    /// Parses one document.
+    /// Parses one document; `what` it is to be goes into the message where it is empty.
     ///
     /// # Errors
     /// Text that is too long, not UTF-8, not JSON, nested too deeply, with a number out of range, with more than
     /// [`MAX_VALUES`] values or with anything after the document; line and column are in the detail.
-    pub fn parse(text: &[u8]) -> Result<Self, InputError> {
+    pub fn parse(text: &[u8], what: &str) -> Result<Self, InputError> {
         let whole = |detail: String| Err(InputError::new("", detail));
         if text.len() > MAX_TEXT_BYTES {
             return whole(format!("the document has {} bytes; at most {MAX_TEXT_BYTES} are taken", text.len()));
@@ -47,7 +47,7 @@ impl Json {
             return whole(format!("not UTF-8 at line {line} column {column}; JSON text in UTF-8 is expected"));
         }
         if text.iter().all(u8::is_ascii_whitespace) {
-            return whole("the document is empty; a job request `{\"model\": …}` is expected".to_owned());
+            return whole(format!("the document is empty; {what}, a JSON object, is expected"));
         }
         if text.starts_with("\u{feff}".as_bytes()) {
             return whole("the document starts with a byte order mark; plain UTF-8 without one is expected".to_owned());
@@ -187,12 +187,12 @@ mod tests {
     use super::*;
 
     fn refusal(text: &[u8]) -> String {
-        Json::parse(text).unwrap_err().detail
+        Json::parse(text, "a text").unwrap_err().detail
     }
 
     #[test]
     fn members_keep_their_order_and_duplicates() {
-        let Json::Object(members) = Json::parse(br#"{"b": 1, "a": -2, "b": 1.5}"#).unwrap() else { panic!() };
+        let Json::Object(members) = Json::parse(br#"{"b": 1, "a": -2, "b": 1.5}"#, "a text").unwrap() else { panic!() };
         let names: Vec<&str> = members.iter().map(|(name, _)| name.as_str()).collect();
         assert_eq!(names, ["b", "a", "b"]);
         assert_eq!(members[1].1, Json::Number(Number::Negative(-2)));

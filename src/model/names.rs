@@ -22,7 +22,17 @@ pub(crate) fn quoted(text: &str) -> String {
 
 /// `; did you mean `tip`? Known: `pin`, `tip``, or what there is to say of that.
 pub(crate) fn suggestion<'a>(unknown: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
-    let known_list = listed(known.clone());
+    suggestion_among(unknown, known, LISTED)
+}
+
+/// The same with every name, of lists that are the program's own.
+#[cfg(feature = "server")]
+pub(crate) fn suggestion_of_all<'a>(unknown: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
+    suggestion_among(unknown, known, usize::MAX)
+}
+
+fn suggestion_among<'a>(unknown: &str, known: impl Iterator<Item = &'a str> + Clone, most: usize) -> String {
+    let known_list = listed_up_to(known.clone(), most);
     match nearest(unknown, known) {
         Some(name) => format!("; did you mean {}? Known: {known_list}", quoted(name)),
         None => format!("; known: {known_list}"),
@@ -31,10 +41,14 @@ pub(crate) fn suggestion<'a>(unknown: &str, known: impl Iterator<Item = &'a str>
 
 /// The names in quotes with commas between; `none` where there are none.
 pub(super) fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    listed_up_to(names, LISTED)
+}
+
+fn listed_up_to<'a>(names: impl Iterator<Item = &'a str>, most: usize) -> String {
     let mut shown = Vec::new();
     let mut more = 0;
     for name in names {
-        if shown.len() < LISTED {
+        if shown.len() < most {
             shown.push(quoted(name));
         } else {
             more += 1;

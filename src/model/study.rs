@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 pub struct StudyRequest {
     pub model: Model,
     /// As of a job. `method`, and of what is varied the single value, give way to what `study` says.
-    /// `max_increments` bounds the paths of the longest arc length; shorter ones get more in proportion.
+    /// `max_increments` bounds the paths of the longest arc length, or of `arc_length.max` where that is shorter; paths of
+    /// shorter ones get more in proportion.
     #[serde(default)]
     pub analysis: Analysis,
     #[serde(default)]
@@ -140,7 +141,7 @@ impl StudyRequest {
         match parameter {
             Parameter::ArcLength => {
                 let longest = rungs.first().copied().unwrap_or(value);
-                set_arc_length(&mut analysis, value, longest);
+                set_arc_length(&mut analysis, value, longest.min(self.analysis.arc_length.max));
             }
             Parameter::Tolerance => analysis.regularised.get_or_insert_default().tolerance = value,
             Parameter::Penalty => {
@@ -158,7 +159,9 @@ impl StudyRequest {
         let mut analysis = self.analysis.clone();
         analysis.method = Method::Auto;
         analysis.regularised = None;
-        set_arc_length(&mut analysis, shortest / divisor, longest);
+        // Rungs longer than the analysis' own arc length are no reason for more increments; the refinement is.
+        let usual = longest.min(self.analysis.arc_length.max.max(shortest));
+        set_arc_length(&mut analysis, shortest / divisor, usual);
         analysis.arc_length.min = analysis.arc_length.min.min(analysis.arc_length.max);
         JobRequest { model: self.model.clone(), analysis }
     }
@@ -175,12 +178,12 @@ impl StudyRequest {
     }
 }
 
-/// Sets the arc length, and allows as long a path as with the longest one.
-fn set_arc_length(analysis: &mut Analysis, value: f64, longest: f64) {
+/// Sets the arc length, and allows as long a path as with the usual one.
+fn set_arc_length(analysis: &mut Analysis, value: f64, usual: f64) {
     analysis.arc_length.initial = value;
     analysis.arc_length.max = value;
     analysis.arc_length.jump = false;
     // What overflows the integer is cut to its largest value; the check bounds it before.
-    let more = (longest / value).ceil().max(1.0);
+    let more = (usual / value).ceil().max(1.0);
     analysis.max_increments = (analysis.max_increments as f64 * more) as u64;
 }

@@ -223,21 +223,28 @@ impl Start<'_> {
     }
 
     fn zero(&self, watch: Watch, reached: &Reached) -> f64 {
-        PASSED * watch.scale(self.force_scale.max(reached.corrected.force_scale))
+        PASSED * self.scale(watch, reached)
+    }
+
+    fn scale(&self, watch: Watch, reached: &Reached) -> f64 {
+        let force_scale = self.force_scale.max(reached.corrected.force_scale);
+        watch.scale(self.loading, &reached.corrected.state, force_scale)
     }
 
     fn passed(&self, watches: &[Watch], reached: &Reached) -> Vec<Watch> {
-        let negative =
-            |watch: &Watch| self.value(*watch, &reached.corrected.state, &reached.rate) < -self.zero(*watch, reached);
+        let negative = |watch: &Watch| {
+            let value = self.value(*watch, &reached.corrected.state, &reached.rate);
+            value < 0.0 && value < -self.zero(*watch, reached)
+        };
         watches.iter().copied().filter(negative).collect()
     }
 
     /// A contact quantity that has fallen to zero at the point reached.
     fn coinciding(&self, watches: &[Watch], reached: &Reached) -> Option<Watch> {
-        watches.iter().copied().find(|watch| {
-            let scale = COINCIDING * watch.scale(self.force_scale.max(reached.corrected.force_scale));
+        watches.iter().copied().filter(|watch| watch.is_of_contact()).find(|watch| {
+            let scale = COINCIDING * self.scale(*watch, reached);
             let last = self.value(*watch, &reached.corrected.state, &reached.rate);
-            watch.is_of_contact() && last <= scale && self.value(*watch, self.state, self.rate) > scale
+            last <= scale && self.value(*watch, self.state, self.rate) > scale
         })
     }
 
@@ -252,6 +259,9 @@ impl Start<'_> {
         for watch in watches {
             let end = (&reached.corrected.state, &reached.rate);
             let start = (self.state, self.rate);
+            if watch.dip(self.loading, self.modes, start, end, step, 0.0).is_none() {
+                continue;
+            }
             let zero = self.zero(*watch, reached);
             let Some(place) = watch.dip(self.loading, self.modes, start, end, step, zero) else { continue };
             let inside = self.reach(place, work)?;

@@ -149,11 +149,12 @@ impl Trial<'_> {
         let mut unclear = false;
         let mut culprits = Vec::new();
         for watch in watch::of_mode(loading, modes) {
-            let scale = watch.scale(forces);
+            let scale = watch.scale(loading, &corrected.state, forces);
             let first = watch.value(loading, modes, state, &candidate.rate);
             let (tendency, size) = match watch.slope(loading, state, &candidate.rate) {
                 None => (0.0, 1.0),
-                Some(slope) => (slope, watch.scale(rates)),
+                Some(slope) if watch.is_of_forces() => (slope, rates * (scale / forces)),
+                Some(slope) => (slope, 1.0),
             };
             if first > IN_DOUBT * scale || tendency > IN_DOUBT * size {
                 continue;

@@ -11,10 +11,10 @@ use crate::contact::Reaction;
 /// A point whose violation is larger is not accepted.
 pub const MOST_VIOLATION: f64 = 1e-10;
 
-/// The largest violation over the contacts; gaps dimensionless, reactions over the force scale.
+/// The largest violation over the contacts; gaps dimensionless, reactions over the force scale at their nodes.
 pub fn violation(loading: Loading<'_>, state: &State, force_scale: f64) -> f64 {
-    let scaled = 1.0 / force_scale.max(f64::MIN_POSITIVE);
     let of_contact = |(index, reaction): (usize, &Reaction)| {
+        let scaled = 1.0 / loading.force_scale_at(index, state, force_scale).max(f64::MIN_POSITIVE);
         let gap = loading.gap(index, state);
         let normal = reaction.normal * scaled;
         let cone = reaction.tangential_size() * scaled - loading.contacts[index].friction * normal;
@@ -57,12 +57,12 @@ mod tests {
             let mut state = State::at_rest(&scene.structure, 1);
             state.displacement[1] = height;
             state.reactions[0] = Reaction { normal, tangential: [traction, 0.0, 0.0] };
-            violation(loading, &state, 2.0)
+            violation(loading, &state, 1.0)
         };
         assert_eq!(of(0.0, 1.0, 0.5), 0.0);
         assert_eq!(of(0.25, 0.0, 0.0), 0.0);
-        assert_eq!(of(0.0, -1.0, 0.0), 0.5);
-        assert_eq!(of(0.0, 1.0, 1.0), 0.25);
+        assert_eq!(of(0.0, -1.0, 0.0), 1.0);
+        assert_eq!(of(0.0, 1.0, 1.0), 0.5);
         assert_eq!(of(-0.25, 0.0, 0.0), 0.25);
         assert_eq!(of(0.25, 1.0, 0.0), 0.25);
     }

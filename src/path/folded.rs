@@ -55,7 +55,7 @@ pub fn locate(start: &Start<'_>, reached: &Reached) -> Option<Reached> {
     // The node has come there by slipping on, and nothing else has happened on the way.
     let holds = |watch: &Watch| {
         let value = watch.value(start.loading, start.modes, &corrected.state, &rate);
-        value >= -VIOLATED * watch.scale(start.force_scale)
+        value >= -VIOLATED * watch.scale(start.loading, &corrected.state, start.force_scale)
     };
     if !watch::of_mode(start.loading, start.modes).iter().all(holds) {
         return None;

@@ -61,6 +61,14 @@ pub fn of_node(dimension: usize, node: usize, values: &[f64]) -> Vector {
     vector
 }
 
+/// The displacement (dimensionless) whose forces count as meeting at a node even where there is less: the scale of
+/// displacements itself. A structure that is just undeformed has no smaller forces than before.
+pub(super) const USUAL: f64 = 1.0;
+
+fn largest_of(vector: &Vector) -> f64 {
+    vector.iter().fold(0.0, |largest, value| value.abs().max(largest))
+}
+
 impl Loading<'_> {
     /// Displacement of a contact's node less its obstacle's.
     pub fn relative(&self, contact: usize, state: &State) -> Vector {
@@ -83,6 +91,18 @@ impl Loading<'_> {
     /// Gap of a contact.
     pub fn gap(&self, contact: usize, state: &State) -> f64 {
         self.contacts[contact].gap(&self.relative(contact, state))
+    }
+
+    /// The force against which a contact's reaction is zero: those that meet at its node, or the largest of the path where
+    /// that is less. Structures with forces far apart each have their own.
+    pub fn force_scale_at(&self, contact: usize, state: &State, force_scale: f64) -> f64 {
+        let node = self.contacts[contact].node;
+        let own = |pattern: &LoadPattern| largest_of(&of_node(self.structure.dimension, node, &pattern.forces));
+        let meeting = self.structure.force_size_at(node, &state.displacement, USUAL)
+            + state.load.abs() * own(self.pattern)
+            + own(self.held)
+            + state.reactions[contact].size();
+        meeting.min(force_scale).max(f64::EPSILON * force_scale)
     }
 
     /// Displacement of a supported degree of freedom per load factor.

@@ -49,7 +49,7 @@ impl Path<'_> {
                 let value = watch.value(loading, modes, state, rate);
                 let slope = watch.slope(loading, state, rate)?;
                 // What is zero here is not ahead.
-                (value > ZERO * watch.scale(forces) && slope < 0.0).then(|| value / -slope)
+                (value > ZERO * watch.scale(loading, state, forces) && slope < 0.0).then(|| value / -slope)
             })
             .fold(f64::INFINITY, f64::min)
     }

@@ -1,5 +1,6 @@
 //! Newton's method on the equations of a mode, and the path's direction at the point found.
 
+use super::loading::USUAL;
 use super::mode_system::{Iterate, Kind, ModeSystem, Role};
 use super::singular::UNCERTAIN;
 use super::state::{Rate, State};
@@ -69,6 +70,8 @@ const ROUND_OFF: f64 = 1e-15;
 const SMALL: f64 = 1e-6;
 /// Multiple of the bound on rounding within which what is left over counts as rounding.
 const ROOM: f64 = 8.0;
+/// Rows with forces below this part of the force scale are judged by their own.
+const WEAK: f64 = 1e-3;
 /// Corrections that fall by less than this factor are rounding themselves.
 const NO_FALL: f64 = 0.25;
 
@@ -97,6 +100,8 @@ impl ModeSystem<'_> {
         // Sizes of the last correction and the one before.
         let (mut correction, mut before) = (f64::INFINITY, f64::INFINITY);
         let mut small_by_correction = None;
+        // Rows are judged by the largest force first, and each by its own once that is done.
+        let mut row_by_row = false;
         loop {
             let (largest, forces) = self.residual(&iterate, &mut values, &mut force);
             let scale = forces.max(force_scale).max(NO_FORCE);
@@ -104,7 +109,10 @@ impl ModeSystem<'_> {
             let last = self.size - 1;
             values[last] = self.place(&iterate.state, place, None);
             let geometric = values.iter().skip(self.loading.structure.unknowns()).fold(0.0_f64, |m, v| m.max(v.abs()));
-            let error = residual.max(geometric);
+            let mut error = residual.max(geometric);
+            if row_by_row {
+                error = error.max(self.residual_of_rows(&iterate.state, &values, scale));
+            }
             if !error.is_finite() {
                 return Err(Failure::NotConverged);
             }
@@ -117,9 +125,13 @@ impl ModeSystem<'_> {
                 best = Some((error, iterate.clone(), figures));
             }
             let least = best.as_ref().map_or(f64::INFINITY, |(least, ..)| *least);
-            let settled = least <= ROUND_OFF || (!improved && least <= ACCEPTED_RESIDUAL);
+            let settled = least <= ROUND_OFF || (!improved && (row_by_row || least <= ACCEPTED_RESIDUAL));
             if settled && iterations > 0 {
-                break;
+                let done = row_by_row || iterations == MOST_ITERATIONS;
+                if done || self.residual_of_rows(&iterate.state, &values, scale) <= ACCEPTED_RESIDUAL {
+                    break;
+                }
+                (row_by_row, best) = (true, None);
             }
             let ended = iterations == MOST_ITERATIONS;
             if least > ACCEPTED_RESIDUAL && iterations > 0 && (ended || correction >= NO_FALL * before) {
@@ -133,7 +145,7 @@ impl ModeSystem<'_> {
                 }
             }
             if ended {
-                if least <= ACCEPTED_RESIDUAL {
+                if least <= ACCEPTED_RESIDUAL || row_by_row {
                     break;
                 }
                 return Err(Failure::NotConverged);
@@ -171,6 +183,26 @@ impl ModeSystem<'_> {
             left_over: figures.left_over,
             force_scale: figures.force_scale,
         })
+    }
+
+    /// The largest equilibrium residual over the forces of its own row, of the rows where these are far below the force
+    /// scale.
+    fn residual_of_rows(&self, state: &State, values: &DVector<f64>, scale: f64) -> f64 {
+        let structure = self.loading.structure;
+        let mut sizes = structure.force_sizes(&state.displacement, USUAL);
+        for (freedom, size) in sizes.iter_mut().enumerate() {
+            *size +=
+                (state.load * self.loading.pattern.forces[freedom]).abs() + self.loading.held.forces[freedom].abs();
+        }
+        for (contact, reaction) in self.loading.contacts.iter().zip(&state.reactions) {
+            let first = contact.node * structure.dimension;
+            sizes[first..first + structure.dimension].iter_mut().for_each(|size| *size += reaction.size());
+        }
+        let rows =
+            structure.freedom_of.iter().zip(values.iter()).map(|(freedom, value)| (sizes[*freedom], value.abs()));
+        rows.filter(|(size, _)| *size < WEAK * scale)
+            .map(|(size, value)| value / size.max(f64::EPSILON * scale))
+            .fold(0.0, f64::max)
     }
 
     /// Whether what is left over of each equation is within the rounding of the state's numbers; then the largest

@@ -108,8 +108,10 @@ fn reduced_tangent(system: &ModeSystem<'_>, loading: Loading<'_>, state: &State)
 /// none. Free or closed, such a contact lets the path go the same way, but a branch may leave it.
 pub fn loosened(start: &Start<'_>, reached: &Reached) -> Option<Vec<Mode>> {
     let touches = |state: &State, contact: usize| {
-        let zero = ZERO * start.force_scale.max(reached.corrected.force_scale);
-        state.reactions[contact].size() <= zero && start.loading.gap(contact, state) <= ZERO
+        let force_scale = start.force_scale.max(reached.corrected.force_scale);
+        let reaction = state.reactions[contact].size();
+        let is_zero = reaction == 0.0 || reaction <= ZERO * start.loading.force_scale_at(contact, state, force_scale);
+        is_zero && start.loading.gap(contact, state) <= ZERO
     };
     let grazes = |(contact, mode): &(usize, &Mode)| {
         mode.is_active() && touches(start.state, *contact) && touches(&reached.corrected.state, *contact)

@@ -46,7 +46,8 @@ pub fn standings(loading: Loading<'_>, state: &State, force_scale: f64) -> Vec<S
 
 fn standing_of_corner(loading: Loading<'_>, state: &State, closed: &[usize], force_scale: f64) -> Standing {
     let force = corner::total_force(loading, closed.iter().copied(), state);
-    let zero = ZERO * force_scale;
+    let scale_at = |contact: &usize| loading.force_scale_at(*contact, state, force_scale);
+    let zero = ZERO * closed.iter().map(scale_at).fold(0.0, f64::max);
     let unloaded = size(&force) <= zero;
     let inward = corner::sector(loading, closed, state).inward;
     let facets = inward.map_or([false; 2], |inward| inward.map(|inward| dot(&inward, &force) <= zero));
@@ -59,14 +60,14 @@ fn standing_of_corner(loading: Loading<'_>, state: &State, closed: &[usize], for
 
 fn standing(loading: Loading<'_>, state: &State, index: usize, force_scale: f64) -> Standing {
     let (contact, reaction) = (&loading.contacts[index], &state.reactions[index]);
-    let zero = ZERO * force_scale;
-    if reaction.normal <= zero {
+    let zero = || ZERO * loading.force_scale_at(index, state, force_scale);
+    if reaction.normal <= 0.0 || reaction.normal <= zero() {
         return if loading.gap(index, state) <= ZERO { Standing::Touching } else { Standing::Settled(Mode::Free) };
     }
     if contact.tangents() == 0 {
         return Standing::Settled(Mode::Slip { direction: [0.0; 3] });
     }
-    if contact.friction * reaction.normal - reaction.tangential_size() > zero {
+    if contact.friction * reaction.normal - reaction.tangential_size() > zero() {
         return Standing::Settled(Mode::Stick);
     }
     let direction = match contact.sliding {

@@ -75,7 +75,7 @@ impl Path<'_> {
         let ahead = here.state.advanced(rate, 1.0);
         let mut nearest = f64::INFINITY;
         for watch in watches {
-            let scale = watch.scale(self.at.totals.force_scale);
+            let scale = watch.scale(loading, &here.state, self.at.totals.force_scale);
             let now = watch.value(loading, &here.modes, &here.state, rate);
             let change = watch.value(loading, &here.modes, &ahead, rate) - now;
             if change < -CONSTANT * scale {

@@ -55,6 +55,13 @@ impl<'a> Path<'a> {
         (self.at.phase == Phase::Ended).then(|| self.at.totals.report.clone())
     }
 
+    /// Makes the next step no longer than this (arc length, dimensionless), so that a point can be put where it is wanted.
+    /// `analysis.arc_length.min` stays the shortest.
+    pub fn shorten_next(&mut self, longest: f64) {
+        let least = self.scene.analysis.arc_length.min;
+        self.at.step = self.at.step.min(longest.max(least));
+    }
+
     pub(super) fn elapsed_s(&self) -> f64 {
         self.elapsed_before + self.began.elapsed().as_secs_f64()
     }

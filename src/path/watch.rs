@@ -76,6 +76,11 @@ impl Watch {
         }
     }
 
+    /// Whether the quantity is a force.
+    pub fn is_of_forces(self) -> bool {
+        matches!(self, Self::Normal(_) | Self::Cone { .. } | Self::Facet { .. })
+    }
+
     /// The quantity at a point with its direction.
     pub fn value(self, loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate) -> f64 {
         match self {
@@ -143,10 +148,14 @@ impl Watch {
         }
     }
 
-    /// The size against which the quantity is zero.
-    pub fn scale(self, force_scale: f64) -> f64 {
+    /// The size against which the quantity is zero at a state; `force_scale` is the largest force of the path.
+    pub fn scale(self, loading: Loading<'_>, state: &State, force_scale: f64) -> f64 {
         match self {
-            Self::Normal(_) | Self::Cone { .. } | Self::Facet { .. } => force_scale,
+            Self::Normal(contact) | Self::Cone { contact, .. } => loading.force_scale_at(contact, state, force_scale),
+            Self::Facet { corner, .. } => {
+                let of = |contact: &usize| loading.force_scale_at(*contact, state, force_scale);
+                loading.corners[corner].contacts.iter().map(of).fold(0.0, f64::max)
+            }
             Self::Gap(_) | Self::Sliding(_) | Self::LoadRate { .. } | Self::End(_) => 1.0,
         }
     }

@@ -1,6 +1,6 @@
 //! Pictures, as SVG.
 //!
-//! [`path`] is load against displacement, [`study`] error against run time; [`shapes`] is what both are drawn with,
+//! [`path`] is load against displacement, [`study`] error against run time (or what is varied); [`shapes`] is what both are drawn with,
 //! [`labels`] finds room for letters. Called by `command` and `http`; knows `path`, `model` and `studies`.
 
 mod labels;
@@ -13,8 +13,8 @@ pub mod study;
 pub enum PlotError {
     #[error("a path without increments cannot be drawn")]
     Empty,
-    #[error("no path of the study has both a time and an error yet, so that nothing can be drawn")]
-    NoTimes,
+    #[error("no path of the study has an error yet, so that nothing can be drawn")]
+    NoErrors,
     #[error("the picture could not be drawn: {0}")]
     Drawing(String),
 }

@@ -1,9 +1,11 @@
-//! The picture of a study: error down, time across, both on logarithmic scales, one line a method.
+//! The picture of a study: error down, time across, both on logarithmic scales, one line a method. As long as there are
+//! rows without a time, what is varied stands in its place.
 
 use super::PlotError;
 use super::labels::Map;
 use super::shapes::{self, Drawn, FAINT_INK, FINE, INK, Lettering, PAPER, Place, Sheet};
 use crate::model::request::Method;
+use crate::model::study::Parameter;
 use crate::studies::{Report, Row};
 use plotters::element::DashedPathElement;
 use plotters::prelude::{Circle, PathElement, Polygon, RGBColor, Rectangle};
@@ -35,57 +37,88 @@ const TICK: Lettering = Lettering { size: 12, ..NAME };
 const FAINT: Lettering = Lettering { size: 11, color: &FAINT_INK, bold: false, centred: true };
 const PLAIN: Lettering = Lettering { size: 12, color: &INK, bold: false, centred: false };
 
-/// A path with a time and an error.
+/// What errors are drawn against.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Against {
+    Time,
+    Setting(Parameter),
+}
+
+impl Against {
+    /// Time, where all rows that have an error have one.
+    fn of(report: &Report) -> Self {
+        let timed = report.rows.iter().filter(|row| row.path_error.is_some()).all(|row| row.time.is_some());
+        if timed { Self::Time } else { Self::Setting(report.parameter) }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Time => "solver time of the whole path (s)",
+            Self::Setting(Parameter::ArcLength) => "mean arc length of the increments (not all paths are timed)",
+            Self::Setting(Parameter::Tolerance) => "tolerance (not all paths are timed)",
+            Self::Setting(Parameter::Penalty) => "penalty (not all paths are timed)",
+        }
+    }
+}
+
+/// A path with an error and something to draw it against.
 struct Dot {
     error: f64,
-    median: f64,
-    spread: (f64, f64),
+    /// Of times, their median.
+    across: f64,
+    /// Least and largest time.
+    spread: Option<(f64, f64)>,
     label: String,
 }
 
 impl Dot {
-    fn of(row: &Row) -> Option<Self> {
-        let (time, error) = (row.time?, row.path_error?);
-        // A clock that did not move has no logarithm.
-        let drawn = time.least_s > 0.0;
-        drawn.then(|| Self {
-            error: error.max(LEAST),
-            median: time.median_s,
-            spread: (time.least_s, time.largest_s),
-            label: format!("{}", row.value),
-        })
+    fn of(row: &Row, against: Against) -> Option<Self> {
+        let (across, spread) = match against {
+            Against::Time => row.time.map(|time| (time.median_s, Some((time.least_s, time.largest_s))))?,
+            Against::Setting(parameter) => (row.setting(parameter == Parameter::ArcLength), None),
+        };
+        // A clock that did not move has no logarithm, nor has the step of a path without increments.
+        let drawn = spread.map_or(across, |(least, _)| least) > 0.0;
+        let error = row.path_error?.max(LEAST);
+        drawn.then(|| Self { error, across, spread, label: format!("{}", row.value) })
+    }
+
+    /// All that has to be on the axis.
+    fn extent(&self) -> [f64; 2] {
+        self.spread.map_or([self.across; 2], |(least, largest)| [least, largest])
     }
 }
 
 /// The picture as SVG text; times differ from run to run, and so does the picture.
 pub fn svg(report: &Report) -> Result<String, PlotError> {
+    let against = Against::of(report);
     let lines: Vec<(Method, Vec<Dot>)> = report
         .by_method()
-        .map(|(order, rows)| (order.method, rows.into_iter().filter_map(Dot::of).collect()))
+        .map(|(order, rows)| (order.method, rows.into_iter().filter_map(|row| Dot::of(row, against)).collect()))
         .filter(|(_, dots): &(Method, Vec<Dot>)| !dots.is_empty())
         .collect();
     let dots = || lines.iter().flat_map(|(_, dots)| dots);
     if dots().next().is_none() {
-        return Err(PlotError::NoTimes);
+        return Err(PlotError::NoErrors);
     }
     let right = WIDTH - LEGEND - MARGIN;
-    let times = Scale::showing(dots().flat_map(|dot| [dot.spread.0, dot.spread.1]), (LEFT, right));
+    let across = Scale::showing(dots().flat_map(Dot::extent), (LEFT, right));
     let errors = Scale::showing(dots().map(|dot| dot.error).chain([report.reference.floor]), (HEIGHT - BELOW, CAPTION));
     let drawn = shapes::svg(WIDTH, HEIGHT, |sheet| {
-        frame(sheet, report, &times, &errors)?;
+        frame(sheet, report, against, (&across, &errors))?;
         let mut map = Map::new((LEFT * FINE, CAPTION * FINE), (right * FINE, (HEIGHT - BELOW) * FINE));
         for (method, dots) in &lines {
-            curve(sheet, *method, dots, (&times, &errors), &mut map)?;
+            curve(sheet, *method, dots, (&across, &errors), &mut map)?;
         }
         for dot in dots() {
-            map.add_marker((times.place(dot.median), errors.place(dot.error)), MARKER * FINE);
+            map.add_marker((across.place(dot.across), errors.place(dot.error)), MARKER * FINE);
         }
         for dot in dots() {
             let half = (35 * i32::try_from(dot.label.len()).unwrap_or(1), 60);
-            let middle = map.take_room((times.place(dot.median), errors.place(dot.error)), half);
+            let middle = map.take_room((across.place(dot.across), errors.place(dot.error)), half);
             FAINT.write(sheet, middle, &dot.label, LONGEST)?;
         }
-        legend(sheet, report, right + MARGIN)
+        legend(sheet, report, against, right + MARGIN)
     });
     drawn.map_err(|error| PlotError::Drawing(error.to_string()))
 }
@@ -130,16 +163,16 @@ impl Scale {
 }
 
 /// Title, axes and what cannot be resolved.
-fn frame(sheet: &Sheet<'_>, report: &Report, times: &Scale, errors: &Scale) -> Drawn {
-    let (left, right) = (times.pixels.0 * FINE, times.pixels.1 * FINE);
+fn frame(sheet: &Sheet<'_>, report: &Report, against: Against, (across, errors): (&Scale, &Scale)) -> Drawn {
+    let (left, right) = (across.pixels.0 * FINE, across.pixels.1 * FINE);
     let (bottom, top) = (errors.pixels.0 * FINE, errors.pixels.1 * FINE);
     let middle = (left + right) / 2;
     TITLE.write(sheet, (middle, 18 * FINE), report.name.as_deref().unwrap_or("study"), LONGEST)?;
     FAINT.write(sheet, (middle, 38 * FINE), &format!("against: {}", report.reference.what), LONGEST + 20)?;
     let floor = errors.place(report.reference.floor);
     sheet.draw(&Rectangle::new([(left, floor), (right, bottom)], UNRESOLVED.filled()))?;
-    for value in times.ticks() {
-        let x = times.place(value);
+    for value in across.ticks() {
+        let x = across.place(value);
         sheet.draw(&PathElement::new(vec![(x, top), (x, bottom)], GRID.stroke_width(8)))?;
         TICK.write(sheet, (x, bottom + 14 * FINE), &format!("{value:.0e}"), LONGEST)?;
     }
@@ -151,7 +184,7 @@ fn frame(sheet: &Sheet<'_>, report: &Report, times: &Scale, errors: &Scale) -> D
     let dash = FAINT_INK.stroke_width(8);
     sheet.draw(&DashedPathElement::new(vec![(left, floor), (right, floor)], 6 * FINE, 5 * FINE, dash))?;
     sheet.draw(&PathElement::new(vec![(left, top), (left, bottom), (right, bottom)], INK.stroke_width(10)))?;
-    NAME.write(sheet, (middle, bottom + 38 * FINE), "solver time of the whole path (s)", LONGEST)?;
+    NAME.write(sheet, (middle, bottom + 38 * FINE), against.name(), LONGEST)?;
     NAME.write(sheet, (left, top - 9 * FINE), "path error", LONGEST)
 }
 
@@ -181,20 +214,22 @@ fn mark(sheet: &Sheet<'_>, method: Method, (x, y): Place) -> Drawn {
 }
 
 fn curve(sheet: &Sheet<'_>, method: Method, dots: &[Dot], scales: (&Scale, &Scale), map: &mut Map) -> Drawn {
-    let (times, errors) = scales;
-    let places: Vec<Place> = dots.iter().map(|dot| (times.place(dot.median), errors.place(dot.error))).collect();
+    let (across, errors) = scales;
+    let places: Vec<Place> = dots.iter().map(|dot| (across.place(dot.across), errors.place(dot.error))).collect();
     places.windows(2).for_each(|ends| map.add_line(ends[0], ends[1]));
     sheet.draw(&PathElement::new(places.clone(), look(method).stroke_width(16)))?;
     for (dot, place) in dots.iter().zip(places) {
-        let (least, largest) = (times.place(dot.spread.0), times.place(dot.spread.1));
-        map.add_line((least, place.1), (largest, place.1));
-        sheet.draw(&PathElement::new(vec![(least, place.1), (largest, place.1)], look(method).stroke_width(8)))?;
-        for end in [least, largest] {
-            let tip = 3 * FINE;
-            sheet.draw(&PathElement::new(
-                vec![(end, place.1 - tip), (end, place.1 + tip)],
-                look(method).stroke_width(8),
-            ))?;
+        if let Some((least, largest)) = dot.spread {
+            let (least, largest) = (across.place(least), across.place(largest));
+            map.add_line((least, place.1), (largest, place.1));
+            sheet.draw(&PathElement::new(vec![(least, place.1), (largest, place.1)], look(method).stroke_width(8)))?;
+            for end in [least, largest] {
+                let tip = 3 * FINE;
+                sheet.draw(&PathElement::new(
+                    vec![(end, place.1 - tip), (end, place.1 + tip)],
+                    look(method).stroke_width(8),
+                ))?;
+            }
         }
         // A rim, so that marks upon one another can be told apart.
         sheet.draw(&Circle::new(place, MARKER * FINE * 14 / 10, PAPER.filled()))?;
@@ -203,7 +238,7 @@ fn curve(sheet: &Sheet<'_>, method: Method, dots: &[Dot], scales: (&Scale, &Scal
     Ok(())
 }
 
-fn legend(sheet: &Sheet<'_>, report: &Report, left: i32) -> Drawn {
+fn legend(sheet: &Sheet<'_>, report: &Report, against: Against, left: i32) -> Drawn {
     let mut top = CAPTION;
     let mut write = |words: &str, lettering: Lettering, indent: i32| {
         let place = ((left + indent) * FINE, (top + ROW / 2) * FINE);
@@ -225,7 +260,9 @@ fn legend(sheet: &Sheet<'_>, report: &Report, left: i32) -> Drawn {
     let faint = Lettering { centred: false, ..FAINT };
     write("", faint, 0)?;
     write(&format!("numbers: {}", report.parameter.name()), faint, 0)?;
-    write("bars: least and largest time", faint, 0)?;
+    if against == Against::Time {
+        write("bars: least and largest time", faint, 0)?;
+    }
     write(&format!("shaded: up to {:.1e},", report.reference.floor), faint, 0)?;
     write("not resolved", faint, 0)?;
     Ok(())

@@ -149,15 +149,15 @@ impl Bar {
         }
     }
 
-    /// What the rounding of the displacements puts into the nodal forces, added to each component.
-    pub fn add_rounding(&self, structure: &Structure, displacement: &[f64], rounding: &mut [f64]) {
+    /// Calls `add(freedom, size)` with the axial force and what displacements of this size would make of it.
+    pub fn each_size(&self, structure: &Structure, displacement: &[f64], least: f64, add: &mut dyn FnMut(usize, f64)) {
         let deformed = self.deformed(structure, displacement);
         let (_, axial, slope) = self.response(deformed.elongation);
         let dimension = structure.dimension;
         let freedoms = || self.nodes.iter().flat_map(|node| node * dimension..(node + 1) * dimension);
-        let reach = freedoms().fold(0.0_f64, |reach, freedom| reach.max(displacement[freedom].abs()));
+        let reach = freedoms().fold(least, |reach: f64, freedom| reach.max(displacement[freedom].abs()));
         let stiffness = slope.abs() + axial.abs() / deformed.length;
-        freedoms().for_each(|freedom| rounding[freedom] += f64::EPSILON * stiffness * reach);
+        freedoms().for_each(|freedom| add(freedom, axial.abs() + stiffness * reach));
     }
 
     pub fn energy(&self, structure: &Structure, displacement: &[f64]) -> f64 {

@@ -18,12 +18,22 @@ impl Element {
         }
     }
 
-    /// Adds what the rounding of the displacements puts into the element's nodal forces.
-    pub fn add_rounding(&self, structure: &Structure, displacement: &[f64], rounding: &mut [f64]) {
+    /// Calls `add(freedom, size)` with the size of the numbers that the element's nodal forces are made of: stiffness times
+    /// displacements as they are (`least` at least), not their differences, and the force carried.
+    pub fn each_size(&self, structure: &Structure, displacement: &[f64], least: f64, add: &mut dyn FnMut(usize, f64)) {
         match self {
-            Self::Bar(bar) => bar.add_rounding(structure, displacement, rounding),
-            Self::Spring(spring) => spring.add_rounding(structure, displacement, rounding),
+            Self::Bar(bar) => bar.each_size(structure, displacement, least, add),
+            Self::Spring(spring) => spring.each_size(structure, displacement, least, add),
         }
+    }
+
+    /// The nodes it joins, one or two.
+    pub fn nodes(&self) -> impl Iterator<Item = usize> {
+        let (first, second) = match self {
+            Self::Bar(bar) => (bar.nodes[0], Some(bar.nodes[1])),
+            Self::Spring(spring) => (spring.node, spring.other),
+        };
+        std::iter::once(first).chain(second)
     }
 
     /// Calls `add(row, column, value)` for every entry of the element's tangent, rows and columns being degrees of

@@ -32,6 +32,8 @@ pub struct Structure {
     /// The degree of freedom of each unknown.
     pub freedom_of: Vec<usize>,
     pub elements: Vec<Element>,
+    /// The elements at each node.
+    elements_at: Vec<Vec<usize>>,
 }
 
 impl Structure {
@@ -44,7 +46,11 @@ impl Structure {
                 freedom_of.push(freedom);
             }
         }
-        Self { dimension, unknown_of, freedom_of, elements }
+        let mut elements_at = vec![Vec::new(); supported.len() / dimension.max(1)];
+        for (index, element) in elements.iter().enumerate() {
+            element.nodes().for_each(|node| elements_at[node].push(index));
+        }
+        Self { dimension, unknown_of, freedom_of, elements, elements_at }
     }
 
     /// Number of unknown displacements.
@@ -70,11 +76,34 @@ impl Structure {
     /// What the rounding of the displacements puts into `f_int(u)`, one bound a degree of freedom: stiffness times unit
     /// round-off times the displacements that meet there. No state can be closer to equilibrium than this.
     pub fn rounding(&self, displacement: &[f64]) -> Vec<f64> {
-        let mut rounding = vec![0.0; self.freedoms()];
-        for element in &self.elements {
-            element.add_rounding(self, displacement, &mut rounding);
-        }
+        let mut rounding = self.force_sizes(displacement, 0.0);
+        rounding.iter_mut().for_each(|size| *size *= f64::EPSILON);
         rounding
+    }
+
+    /// The size of the numbers of which `f_int(u)` is made, one a degree of freedom: `|K| |u|` and the forces that the
+    /// elements carry, with displacements taken as `least` at least. Against it a residual is small or not, whatever the
+    /// forces elsewhere (W. Oettli, W. Prager, Numer. Math. 6 (1964) 405, doi:10.1007/BF01386090).
+    pub fn force_sizes(&self, displacement: &[f64], least: f64) -> Vec<f64> {
+        let mut sizes = vec![0.0; self.freedoms()];
+        for element in &self.elements {
+            element.each_size(self, displacement, least, &mut |freedom, size| sizes[freedom] += size);
+        }
+        sizes
+    }
+
+    /// The largest of them at a node.
+    pub fn force_size_at(&self, node: usize, displacement: &[f64], least: f64) -> f64 {
+        let first = node * self.dimension;
+        let mut sizes = [0.0; 3];
+        for element in &self.elements_at[node] {
+            self.elements[*element].each_size(self, displacement, least, &mut |freedom, size| {
+                if let Some(sum) = freedom.checked_sub(first).and_then(|component| sizes.get_mut(component)) {
+                    *sum += size;
+                }
+            });
+        }
+        sizes[..self.dimension].iter().fold(0.0, |largest, size| size.max(largest))
     }
 
     /// Calls `add(row, column, value)` for every entry of every element's tangent; rows and columns are degrees of

@@ -87,17 +87,17 @@ impl Spring {
             .collect()
     }
 
-    /// What the rounding of the displacements puts into the nodal forces, added to each component.
-    pub fn add_rounding(&self, structure: &Structure, displacement: &[f64], rounding: &mut [f64]) {
+    /// Calls `add(freedom, size)` with the force that displacements of this size make.
+    pub fn each_size(&self, structure: &Structure, displacement: &[f64], least: f64, add: &mut dyn FnMut(usize, f64)) {
         let dimension = structure.dimension;
         let size = |component: usize| {
             let at = |node: usize| displacement[node * dimension + component].abs();
-            f64::EPSILON * at(self.node).max(self.other.map_or(0.0, at))
+            at(self.node).max(self.other.map_or(least, at)).max(least)
         };
         for (row, stiffness) in self.stiffness.iter().enumerate().take(dimension) {
             let force: f64 = (0..dimension).map(|column| stiffness[column].abs() * size(column)).sum();
             for node in std::iter::once(self.node).chain(self.other) {
-                rounding[node * dimension + row] += force;
+                add(node * dimension + row, force);
             }
         }
     }

@@ -10,9 +10,11 @@
 //!
 //! **Reference.** The [exact solution](crate::scenes::exact) where one is known. Otherwise a path of the method `auto`
 //! with shorter arc lengths, joined by polynomials of degree up to seven (`curve`), never across a contact change, so that
-//! corners stay corners. A second such path of twice that arc length is measured against it, and what is found is stated
-//! as the reference's own uncertainty; errors below twice that, or below round-off, are not resolved, and no order is
-//! read from them.
+//! corners stay corners. The same path is traced once more with its points in the middle between the first ones, where the
+//! polynomials are farthest from the path, and measured against them: a path of other arc lengths would not do, since
+//! where the path bends both take the same steps, and see nothing of what lies between. Four times what is found (or
+//! the largest `error_estimate`, of slip in space) is stated as the reference's own uncertainty; errors below twice
+//! that, or below round-off, are not resolved, and no order is read from them.
 //!
 //! **Events** are compared by themselves, as a sequence (`events`): how many of the reference's are found, in order and of
 //! the same kind, how far off the worst of them is, and how many others there are.
@@ -48,6 +50,8 @@ mod run;
 mod table;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_of_uncertainty;
 mod trace;
 
 pub use reference::{Reference, ReferenceKind};

@@ -9,14 +9,20 @@ use crate::cancel::CancelFlag;
 use crate::model::request::JobRequest;
 use crate::model::study::{ReferenceChoice, StudyRequest};
 use crate::model::{InputError, InputErrors};
-use crate::path::{Report, Scene, StopReason, TracedPath};
+use crate::path::increment::PointKind;
+use crate::path::{Increment, Path, Report, Scene, StopReason};
 use crate::scenes::exact::{self, Exact, Reach};
 use serde::{Deserialize, Serialize};
 
 /// Errors below this are round-off and the tolerance of Newton's method.
 const ROUND_OFF: f64 = 1e-12;
-/// The second path of a self-converged reference has arc lengths this much longer.
-const COARSER: f64 = 2.0;
+/// A self-converged reference's error is at most this much larger than what is found of it: in the middle between points
+/// that are unevenly apart it is not at its largest, and `error_estimate` is an estimate.
+const SAFETY: f64 = 4.0;
+/// Errors are resolved from this many times the reference's own uncertainty on.
+const CLEAR: f64 = 2.0;
+/// The middle between two points is passed over when it is nearer than this, in their distance.
+const CLOSEST: f64 = 0.1;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
@@ -36,7 +42,8 @@ pub struct Reference {
     pub what: String,
     /// Errors up to this are not resolved: round-off, or twice the reference's own uncertainty.
     pub floor: f64,
-    /// Distance of a path of twice the reference's arc length from it; of self-converged references.
+    /// Bound on the reference's own error, of self-converged ones: four times the largest distance from it of points traced
+    /// in the middle between its own, or the largest `error_estimate` of its increments where that is more.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uncertainty: Option<f64>,
     /// Largest arc length of the reference; of self-converged ones.
@@ -108,9 +115,8 @@ impl Standard {
             };
             return Ok(Some(Self { source: Source::Exact(Box::new(exact)), scales, reference }));
         }
-        let (trace, report) = match traced(&scene, &scales, cancel) {
-            Some(traced) => traced,
-            None => return Ok(None),
+        let Some(FinePath { trace, report, places, largest_estimate }) = traced(&scene, &scales, cancel) else {
+            return Ok(None);
         };
         let mut reference = Reference {
             kind: ReferenceKind::SelfConverged,
@@ -123,13 +129,22 @@ impl Standard {
         };
         let curves = trace.stages.into_iter().filter(|stage| !stage.points.is_empty()).map(Curve::interpolating);
         let source = Source::Fine(curves.collect());
-        let coarser = Scene::new(&request.finer_job(request.study.refinement as f64 / COARSER))?;
-        let Some((trace, _)) = traced(&coarser, &scales, cancel) else { return Ok(None) };
         let mut standard = Self { source, scales, reference: reference.clone() };
-        reference.uncertainty = standard.measure(&trace, cancel).path_error;
-        reference.floor = ROUND_OFF.max(reference.uncertainty.map_or(f64::INFINITY, |own| COARSER * own));
+        let Some(trace) = traced_between(&scene, &standard.scales, &places, cancel) else { return Ok(None) };
+        let between = standard.measure(&trace, cancel).path_error;
+        reference.uncertainty = between.map(|between| SAFETY * between.max(largest_estimate));
+        reference.floor = ROUND_OFF.max(reference.uncertainty.map_or(f64::INFINITY, |own| CLEAR * own));
         standard.reference = reference;
         Ok((!cancel.is_cancelled()).then_some(standard))
+    }
+
+    /// Of a self-converged reference.
+    #[cfg(test)]
+    pub fn curves(&self) -> &[Curve] {
+        match &self.source {
+            Source::Fine(curves) => curves,
+            Source::Exact(_) => &[],
+        }
     }
 
     pub fn scales(&self) -> &Scales {
@@ -173,13 +188,65 @@ fn against(trace: &Trace, curves: &[Curve], cancel: &CancelFlag) -> Measured {
     Measured { path_error, points_outside: outside, events: events::compare(trace, curves) }
 }
 
-/// A whole path; `None` when cancelled, or without a report, which is a defect.
-fn traced(scene: &Scene, scales: &Scales, cancel: &CancelFlag) -> Option<(Trace, Report)> {
-    let mut trace = Trace::default();
-    let mut path = TracedPath::new(scene, cancel.clone());
+/// A whole path of the method `auto`.
+struct FinePath {
+    trace: Trace,
+    report: Report,
+    /// Of every point.
+    places: Vec<PlaceOnPath>,
+    /// Largest `error_estimate` of an increment.
+    largest_estimate: f64,
+}
+
+/// Where a point of a path is.
+struct PlaceOnPath {
+    arc_length: f64,
+    is_event: bool,
+}
+
+impl PlaceOnPath {
+    fn of(increment: &Increment) -> Self {
+        let is_event = !matches!(increment.point.kind, PointKind::Start | PointKind::Regular);
+        Self { arc_length: increment.arc_length, is_event }
+    }
+}
+
+/// `None` when cancelled, or without a report, which is a defect.
+fn traced(scene: &Scene, scales: &Scales, cancel: &CancelFlag) -> Option<FinePath> {
+    let (mut trace, mut places, mut largest_estimate) = (Trace::default(), Vec::new(), 0.0_f64);
+    let mut path = Path::new(scene, cancel.clone());
     for increment in path.by_ref() {
         trace.add(scales, &increment);
+        places.push(PlaceOnPath::of(&increment));
+        largest_estimate = largest_estimate.max(increment.diagnostics.error_estimate);
     }
     let report = path.report().filter(|report| report.stop_reason != StopReason::Cancelled)?;
-    Some((trace, report))
+    Some(FinePath { trace, report, places, largest_estimate })
+}
+
+/// The same path once more, with its points in the middle between those of the first time: where a curve through those is
+/// farthest from the path. Arc lengths are sums of chords, and differ a little; events set them right.
+fn traced_between(scene: &Scene, scales: &Scales, places: &[PlaceOnPath], cancel: &CancelFlag) -> Option<Trace> {
+    let mut trace = Trace::default();
+    let mut path = Path::new(scene, cancel.clone());
+    let mut events = places.iter().filter(|place| place.is_event);
+    let (mut segment, mut ahead) = (0, 0.0);
+    while let Some(increment) = path.next() {
+        trace.add(scales, &increment);
+        if PlaceOnPath::of(&increment).is_event
+            && let Some(event) = events.next()
+        {
+            ahead = event.arc_length - increment.arc_length;
+        }
+        let here = increment.arc_length + ahead;
+        while let Some([from, to]) = places.get(segment..segment + 2) {
+            let (middle, length) = (0.5 * (from.arc_length + to.arc_length), to.arc_length - from.arc_length);
+            if middle - here > CLOSEST * length {
+                path.shorten_next(middle - here);
+                break;
+            }
+            segment += 1;
+        }
+    }
+    path.report().filter(|report| report.stop_reason != StopReason::Cancelled).map(|_| trace)
 }

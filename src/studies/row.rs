@@ -94,8 +94,8 @@ pub struct Run {
 }
 
 impl Row {
-    /// What an order is read against.
-    pub(super) fn setting(&self, by_step: bool) -> f64 {
+    /// What an order is read against: the mean step, or the value of what is varied.
+    pub fn setting(&self, by_step: bool) -> f64 {
         if by_step { self.mean_step } else { self.value }
     }
 

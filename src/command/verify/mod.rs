@@ -2,10 +2,11 @@
 
 mod picture;
 
+use super::written::{is_standard_output, one_on_standard_output, write};
 use super::{Failure, Outcome, say};
-use crate::model::names::suggestion;
+use crate::model::names::suggestion_of_all;
 use crate::verify::{Case, Row, cases};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Solve every scene with a known answer, the stiff and extreme ones among them, and judge the result.
@@ -16,28 +17,38 @@ pub struct Arguments {
     /// Only this scene, or this family of extreme cases.
     #[arg(long, value_name = "NAME")]
     scene: Option<String>,
-    /// Write the rows here as JSON.
+    /// Write the rows here as JSON; `-` is standard output, and the table goes to standard error then.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Draw errors against their bars here, as an SVG.
+    /// Draw errors against their bars here, as an SVG; `-` is standard output, and the table goes to standard error then.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
 }
 
 pub fn run(arguments: &Arguments) -> Outcome {
+    let results = [("--json", arguments.json.as_deref()), ("--plot", arguments.plot.as_deref())];
+    one_on_standard_output(&results)?;
+    let taken = results.iter().any(|(_, place)| place.is_some_and(is_standard_output));
+    let tell = |text: String| {
+        if taken {
+            eprint!("{text}");
+            return Ok(());
+        }
+        say(text)
+    };
     let cases = chosen(arguments.scene.as_deref())?;
     let columns = Columns::of(&cases);
-    say(columns.header())?;
+    tell(columns.header())?;
     let mut rows = Vec::new();
     for case in &cases {
         for &method in case.methods {
             let row = case.solve(method);
-            say(columns.line(&row))?;
+            tell(columns.line(&row))?;
             rows.push(row);
         }
     }
     let failed = rows.iter().filter(|row| !row.pass).count();
-    say(format_args!("{} of {} pass\n", rows.len() - failed, rows.len()))?;
+    tell(format!("{} of {} pass\n", rows.len() - failed, rows.len()))?;
     if let Some(file) = &arguments.json {
         write(file, &(serde_json::to_string_pretty(&rows).map_err(Failure::other)? + "\n"))?;
     }
@@ -47,10 +58,6 @@ pub fn run(arguments: &Arguments) -> Outcome {
     Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::from(super::FAILED) })
 }
 
-fn write(file: &Path, text: &str) -> Result<(), Failure> {
-    std::fs::write(file, text).map_err(|error| Failure::Other(format!("{}: {error}", file.display())))
-}
-
 /// The cases asked for.
 fn chosen(scene: Option<&str>) -> Result<Vec<Case>, Failure> {
     let all = cases();
@@ -58,7 +65,7 @@ fn chosen(scene: Option<&str>) -> Result<Vec<Case>, Failure> {
     let mut families: Vec<&str> = all.iter().map(|case| case.family).collect();
     families.dedup();
     if !families.contains(&scene) {
-        let nearest = suggestion(scene, families.iter().copied());
+        let nearest = suggestion_of_all(scene, families.iter().copied());
         return Err(Failure::Input(vec![format!("--scene {scene}: no such scene{nearest}")]));
     }
     Ok(all.into_iter().filter(|case| case.family == scene).collect())

@@ -5,7 +5,7 @@ use crate::model::limits::MAX_INCREMENTS;
 use crate::model::mistakes::Mistakes;
 use crate::model::request::FollowRequest;
 
-const FOLLOW: Fields = Fields {
+pub(super) const FOLLOW: Fields = Fields {
     what: "a request to follow a direction",
     known: &["increment", "direction", "max_increments"],
     later: &[],

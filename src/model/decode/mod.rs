@@ -40,11 +40,11 @@ pub fn study(text: &[u8]) -> Result<StudyRequest, InputErrors> {
 /// # Errors
 /// As for [`decode`].
 pub fn follow(text: &[u8]) -> Result<FollowRequest, InputErrors> {
-    read(text, "such a request", follow::follow)
+    read(text, follow::FOLLOW.what, follow::follow)
 }
 
 fn read<T>(text: &[u8], what: &str, reader: fn(&Input, &mut Mistakes) -> Option<T>) -> Result<T, InputErrors> {
-    let document = Json::parse(text).map_err(|error| InputErrors(vec![error]))?;
+    let document = Json::parse(text, what).map_err(|error| InputErrors(vec![error]))?;
     let root = Input::root(&document);
     let mut mistakes = Mistakes::default();
     reader::note_duplicates(&root, &mut mistakes);

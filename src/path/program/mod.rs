@@ -47,6 +47,10 @@ const REACH: f64 = 3.0;
 const FORWARD_SHARE: f64 = 0.1;
 /// Dissipation per arc below which it is round-off of a motion that sticks.
 const LEAST_DISSIPATION: f64 = 1e-12;
+/// Multiple of the bound on rounding within which what is left over of equilibrium counts as rounding, and the largest
+/// tolerance that a mode is named by.
+const ROOM: f64 = 8.0;
+const LOOSEST: f64 = 1e-3;
 /// Solves with `γ1` adapted before the last one is taken as it is.
 const MOST_ADAPTATIONS: usize = 6;
 
@@ -255,12 +259,14 @@ impl<'a> IncrementProgram<'a> {
     pub fn name(&mut self, start: &DVector<f64>, present: &[Mode], cancel: &CancelFlag) -> (Option<Named>, Counts) {
         // The start is a predictor in a mode that is likely right: where no solution lies near it, a shorter increment
         // helps more than a longer search.
+        let warm = Settings::warm();
         let settings = Settings {
             finish: Finish::PatternSettled,
             restarts: 0,
             iteration_limit: 20,
             enumeration_limit: 3,
-            ..Settings::warm()
+            tolerance: warm.tolerance.max(self.rounding(start)).min(LOOSEST),
+            ..warm
         };
         let mut counts = Counts::default();
         let mut start = start.clone();
@@ -281,6 +287,12 @@ impl<'a> IncrementProgram<'a> {
             start = solution.x;
         }
         (None, counts)
+    }
+
+    /// What the rounding of displacements leaves of equilibrium: next to stiff elements no program can do better.
+    fn rounding(&self, x: &DVector<f64>) -> f64 {
+        let rounding = self.loading.structure.rounding(&self.state(x).displacement);
+        ROOM * rounding.into_iter().fold(0.0, f64::max) / self.force
     }
 
     /// Unknowns of the contact's node with their components.
