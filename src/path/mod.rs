@@ -8,7 +8,7 @@
 //! | `state`, `loading` | a point; the structure under a pattern of forces, supports and obstacles that move |
 //! | `mode_system`, `newton` | the equations of one contact mode; Newton's method on them |
 //! | `contact_law` | how far a state is from the laws of contact and friction |
-//! | `corner` | nodes that several obstacles hold at once |
+//! | `corner`, `pocket` | nodes that several obstacles hold at once: in the plane; in space, or guided by supports |
 //! | `track`, `drift` | slip in a plane: its rule of fourth order; the error that is left |
 //! | `watch`, `root`, `advance` | what ends a mode; one step, ended exactly at the first event |
 //! | `singular`, `critical`, `branches` | whether a step passes a smooth bifurcation; where; which directions leave it |
@@ -51,6 +51,7 @@ mod naming;
 mod near;
 mod newton;
 pub mod plan;
+mod pocket;
 mod program;
 mod progress;
 mod rates;

@@ -4,12 +4,13 @@
 //! directions are listed and one is taken. The step follows the turn of the path and the work of Newton's method.
 
 use super::contact_law;
-use super::corner::{taken_apart, total_force};
+use super::corner::{is_in_plane, taken_apart, total_force};
 use super::decide::{Choice, Decision, Rules};
 use super::follow::{Arriving, Listed};
 use super::increment::{Increment, Point, PointKind};
 use super::loading::Loading;
 use super::near::Near;
+use super::pocket::taken_over;
 use super::progress::{Phase, Progress};
 use super::record::{self, Row};
 use super::report::Report;
@@ -93,10 +94,14 @@ impl<'a> Path<'a> {
         self.at.here.signature = None;
         self.at.here.load_sign = choice.load_sign;
         self.at.here.rate = Some(choice.rate.clone());
-        // A node that leaves a corner along one of its obstacles takes the whole force there.
+        // A node that leaves a corner along one of its obstacles, or slides along an edge, takes the whole force there.
         let (loading, state) = (self.loading(), &self.at.here.state);
         let mut moved: Vec<(usize, Reaction)> = Vec::new();
         for corner in loading.corners {
+            if !is_in_plane(loading, corner) {
+                moved.extend(taken_over(loading, corner, &choice.modes, state));
+                continue;
+            }
             let mut active = corner.contacts.iter().copied().filter(|contact| choice.modes[*contact].is_active());
             if let (Some(only), None) = (active.next(), active.next()) {
                 let force = total_force(loading, corner.contacts.iter().copied(), state);

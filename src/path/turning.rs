@@ -37,6 +37,8 @@ pub(super) struct Touch {
     pub velocities: [usize; 3],
     pub forces: [usize; 3],
     pub friction: f64,
+    /// Forms that are not negative while it slips: gaps of other obstacles of the node.
+    pub opening: Vec<usize>,
 }
 
 /// All rays along which a touching entity slips while the others take one of their options.
@@ -89,7 +91,13 @@ impl Touch {
     pub fn of(problem: &RateProblem, entity: usize, friction: f64) -> Option<Self> {
         let [stick, free] = &problem.entities[entity].options[..] else { return None };
         let three = |forms: &[usize]| <[usize; 3]>::try_from(forms).ok();
-        Some(Self { entity, velocities: three(&stick.zero)?, forces: three(&free.zero)?, friction })
+        Some(Self {
+            entity,
+            velocities: three(&stick.zero)?,
+            forces: three(&free.zero)?,
+            friction,
+            opening: Vec::new(),
+        })
     }
 
     /// The rays for one angle, and how far the traction is from the direction, over the size of the force rates.
@@ -112,9 +120,10 @@ impl Touch {
         let mut is_force = problem.is_force.clone();
         is_force.extend([false, false, true]);
         let mut entities = problem.entities.clone();
+        let bounds = [base, self.forces[0]].into_iter().chain(self.opening.iter().copied());
         let slip = Choice {
             zero: vec![self.velocities[0], base + 1, base + 2],
-            nonnegative: vec![Signed::plus(base), Signed::plus(self.forces[0])],
+            nonnegative: bounds.map(Signed::plus).collect(),
             implied: Vec::new(),
         };
         entities[self.entity] = Entity { options: vec![slip], touching: None };

@@ -9,6 +9,7 @@
 
 use super::corner;
 use super::loading::Loading;
+use super::pocket::Pocket;
 use super::scene::End;
 use super::state::{Rate, State};
 use super::track::direction_of;
@@ -26,7 +27,8 @@ pub enum Watch {
         side: f64,
     },
     Sliding(usize),
-    /// The force on a node that several contacts hold, off a bound of the sum of their cones.
+    /// The force on a node that several contacts hold, off a bound of the sum of their cones; in space, or guided, off all
+    /// bounds of what holds it (side 0).
     Facet {
         corner: usize,
         side: usize,
@@ -45,7 +47,8 @@ pub fn of_mode(loading: Loading<'_>, modes: &[Mode]) -> Vec<Watch> {
         let before = together.len();
         together.extend(data.holding(modes));
         if together.len() > before {
-            watches.extend([0, 1].map(|side| Watch::Facet { corner, side }));
+            let sides = if corner::is_in_plane(loading, data) { 0..2 } else { 0..1 };
+            watches.extend(sides.map(|side| Watch::Facet { corner, side }));
         }
     }
     for (contact, mode) in modes.iter().enumerate() {
@@ -95,6 +98,10 @@ impl Watch {
             }
             Self::Facet { corner, side } => {
                 let holding: Vec<usize> = loading.corners[corner].holding(modes).collect();
+                if !corner::is_in_plane(loading, &loading.corners[corner]) {
+                    let pocket = Pocket::new(loading, &holding, state);
+                    return pocket.margin(&pocket.force(loading, state));
+                }
                 // No bound: the node is jammed.
                 let Some(inward) = corner::sector(loading, &holding, state).inward else { return f64::INFINITY };
                 dot(&inward[side], &corner::total_force(loading, holding.into_iter(), state))
