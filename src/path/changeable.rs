@@ -1,6 +1,7 @@
 //! A contact that can change, or the contacts of a corner that change together: its velocities, and what it may do next
 //! as equations and inequalities of the rate problem.
 
+use super::carried::Carried;
 use super::corner::{self, rays};
 use super::loading::Loading;
 use super::pocket::{self, Pocket};
@@ -69,8 +70,16 @@ impl Changeable {
         Self { contacts, standing, frames, velocities, reaction, force, pocket }
     }
 
+    fn carried(&self, loading: Loading<'_>, state: &State) -> Option<Carried> {
+        let is_cornered = matches!(self.standing, Standing::Cornered { .. });
+        if is_cornered { Carried::of(loading, &self.contacts, state) } else { None }
+    }
+
     /// Rate of the dissipation when the node moves while one of the contacts, if any, slips.
-    pub fn dissipation(&self, loading: Loading<'_>, modes: &[Mode], rate: &Rate) -> f64 {
+    pub fn dissipation(&self, loading: Loading<'_>, modes: &[Mode], rate: &Rate, state: &State) -> f64 {
+        if let Some(carried) = self.carried(loading, state) {
+            return carried.dissipation(loading, modes, &self.force, state, rate);
+        }
         if let Some(pocket) = &self.pocket {
             let motion = loading.relative_rate(self.contacts[0], rate);
             return pocket.drag_in(modes, &self.force) * size(&motion);
@@ -100,7 +109,14 @@ impl Changeable {
     }
 
     /// Where the node of a corner slides along one obstacle, that one has the whole force.
-    pub fn move_to_slider(&self, loading: Loading<'_>, modes: &[Mode], rate: &mut Rate) {
+    pub fn move_to_slider(&self, loading: Loading<'_>, modes: &[Mode], rate: &mut Rate, state: &State) {
+        if let Some(carried) = self.carried(loading, state) {
+            let whole = corner::force(&self.frames[0], &rate.reactions[self.contacts[0]]);
+            for (contact, part) in carried.rates(loading, modes, &whole, state) {
+                rate.reactions[contact] = part;
+            }
+            return;
+        }
         if let Some(pocket) = &self.pocket {
             let whole = corner::force(&self.frames[0], &rate.reactions[self.contacts[0]]);
             let motion = loading.relative_rate(self.contacts[0], rate);
@@ -196,6 +212,9 @@ impl Changeable {
             (Standing::Cornered { unloaded, zero, .. }, _) if let Some(pocket) = &self.pocket => {
                 pocket::options(self, pocket, unloaded, zero, forms)
             }
+            (Standing::Cornered { zero, .. }, _) if let Some(carried) = Carried::of(loading, &self.contacts, state) => {
+                carried.options(loading, state, self, zero, forms)
+            }
             (Standing::Cornered { facets, unloaded, .. }, _) => {
                 self.options_of_corner(loading, state, facets, unloaded, forms)
             }
@@ -265,7 +284,7 @@ impl Changeable {
         unloaded: bool,
         forms: &mut Forms<'_>,
     ) -> (Entity, Vec<Outcome>) {
-        let inward = corner::sector(loading, &self.contacts, state).inward;
+        let inward = corner::sector(loading, &self.contacts, |_| Mode::Stick, state).inward;
         let gaps: Vec<usize> = self.frames.iter().map(|frame| forms.velocity(self, &frame.normal)).collect();
         let outcome = |slipping: Option<(usize, Vector)>, others: Mode| Outcome {
             modes: self
@@ -352,6 +371,14 @@ pub(super) struct Forms<'a> {
 }
 
 impl Forms<'_> {
+    /// A velocity or the load rate, of each weight.
+    pub(super) fn motion(&mut self, of: impl Fn(&Rate) -> f64) -> usize {
+        let row = DVector::from_iterator(self.columns.len(), self.columns.iter().map(of));
+        self.rows.push(row);
+        self.is_force.push(false);
+        self.rows.len() - 1
+    }
+
     /// Velocity of the node along a direction.
     pub(super) fn velocity(&mut self, entry: &Changeable, direction: &Vector) -> usize {
         let mut row = DVector::zeros(self.columns.len());

@@ -285,12 +285,13 @@ impl<'a> Condensed<'a> {
                 }
             }
         }
-        self.changeable.iter().for_each(|entry| entry.move_to_slider(self.loading, &modes, &mut rate));
+        self.changeable.iter().for_each(|entry| entry.move_to_slider(self.loading, &modes, &mut rate, state));
         let force = WEAK * rate.largest_reaction().max(f64::MIN_POSITIVE);
         if !self.changeable.iter().all(|entry| entry.is_in_cone(self.loading, &modes, &rate, force)) {
             return;
         }
-        let dissipation = self.changeable.iter().map(|entry| entry.dissipation(self.loading, &modes, &rate)).sum();
+        let dissipation =
+            self.changeable.iter().map(|entry| entry.dissipation(self.loading, &modes, &rate, state)).sum();
         let alternatives = self.alternatives(ray, turning, &modes, &rate, force);
         let forces = whole_rates(self.loading, state, &rate);
         let just_held = |entry: &Changeable| entry.margin(&modes, &rate).is_some_and(|margin| margin <= force);

@@ -4,11 +4,12 @@
 //! reactions, and the node is held as long as `R` lies in the sum of their friction cones. That is a cone itself, between
 //! two of the rays `n_i ± μ_i t_i`: a sector of less than a half-plane, or a half-plane with one bound, or all of the
 //! plane, and then the node is jammed and stays. Two smooth walls that face each other leave just a line.
-//! In space, and where supports guide the node, see `pocket`.
+//! In space, and where supports guide the node, see `pocket`; between planes that move against each other, `carried`.
 //! Smooth obstacles whose normals are independent need none of this: each has a reaction of its own, in the plane and in
 //! space, and they may move against each other.
 //! The reactions that are reported are those of least norm (`contact::share`).
 
+use super::carried::Carried;
 use super::energy::reaction_in_space;
 use super::loading::Loading;
 use super::pocket::{Pocket, free_directions};
@@ -46,11 +47,15 @@ impl Corner {
         self.contacts.iter().copied().filter(|contact| loading.gap(*contact, state) <= ZERO).collect()
     }
 
-    /// The contacts that hold the node together in these modes; none where fewer than two do.
+    /// The contacts that hold the node together in these modes, one that sticks first; none where fewer than two do. A node
+    /// that sticks to an obstacle may be carried along others, against which it slips.
     pub fn holding<'a>(&'a self, modes: &'a [Mode]) -> impl Iterator<Item = usize> + 'a {
-        let sticking = |contact: &&usize| modes[**contact] == Mode::Stick;
-        let together = self.contacts.iter().filter(sticking).count() >= 2;
-        self.contacts.iter().filter(move |contact| together && sticking(contact)).copied()
+        let sticks = move |contact: &&usize| modes[**contact] == Mode::Stick;
+        let slips = move |contact: &&usize| matches!(modes[**contact], Mode::Slip { .. });
+        let active = self.contacts.iter().filter(|contact| modes[**contact].is_active()).count();
+        let together = active >= 2 && self.contacts.iter().any(|contact| sticks(&contact));
+        let sticking = self.contacts.iter().filter(move |contact| together && sticks(contact));
+        sticking.chain(self.contacts.iter().filter(move |contact| together && slips(contact))).copied()
     }
 }
 
@@ -99,9 +104,13 @@ fn slip_as_one(active: &[Mode]) -> bool {
 pub fn is_not_available(loading: Loading<'_>, state: &State) -> bool {
     loading.corners.iter().any(|corner| {
         let closed = corner.closed(loading, state);
-        let is_known =
-            || is_in_plane(loading, corner) || Pocket::new(loading, &closed, state).is_determinate_when_sliding();
-        closed.len() > 1 && !are_determinate(loading, &closed, state) && (is_driven(loading, &closed) || !is_known())
+        let is_known = || {
+            if is_driven(loading, &closed) {
+                return Carried::of(loading, &closed, state).is_some();
+            }
+            is_in_plane(loading, corner) || Pocket::new(loading, &closed, state).is_determinate_when_sliding()
+        };
+        closed.len() > 1 && !are_determinate(loading, &closed, state) && !is_known()
     })
 }
 
@@ -190,13 +199,18 @@ fn turn(a: &Vector, b: &Vector) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// The sum of the cones of some contacts of a node in 2D.
-pub fn sector(loading: Loading<'_>, contacts: &[usize], state: &State) -> Sector {
-    let rays = contacts
-        .iter()
-        .flat_map(|contact| rays(&loading.frame(*contact, state), loading.contacts[*contact].friction))
-        .map(|ray| unit(&ray));
-    sum_of(rays.collect())
+/// The rays that bound what a contact in a mode may bear in 2D.
+fn rays_in(loading: Loading<'_>, contact: usize, mode: Mode, state: &State) -> Vec<Vector> {
+    let (frame, friction) = (loading.frame(contact, state), loading.contacts[contact].friction);
+    match mode {
+        Mode::Slip { direction } => vec![unit(&add(&frame.normal, -friction, &direction))],
+        Mode::Stick | Mode::Free => rays(&frame, friction).iter().map(unit).collect(),
+    }
+}
+
+/// The sum of what some contacts of a node may bear in 2D: their cones, or a ray of those that slip.
+pub fn sector(loading: Loading<'_>, contacts: &[usize], modes: impl Fn(usize) -> Mode, state: &State) -> Sector {
+    sum_of(contacts.iter().flat_map(|contact| rays_in(loading, *contact, modes(*contact), state)).collect())
 }
 
 /// The sum of rays: what is left of the plane where the widest angle free of them, at least half a turn, is cut out.
@@ -242,19 +256,25 @@ pub fn share(loading: Loading<'_>, corners: &[Corner], modes: &[Mode], state: &m
         let cones: Vec<Cone> = holding
             .iter()
             .zip(&frames)
-            .map(|(contact, frame)| Cone {
-                normal: frame.normal,
-                friction: loading.contacts[*contact].friction,
-                line: None,
+            .map(|(contact, frame)| match modes[*contact] {
+                // One ray is left of the cone.
+                Mode::Slip { direction } => {
+                    let ray = add(&frame.normal, -loading.contacts[*contact].friction, &direction);
+                    Cone { normal: unit(&ray), friction: 0.0, line: None }
+                }
+                Mode::Stick | Mode::Free => {
+                    Cone { normal: frame.normal, friction: loading.contacts[*contact].friction, line: None }
+                }
             })
             .collect();
         let free = free_directions(loading, loading.contacts[holding[0]].node);
         // Just at a bound of the cones together the least reactions may not be found: two rays make up the force.
-        let parts = least_reactions(&cones, &free, &force).or_else(|| along_rays(loading, &holding, &force, state));
+        let parts =
+            least_reactions(&cones, &free, &force).or_else(|| along_rays(loading, &holding, modes, &force, state));
         // Outside the cones the event that ends the mode was passed; the point is not kept.
         let Some(parts) = parts else { continue };
-        for (((contact, frame), cone), part) in holding.iter().zip(&frames).zip(&cones).zip(parts) {
-            state.reactions[*contact] = taken_apart(&part, frame, cone.friction);
+        for ((contact, frame), part) in holding.iter().zip(&frames).zip(parts) {
+            state.reactions[*contact] = taken_apart(&part, frame, loading.contacts[*contact].friction);
         }
     }
 }
@@ -274,12 +294,18 @@ pub fn taken_apart(force: &Vector, frame: &Frame, friction: f64) -> Reaction {
 }
 
 /// Reactions along two of the rays that bound the friction cones in 2D, with the smallest sum of squares.
-fn along_rays(loading: Loading<'_>, holding: &[usize], force: &Vector, state: &State) -> Option<Vec<Vector>> {
+fn along_rays(
+    loading: Loading<'_>,
+    holding: &[usize],
+    modes: &[Mode],
+    force: &Vector,
+    state: &State,
+) -> Option<Vec<Vector>> {
     let all: Vec<(usize, Vector)> = holding
         .iter()
         .enumerate()
         .flat_map(|(place, contact)| {
-            rays(&loading.frame(*contact, state), loading.contacts[*contact].friction).map(|ray| (place, unit(&ray)))
+            rays_in(loading, *contact, modes[*contact], state).into_iter().map(move |ray| (place, ray))
         })
         .collect();
     let mut best: Option<(f64, Vec<Vector>)> = None;

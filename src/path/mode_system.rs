@@ -107,7 +107,7 @@ impl<'a> ModeSystem<'a> {
             });
             let role = match mode {
                 Mode::Stick if held == Some(true) => Role::Held,
-                Mode::Stick if held == Some(false) => Role::HeldBy,
+                Mode::Stick | Mode::Slip { .. } if held == Some(false) => Role::HeldBy,
                 Mode::Free => Role::Free,
                 Mode::Stick => Role::Stick,
                 Mode::Slip { .. } if contact.tangents() == 0 => Role::Frictionless,

@@ -1,5 +1,6 @@
 //! Which contacts could change at a point, and between what.
 
+use super::carried::Carried;
 use super::corner;
 use super::loading::Loading;
 use super::pocket::Pocket;
@@ -65,7 +66,10 @@ fn standing_of_corner(loading: Loading<'_>, state: &State, closed: &[usize], for
     let force = corner::total_force(loading, closed.iter().copied(), state);
     let zero = ZERO * force_scale;
     let unloaded = size(&force) <= zero;
-    let inward = corner::sector(loading, closed, state).inward;
+    if Carried::of(loading, closed, state).is_some() {
+        return Standing::Cornered { facets: [true; 2], unloaded, zero };
+    }
+    let inward = corner::sector(loading, closed, |_| Mode::Stick, state).inward;
     let facets = inward.map_or([false; 2], |inward| inward.map(|inward| dot(&inward, &force) <= zero));
     if unloaded || facets != [false; 2] {
         Standing::Cornered { facets, unloaded, zero }

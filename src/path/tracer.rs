@@ -3,6 +3,7 @@
 //! Between events the path keeps its contact mode and is followed by arc-length steps; where the mode ends, the
 //! directions are listed and one is taken. The step follows the turn of the path and the work of Newton's method.
 
+use super::carried::Carried;
 use super::contact_law;
 use super::corner::{is_in_plane, taken_apart, total_force};
 use super::decide::{Choice, Decision, Rules};
@@ -100,6 +101,12 @@ impl<'a> Path<'a> {
         for corner in loading.corners {
             if !is_in_plane(loading, corner) {
                 moved.extend(taken_over(loading, corner, &choice.modes, state));
+                continue;
+            }
+            let closed = corner.closed(loading, state);
+            if let Some(carried) = Carried::of(loading, &closed, state) {
+                let force = total_force(loading, closed.iter().copied(), state);
+                moved.extend(closed.into_iter().zip(carried.reactions(loading, &choice.modes, &force, state)));
                 continue;
             }
             let mut active = corner.contacts.iter().copied().filter(|contact| choice.modes[*contact].is_active());

@@ -60,7 +60,10 @@ pub fn of_mode(loading: Loading<'_>, modes: &[Mode]) -> Vec<Watch> {
             }
             Mode::Stick => watches.extend([1.0, -1.0].map(|side| Watch::Cone { contact, side })),
             Mode::Slip { .. } => {
-                watches.push(Watch::Normal(contact));
+                // Of a node that sticks to another obstacle it is a share of the whole.
+                if !together.contains(&contact) {
+                    watches.push(Watch::Normal(contact));
+                }
                 if loading.contacts[contact].tangents() > 0 {
                     watches.push(Watch::Sliding(contact));
                 }
@@ -103,7 +106,9 @@ impl Watch {
                     return pocket.margin(&pocket.force(loading, state));
                 }
                 // No bound: the node is jammed.
-                let Some(inward) = corner::sector(loading, &holding, state).inward else { return f64::INFINITY };
+                let Some(inward) = corner::sector(loading, &holding, |contact| modes[contact], state).inward else {
+                    return f64::INFINITY;
+                };
                 dot(&inward[side], &corner::total_force(loading, holding.into_iter(), state))
             }
             Self::LoadRate { sign } => sign * rate.load,
