@@ -324,6 +324,39 @@ fn a_groove_embedded_in_space_is_left_at_the_same_load() {
     }
 }
 
+/// A node driven in x by its support over a floor and up a slope of 45° from x = 1/2, pressed by 1, and back.
+#[test]
+fn a_driven_node_goes_up_a_slope_and_back() {
+    for method in METHODS {
+        let mut request = typed(json!({
+            "model": {
+                "name": "driven up a slope", "dimension": 2, "nodes": {"node": [0, 0]}, "supports": {"node": ["x"]},
+                "elements": [{"kind": "spring", "nodes": ["node"], "stiffness": [[1, 0], [0, 1]]}],
+                "obstacles": {"floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]},
+                              "slope": {"kind": "plane", "point": [0.5, 0], "normal": [-1, 1]}},
+                "contacts": [{"node": "node", "obstacle": "floor", "friction": 0},
+                             {"node": "node", "obstacle": "slope", "friction": 0}],
+                "stages": [{"name": "press", "forces": {"node": [0, -1]}, "until": {"load_above": 1}},
+                           {"name": "up", "displacements": {"node": [1, 0]}, "until": {"load_above": 2}},
+                           {"name": "back", "displacements": {"node": [-1, 0]}, "until": {"load_above": 2}},
+                           {"name": "to the corner", "displacements": {"node": [1, 0]}, "until": {"load_above": 0.5}},
+                           {"name": "from the corner", "displacements": {"node": [1, 0]}, "until": {"load_above": 1}}]
+            }
+        }));
+        request.analysis.method = method;
+        let (increments, report) = trace(&request);
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{:?}", increments.last());
+        for increment in increments.iter().filter(|increment| &*increment.stage != "press") {
+            let x = increment.displacements["node"][0];
+            let height = (x - 0.5).max(0.0);
+            close(increment.displacements["node"][1], height, 1e-11, &format!("height at {x}"));
+            let carried: f64 =
+                increment.contacts.iter().zip([1.0, 0.5_f64.sqrt()]).map(|(c, part)| c.normal_reaction * part).sum();
+            close(carried, 1.0 + height, 1e-11, &format!("reactions at {x}"));
+        }
+    }
+}
+
 /// A node guided along y before a floor and a flank: what of the normals is free shares the press, `2/3` and `√2/3`.
 #[test]
 fn a_guided_node_before_two_obstacles() {

@@ -210,7 +210,7 @@ impl Changeable {
                 (Entity { options: vec![stick, free], touching: None }, vec![single(Mode::Stick), single(Mode::Free)])
             }
             (Standing::Cornered { unloaded, zero, .. }, _) if let Some(pocket) = &self.pocket => {
-                pocket::options(self, pocket, unloaded, zero, forms)
+                pocket::options(self, pocket, loading, unloaded, zero, forms)
             }
             (Standing::Cornered { zero, .. }, _) if let Some(carried) = Carried::of(loading, &self.contacts, state) => {
                 carried.options(loading, state, self, zero, forms)

@@ -105,17 +105,17 @@ pub fn is_not_available(loading: Loading<'_>, state: &State) -> bool {
     loading.corners.iter().any(|corner| {
         let closed = corner.closed(loading, state);
         let is_known = || {
-            if is_driven(loading, &closed) {
-                return Carried::of(loading, &closed, state).is_some();
+            if is_in_plane(loading, corner) {
+                return !is_driven(loading, &closed) || Carried::of(loading, &closed, state).is_some();
             }
-            is_in_plane(loading, corner) || Pocket::new(loading, &closed, state).is_determinate_when_sliding()
+            Pocket::new(loading, &closed, state).is_determinate_when_sliding()
         };
         closed.len() > 1 && !are_determinate(loading, &closed, state) && !is_known()
     })
 }
 
 /// Whether the running stage drives a node against some closed obstacles by its supports, or them against each other.
-fn is_driven(loading: Loading<'_>, closed: &[usize]) -> bool {
+pub fn is_driven(loading: Loading<'_>, closed: &[usize]) -> bool {
     let dimension = loading.structure.dimension;
     let first = loading.contacts[closed[0]].node * dimension;
     let shift = &loading.pattern.shifts[closed[0]];

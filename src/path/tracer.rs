@@ -22,6 +22,7 @@ use super::stepping::Accepted;
 use super::stop::{Outcome, StopReason};
 use crate::cancel::CancelFlag;
 use crate::contact::{Mode, Reaction};
+use std::borrow::Cow;
 use std::time::Instant;
 
 /// A path being traced.
@@ -138,6 +139,7 @@ impl<'a> Path<'a> {
         here.signature = accepted.signature;
         let arriving = Arriving { modes: here.modes.clone(), load_sign: here.load_sign, counts: self.at.counts };
         let at_bound = self.at_bound(&reached.rate);
+        let arrived = self.at.here.state.reactions.clone();
         let mut arrival = self.classify(reached.event, accepted.crossing, &reached.rate);
         if accepted.returned {
             arrival.stop = Some(StopReason::Cycle);
@@ -160,8 +162,13 @@ impl<'a> Path<'a> {
             let what = format!("stage \"{}\" ends", stage.name);
             point.event = Some(point.event.map_or(what.clone(), |event| format!("{event}; {what}")));
         }
+        // A contact that has just closed may take over from another: not yet where the increment ends.
+        let now = &self.at.here.state.reactions;
+        let taken_over =
+            modes.iter().zip(now).any(|(mode, reaction)| *mode == Mode::Free && *reaction != Reaction::default());
         let row = self.emit(Emitted {
             before: &before,
+            reactions: taken_over.then_some(arrived),
             modes: &modes,
             step: reached.step,
             point,
@@ -177,12 +184,16 @@ impl<'a> Path<'a> {
     }
 
     pub(super) fn emit(&mut self, emitted: Emitted<'_>) -> Increment {
+        let mut state = Cow::Borrowed(&self.at.here.state);
+        if let Some(reactions) = emitted.reactions {
+            state.to_mut().reactions = reactions;
+        }
         let row = Row {
             stage: self.at.stage,
             loading: self.loading(),
             whole: self.whole_loading(),
             places: self.near.places(),
-            state: &self.at.here.state,
+            state: &state,
             before: emitted.before,
             modes: emitted.modes,
             step: emitted.step,
@@ -211,6 +222,8 @@ impl<'a> Path<'a> {
 /// What [`Path::emit`] cannot see in the path itself.
 pub(super) struct Emitted<'a> {
     pub before: &'a State,
+    /// Reactions at the end of the increment, where they are others than those with which the path goes on.
+    pub reactions: Option<Vec<Reaction>>,
     pub modes: &'a [Mode],
     pub step: f64,
     pub point: Point,

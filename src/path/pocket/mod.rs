@@ -28,7 +28,7 @@ mod sliding;
 pub use options::options;
 pub use sliding::{Edge, beside, taken_over};
 
-use super::corner::total_force;
+use super::corner::{is_driven, total_force};
 use super::loading::Loading;
 use super::state::State;
 use crate::contact::Frame;
@@ -44,6 +44,8 @@ pub struct Pocket {
     normals: Vec<Vector>,
     /// Orthonormal directions in which the node is free.
     pub free: Vec<Vector>,
+    /// The running stage drives the node against the obstacles, or them against each other.
+    pub is_driven: bool,
 }
 
 /// A way out of the pocket.
@@ -96,7 +98,8 @@ impl Pocket {
         };
         let frictions = contacts.iter().map(friction).collect();
         let normals = frames.iter().map(|frame| along(&free, &frame.normal)).collect();
-        Self { contacts: contacts.to_vec(), frames, frictions, normals, free }
+        let is_driven = is_driven(loading, contacts);
+        Self { contacts: contacts.to_vec(), frames, frictions, normals, free, is_driven }
     }
 
     /// Sum of the forces of the obstacles as far as the node is free.
@@ -112,6 +115,9 @@ impl Pocket {
     /// Whether every way of sliding out gives the reactions: no two obstacles face the same way, and no edge with friction
     /// is one of three.
     pub fn is_determinate_when_sliding(&self) -> bool {
+        if self.is_driven {
+            return self.free.len() == 1;
+        }
         if self.free.len() < 2 {
             return true;
         }

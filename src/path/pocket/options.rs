@@ -4,6 +4,7 @@ use super::{Drive, Pocket, Slide};
 use crate::contact::Mode;
 use crate::contact::vector::{Vector, add, cross, dot, scaled};
 use crate::path::changeable::{Changeable, Forms, Outcome};
+use crate::path::loading::Loading;
 use crate::path::rates::{Choice, Entity, Signed};
 
 /// The node is held, slides along one obstacle or an edge, or leaves. What keeps it held is no linear form: see
@@ -11,10 +12,14 @@ use crate::path::rates::{Choice, Entity, Signed};
 pub fn options(
     entry: &Changeable,
     pocket: &Pocket,
+    loading: Loading<'_>,
     unloaded: bool,
     zero: f64,
     forms: &mut Forms<'_>,
 ) -> (Entity, Vec<Outcome>) {
+    if pocket.is_driven {
+        return driven(entry, pocket, loading, unloaded, zero, forms);
+    }
     let mut writer = Writer { entry, pocket, unloaded, zero, forms, options: Vec::new(), outcomes: Vec::new() };
     let held = pocket.free.iter().map(|direction| writer.forms.velocity(entry, direction)).collect();
     writer.option(held, Vec::new(), |_| Mode::Stick);
@@ -39,6 +44,48 @@ pub fn options(
         writer.option(apart, gaps, |_| Mode::Free);
     }
     (Entity { options: writer.options, touching: None }, writer.outcomes)
+}
+
+/// Of a node that is driven against its obstacles and free in one direction alone: one of them holds it there, or none.
+fn driven(
+    entry: &Changeable,
+    pocket: &Pocket,
+    loading: Loading<'_>,
+    unloaded: bool,
+    zero: f64,
+    forms: &mut Forms<'_>,
+) -> (Entity, Vec<Outcome>) {
+    let places = 0..pocket.contacts.len();
+    let gap = |place: usize| {
+        let (contact, normal) = (pocket.contacts[place], pocket.frames[place].normal);
+        forms.motion(|rate| dot(&normal, &loading.relative_rate(contact, rate)))
+    };
+    let gaps: Vec<usize> = places.clone().map(gap).collect();
+    let (mut options, mut outcomes) = (Vec::new(), Vec::new());
+    let modes_with = |active: Option<usize>| {
+        let mode = |place: usize| if active == Some(place) { Mode::Slip { direction: [0.0; 3] } } else { Mode::Free };
+        Outcome { modes: places.clone().map(|place| (pocket.contacts[place], mode(place))).collect() }
+    };
+    for place in places.clone() {
+        let form = pocket.face_form(place);
+        if !unloaded && dot(&form, &entry.force) <= zero {
+            continue;
+        }
+        let others = places.clone().filter(|other| *other != place);
+        let mut nonnegative: Vec<Signed> = others.map(|other| Signed::plus(gaps[other])).collect();
+        if unloaded {
+            nonnegative.push(Signed::plus(forms.force_along(entry, &form)));
+        }
+        options.push(Choice { zero: vec![gaps[place]], nonnegative, implied: Vec::new() });
+        outcomes.push(modes_with(Some(place)));
+    }
+    if unloaded {
+        let apart = pocket.free.iter().map(|direction| forms.force_along(entry, direction)).collect();
+        let nonnegative = gaps.iter().map(|gap| Signed::plus(*gap)).collect();
+        options.push(Choice { zero: apart, nonnegative, implied: Vec::new() });
+        outcomes.push(modes_with(None));
+    }
+    (Entity { options, touching: None }, outcomes)
 }
 
 struct Writer<'a, 'f> {
