@@ -39,16 +39,19 @@ pub enum Watch {
     End(End),
 }
 
-/// Everything that ends a mode.
-pub fn of_mode(loading: Loading<'_>, modes: &[Mode]) -> Vec<Watch> {
+/// Everything that ends a mode which goes on from a state along a rate.
+pub fn of_mode(loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate) -> Vec<Watch> {
     let mut watches = Vec::new();
     let mut together = Vec::new();
     for (corner, data) in loading.corners.iter().enumerate() {
         let before = together.len();
         together.extend(data.holding(modes));
         if together.len() > before {
-            let sides = if corner::is_in_plane(loading, data) { 0..2 } else { 0..1 };
-            watches.extend(sides.map(|side| Watch::Facet { corner, side }));
+            if corner::is_in_plane(loading, data) {
+                watches.extend([0, 1].map(|side| Watch::Facet { corner, side }));
+            } else if Pocket::new(loading, &together[before..], state).keeps(loading, state, rate) {
+                watches.push(Watch::Facet { corner, side: 0 });
+            }
         }
     }
     for (contact, mode) in modes.iter().enumerate() {

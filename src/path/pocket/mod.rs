@@ -15,9 +15,10 @@
 //! |v₀| <= Σ μ_i N_i
 //! ```
 //!
-//! Obstacles that press a node against each other could hold more (it is then wedged: `R` lies in the sum of the friction
-//! cones, and no slide is asked for). That takes reactions which nothing has brought about, and is not counted; where
-//! the cones together are all of space the node is jammed and stays, as in the plane.
+//! There it slides, although obstacles that press it against each other could hold more: that takes reactions which nothing
+//! has brought about. A node that comes from one obstacle with a force beyond this bound, and within the sum of the friction
+//! cones, is held, since no slide has such a force. Where the cones together are all of space the node is jammed and
+//! stays, as in the plane.
 //! What is not free of the node (supported components) is left out of `R` and of the normals.
 //!
 //! `sliding` has what follows of a node that slides out, `options` its ways as parts of the rate problem.
@@ -29,8 +30,9 @@ pub use options::options;
 pub use sliding::{Edge, beside, taken_over};
 
 use super::corner::{is_driven, total_force};
+use super::energy::reaction_in_space;
 use super::loading::Loading;
-use super::state::State;
+use super::state::{Rate, State};
 use crate::contact::Frame;
 use crate::contact::share::{Cone, least_reactions};
 use crate::contact::vector::{Vector, add, cross, dot, scaled, size, unit};
@@ -73,6 +75,8 @@ const SAME: f64 = 1e-9;
 const INDEPENDENT: f64 = 1e-6;
 /// Cones closer to all of space than this (angle) are taken as not quite.
 const FLAT: f64 = 1e-12;
+/// A force is at a bound within this part of it.
+const AT_BOUND: f64 = 1e-9;
 /// Parts of a force below this part of it are none.
 const NONE: f64 = 1e-12;
 
@@ -265,6 +269,20 @@ impl Pocket {
         drives.map(|drive| -drive.excess).fold(size(force), f64::min)
     }
 
+    /// Whether the node is on its way within what holds it without wedging, so that it slides where that ends. A node that
+    /// arrives from one obstacle may be held beyond: no slide can begin there.
+    pub fn keeps(&self, loading: Loading<'_>, state: &State, rate: &Rate) -> bool {
+        let force = self.force(loading, state);
+        let parts = self.contacts.iter().map(|contact| reaction_in_space(loading, *contact, (state, rate)).1);
+        let change = self.free_part(&parts.fold([0.0; 3], |sum, part| add(&sum, 1.0, &part)));
+        let zero = AT_BOUND * size(&force);
+        let margin = self.margin(&force);
+        if zero > 0.0 && margin.abs() > zero {
+            return margin > 0.0;
+        }
+        self.margin_of_rate(&self.ready(&force, zero), zero == 0.0, zero, &change) >= -AT_BOUND * size(&change)
+    }
+
     /// The slides that a force is just enough for.
     pub fn ready(&self, force: &Vector, zero: f64) -> Vec<(Slide, Drive)> {
         if self.is_jammed() {
@@ -274,7 +292,7 @@ impl Pocket {
         let ready = |slide: Slide| {
             // What the location of a zero left over presses nothing.
             let drive = self.drive(&slide, force).or_else(|| self.drive_within(&slide, force, zero))?;
-            (drive.excess >= -zero && pressed(&drive)).then_some((slide, drive))
+            (drive.excess.abs() <= zero && pressed(&drive)).then_some((slide, drive))
         };
         self.slides().into_iter().filter_map(ready).collect()
     }
@@ -345,7 +363,27 @@ impl Pocket {
 
     /// Reactions of least norm that make up a force; where they are not found, just at a slide, those of the slide.
     pub fn share(&self, force: &Vector) -> Option<Vec<Vector>> {
-        least_reactions(&self.cones(), &self.free, force).or_else(|| self.parts(force))
+        least_reactions(&self.cones(), &self.free, force).or_else(|| self.resting(force)).or_else(|| self.parts(force))
+    }
+
+    /// Normal reactions of three obstacles that make up a force in space.
+    fn resting(&self, force: &Vector) -> Option<Vec<Vector>> {
+        let count = if self.free.len() == 3 { self.contacts.len() } else { 0 };
+        let triples = (0..count).flat_map(|a| (a + 1..count).flat_map(move |b| (b + 1..count).map(move |c| [a, b, c])));
+        triples.into_iter().find_map(|places| {
+            let [a, b, c] = places.map(|place| self.normals[place]);
+            let across = [cross(&b, &c), cross(&c, &a), cross(&a, &b)];
+            let determinant = dot(&a, &across[0]);
+            let normals = across.map(|across| dot(&across, force) / determinant);
+            let fits = determinant.abs() > INDEPENDENT && normals.iter().all(|normal| *normal >= -NONE * size(force));
+            fits.then(|| {
+                let mut parts = vec![[0.0; 3]; count];
+                for (place, normal) in places.into_iter().zip(normals) {
+                    parts[place] = scaled(&self.normals[place], normal.max(0.0));
+                }
+                parts
+            })
+        })
     }
 
     /// Reactions without wedging.
