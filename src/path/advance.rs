@@ -160,7 +160,7 @@ impl Start<'_> {
         if turn > MOST_TURN {
             return Err(Refused::Turned(turn));
         }
-        let mut watches = watch::of_mode(self.loading, self.modes);
+        let mut watches = watch::of_mode(self.loading, self.modes, self.state, self.rate);
         if load_sign != 0.0 {
             watches.push(Watch::LoadRate { sign: load_sign });
         }

@@ -1,11 +1,14 @@
 //! A contact that can change, or the contacts of a corner that change together: its velocities, and what it may do next
 //! as equations and inequalities of the rate problem.
 
+use super::carried::Carried;
 use super::corner::{self, rays};
 use super::loading::Loading;
+use super::pocket::{self, Pocket};
 use super::rates::{Choice, Entity, Signed, Touching};
 use super::standing::Standing;
 use super::state::{Rate, State};
+use super::turning::Touch;
 use crate::contact::vector::{Vector, add, dot, scaled, size, unit};
 use crate::contact::{Frame, Mode, Reaction, Sliding};
 use nalgebra::DVector;
@@ -14,14 +17,16 @@ use nalgebra::DVector;
 pub(super) struct Changeable {
     /// One, or the closed ones of a corner; the first has the node's whole force in the held system.
     pub contacts: Vec<usize>,
-    standing: Standing,
+    pub(super) standing: Standing,
     frames: Vec<Frame>,
     /// Columns and directions of the node's velocities.
     pub velocities: Vec<(usize, Vector)>,
     /// The present reaction of the first contact.
     reaction: Reaction,
     /// The present force on the node.
-    force: Vector,
+    pub(super) force: Vector,
+    /// Of a corner in space or of a guided node.
+    pub(super) pocket: Option<Pocket>,
 }
 
 /// The modes of an option.
@@ -41,6 +46,11 @@ impl Changeable {
         let frames: Vec<Frame> = contacts.iter().map(|contact| loading.frame(*contact, state)).collect();
         let frame = &frames[0];
         let contact = &loading.contacts[contacts[0]];
+        let corner = loading.corners.iter().find(|corner| corner.contacts.contains(&contacts[0]));
+        let is_cornered = matches!(standing, Standing::Cornered { .. });
+        let pocket = corner
+            .filter(|corner| is_cornered && !corner::is_in_plane(loading, corner))
+            .map(|_| Pocket::new(loading, &contacts, state));
         let directions: Vec<Vector> = match standing {
             Standing::Settled(_) => Vec::new(),
             Standing::OnCone { direction } => vec![direction],
@@ -48,16 +58,34 @@ impl Changeable {
                 let tangents = frame.tangents.iter().take(contact.tangents());
                 std::iter::once(frame.normal).chain(tangents.copied()).collect()
             }
-            Standing::Cornered { .. } => vec![frame.normal, frame.tangents[0]],
+            Standing::Cornered { .. } => match &pocket {
+                Some(pocket) => pocket.free.clone(),
+                None => vec![frame.normal, frame.tangents[0]],
+            },
         };
         let velocities = directions.into_iter().enumerate().map(|(k, direction)| (next + k, direction)).collect();
-        let force = corner::total_force(loading, contacts.iter().copied(), state);
+        let force = match &pocket {
+            Some(pocket) => pocket.force(loading, state),
+            None => corner::total_force(loading, contacts.iter().copied(), state),
+        };
         let reaction = state.reactions[contacts[0]];
-        Self { contacts, standing, frames, velocities, reaction, force }
+        Self { contacts, standing, frames, velocities, reaction, force, pocket }
+    }
+
+    fn carried(&self, loading: Loading<'_>, state: &State) -> Option<Carried> {
+        let is_cornered = matches!(self.standing, Standing::Cornered { .. });
+        if is_cornered { Carried::of(loading, &self.contacts, state) } else { None }
     }
 
     /// Rate of the dissipation when the node moves while one of the contacts, if any, slips.
-    pub fn dissipation(&self, loading: Loading<'_>, modes: &[Mode], rate: &Rate) -> f64 {
+    pub fn dissipation(&self, loading: Loading<'_>, modes: &[Mode], rate: &Rate, state: &State) -> f64 {
+        if let Some(carried) = self.carried(loading, state) {
+            return carried.dissipation(loading, modes, &self.force, state, rate);
+        }
+        if let Some(pocket) = &self.pocket {
+            let motion = loading.relative_rate(self.contacts[0], rate);
+            return pocket.drag_in(modes, &self.force) * size(&motion);
+        }
         let slips = |(contact, _): &(&usize, &Frame)| matches!(modes[**contact], Mode::Slip { .. });
         let Some((contact, frame)) = self.contacts.iter().zip(&self.frames).find(slips) else { return 0.0 };
         if loading.contacts[*contact].tangents() == 0 {
@@ -83,7 +111,24 @@ impl Changeable {
     }
 
     /// Where the node of a corner slides along one obstacle, that one has the whole force.
-    pub fn move_to_slider(&self, loading: Loading<'_>, modes: &[Mode], rate: &mut Rate) {
+    pub fn move_to_slider(&self, loading: Loading<'_>, modes: &[Mode], rate: &mut Rate, state: &State) {
+        if let Some(carried) = self.carried(loading, state) {
+            let whole = corner::force(&self.frames[0], &rate.reactions[self.contacts[0]]);
+            for (contact, part) in carried.rates(loading, modes, &whole, state) {
+                rate.reactions[contact] = part;
+            }
+            return;
+        }
+        if let Some(pocket) = &self.pocket {
+            let whole = corner::force(&self.frames[0], &rate.reactions[self.contacts[0]]);
+            let motion = loading.relative_rate(self.contacts[0], rate);
+            let parts = pocket.rates_in(modes, &self.force, &whole, &motion);
+            if !parts.is_empty() {
+                self.contacts.iter().for_each(|contact| rate.reactions[*contact] = Reaction::default());
+                parts.into_iter().for_each(|(contact, part)| rate.reactions[contact] = part);
+            }
+            return;
+        }
         let slips = |(contact, _): &(&usize, &Frame)| matches!(modes[**contact], Mode::Slip { .. });
         let slider = self.contacts.iter().zip(&self.frames).find(slips);
         let (Some((contact, frame)), true) = (slider, self.contacts.len() > 1) else { return };
@@ -123,6 +168,9 @@ impl Changeable {
 
     /// Whether a stick at a touch in space keeps within the circular cone, which linear forms do not say.
     pub fn is_in_cone(&self, loading: Loading<'_>, modes: &[Mode], rate: &Rate, tolerance: f64) -> bool {
+        if self.pocket.is_some() {
+            return self.margin(modes, rate).is_none_or(|margin| margin >= -tolerance);
+        }
         let contact = self.contacts[0];
         let circular = loading.contacts[contact].sliding == Sliding::Plane;
         if !circular || self.standing != Standing::Touching || modes[contact] != Mode::Stick {
@@ -175,13 +223,56 @@ impl Changeable {
                 let free = Choice { zero: forces, nonnegative: vec![Signed::plus(zero[0])], implied: Vec::new() };
                 (Entity { options: vec![stick, free], touching: None }, vec![single(Mode::Stick), single(Mode::Free)])
             }
-            (Standing::Cornered { facets, unloaded }, _) => {
+            (Standing::Cornered { unloaded, zero, .. }, _) if let Some(pocket) = &self.pocket => {
+                pocket::options(self, pocket, loading, unloaded, zero, forms)
+            }
+            (Standing::Cornered { zero, .. }, _) if let Some(carried) = Carried::of(loading, &self.contacts, state) => {
+                carried.options(loading, state, self, zero, forms)
+            }
+            (Standing::Cornered { facets, unloaded, .. }, _) => {
                 self.options_of_corner(loading, state, facets, unloaded, forms)
             }
             (Standing::Settled(mode), _) => {
                 (Entity { options: vec![Choice::default()], touching: None }, vec![single(mode)])
             }
         }
+    }
+
+    /// Of a node in a pocket that is not pressed, slips along each of its rough obstacles alone, the others opening.
+    pub fn touches_in_pocket(&self, entity: usize, forms: &mut Forms<'_>) -> Vec<(usize, Touch)> {
+        let (Some(pocket), Standing::Cornered { unloaded: true, .. }) = (&self.pocket, self.standing) else {
+            return Vec::new();
+        };
+        let rough = (0..self.contacts.len()).filter(|place| pocket.free.len() == 3 && pocket.frictions[*place] > 0.0);
+        let touch = |place: usize| {
+            let frame = &self.frames[place];
+            let along = [frame.normal, frame.tangents[0], frame.tangents[1]];
+            let others = (0..self.contacts.len()).filter(|other| *other != place);
+            let touch = Touch {
+                entity,
+                velocities: along.map(|direction| forms.velocity(self, &direction)),
+                forces: along.map(|direction| forms.force_along(self, &direction)),
+                friction: pocket.frictions[place],
+                opening: others.map(|other| forms.velocity(self, &self.frames[other].normal)).collect(),
+            };
+            (self.contacts[place], touch)
+        };
+        rough.map(touch).collect()
+    }
+
+    /// How far a rate of force is from making a node that is held in space, or guided, slide.
+    pub fn margin(&self, modes: &[Mode], rate: &Rate) -> Option<f64> {
+        let (Some(pocket), Standing::Cornered { unloaded, zero, .. }) = (&self.pocket, self.standing) else {
+            return None;
+        };
+        let is_held = self.contacts.iter().all(|contact| modes[*contact] == Mode::Stick);
+        is_held.then(|| {
+            let of_contact = |(contact, frame): (&usize, &Frame)| corner::force(frame, &rate.reactions[*contact]);
+            let parts = self.contacts.iter().zip(&self.frames).map(of_contact);
+            let whole = pocket.free_part(&parts.fold([0.0; 3], |sum, part| add(&sum, 1.0, &part)));
+            let ready = if unloaded { Vec::new() } else { pocket.ready(&self.force, zero) };
+            pocket.margin_of_rate(&ready, unloaded, zero, &whole)
+        })
     }
 
     fn touching_on_a_line(&self, friction: f64, forms: &mut Forms<'_>) -> Entity {
@@ -207,7 +298,7 @@ impl Changeable {
         unloaded: bool,
         forms: &mut Forms<'_>,
     ) -> (Entity, Vec<Outcome>) {
-        let inward = corner::sector(loading, &self.contacts, state).inward;
+        let inward = corner::sector(loading, &self.contacts, |_| Mode::Stick, state).inward;
         let gaps: Vec<usize> = self.frames.iter().map(|frame| forms.velocity(self, &frame.normal)).collect();
         let outcome = |slipping: Option<(usize, Vector)>, others: Mode| Outcome {
             modes: self
@@ -294,8 +385,16 @@ pub(super) struct Forms<'a> {
 }
 
 impl Forms<'_> {
+    /// A velocity or the load rate, of each weight.
+    pub(super) fn motion(&mut self, of: impl Fn(&Rate) -> f64) -> usize {
+        let row = DVector::from_iterator(self.columns.len(), self.columns.iter().map(of));
+        self.rows.push(row);
+        self.is_force.push(false);
+        self.rows.len() - 1
+    }
+
     /// Velocity of the node along a direction.
-    fn velocity(&mut self, entry: &Changeable, direction: &Vector) -> usize {
+    pub(super) fn velocity(&mut self, entry: &Changeable, direction: &Vector) -> usize {
         let mut row = DVector::zeros(self.columns.len());
         for (column, velocity) in &entry.velocities {
             row[*column] = dot(velocity, direction);
@@ -306,7 +405,7 @@ impl Forms<'_> {
     }
 
     /// Rate of the whole force on the node along a direction.
-    fn force_rate(&self, entry: &Changeable, direction: &Vector) -> DVector<f64> {
+    pub(super) fn force_rate(&self, entry: &Changeable, direction: &Vector) -> DVector<f64> {
         let contact = entry.contacts[0];
         let normal = (self.normals)(contact);
         let along = |rate: &Rate| {
@@ -316,12 +415,12 @@ impl Forms<'_> {
         DVector::from_iterator(self.columns.len(), self.columns.iter().map(along))
     }
 
-    fn force_along(&mut self, entry: &Changeable, direction: &Vector) -> usize {
+    pub(super) fn force_along(&mut self, entry: &Changeable, direction: &Vector) -> usize {
         let rate = self.force_rate(entry, direction);
         self.force(rate)
     }
 
-    fn force(&mut self, rate: DVector<f64>) -> usize {
+    pub(super) fn force(&mut self, rate: DVector<f64>) -> usize {
         self.rows.push(rate);
         self.is_force.push(true);
         self.rows.len() - 1

@@ -48,14 +48,14 @@ impl<'a> Condensed<'a> {
         let mut columns = Vec::new();
         for entry in &changeable {
             let contact = entry.contacts[0];
-            let frame = loading.frame(contact, state);
             let row = system.row_of(contact);
+            let held = system.held_directions(contact);
+            let frame = loading.frame(contact, state);
             for (_, direction) in &entry.velocities {
                 let mut values = DVector::zeros(system.size());
-                values[row] = dot(&frame.normal, direction);
-                for (k, tangent) in frame.tangents.iter().enumerate().take(system.held_tangents(contact)) {
-                    values[row + 1 + k] = dot(tangent, direction);
-                }
+                // A smooth contact holds along its normal alone.
+                let held = if held.is_empty() { std::slice::from_ref(&frame.normal) } else { &held[..] };
+                held.iter().enumerate().for_each(|(k, one)| values[row + k] = dot(one, direction));
                 if !factorisation.solve(&mut values) {
                     return None;
                 }
@@ -144,6 +144,7 @@ impl<'a> Condensed<'a> {
                 found.unexplored = found.unexplored.saturating_add(found.slips_in_doubt);
             }
         }
+        self.add_slips_out_of_pockets(held, state, most_modes, cancel, found);
         for slip in &turning {
             let directions: Vec<(usize, Vector)> = slip
                 .slips
@@ -155,6 +156,47 @@ impl<'a> Condensed<'a> {
                 })
                 .collect();
             self.add(&slip.ray, &directions, held, state, found);
+        }
+    }
+
+    /// Where a node in a pocket is not pressed, first slips along one of its obstacles in a direction that is unknown.
+    fn add_slips_out_of_pockets(
+        &self,
+        held: &[Mode],
+        state: &State,
+        most_modes: u64,
+        cancel: &CancelFlag,
+        found: &mut Found,
+    ) {
+        let normals = |contact: usize| self.loading.frame(contact, state).normal;
+        let mut forms = Forms {
+            columns: &self.columns,
+            normals: &normals,
+            rows: self.problem.forms.row_iter().map(|row| row.transpose()).collect(),
+            is_force: self.problem.is_force.clone(),
+        };
+        let mut touches = Vec::new();
+        for (entity, entry) in self.changeable.iter().enumerate() {
+            touches.extend(entry.touches_in_pocket(entity, &mut forms));
+        }
+        if touches.is_empty() {
+            return;
+        }
+        let rows = DMatrix::from_fn(forms.rows.len(), self.columns.len(), |row, column| forms.rows[row][column]);
+        let problem = RateProblem {
+            forms: rows,
+            is_force: forms.is_force,
+            entities: self.problem.entities.clone(),
+            motion: self.problem.motion.clone(),
+            reactions: self.problem.reactions.clone(),
+        };
+        for (contact, touch) in &touches {
+            let tangents = self.loading.frame(*contact, state).tangents;
+            for slip in turning::slips(&problem, touch, most_modes, cancel) {
+                let parts = slip.slips[0].1;
+                let direction = add(&scaled(&tangents[0], parts[0]), parts[1], &tangents[1]);
+                self.add(&slip.ray, &[(*contact, direction)], held, state, found);
+            }
         }
     }
 
@@ -223,7 +265,10 @@ impl<'a> Condensed<'a> {
         let mut modes = held.to_vec();
         for ((entry, outcomes), choice) in self.changeable.iter().zip(&self.outcomes).zip(ray.chosen()) {
             entry.take_reaction_apart(self.loading, &mut rate);
+            let slips_out = turning.iter().any(|(slipping, _)| entry.contacts.contains(slipping));
             for (contact, mode) in &outcomes[choice].modes {
+                // The other obstacles of its node are left.
+                let mode = if slips_out && entry.contacts.len() > 1 { &Mode::Free } else { mode };
                 let slips = turning.iter().find(|(turning, _)| turning == contact);
                 let mode = &slips.map_or(*mode, |(_, direction)| Mode::Slip { direction: *direction });
                 modes[*contact] = *mode;
@@ -240,15 +285,18 @@ impl<'a> Condensed<'a> {
                 }
             }
         }
-        self.changeable.iter().for_each(|entry| entry.move_to_slider(self.loading, &modes, &mut rate));
+        self.changeable.iter().for_each(|entry| entry.move_to_slider(self.loading, &modes, &mut rate, state));
         let force = WEAK * rate.largest_reaction().max(f64::MIN_POSITIVE);
         if !self.changeable.iter().all(|entry| entry.is_in_cone(self.loading, &modes, &rate, force)) {
             return;
         }
-        let dissipation = self.changeable.iter().map(|entry| entry.dissipation(self.loading, &modes, &rate)).sum();
+        let dissipation =
+            self.changeable.iter().map(|entry| entry.dissipation(self.loading, &modes, &rate, state)).sum();
         let alternatives = self.alternatives(ray, turning, &modes, &rate, force);
         let forces = whole_rates(self.loading, state, &rate);
-        merge(found, Candidate { rate, forces, modes, alternatives, weak: ray.weak, dissipation });
+        let just_held = |entry: &Changeable| entry.margin(&modes, &rate).is_some_and(|margin| margin <= force);
+        let weak = ray.weak || self.changeable.iter().any(just_held);
+        merge(found, Candidate { rate, forces, modes, alternatives, weak, dissipation });
     }
 
     /// What each contact may do along a ray.
@@ -261,9 +309,8 @@ impl<'a> Condensed<'a> {
         force: f64,
     ) -> Vec<Vec<Alternative>> {
         let of_entity = |((entry, outcomes), in_doubt): ((&Changeable, &Vec<Outcome>), &Vec<usize>)| {
-            let contact = entry.contacts[0];
-            if turning.iter().any(|(turning, _)| *turning == contact) {
-                return vec![vec![(contact, modes[contact])]];
+            if turning.iter().any(|(turning, _)| entry.contacts.contains(turning)) {
+                return vec![entry.contacts.iter().map(|contact| (*contact, modes[*contact])).collect()];
             }
             let mut alternatives: Vec<Alternative> =
                 in_doubt.iter().map(|&choice| outcomes[choice].modes.clone()).collect();
@@ -272,7 +319,9 @@ impl<'a> Condensed<'a> {
                 alternative.iter().for_each(|(contact, mode)| modes[*contact] = *mode);
                 entry.is_in_cone(self.loading, &modes, rate, force)
             });
-            if alternatives.contains(&vec![(contact, Mode::Free)]) {
+            if let [contact] = entry.contacts[..]
+                && alternatives.contains(&vec![(contact, Mode::Free)])
+            {
                 alternatives.extend(entry.grazing_slip(self.loading, rate).map(|slip| vec![(contact, slip)]));
             }
             sort(&mut alternatives);

@@ -148,7 +148,7 @@ impl Trial<'_> {
         let rates = candidate.rate.largest_reaction().max(rate.largest_reaction()).max(f64::MIN_POSITIVE);
         let mut unclear = false;
         let mut culprits = Vec::new();
-        for watch in watch::of_mode(loading, modes) {
+        for watch in watch::of_mode(loading, modes, state, &candidate.rate) {
             let scale = watch.scale(loading, &corrected.state, forces);
             let first = watch.value(loading, modes, state, &candidate.rate);
             let (tendency, size) = match watch.slope(loading, state, &candidate.rate) {

@@ -4,12 +4,15 @@
 //! reactions, and the node is held as long as `R` lies in the sum of their friction cones. That is a cone itself, between
 //! two of the rays `n_i ± μ_i t_i`: a sector of less than a half-plane, or a half-plane with one bound, or all of the
 //! plane, and then the node is jammed and stays. Two smooth walls that face each other leave just a line.
+//! In space, and where supports guide the node, see `pocket`; between planes that move against each other, `carried`.
 //! Smooth obstacles whose normals are independent need none of this: each has a reaction of its own, in the plane and in
 //! space, and they may move against each other.
 //! The reactions that are reported are those of least norm (`contact::share`).
 
+use super::carried::Carried;
 use super::energy::reaction_in_space;
 use super::loading::Loading;
+use super::pocket::{Pocket, free_directions};
 use super::standing::ZERO;
 use super::state::{Rate, State};
 use crate::contact::share::{Cone, least_reactions};
@@ -44,20 +47,31 @@ impl Corner {
         self.contacts.iter().copied().filter(|contact| loading.gap(*contact, state) <= ZERO).collect()
     }
 
-    /// The contacts that hold the node together in these modes; none where fewer than two do.
+    /// The contacts that hold the node together in these modes, one that sticks first; none where fewer than two do. A node
+    /// that sticks to an obstacle may be carried along others, against which it slips.
     pub fn holding<'a>(&'a self, modes: &'a [Mode]) -> impl Iterator<Item = usize> + 'a {
-        let sticking = |contact: &&usize| modes[**contact] == Mode::Stick;
-        let together = self.contacts.iter().filter(sticking).count() >= 2;
-        self.contacts.iter().filter(move |contact| together && sticking(contact)).copied()
+        let sticks = move |contact: &&usize| modes[**contact] == Mode::Stick;
+        let slips = move |contact: &&usize| matches!(modes[**contact], Mode::Slip { .. });
+        let active = self.contacts.iter().filter(|contact| modes[**contact].is_active()).count();
+        let together = active >= 2 && self.contacts.iter().any(|contact| sticks(&contact));
+        let sticking = self.contacts.iter().filter(move |contact| together && sticks(contact));
+        sticking.chain(self.contacts.iter().filter(move |contact| together && slips(contact))).copied()
     }
 }
 
+/// Whether a node is free in the plane, so that the sum of its friction cones is a sector.
+pub fn is_in_plane(loading: Loading<'_>, corner: &Corner) -> bool {
+    loading.structure.dimension == 2
+        && corner.contacts.iter().all(|contact| loading.contacts[*contact].sliding != Sliding::None)
+}
+
 /// Whether two lists of modes continue each other. Where two contacts press a node in 2D it is held, whatever is said of
-/// the slip that none of them can have.
+/// the slip that none of them can have; so it is in space where they do not slip as one.
 pub fn agree(loading: Loading<'_>, first: &[Mode], second: &[Mode]) -> bool {
     let held = |modes: &[Mode], corner: &Corner| {
-        let active = corner.contacts.iter().filter(|contact| modes[**contact].is_active()).count();
-        loading.structure.dimension == 2 && active >= 2
+        let active: Vec<Mode> =
+            corner.contacts.iter().map(|contact| modes[*contact]).filter(|mode| mode.is_active()).collect();
+        active.len() >= 2 && (loading.structure.dimension == 2 || !slip_as_one(&active))
     };
     let free_of_corners = |contact: &usize| {
         !loading
@@ -68,22 +82,63 @@ pub fn agree(loading: Loading<'_>, first: &[Mode], second: &[Mode]) -> bool {
     (0..first.len()).filter(free_of_corners).all(|contact| first[contact].continues(second[contact]))
 }
 
-/// Whether a node is closed against several obstacles in a way whose bounds are not known: with friction, or with more
-/// reactions than its equilibrium tells apart, in space, on a support, or where the running stage moves the obstacles
-/// against each other.
+/// Cosine of the angle between slips that are those of one motion.
+const ONE_MOTION: f64 = 1.0 - 1e-6;
+
+/// Whether active contacts of a node in space slip along one line: their node slides along an edge.
+fn slip_as_one(active: &[Mode]) -> bool {
+    let slips: Vec<Vector> = active
+        .iter()
+        .filter_map(|mode| match mode {
+            Mode::Slip { direction } => Some(*direction),
+            Mode::Free | Mode::Stick => None,
+        })
+        .collect();
+    let rough: Vec<&Vector> = slips.iter().filter(|direction| **direction != [0.0; 3]).collect();
+    slips.len() == active.len() && slips.len() == 2 && rough.windows(2).all(|pair| dot(pair[0], pair[1]) >= ONE_MOTION)
+}
+
+/// Whether a node is closed against several obstacles in a way whose bounds are not known: where it is driven against
+/// them or they move against each other, with friction or with more reactions than equilibrium tells apart; and where more
+/// obstacles than an edge has bear a slide.
 pub fn is_not_available(loading: Loading<'_>, state: &State) -> bool {
     loading.corners.iter().any(|corner| {
         let closed = corner.closed(loading, state);
-        let is_free = closed.iter().all(|contact| loading.contacts[*contact].sliding != Sliding::None);
-        let is_known = loading.structure.dimension == 2 && is_free && !move_apart(loading, &closed);
-        closed.len() > 1 && !is_known && !are_determinate(loading, &closed, state)
+        let is_known = || {
+            if is_in_plane(loading, corner) {
+                return !is_driven(loading, &closed) || Carried::of(loading, &closed, state).is_some();
+            }
+            Pocket::new(loading, &closed, state).is_determinate_when_sliding()
+        };
+        closed.len() > 1 && !are_determinate(loading, &closed, state) && !is_known()
     })
 }
 
-/// Whether closed contacts of a node are best taken one by one: its equilibrium gives all reactions, and no hold together
-/// is at rest.
+/// Whether several obstacles hold a node, in space or guided, whose equilibrium does not give their reactions.
+pub fn has_indeterminate(loading: Loading<'_>, state: &State) -> bool {
+    loading.corners.iter().filter(|corner| !is_in_plane(loading, corner)).any(|corner| {
+        let closed = corner.closed(loading, state);
+        closed.len() > 1 && !are_determinate(loading, &closed, state)
+    })
+}
+
+/// Whether the running stage drives a node against some closed obstacles by its supports, or them against each other.
+pub fn is_driven(loading: Loading<'_>, closed: &[usize]) -> bool {
+    let dimension = loading.structure.dimension;
+    let first = loading.contacts[closed[0]].node * dimension;
+    let shift = &loading.pattern.shifts[closed[0]];
+    let by_support = |component: usize| {
+        let freedom = first + component;
+        loading.structure.unknown_of[freedom].is_none() && loading.support_rate(freedom) != shift[component]
+    };
+    move_apart(loading, closed) || (0..dimension).any(by_support)
+}
+
+/// Whether closed contacts of a node are best taken one by one: its equilibrium gives all reactions, and in the plane no
+/// hold together is at rest.
 pub fn stand_alone(loading: Loading<'_>, closed: &[usize], state: &State) -> bool {
-    move_apart(loading, closed) && are_determinate(loading, closed, state)
+    let apart = loading.structure.dimension == 3 || move_apart(loading, closed);
+    apart && are_determinate(loading, closed, state)
 }
 
 /// Whether the running stage moves the obstacles of some contacts against each other.
@@ -152,13 +207,18 @@ fn turn(a: &Vector, b: &Vector) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// The sum of the cones of some contacts of a node in 2D.
-pub fn sector(loading: Loading<'_>, contacts: &[usize], state: &State) -> Sector {
-    let rays = contacts
-        .iter()
-        .flat_map(|contact| rays(&loading.frame(*contact, state), loading.contacts[*contact].friction))
-        .map(|ray| unit(&ray));
-    sum_of(rays.collect())
+/// The rays that bound what a contact in a mode may bear in 2D.
+fn rays_in(loading: Loading<'_>, contact: usize, mode: Mode, state: &State) -> Vec<Vector> {
+    let (frame, friction) = (loading.frame(contact, state), loading.contacts[contact].friction);
+    match mode {
+        Mode::Slip { direction } => vec![unit(&add(&frame.normal, -friction, &direction))],
+        Mode::Stick | Mode::Free => rays(&frame, friction).iter().map(unit).collect(),
+    }
+}
+
+/// The sum of what some contacts of a node may bear in 2D: their cones, or a ray of those that slip.
+pub fn sector(loading: Loading<'_>, contacts: &[usize], modes: impl Fn(usize) -> Mode, state: &State) -> Sector {
+    sum_of(contacts.iter().flat_map(|contact| rays_in(loading, *contact, modes(*contact), state)).collect())
 }
 
 /// The sum of rays: what is left of the plane where the widest angle free of them, at least half a turn, is cut out.
@@ -191,19 +251,38 @@ pub fn share(loading: Loading<'_>, corners: &[Corner], modes: &[Mode], state: &m
         if holding.is_empty() {
             continue;
         }
+        if !is_in_plane(loading, corner) {
+            let pocket = Pocket::new(loading, &holding, state);
+            let force = pocket.force(loading, state);
+            for (place, part) in pocket.share(&force).into_iter().flatten().enumerate() {
+                state.reactions[holding[place]] = taken_apart(&part, &pocket.frames[place], pocket.frictions[place]);
+            }
+            continue;
+        }
         let force = total_force(loading, holding.iter().copied(), state);
         let frames: Vec<Frame> = holding.iter().map(|contact| loading.frame(*contact, state)).collect();
         let cones: Vec<Cone> = holding
             .iter()
             .zip(&frames)
-            .map(|(contact, frame)| Cone { normal: frame.normal, friction: loading.contacts[*contact].friction })
+            .map(|(contact, frame)| match modes[*contact] {
+                // One ray is left of the cone.
+                Mode::Slip { direction } => {
+                    let ray = add(&frame.normal, -loading.contacts[*contact].friction, &direction);
+                    Cone { normal: unit(&ray), friction: 0.0, line: None }
+                }
+                Mode::Stick | Mode::Free => {
+                    Cone { normal: frame.normal, friction: loading.contacts[*contact].friction, line: None }
+                }
+            })
             .collect();
+        let free = free_directions(loading, loading.contacts[holding[0]].node);
         // Just at a bound of the cones together the least reactions may not be found: two rays make up the force.
-        let parts = least_reactions(&cones, &force).or_else(|| along_rays(loading, &holding, &force, state));
+        let parts =
+            least_reactions(&cones, &free, &force).or_else(|| along_rays(loading, &holding, modes, &force, state));
         // Outside the cones the event that ends the mode was passed; the point is not kept.
         let Some(parts) = parts else { continue };
-        for (((contact, frame), cone), part) in holding.iter().zip(&frames).zip(&cones).zip(parts) {
-            state.reactions[*contact] = taken_apart(&part, frame, cone.friction);
+        for ((contact, frame), part) in holding.iter().zip(&frames).zip(parts) {
+            state.reactions[*contact] = taken_apart(&part, frame, loading.contacts[*contact].friction);
         }
     }
 }
@@ -223,12 +302,18 @@ pub fn taken_apart(force: &Vector, frame: &Frame, friction: f64) -> Reaction {
 }
 
 /// Reactions along two of the rays that bound the friction cones in 2D, with the smallest sum of squares.
-fn along_rays(loading: Loading<'_>, holding: &[usize], force: &Vector, state: &State) -> Option<Vec<Vector>> {
+fn along_rays(
+    loading: Loading<'_>,
+    holding: &[usize],
+    modes: &[Mode],
+    force: &Vector,
+    state: &State,
+) -> Option<Vec<Vector>> {
     let all: Vec<(usize, Vector)> = holding
         .iter()
         .enumerate()
         .flat_map(|(place, contact)| {
-            rays(&loading.frame(*contact, state), loading.contacts[*contact].friction).map(|ray| (place, unit(&ray)))
+            rays_in(loading, *contact, modes[*contact], state).into_iter().map(move |ray| (place, ray))
         })
         .collect();
     let mut best: Option<(f64, Vec<Vector>)> = None;

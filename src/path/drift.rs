@@ -37,13 +37,12 @@ impl ModeSystem<'_> {
             let moved = before.map_or([0.0; 3], |before| self.loading.relative_rate(contact, before));
             let row = self.row_of(contact);
             match role {
-                Role::Free | Role::Frictionless | Role::Line { .. } | Role::HeldBy => {}
+                Role::Free | Role::Frictionless | Role::Line { .. } | Role::Edge { .. } | Role::HeldBy => {}
                 Role::Stick | Role::Held => {
-                    let frame = self.loading.frame(contact, self.anchor);
-                    for (k, tangent) in
-                        frame.tangents.iter().enumerate().take(self.loading.contacts[contact].tangents())
-                    {
-                        values[row + 1 + k] = dot(tangent, &moved);
+                    // A gap is closed exactly.
+                    let tangents = usize::from(matches!(role, Role::Stick));
+                    for (k, direction) in self.held_directions(contact).iter().enumerate().skip(tangents) {
+                        values[row + k] = dot(direction, &moved);
                     }
                 }
                 Role::Plane { start: begun, turn } => {

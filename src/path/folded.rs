@@ -57,7 +57,7 @@ pub fn locate(start: &Start<'_>, reached: &Reached) -> Option<Reached> {
         let value = watch.value(start.loading, start.modes, &corrected.state, &rate);
         value >= -VIOLATED * watch.scale(start.loading, &corrected.state, start.force_scale)
     };
-    if !watch::of_mode(start.loading, start.modes).iter().all(holds) {
+    if !watch::of_mode(start.loading, start.modes, start.state, start.rate).iter().all(holds) {
         return None;
     }
     let error_estimate = search.system.off_track(&corrected, &search.tracks);

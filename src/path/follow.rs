@@ -153,6 +153,7 @@ impl<'a> Path<'a> {
         let modes = self.at.here.modes.clone();
         self.emit(Emitted {
             before: &state,
+            reactions: None,
             modes: &modes,
             step: 0.0,
             point,

@@ -8,7 +8,7 @@
 //! | `state`, `loading` | a point; the structure under a pattern of forces, supports and obstacles that move |
 //! | `mode_system`, `newton` | the equations of one contact mode; Newton's method on them |
 //! | `contact_law` | how far a state is from the laws of contact and friction |
-//! | `corner` | nodes that several obstacles hold at once |
+//! | `corner`, `pocket`, `carried` | nodes that several obstacles hold at once: in the plane; in space, or guided by supports; between planes that move against each other |
 //! | `track`, `drift` | slip in a plane: its rule of fourth order; the error that is left |
 //! | `watch`, `root`, `advance` | what ends a mode; one step, ended exactly at the first event |
 //! | `singular`, `critical`, `branches` | whether a step passes a smooth bifurcation; where; which directions leave it |
@@ -27,6 +27,7 @@
 mod advance;
 mod arrival;
 mod branches;
+mod carried;
 mod changeable;
 pub mod checkpoint;
 mod combinations;
@@ -51,6 +52,7 @@ mod naming;
 mod near;
 mod newton;
 pub mod plan;
+mod pocket;
 mod program;
 mod progress;
 mod rates;

@@ -4,7 +4,7 @@
 //! f_int(u) - s f - f_held - Σ_i (n r_n + r_t)_i = 0          equilibrium
 //! g_i(u, s) = 0                                              closed contacts
 //! t·(x_i - x_i⁰) = 0                                         sticking contacts, unknown r_t
-//! r_t = -μ r_n d                                             slipping contacts, d a tangent
+//! r_t = -μ r_n d                                             slipping contacts, d a tangent, or along an edge
 //! c(u, s) = 0                                                arc length, or a held load or displacement
 //! ```
 //!
@@ -16,6 +16,7 @@
 use super::corner::{self, total_force};
 use super::loading::Loading;
 use super::newton::{Corrected, Place, Tangent};
+use super::pocket::{Edge, beside, free_directions};
 use super::state::{Rate, State};
 use super::track::{self, Start, Turn};
 use crate::contact::vector::{Vector, add, cross, dot, scaled, size};
@@ -32,6 +33,11 @@ pub(super) enum Role {
     Frictionless,
     /// Slip along the frame's first tangent, in the sense of the sign.
     Line {
+        sign: f64,
+    },
+    /// Slip along the edge with the obstacle of another contact of the node, in the sense of the sign: see `edge`.
+    Edge {
+        beside: usize,
         sign: f64,
     },
     /// Slip along any tangent, on a track with an equation of its own.
@@ -101,13 +107,17 @@ impl<'a> ModeSystem<'a> {
             });
             let role = match mode {
                 Mode::Stick if held == Some(true) => Role::Held,
-                Mode::Stick if held == Some(false) => Role::HeldBy,
+                Mode::Stick | Mode::Slip { .. } if held == Some(false) => Role::HeldBy,
                 Mode::Free => Role::Free,
                 Mode::Stick => Role::Stick,
                 Mode::Slip { .. } if contact.tangents() == 0 => Role::Frictionless,
                 Mode::Slip { direction } if contact.tangents() == 1 => {
                     let tangent = loading.frame(index, anchor).tangents[0];
                     Role::Line { sign: if dot(direction, &tangent) < 0.0 { -1.0 } else { 1.0 } }
+                }
+                Mode::Slip { direction } if let Some(beside) = beside(loading, modes, index) => {
+                    let edge = Edge::new(loading, [index, beside], anchor);
+                    Role::Edge { beside, sign: if dot(direction, &edge.direction) < 0.0 { -1.0 } else { 1.0 } }
                 }
                 Mode::Slip { direction } => {
                     let normal = loading.frame(index, anchor).normal;
@@ -117,8 +127,8 @@ impl<'a> ModeSystem<'a> {
             first_of.push(next);
             next += match role {
                 Role::Free | Role::HeldBy => 0,
-                Role::Held => loading.structure.dimension,
-                Role::Frictionless | Role::Line { .. } => 1,
+                Role::Held => free_directions(loading, contact.node).len(),
+                Role::Frictionless | Role::Line { .. } | Role::Edge { .. } => 1,
                 Role::Plane { .. } => 2,
                 Role::Stick => 1 + contact.tangents(),
             };
@@ -265,7 +275,7 @@ impl<'a> ModeSystem<'a> {
             match role {
                 Role::Free | Role::HeldBy => {}
                 Role::Stick | Role::Held => self.add_stick(contact, &mut matrix),
-                Role::Frictionless | Role::Line { .. } | Role::Plane { .. } => {
+                Role::Frictionless | Role::Line { .. } | Role::Edge { .. } | Role::Plane { .. } => {
                     self.add_slip(contact, iterate, kind, &mut matrix);
                 }
             }
@@ -333,22 +343,34 @@ impl<'a> ModeSystem<'a> {
     }
 
     fn add_stick(&self, contact: usize, matrix: &mut DMatrix<f64>) {
-        let frame = self.loading.frame(contact, self.anchor);
         let (row, column) = (self.row_of(contact), self.column_of(contact));
-        self.put_force(contact, column, &frame.normal, matrix);
-        self.put_motion(contact, row, &frame.normal, matrix);
-        for (k, tangent) in frame.tangents.iter().enumerate().take(self.held_tangents(contact)) {
-            self.put_force(contact, column + 1 + k, tangent, matrix);
-            self.put_motion(contact, row + 1 + k, tangent, matrix);
+        for (k, direction) in self.held_directions(contact).iter().enumerate() {
+            self.put_force(contact, column + k, direction, matrix);
+            self.put_motion(contact, row + k, direction, matrix);
         }
     }
 
-    /// Number of tangents along which a sticking contact holds its node.
-    pub(super) fn held_tangents(&self, contact: usize) -> usize {
+    /// Orthonormal directions in which a sticking contact holds its node, along which it has a force: the normal and the
+    /// tangents with friction; where it holds the node together with others, all in which the node is free.
+    pub(super) fn held_directions(&self, contact: usize) -> Vec<Vector> {
+        let data = &self.loading.contacts[contact];
+        let in_frame = |tangents: usize| {
+            let frame = self.loading.frame(contact, self.anchor);
+            std::iter::once(frame.normal).chain(frame.tangents.into_iter().take(tangents)).collect()
+        };
         match self.roles[contact] {
-            Role::Held => self.loading.structure.dimension - 1,
-            Role::Stick => self.loading.contacts[contact].tangents(),
-            Role::Free | Role::Frictionless | Role::Line { .. } | Role::Plane { .. } | Role::HeldBy => 0,
+            Role::Stick => in_frame(data.tangents()),
+            Role::Held => {
+                let free = free_directions(self.loading, data.node);
+                let dimension = self.loading.structure.dimension;
+                if free.len() == dimension { in_frame(dimension - 1) } else { free }
+            }
+            Role::Free
+            | Role::Frictionless
+            | Role::Line { .. }
+            | Role::Edge { .. }
+            | Role::Plane { .. }
+            | Role::HeldBy => Vec::new(),
         }
     }
 
@@ -381,14 +403,16 @@ impl<'a> ModeSystem<'a> {
                 }
             }
         }
-        if frame.curvature == 0.0 {
+        let turns_edge = |beside: usize| self.loading.contacts[beside].obstacle.is_curved();
+        let turns = matches!(self.roles[contact], Role::Edge { beside, .. } if turns_edge(beside));
+        if frame.curvature == 0.0 && !turns {
             return;
         }
         // The reaction turns with the place on the obstacle.
         let dimension = structure.dimension;
         let first = self.loading.contacts[contact].node * dimension;
         let change_with = |motion: &Vector| {
-            let drag = self.direction_change(contact, &frame, &direction, motion);
+            let drag = self.direction_change(contact, iterate, &direction, motion);
             scaled(&add(&frame.normal_change(motion), -friction, &drag), normal)
         };
         for component in 0..dimension {
@@ -416,15 +440,22 @@ impl<'a> ModeSystem<'a> {
     fn direction(&self, contact: usize, frame: &Frame, iterate: &Iterate) -> Vector {
         match self.roles[contact] {
             Role::Line { sign } => scaled(&frame.tangents[0], sign),
+            Role::Edge { beside, sign } => {
+                scaled(&Edge::new(self.loading, [contact, beside], &iterate.state).direction, sign)
+            }
             Role::Plane { .. } => iterate.directions[contact],
             Role::Free | Role::Frictionless | Role::Stick | Role::Held | Role::HeldBy => [0.0; 3],
         }
     }
 
     /// How a slip's direction turns with the place on the obstacle, its own turn apart.
-    fn direction_change(&self, contact: usize, frame: &Frame, direction: &Vector, motion: &Vector) -> Vector {
+    fn direction_change(&self, contact: usize, iterate: &Iterate, direction: &Vector, motion: &Vector) -> Vector {
+        let frame = self.loading.frame(contact, &iterate.state);
         match self.roles[contact] {
             Role::Line { sign } => scaled(&frame.tangent_change(motion), sign),
+            Role::Edge { beside, sign } => {
+                scaled(&Edge::new(self.loading, [contact, beside], &iterate.state).change(motion), sign)
+            }
             Role::Plane { .. } => scaled(&frame.normal, -dot(&frame.normal_change(motion), direction)),
             Role::Free | Role::Frictionless | Role::Stick | Role::Held | Role::HeldBy => [0.0; 3],
         }
@@ -468,7 +499,7 @@ impl<'a> ModeSystem<'a> {
             match role {
                 // A sticking node is put in its place exactly: see `place_exactly`.
                 Role::Free | Role::Stick | Role::Held | Role::HeldBy => {}
-                Role::Frictionless | Role::Line { .. } => values[row] = frame.gap,
+                Role::Frictionless | Role::Line { .. } | Role::Edge { .. } => values[row] = frame.gap,
                 Role::Plane { start, turn } => {
                     values[row] = frame.gap;
                     let chord = self.chord(contact, state);
@@ -545,15 +576,21 @@ impl<'a> ModeSystem<'a> {
             rate.reactions[contact] = match role {
                 Role::Free | Role::HeldBy => continue,
                 Role::Stick | Role::Held => {
-                    let frame = self.loading.frame(contact, self.anchor);
-                    let tangents = frame.tangents.iter().take(self.held_tangents(contact));
-                    let tangential = tangents
-                        .enumerate()
-                        .fold([0.0; 3], |sum, (k, tangent)| add(&sum, values[column + 1 + k], tangent));
-                    Reaction { normal: values[column], tangential }
+                    let normal = self.loading.frame(contact, self.anchor).normal;
+                    let directions = self.held_directions(contact);
+                    // In the frame of the contact the first is the normal.
+                    let is_normal = directions[0] == normal;
+                    let others = directions.iter().enumerate().skip(usize::from(is_normal));
+                    let rest = others.fold([0.0; 3], |sum, (k, direction)| add(&sum, values[column + k], direction));
+                    if is_normal {
+                        Reaction { normal: values[column], tangential: rest }
+                    } else {
+                        let along = dot(&rest, &normal);
+                        Reaction { normal: along, tangential: add(&rest, -along, &normal) }
+                    }
                 }
                 Role::Frictionless => Reaction { normal: values[column], tangential: [0.0; 3] },
-                Role::Line { .. } | Role::Plane { .. } => {
+                Role::Line { .. } | Role::Edge { .. } | Role::Plane { .. } => {
                     let frame = self.loading.frame(contact, &iterate.state);
                     let friction = self.loading.contacts[contact].friction;
                     let pressed = friction * iterate.state.reactions[contact].normal;
@@ -564,9 +601,9 @@ impl<'a> ModeSystem<'a> {
                         let per_turn = if kind == Kind::Rates { 1.0 } else { pressed };
                         tangential = add(&tangential, -per_turn * values[column + 1], &across);
                     }
-                    if frame.curvature != 0.0 {
+                    if frame.curvature != 0.0 || matches!(role, Role::Edge { .. }) {
                         let motion = self.loading.relative_rate(contact, &rate);
-                        let change = self.direction_change(contact, &frame, &direction, &motion);
+                        let change = self.direction_change(contact, iterate, &direction, &motion);
                         tangential = add(&tangential, -pressed, &change);
                     }
                     Reaction { normal: values[column], tangential }
@@ -617,7 +654,7 @@ impl<'a> ModeSystem<'a> {
         let structure = self.loading.structure;
         let first = self.loading.contacts[contact].node * structure.dimension;
         let free = (first..first + structure.dimension).filter(|freedom| structure.unknown_of[*freedom].is_some());
-        1 + self.held_tangents(contact) >= free.count()
+        self.held_directions(contact).len() >= free.count()
     }
 
     /// Makes complementarity exact: no reaction on a free contact, no motion of a sticking node, friction of a slipping
@@ -629,7 +666,7 @@ impl<'a> ModeSystem<'a> {
                 Role::Free => iterate.state.reactions[contact] = Reaction::default(),
                 Role::Stick | Role::Held | Role::HeldBy => {}
                 Role::Frictionless => iterate.state.reactions[contact].tangential = [0.0; 3],
-                Role::Line { .. } | Role::Plane { .. } => {
+                Role::Line { .. } | Role::Edge { .. } | Role::Plane { .. } => {
                     let frame = self.loading.frame(contact, &iterate.state);
                     let direction = self.direction(contact, &frame, iterate);
                     let drag = -self.loading.contacts[contact].friction * iterate.state.reactions[contact].normal;
@@ -642,7 +679,7 @@ impl<'a> ModeSystem<'a> {
     /// The modes at an iterate: directions of slip as they are there.
     pub(super) fn modes_at(&self, iterate: &Iterate) -> Vec<Mode> {
         let at = |(contact, mode): (usize, &Mode)| match self.roles[contact] {
-            Role::Line { .. } | Role::Plane { .. } => {
+            Role::Line { .. } | Role::Edge { .. } | Role::Plane { .. } => {
                 let frame = self.loading.frame(contact, &iterate.state);
                 Mode::Slip { direction: self.direction(contact, &frame, iterate) }
             }

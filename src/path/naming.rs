@@ -1,6 +1,6 @@
 //! Where the MPEC names the mode: every increment of `method: "mpec"`, and its directions where a mode ends.
 
-use super::corner::agree;
+use super::corner::{self, agree};
 use super::decide::Choice;
 use super::program::{IncrementProgram, Named};
 use super::standing::ZERO;
@@ -43,7 +43,7 @@ impl Path<'_> {
     fn way_to_next_change(&self, modes: &[Mode], rate: &Rate) -> f64 {
         let (loading, state) = (self.loading(), &self.at.here.state);
         let forces = self.at.totals.force_scale;
-        watch::of_mode(loading, modes)
+        watch::of_mode(loading, modes, state, rate)
             .into_iter()
             .filter_map(|watch| {
                 let value = watch.value(loading, modes, state, rate);
@@ -83,6 +83,7 @@ impl Path<'_> {
     pub(super) fn confirmed_by_program(&mut self, options: &[Choice]) -> Vec<Option<bool>> {
         let state = self.at.here.state.clone();
         let mut confirmed = Vec::with_capacity(options.len());
+        let several = corner::has_indeterminate(self.loading(), &state);
         for option in options {
             let within = WITHIN * self.way_to_next_change(&option.modes, &option.rate);
             let mut step = (FIRST_TRIAL * self.at.step).min(within);
@@ -97,7 +98,8 @@ impl Path<'_> {
                     step *= 0.1;
                 }
             }
-            confirmed.push(agrees);
+            // Where reactions are not unique, those of the program may name another mode than the path's.
+            confirmed.push(agrees.filter(|agrees| *agrees || !several));
         }
         confirmed
     }

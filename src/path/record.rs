@@ -4,6 +4,7 @@ use super::contact_law;
 use super::decide::{Choice, is_worth_listing};
 use super::increment::{ContactState, Diagnostics, Direction, Energy, Increment, Point, Status};
 use super::loading::Loading;
+use super::pocket::free_directions;
 use super::scene::{Reported, Scene};
 use super::standing::ZERO;
 use super::state::State;
@@ -164,6 +165,7 @@ fn contact_rows(scene: &Scene, row: &Row<'_>, force_scale: f64) -> (Vec<ContactS
 fn held_by_too_many(loading: Loading<'_>, modes: &[Mode], contact: usize) -> bool {
     loading.corners.iter().filter(|corner| corner.contacts.contains(&contact)).any(|corner| {
         let parts: usize = corner.holding(modes).map(|one| 1 + loading.contacts[one].tangents()).sum();
-        parts > loading.structure.dimension && corner.holding(modes).any(|one| one == contact)
+        parts > free_directions(loading, loading.contacts[contact].node).len()
+            && corner.holding(modes).any(|one| one == contact)
     })
 }

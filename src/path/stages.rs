@@ -47,6 +47,7 @@ impl Path<'_> {
         let error_estimate = here.drift.as_ref().map_or(0.0, Rate::size);
         self.emit(Emitted {
             before: &state,
+            reactions: None,
             modes: &modes,
             step: 0.0,
             point,

@@ -1,7 +1,9 @@
 //! Which contacts could change at a point, and between what.
 
+use super::carried::Carried;
 use super::corner;
 use super::loading::Loading;
+use super::pocket::Pocket;
 use super::state::State;
 use super::track::direction_of;
 use crate::contact::vector::{Vector, dot, scaled, size};
@@ -16,12 +18,14 @@ pub enum Standing {
     OnCone { direction: Vector },
     /// At zero gap with zero reaction: anything may follow.
     Touching,
-    /// One of several closed contacts of a node whose force lies on a bound of the sum of their cones, or is zero: the
-    /// node may slide along one of them or leave.
+    /// One of several closed contacts of a node whose force lies on a bound of what holds it, or is zero: the node may
+    /// slide along one of them or leave.
     Cornered {
-        /// Which of the two bounds.
+        /// In the plane: which of the two bounds.
         facets: [bool; 2],
         unloaded: bool,
+        /// A force up to this size is none.
+        zero: f64,
     },
 }
 
@@ -32,16 +36,30 @@ pub const ZERO: f64 = 1e-10;
 pub fn standings(loading: Loading<'_>, state: &State, force_scale: f64) -> Vec<Standing> {
     let mut standings: Vec<Standing> =
         (0..loading.contacts.len()).map(|contact| standing(loading, state, contact, force_scale)).collect();
-    if loading.structure.dimension == 2 {
-        for corner in loading.corners {
-            let closed = corner.closed(loading, state);
-            if closed.len() > 1 && !corner::stand_alone(loading, &closed, state) {
-                let together = standing_of_corner(loading, state, &closed, force_scale);
-                closed.iter().for_each(|contact| standings[*contact] = together);
-            }
+    for corner in loading.corners {
+        let closed = corner.closed(loading, state);
+        if closed.len() > 1 && !corner::stand_alone(loading, &closed, state) {
+            let together = if corner::is_in_plane(loading, corner) {
+                standing_of_corner(loading, state, &closed, force_scale)
+            } else {
+                standing_in_pocket(loading, state, &closed, force_scale)
+            };
+            closed.iter().for_each(|contact| standings[*contact] = together);
         }
     }
     standings
+}
+
+fn standing_in_pocket(loading: Loading<'_>, state: &State, closed: &[usize], force_scale: f64) -> Standing {
+    let pocket = Pocket::new(loading, closed, state);
+    let force = pocket.force(loading, state);
+    let zero = ZERO * force_scale;
+    let unloaded = size(&force) <= zero;
+    if unloaded || pocket.is_driven || !pocket.ready(&force, zero).is_empty() {
+        Standing::Cornered { facets: [true; 2], unloaded, zero }
+    } else {
+        Standing::Settled(Mode::Stick)
+    }
 }
 
 fn standing_of_corner(loading: Loading<'_>, state: &State, closed: &[usize], force_scale: f64) -> Standing {
@@ -49,10 +67,13 @@ fn standing_of_corner(loading: Loading<'_>, state: &State, closed: &[usize], for
     let scale_at = |contact: &usize| loading.force_scale_at(*contact, state, force_scale);
     let zero = ZERO * closed.iter().map(scale_at).fold(0.0, f64::max);
     let unloaded = size(&force) <= zero;
-    let inward = corner::sector(loading, closed, state).inward;
+    if Carried::of(loading, closed, state).is_some() {
+        return Standing::Cornered { facets: [true; 2], unloaded, zero };
+    }
+    let inward = corner::sector(loading, closed, |_| Mode::Stick, state).inward;
     let facets = inward.map_or([false; 2], |inward| inward.map(|inward| dot(&inward, &force) <= zero));
     if unloaded || facets != [false; 2] {
-        Standing::Cornered { facets, unloaded }
+        Standing::Cornered { facets, unloaded, zero }
     } else {
         Standing::Settled(Mode::Stick)
     }

@@ -3,10 +3,12 @@
 use super::advance::{Reached, Refused, Start, Work};
 use super::arrival::SAME_STATE;
 use super::contact_law;
+use super::corner;
 use super::critical::{self, Crossing};
 use super::decide::{self, Before};
 use super::energy;
 use super::mode_system::ModeSystem;
+use super::pocket::Pocket;
 use super::root::find_root;
 use super::singular::{self, Change, Signature};
 use super::state::{Rate, State};
@@ -215,6 +217,8 @@ impl Path<'_> {
                     };
                     if step < least {
                         return Err(match refused {
+                            // Past the cones together of a node that no slide can free.
+                            Refused::Unlawful if self.is_held_beyond(&rate) => StopReason::NoDirection,
                             Refused::Unlawful => StopReason::ContactViolated,
                             _ => self.reason_of_underflow(),
                         });
@@ -222,6 +226,17 @@ impl Path<'_> {
                 }
             }
         }
+    }
+
+    /// Whether several obstacles hold some node by a force beyond the slides that leave them.
+    fn is_held_beyond(&self, rate: &Rate) -> bool {
+        let (loading, here) = (self.loading(), &self.at.here);
+        loading.corners.iter().any(|corner| {
+            let holding: Vec<usize> = corner.holding(&here.modes).collect();
+            !holding.is_empty()
+                && !corner::is_in_plane(loading, corner)
+                && !Pocket::new(loading, &holding, &here.state).keeps(loading, &here.state, rate)
+        })
     }
 
     /// Whether the mode cannot go on from the present point.

@@ -24,7 +24,8 @@ pub enum StopReason {
     /// The directions form a set of more than one dimension, so that none can be named.
     Degenerate,
     /// A node is closed against several obstacles in a way that is not available: with friction, or with more reactions
-    /// than its equilibrium tells apart, in space, on a support, or where the obstacles move against each other.
+    /// than its equilibrium tells apart, where it is driven against them or they move against each other (two planes in the
+    /// plane apart), or three or more meet in one edge with friction.
     CornerNotAvailable,
     /// No step of at least `arc_length.min` leads to a point that keeps to the laws of contact and friction.
     ContactViolated,
@@ -78,7 +79,8 @@ impl StopReason {
             Self::Degenerate => "the possible directions form a set of more than one dimension: none can be named",
             Self::CornerNotAvailable => {
                 "a node is closed against several obstacles at once, with friction or with more reactions than its \
-                 equilibrium tells apart, in space, on a support or while they move against each other, which is not available"
+                 equilibrium tells apart, while it is driven against them or they move against each other, or where three \
+                 meet in one edge, which is not available"
             }
             Self::ContactViolated => {
                 "no step of at least arc_length.min leads to a point that keeps to the laws of contact and friction"

@@ -70,7 +70,7 @@ impl Path<'_> {
         if ends.iter().any(|end| matches!(end, End::Increments(_))) {
             return None;
         }
-        let mut watches = watch::of_mode(loading, &here.modes);
+        let mut watches = watch::of_mode(loading, &here.modes, &here.state, rate);
         watches.extend(ends.iter().map(|end| Watch::End(*end)));
         let ahead = here.state.advanced(rate, 1.0);
         let mut nearest = f64::INFINITY;

@@ -3,13 +3,15 @@
 //! Between events the path keeps its contact mode and is followed by arc-length steps; where the mode ends, the
 //! directions are listed and one is taken. The step follows the turn of the path and the work of Newton's method.
 
+use super::carried::Carried;
 use super::contact_law;
-use super::corner::{taken_apart, total_force};
+use super::corner::{is_in_plane, taken_apart, total_force};
 use super::decide::{Choice, Decision, Rules};
 use super::follow::{Arriving, Listed};
 use super::increment::{Increment, Point, PointKind};
 use super::loading::Loading;
 use super::near::{self, FarContacts, Near};
+use super::pocket::taken_over;
 use super::progress::{Phase, Progress};
 use super::record::{self, Row};
 use super::report::Report;
@@ -20,6 +22,7 @@ use super::stepping::Accepted;
 use super::stop::{Outcome, StopReason};
 use crate::cancel::CancelFlag;
 use crate::contact::{Mode, Reaction};
+use std::borrow::Cow;
 use std::time::Instant;
 
 /// A path being traced.
@@ -102,10 +105,20 @@ impl<'a> Path<'a> {
         self.at.here.signature = None;
         self.at.here.load_sign = choice.load_sign;
         self.at.here.rate = Some(choice.rate.clone());
-        // A node that leaves a corner along one of its obstacles takes the whole force there.
+        // A node that leaves a corner along one of its obstacles, or slides along an edge, takes the whole force there.
         let (loading, state) = (self.loading(), &self.at.here.state);
         let mut moved: Vec<(usize, Reaction)> = Vec::new();
         for corner in loading.corners {
+            if !is_in_plane(loading, corner) {
+                moved.extend(taken_over(loading, corner, &choice.modes, state));
+                continue;
+            }
+            let closed = corner.closed(loading, state);
+            if let Some(carried) = Carried::of(loading, &closed, state) {
+                let force = total_force(loading, closed.iter().copied(), state);
+                moved.extend(closed.into_iter().zip(carried.reactions(loading, &choice.modes, &force, state)));
+                continue;
+            }
             let mut active = corner.contacts.iter().copied().filter(|contact| choice.modes[*contact].is_active());
             if let (Some(only), None) = (active.next(), active.next()) {
                 let force = total_force(loading, corner.contacts.iter().copied(), state);
@@ -135,6 +148,7 @@ impl<'a> Path<'a> {
         here.signature = accepted.signature;
         let arriving = Arriving { modes: here.modes.clone(), load_sign: here.load_sign, counts: self.at.counts };
         let at_bound = self.at_bound(&reached.rate);
+        let arrived = self.at.here.state.reactions.clone();
         let mut arrival = self.classify(reached.event, accepted.crossing, &reached.rate);
         if accepted.returned {
             arrival.stop = Some(StopReason::Cycle);
@@ -157,8 +171,13 @@ impl<'a> Path<'a> {
             let what = format!("stage \"{}\" ends", stage.name);
             point.event = Some(point.event.map_or(what.clone(), |event| format!("{event}; {what}")));
         }
+        // A contact that has just closed may take over from another: not yet where the increment ends.
+        let now = &self.at.here.state.reactions;
+        let taken_over =
+            modes.iter().zip(now).any(|(mode, reaction)| *mode == Mode::Free && *reaction != Reaction::default());
         let row = self.emit(Emitted {
             before: &before,
+            reactions: taken_over.then_some(arrived),
             modes: &modes,
             step: reached.step,
             point,
@@ -174,13 +193,17 @@ impl<'a> Path<'a> {
     }
 
     pub(super) fn emit(&mut self, emitted: Emitted<'_>) -> Increment {
+        let mut state = Cow::Borrowed(&self.at.here.state);
+        if let Some(reactions) = emitted.reactions {
+            state.to_mut().reactions = reactions;
+        }
         let row = Row {
             stage: self.at.stage,
             loading: self.loading(),
             whole: self.whole_loading(),
             places: self.near.places(),
             rows: self.near.rows(),
-            state: &self.at.here.state,
+            state: &state,
             before: emitted.before,
             modes: emitted.modes,
             step: emitted.step,
@@ -209,6 +232,8 @@ impl<'a> Path<'a> {
 /// What [`Path::emit`] cannot see in the path itself.
 pub(super) struct Emitted<'a> {
     pub before: &'a State,
+    /// Reactions at the end of the increment, where they are others than those with which the path goes on.
+    pub reactions: Option<Vec<Reaction>>,
     pub modes: &'a [Mode],
     pub step: f64,
     pub point: Point,

@@ -38,6 +38,8 @@ pub(super) struct Touch {
     pub velocities: [usize; 3],
     pub forces: [usize; 3],
     pub friction: f64,
+    /// Forms that are not negative while it slips: gaps of other obstacles of the node.
+    pub opening: Vec<usize>,
 }
 
 /// All rays along which a touching entity slips while the others take one of their options.
@@ -90,7 +92,13 @@ impl Touch {
     pub fn of(problem: &RateProblem, entity: usize, friction: f64) -> Option<Self> {
         let [stick, free] = &problem.entities[entity].options[..] else { return None };
         let three = |forms: &[usize]| <[usize; 3]>::try_from(forms).ok();
-        Some(Self { entity, velocities: three(&stick.zero)?, forces: three(&free.zero)?, friction })
+        Some(Self {
+            entity,
+            velocities: three(&stick.zero)?,
+            forces: three(&free.zero)?,
+            friction,
+            opening: Vec::new(),
+        })
     }
 
     /// The rays for one angle, and how far the traction is from the direction, over the size of the force rates.
@@ -137,7 +145,8 @@ impl Touch {
         let value = |form: usize| problem.forms.row(form).transpose().dot(&ray.weights);
         let along = value(self.velocities[1]) * angle.cos() + value(self.velocities[2]) * angle.sin();
         let size = (&problem.reactions * &ray.weights).amax().max(f64::MIN_POSITIVE);
-        along > ROOT && value(self.forces[0]) > ROOT * size
+        let opens = self.opening.iter().all(|gap| value(*gap) >= -ROOT);
+        along > ROOT && value(self.forces[0]) > ROOT * size && opens
     }
 
     fn keep(&self, found: &mut Vec<Turning>, problem: &RateProblem, ray: Ray, angle: f64) {

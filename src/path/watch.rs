@@ -9,6 +9,7 @@
 
 use super::corner;
 use super::loading::Loading;
+use super::pocket::Pocket;
 use super::scene::End;
 use super::state::{Rate, State};
 use super::track::direction_of;
@@ -26,7 +27,8 @@ pub enum Watch {
         side: f64,
     },
     Sliding(usize),
-    /// The force on a node that several contacts hold, off a bound of the sum of their cones.
+    /// The force on a node that several contacts hold, off a bound of the sum of their cones; in space, or guided, off all
+    /// bounds of what holds it (side 0).
     Facet {
         corner: usize,
         side: usize,
@@ -37,15 +39,19 @@ pub enum Watch {
     End(End),
 }
 
-/// Everything that ends a mode.
-pub fn of_mode(loading: Loading<'_>, modes: &[Mode]) -> Vec<Watch> {
+/// Everything that ends a mode which goes on from a state along a rate.
+pub fn of_mode(loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate) -> Vec<Watch> {
     let mut watches = Vec::new();
     let mut together = Vec::new();
     for (corner, data) in loading.corners.iter().enumerate() {
         let before = together.len();
         together.extend(data.holding(modes));
         if together.len() > before {
-            watches.extend([0, 1].map(|side| Watch::Facet { corner, side }));
+            if corner::is_in_plane(loading, data) {
+                watches.extend([0, 1].map(|side| Watch::Facet { corner, side }));
+            } else if Pocket::new(loading, &together[before..], state).keeps(loading, state, rate) {
+                watches.push(Watch::Facet { corner, side: 0 });
+            }
         }
     }
     for (contact, mode) in modes.iter().enumerate() {
@@ -57,7 +63,10 @@ pub fn of_mode(loading: Loading<'_>, modes: &[Mode]) -> Vec<Watch> {
             }
             Mode::Stick => watches.extend([1.0, -1.0].map(|side| Watch::Cone { contact, side })),
             Mode::Slip { .. } => {
-                watches.push(Watch::Normal(contact));
+                // Of a node that sticks to another obstacle it is a share of the whole.
+                if !together.contains(&contact) {
+                    watches.push(Watch::Normal(contact));
+                }
                 if loading.contacts[contact].tangents() > 0 {
                     watches.push(Watch::Sliding(contact));
                 }
@@ -100,8 +109,14 @@ impl Watch {
             }
             Self::Facet { corner, side } => {
                 let holding: Vec<usize> = loading.corners[corner].holding(modes).collect();
+                if !corner::is_in_plane(loading, &loading.corners[corner]) {
+                    let pocket = Pocket::new(loading, &holding, state);
+                    return pocket.margin(&pocket.force(loading, state));
+                }
                 // No bound: the node is jammed.
-                let Some(inward) = corner::sector(loading, &holding, state).inward else { return f64::INFINITY };
+                let Some(inward) = corner::sector(loading, &holding, |contact| modes[contact], state).inward else {
+                    return f64::INFINITY;
+                };
                 dot(&inward[side], &corner::total_force(loading, holding.into_iter(), state))
             }
             Self::LoadRate { sign } => sign * rate.load,
