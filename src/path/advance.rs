@@ -288,11 +288,7 @@ impl Start<'_> {
         };
         let system = ModeSystem::new(self.loading, self.modes, self.state);
         let mut exact = self.settle(system, reached.corrected.state, place, work)?;
-        match end {
-            End::Load { bound, .. } => exact.corrected.state.load = bound,
-            End::Displacement { freedom, bound, .. } => exact.corrected.state.displacement[freedom] = bound,
-            End::LimitPoints(_) | End::ContactChanges(_) | End::Increments(_) => {}
-        }
+        end.make_exact(&mut exact.corrected.state);
         Ok(exact)
     }
 }

@@ -2,8 +2,9 @@
 
 use super::advance::{Reached, Refused, Start, Work};
 use super::arrival::SAME_STATE;
+use super::bound;
 use super::contact_law;
-use super::critical::{self, Crossing};
+use super::critical::{self, Crossing, Located};
 use super::decide::{self, Before};
 use super::energy;
 use super::mode_system::ModeSystem;
@@ -83,7 +84,7 @@ fn crossing_when_loose(
     if change == Change::None {
         return None;
     }
-    let (mut point, crossing) = critical::locate(&loosened, before, change, &end, work)?;
+    let Located { mut point, crossing, .. } = critical::locate(&loosened, before, change, &end, work)?;
     if point.step >= reached.step || crossing.eigenvalues == 0 {
         return None;
     }
@@ -120,7 +121,7 @@ fn crossing_in_mode(
         return Ok((reached, None, after));
     }
     match critical::locate(start, before, change, &reached, work) {
-        Some((mut point, crossing)) if point.step < reached.step || crossing.eigenvalues == 0 => {
+        Some(Located { mut point, crossing, .. }) if point.step < reached.step || crossing.eigenvalues == 0 => {
             point.corrected.iterations_to_small = reached.corrected.iterations_to_small;
             Ok((point, Some(crossing), Some(crossing.after)))
         }
@@ -158,17 +159,24 @@ impl Path<'_> {
             let mut work = self.at.totals.work;
             let ends = &self.scene.stages[self.at.stage].ends;
             let outcome = start.advance(step, ends, self.at.here.load_sign, &mut work);
+            let is_lost = match &outcome {
+                Ok(reached) => matches!(reached.event, Some(Watch::End(_))) && reached.determinant.is_none(),
+                Err(refused) => matches!(refused, Refused::Newton(_)),
+            };
+            let sign = self.at.here.load_sign;
+            let ended = is_lost.then(|| bound::beside_singular(&start, step, ends, sign, known, &mut work)).flatten();
             let back = outcome.as_ref().ok().and_then(|reached| self.way_back(&start, reached, &mut work));
-            let outcome = match (outcome, back) {
-                (Ok(_), Some(back)) => Ok((back, None, None, true)),
-                (Ok(reached), None) => {
+            let outcome = match (outcome, back, ended) {
+                (Ok(_), Some(back), _) => Ok((back, None, None, true)),
+                (_, _, Some((reached, crossing, signature))) => Ok((reached, crossing, signature, false)),
+                (Ok(reached), None, None) => {
                     let before =
                         known.or_else(|| Signature::at(start.loading, start.modes, start.state, &rate, &mut work));
                     known = before;
                     first_crossing(&start, before, reached, unresolved < MOST_UNRESOLVED, &mut work)
                         .map(|(reached, crossing, signature)| (reached, crossing, signature, false))
                 }
-                (Err(refused), _) => Err(refused),
+                (Err(refused), ..) => Err(refused),
             };
             let outcome = outcome.and_then(|point| {
                 let corrected = &point.0.corrected;
