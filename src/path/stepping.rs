@@ -144,10 +144,6 @@ impl Path<'_> {
                 return Err(StopReason::Cancelled);
             }
             let Some(rate) = self.at.here.rate.clone() else { return Err(StopReason::NoDirection) };
-            let named_as_kept = match self.scene.analysis.method {
-                Method::Mpec if !self.scene.contacts.is_empty() => Some(self.program_keeps_mode(&rate, step)),
-                Method::Mpec | Method::Auto | Method::Regularised => None,
-            };
             let start = Start {
                 loading: self.loading(),
                 state: &self.at.here.state,
@@ -189,10 +185,12 @@ impl Path<'_> {
                 Ok((reached, crossing, signature, returned)) => {
                     let mut accepted = self.balance(&rate, reached);
                     (accepted.crossing, accepted.signature, accepted.returned) = (crossing, signature, returned);
-                    // Where the mode ends inside the step, the program names the next one, from there.
-                    accepted.mode_named = named_as_kept.map(|kept| kept || accepted.reached.event.is_some());
                     let factor = self.next_step_factor(&rate, &accepted, step);
                     if factor > REJECTED || step * factor < least {
+                        // Where the mode ends inside the step, the program names the next one, from there.
+                        accepted.mode_named = self
+                            .is_named_by_program()
+                            .then(|| self.program_keeps_mode(&rate, step) || accepted.reached.event.is_some());
                         self.at.step = (step * factor).clamp(least, most);
                         return Ok(accepted);
                     }
@@ -200,7 +198,7 @@ impl Path<'_> {
                 }
                 Err(Refused::AtStart(watch)) if watch.is_of_contact() && self.mode_ends_here(&rate) => {
                     let mut accepted = self.balance(&rate, self.without_step(watch, &rate));
-                    accepted.mode_named = named_as_kept.map(|_| true);
+                    accepted.mode_named = self.is_named_by_program().then_some(true);
                     return Ok(accepted);
                 }
                 Err(Refused::Unresolved) => {
@@ -222,6 +220,11 @@ impl Path<'_> {
                 }
             }
         }
+    }
+
+    /// Whether the program of each increment is asked to name its mode.
+    fn is_named_by_program(&self) -> bool {
+        self.scene.analysis.method == Method::Mpec && !self.scene.contacts.is_empty()
     }
 
     /// Whether the mode cannot go on from the present point.
