@@ -209,7 +209,8 @@ impl Start<'_> {
     /// A contact quantity that has fallen to zero at the point reached.
     fn coinciding(&self, watches: &[Watch], reached: &Reached) -> Option<Watch> {
         watches.iter().copied().find(|watch| {
-            let scale = COINCIDING * watch.scale(self.force_scale.max(reached.corrected.force_scale));
+            let forces = self.force_scale.max(reached.corrected.force_scale);
+            let scale = watch.zero_within(self.loading, COINCIDING, forces);
             let last = self.value(*watch, &reached.corrected.state, &reached.rate);
             watch.is_of_contact() && last <= scale && self.value(*watch, self.state, self.rate) > scale
         })

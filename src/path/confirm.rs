@@ -155,7 +155,7 @@ impl Trial<'_> {
                 None => (0.0, 1.0),
                 Some(slope) => (slope, watch.scale(rates)),
             };
-            if first > IN_DOUBT * scale || tendency > IN_DOUBT * size {
+            if first > watch.zero_within(loading, IN_DOUBT, forces) || tendency > IN_DOUBT * size {
                 continue;
             }
             let last = watch.value(loading, modes, &corrected.state, &rate) / scale;

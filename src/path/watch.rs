@@ -10,6 +10,7 @@
 use super::corner;
 use super::loading::Loading;
 use super::scene::End;
+use super::standing::none_from_cone;
 use super::state::{Rate, State};
 use super::track::direction_of;
 use crate::contact::vector::{Vector, add, dot, scaled};
@@ -148,6 +149,14 @@ impl Watch {
         match self {
             Self::Normal(_) | Self::Cone { .. } | Self::Facet { .. } => force_scale,
             Self::Gap(_) | Self::Sliding(_) | Self::LoadRate { .. } | Self::End(_) => 1.0,
+        }
+    }
+
+    /// The value that is zero as far as a relative tolerance tells.
+    pub fn zero_within(self, loading: Loading<'_>, tolerance: f64, force_scale: f64) -> f64 {
+        match self {
+            Self::Cone { contact, .. } => none_from_cone(loading.contacts[contact].friction, tolerance, force_scale),
+            _ => tolerance * self.scale(force_scale),
         }
     }
 
