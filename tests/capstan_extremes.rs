@@ -45,3 +45,29 @@ fn a_chain_of_two_slides_off_where_its_friction_is_used_up() {
         close(first / friction, 4.0, 40.0 * friction + 1e-5, &format!("{friction}"));
     }
 }
+
+/// Close to jamming (μ near `cot δ/2`) from a start that touches without reaction: behind the first node the tension is
+/// `(cos δ/2 - μ sin δ/2)/(cos δ/2 + μ sin δ/2)` of the pull, and as much less again behind the next.
+#[test]
+fn chains_close_to_jamming_are_held() {
+    for (n, parts) in [(6, vec![0.9, 0.99, 0.998, 0.9995, 0.9999, 0.999999]), (8, vec![0.99, 0.998, 0.999, 0.9995])] {
+        let half = 0.5 * std::f64::consts::PI / f64::from(n);
+        for part in parts {
+            let friction = part / half.tan();
+            let what = format!("n {n}, {part} of the friction that jams it");
+            let mut request = capstan(n as usize, friction, STIFFNESS, 1e-3);
+            request.model.stages.truncate(1);
+            let (increments, report) = trace(&request);
+            assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{what}");
+            let last = increments.last().expect("an end");
+            let [first, second] = ["node0", "node1"].map(|node| &request.model.nodes[node]);
+            let moved = ["node0", "node1"].map(|node| &last.displacements[node]);
+            let rest = [second[0] - first[0], second[1] - first[1]];
+            let change = [moved[1][0] - moved[0][0], moved[1][1] - moved[0][1]];
+            let squared = rest[0] * rest[0] + rest[1] * rest[1];
+            let strain = (0..2).map(|k| (rest[k] + 0.5 * change[k]) * change[k]).sum::<f64>() / squared;
+            // The nodes have moved by up to 1e-4, which turns the end forces against their tangents.
+            close(STIFFNESS * strain, (1.0 - part) / (1.0 + part), 2e-4 * (1.0 - part).max(1e-5), &what);
+        }
+    }
+}

@@ -210,7 +210,7 @@ impl Start<'_> {
     fn coinciding(&self, watches: &[Watch], reached: &Reached) -> Option<Watch> {
         watches.iter().copied().find(|watch| {
             let forces = self.force_scale.max(reached.corrected.force_scale);
-            let scale = watch.zero_within(self.loading, COINCIDING, forces);
+            let scale = watch.zero_within(self.loading, &reached.corrected.state, COINCIDING, forces);
             let last = self.value(*watch, &reached.corrected.state, &reached.rate);
             watch.is_of_contact() && last <= scale && self.value(*watch, self.state, self.rate) > scale
         })

@@ -152,10 +152,13 @@ impl Watch {
         }
     }
 
-    /// The value that is zero as far as a relative tolerance tells.
-    pub fn zero_within(self, loading: Loading<'_>, tolerance: f64, force_scale: f64) -> f64 {
+    /// The value at a state that is zero as far as a relative tolerance tells.
+    pub fn zero_within(self, loading: Loading<'_>, state: &State, tolerance: f64, force_scale: f64) -> f64 {
         match self {
-            Self::Cone { contact, .. } => none_from_cone(loading.contacts[contact].friction, tolerance, force_scale),
+            Self::Cone { contact, .. } => {
+                let bound = loading.contacts[contact].friction * state.reactions[contact].normal;
+                none_from_cone(bound, tolerance, force_scale)
+            }
             _ => tolerance * self.scale(force_scale),
         }
     }
