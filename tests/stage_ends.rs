@@ -9,7 +9,7 @@ use arcslip::path::increment::PointKind;
 use arcslip::path::{Increment, Path, Scene, StopReason, TracedPath};
 use common::generators::slider_chain;
 use common::paths::{request, scene, trace};
-use serde_json::json;
+use serde_json::{Value, json};
 
 /// Steps that end exactly at the bound: the first step, and many equal ones.
 #[test]
@@ -182,5 +182,79 @@ fn a_count_of_contact_changes_ends_the_slider_chain() {
                 assert!((moved - force / stiffness).abs() < 1e-12, "{m}: {moved}");
             }
         }
+    }
+}
+
+/// Nodes on unit springs with a bar of EA = 1 between them, `s` along the bar: compression `s/3`, sideways stiffness
+/// `1 - 2 (s/3)/(1 - s/3)`, which is zero at s = 1. Newton's method is singular where the stage ends.
+fn pressed_bar(until: Value) -> Value {
+    let spring = |node: &str| json!({"kind": "spring", "nodes": [node], "stiffness": [[1, 0], [0, 1]]});
+    json!({"model": {
+        "name": "pressed bar", "dimension": 2, "nodes": {"n0": [0, 0], "n1": [1, 0]},
+        "elements": [{"kind": "bar", "nodes": ["n0", "n1"], "axial_stiffness": 1}, spring("n0"), spring("n1")],
+        "stages": [{"name": "press", "forces": {"n0": [1, 0]}, "until": until}]
+    }})
+}
+
+/// In space, straight up under a load; held sideways in the middle alike in all directions, two eigenvalues cross at
+/// `s = k/(2 + k/10)` (`smooth_bifurcations`).
+fn column(bound: f64) -> Value {
+    json!({"model": {
+        "name": "column", "dimension": 3, "nodes": {"base": [0, 0, 0], "mid": [0, 0, 1], "top": [0, 0, 2]},
+        "supports": {"base": ["x", "y", "z"], "top": ["x", "y"]},
+        "elements": [
+            {"kind": "bar", "nodes": ["base", "mid"], "axial_stiffness": 10},
+            {"kind": "bar", "nodes": ["mid", "top"], "axial_stiffness": 10},
+            {"kind": "spring", "nodes": ["mid"], "stiffness": [[0.2, 0, 0], [0, 0.2, 0], [0, 0, 0]]}],
+        "stages": [{"name": "press", "forces": {"top": [0, 0, -1]}, "until": {"load_above": bound}}]
+    }})
+}
+
+/// A bound at a smooth bifurcation or beside it: the stage ends there exactly, and the bifurcation is a point of the path
+/// unless the bound comes first.
+#[test]
+fn a_bound_at_a_smooth_bifurcation_ends_the_stage() {
+    for distance in [0.0, 1e-15, 1e-13, 1e-12, 3e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-6, 1e-4] {
+        for past in [distance, -distance] {
+            let bound = 1.0 + past;
+            // The load is 3/2 of the first node's displacement.
+            let by_displacement = json!({"displacement": {"node": "n0", "component": "x", "above": 2.0 / 3.0 * bound}});
+            for (until, method) in [
+                (json!({"load_above": bound}), "auto"),
+                (json!({"load_above": bound}), "mpec"),
+                (by_displacement, "auto"),
+            ] {
+                let what = format!("{past:e}, {until}, {method}");
+                let by_load = until.get("load_above").is_some();
+                let mut model = pressed_bar(until);
+                model["analysis"] = json!({"method": method});
+                let (increments, report) = trace(&request(&model.to_string()));
+                assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{what}");
+                let last = increments.last().expect("an end");
+                assert!((last.load_factor - bound).abs() <= if by_load { 0.0 } else { 1e-14 }, "{what}");
+                let found: Vec<_> =
+                    increments.iter().filter(|i| i.point.kind == PointKind::SmoothBifurcation).collect();
+                // What is within 1e-12 is one point.
+                if past > -1e-13 {
+                    assert_eq!(found.len(), 1, "{what}");
+                    assert!((found[0].load_factor - 1.0).abs() <= 3e-12, "{what}: {}", found[0].load_factor);
+                    assert_eq!(found[0].directions.as_ref().map(Vec::len), Some(4), "{what}");
+                } else if past < -3e-12 {
+                    assert!(found.is_empty(), "{what}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_bound_at_a_double_bifurcation_ends_the_stage() {
+    for past in [0.0, 1e-11, -1e-11, 1e-9, -1e-9] {
+        let bound = 0.2 / 2.02 + past;
+        let (increments, report) = trace(&request(&column(bound).to_string()));
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{past:e}");
+        assert_eq!(increments.last().map(|i| i.load_factor), Some(bound), "{past:e}");
+        let found = increments.iter().filter(|i| i.point.kind == PointKind::SmoothBifurcation).count();
+        assert_eq!(found, usize::from(past >= 0.0), "{past:e}");
     }
 }

@@ -242,7 +242,8 @@ impl Start<'_> {
     /// A contact quantity that has fallen to zero at the point reached.
     fn coinciding(&self, watches: &[Watch], reached: &Reached) -> Option<Watch> {
         watches.iter().copied().filter(|watch| watch.is_of_contact()).find(|watch| {
-            let scale = COINCIDING * self.scale(*watch, reached);
+            let forces = self.force_scale.max(reached.corrected.force_scale);
+            let scale = watch.zero_within(self.loading, &reached.corrected.state, COINCIDING, forces);
             let last = self.value(*watch, &reached.corrected.state, &reached.rate);
             last <= scale && self.value(*watch, self.state, self.rate) > scale
         })
@@ -324,11 +325,7 @@ impl Start<'_> {
         };
         let system = ModeSystem::new(self.loading, self.modes, self.state);
         let mut exact = self.settle(system, reached.corrected.state, place, work)?;
-        match end {
-            End::Load { bound, .. } => exact.corrected.state.load = bound,
-            End::Displacement { freedom, bound, .. } => exact.corrected.state.displacement[freedom] = bound,
-            End::LimitPoints(_) | End::ContactChanges(_) | End::Increments(_) => {}
-        }
+        end.make_exact(&mut exact.corrected.state);
         Ok(exact)
     }
 }

@@ -22,8 +22,10 @@ use std::collections::BTreeSet;
 const TRIAL_STEPS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
 /// Quantities and slopes below this are zero at first order.
 const IN_DOUBT: f64 = 1e-8;
-/// Slopes of forces beyond this after a trial step have a sign (their round-off is a thousand times smaller).
+/// Slopes of forces beyond this after a trial step have a sign, relative to the contact's own forces ...
 const CLEAR: f64 = 1e-9;
+/// ... but no less than their round-off relative to the largest.
+const CLEAR_OF_ROUND_OFF: f64 = 5e-14;
 /// The same of velocities, against the node's own: what is less leaves a gap within round-off over the whole path.
 const CLEAR_OF_SPEED: f64 = 1e-13;
 /// Round-off of a velocity (of unit arc length).
@@ -156,7 +158,7 @@ impl Trial<'_> {
                 Some(slope) if watch.is_of_forces() => (slope, rates * (scale / forces)),
                 Some(slope) => (slope, 1.0),
             };
-            if first > IN_DOUBT * scale || tendency > IN_DOUBT * size {
+            if first > watch.zero_within(loading, state, IN_DOUBT, forces) || tendency > IN_DOUBT * size {
                 continue;
             }
             let last = watch.value(loading, modes, &corrected.state, &rate) / scale;
@@ -166,11 +168,12 @@ impl Trial<'_> {
                 Watch::Gap(contact) | Watch::Sliding(contact) => {
                     STILL + CLEAR_OF_SPEED * size_of(&loading.relative_rate(contact, &rate))
                 }
-                Watch::Normal(_)
-                | Watch::Cone { .. }
-                | Watch::Facet { .. }
-                | Watch::LoadRate { .. }
-                | Watch::End(_) => CLEAR,
+                // By the contact's own forces: along a chain close to jamming they fall by orders from node to node.
+                Watch::Normal(contact) | Watch::Cone { contact, .. } => {
+                    let own = candidate.rate.reactions[contact].size().max(rate.reactions[contact].size());
+                    (CLEAR * own / size).max(CLEAR_OF_ROUND_OFF)
+                }
+                Watch::Facet { .. } | Watch::LoadRate { .. } | Watch::End(_) => CLEAR,
             };
             if last < -TRIAL_TOLERANCE || grown < -clear {
                 culprits.extend(contacts_of(loading, watch));

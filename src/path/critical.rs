@@ -26,7 +26,7 @@ pub struct Crossing {
 }
 
 /// Distances of the regular points, over the step.
-const WIDTHS: [f64; 4] = [2e-2, 4e-3, 1e-3, 2e-4];
+pub(super) const WIDTHS: [f64; 4] = [2e-2, 4e-3, 1e-3, 2e-4];
 /// Parts of a bracket at which it may begin.
 const AHEAD: [f64; 4] = [0.0, 1e-4, 1e-3, 1e-2];
 /// Residual at which closer points gain nothing.
@@ -39,11 +39,18 @@ const TOGETHER: f64 = 1e-10;
 
 /// A point on the path with its place: the distance from the start of the step.
 #[derive(Clone)]
-struct Placed {
-    place: f64,
-    state: State,
+pub(super) struct Placed {
+    pub place: f64,
+    pub state: State,
     /// Derivative by `place`.
-    rate: Rate,
+    pub rate: Rate,
+}
+
+/// A crossing with the regular points between which it was found.
+pub(super) struct Located {
+    pub point: Reached,
+    pub crossing: Crossing,
+    pub between: Option<[Placed; 2]>,
 }
 
 /// Finds the first crossing of a step, whose start has the signature `before`. `None` where none can be made out.
@@ -53,12 +60,13 @@ pub fn locate(
     change: Change,
     reached: &Reached,
     work: &mut Work,
-) -> Option<(Reached, Crossing)> {
+) -> Option<Located> {
     let system = ModeSystem::new(start.loading, start.modes, start.state);
     if system.has_tracks()
         && let Some(point) = folded::locate(start, reached)
     {
-        return Some((point, Crossing { eigenvalues: 0, grazing: false, after: before }));
+        let crossing = Crossing { eigenvalues: 0, grazing: false, after: before };
+        return Some(Located { point, crossing, between: None });
     }
     let origin = Placed { place: 0.0, state: start.state.clone(), rate: start.rate.clone() };
     let end = placed(start, reached);
@@ -79,7 +87,7 @@ pub fn locate(
     };
     let (mut left, mut right) = (origin.clone(), end.clone());
     let mut root = root_between(&left, &right, &value)?;
-    let mut best: Option<(f64, Reached, Crossing)> = None;
+    let mut best: Option<(f64, Located)> = None;
     let mut previous: Option<State> = None;
     let mut error = end.place.powi(4);
     for width in WIDTHS {
@@ -116,7 +124,7 @@ pub fn locate(
         };
         let crossing = Crossing { eigenvalues, grazing: false, after: before.past(change, eigenvalues)? };
         let step = corrected.state.distance(start.state);
-        let found = Reached {
+        let point = Reached {
             corrected,
             rate,
             step,
@@ -125,13 +133,13 @@ pub fn locate(
             event: None,
             determinant: None,
         };
-        best = Some((residual, found, crossing));
+        best = Some((residual, Located { point, crossing, between: Some([left.clone(), right.clone()]) }));
         if residual <= GOOD {
             break;
         }
     }
-    let (residual, found, crossing) = best?;
-    (residual <= ACCEPTED_RESIDUAL).then_some((found, crossing))
+    let (residual, located) = best?;
+    (residual <= ACCEPTED_RESIDUAL).then_some(located)
 }
 
 /// Eigenvalues of the reduced tangent, the smallest first.
@@ -166,7 +174,7 @@ fn root_between(left: &Placed, right: &Placed, value: &impl Fn(&State, &Rate) ->
     (last < 0.0).then(|| find_root(evaluate, first, (right.place, last), 0.0))?
 }
 
-fn placed(start: &Start<'_>, reached: &Reached) -> Placed {
+pub(super) fn placed(start: &Start<'_>, reached: &Reached) -> Placed {
     let place = reached.corrected.state.distance(start.state);
     let cosine = start.state.angle_of_chord(&reached.corrected.state, &reached.rate).cos();
     let mut rate = reached.rate.clone();
@@ -174,7 +182,7 @@ fn placed(start: &Start<'_>, reached: &Reached) -> Placed {
     Placed { place, state: reached.corrected.state.clone(), rate }
 }
 
-fn unit(rate: &Rate) -> Rate {
+pub(super) fn unit(rate: &Rate) -> Rate {
     let mut rate = rate.clone();
     let size = rate.size();
     if size > 0.0 {
@@ -184,7 +192,7 @@ fn unit(rate: &Rate) -> Rate {
 }
 
 /// The cubic Hermite interpolant and its derivative.
-fn between(left: &Placed, right: &Placed, place: f64) -> (State, Rate) {
+pub(super) fn between(left: &Placed, right: &Placed, place: f64) -> (State, Rate) {
     let width = right.place - left.place;
     if width <= 0.0 {
         return (left.state.clone(), left.rate.clone());

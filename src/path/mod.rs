@@ -12,6 +12,7 @@
 //! | `track`, `drift` | slip in a plane: its rule of fourth order; the error that is left |
 //! | `watch`, `root`, `advance` | what ends a mode; one step, ended exactly at the first event |
 //! | `singular`, `critical`, `branches` | whether a step passes a smooth bifurcation; where; which directions leave it |
+//! | `bound` | a bound of the stage at or beside a smooth bifurcation |
 //! | `folded` | points of slip in a plane at which the direction is not determined |
 //! | `standing`, `directions`, `condensed` | which contacts can change; every direction |
 //! | `combinations` | one of each of several lists, in one order |
@@ -26,6 +27,7 @@
 
 mod advance;
 mod arrival;
+mod bound;
 mod branches;
 mod carried;
 mod changeable;

@@ -10,6 +10,7 @@
 use super::corner::Corner;
 use super::loading::LoadPattern;
 use super::plan::{LeftOut, Plan};
+use super::state::State;
 use crate::contact::obstacle::Obstacle;
 use crate::contact::vector::{Vector, size};
 use crate::contact::{Contact, Sliding};
@@ -101,6 +102,22 @@ pub(super) enum End {
     LimitPoints(u64),
     ContactChanges(u64),
     Increments(u64),
+}
+
+impl End {
+    /// Whether it is a bound of the load or of a displacement, not a count.
+    pub fn is_bound(self) -> bool {
+        matches!(self, Self::Load { .. } | Self::Displacement { .. })
+    }
+
+    /// Puts a state that meets a bound to round-off exactly there.
+    pub fn make_exact(self, state: &mut State) {
+        match self {
+            Self::Load { bound, .. } => state.load = bound,
+            Self::Displacement { freedom, bound, .. } => state.displacement[freedom] = bound,
+            Self::LimitPoints(_) | Self::ContactChanges(_) | Self::Increments(_) => {}
+        }
+    }
 }
 
 /// Contacts closer than this (dimensionless) count as closed when the supports are judged.

@@ -32,6 +32,15 @@ pub enum Standing {
 /// A gap (dimensionless) or a reaction (over the force scale) of this size is zero.
 pub const ZERO: f64 = 1e-10;
 
+/// A distance from the friction cone (over the force scale) that may be round-off: what an event's location leaves.
+const ROUND_OFF: f64 = 1e-12;
+
+/// The distance from a contact's cone that counts as none, for a relative tolerance: by the friction bound `μ r_n` itself,
+/// but no less than round-off and no more than by the forces.
+pub fn none_from_cone(bound: f64, tolerance: f64, force_scale: f64) -> f64 {
+    (tolerance * bound.abs().min(force_scale)).max(ROUND_OFF * force_scale)
+}
+
 /// Standing of every contact.
 pub fn standings(loading: Loading<'_>, state: &State, force_scale: f64) -> Vec<Standing> {
     let mut standings: Vec<Standing> =
@@ -88,7 +97,9 @@ fn standing(loading: Loading<'_>, state: &State, index: usize, force_scale: f64)
     if contact.tangents() == 0 {
         return Standing::Settled(Mode::Slip { direction: [0.0; 3] });
     }
-    if contact.friction * reaction.normal - reaction.tangential_size() > zero() {
+    let bound = contact.friction * reaction.normal;
+    let forces = loading.force_scale_at(index, state, force_scale);
+    if bound - reaction.tangential_size() > none_from_cone(bound, ZERO, forces) {
         return Standing::Settled(Mode::Stick);
     }
     let direction = match contact.sliding {

@@ -2,9 +2,10 @@
 
 use super::advance::{Reached, Refused, Start, Work};
 use super::arrival::SAME_STATE;
+use super::bound;
 use super::contact_law;
 use super::corner;
-use super::critical::{self, Crossing};
+use super::critical::{self, Crossing, Located};
 use super::decide::{self, Before};
 use super::energy;
 use super::mode_system::ModeSystem;
@@ -87,7 +88,7 @@ fn crossing_when_loose(
     if change == Change::None {
         return None;
     }
-    let (mut point, crossing) = critical::locate(&loosened, before, change, &end, work)?;
+    let Located { mut point, crossing, .. } = critical::locate(&loosened, before, change, &end, work)?;
     if point.step >= reached.step || crossing.eigenvalues == 0 {
         return None;
     }
@@ -124,7 +125,7 @@ fn crossing_in_mode(
         return Ok((reached, None, after));
     }
     match critical::locate(start, before, change, &reached, work) {
-        Some((mut point, crossing)) if point.step < reached.step || crossing.eigenvalues == 0 => {
+        Some(Located { mut point, crossing, .. }) if point.step < reached.step || crossing.eigenvalues == 0 => {
             point.corrected.iterations_to_small = reached.corrected.iterations_to_small;
             Ok((point, Some(crossing), Some(crossing.after)))
         }
@@ -148,10 +149,6 @@ impl Path<'_> {
                 return Err(StopReason::Cancelled);
             }
             let Some(rate) = self.at.here.rate.clone() else { return Err(StopReason::NoDirection) };
-            let named_as_kept = match self.scene.analysis.method {
-                Method::Mpec if !self.scene.contacts.is_empty() => Some(self.program_keeps_mode(&rate, step)),
-                Method::Mpec | Method::Auto | Method::Regularised => None,
-            };
             let start = Start {
                 loading: self.loading(),
                 state: &self.at.here.state,
@@ -163,17 +160,24 @@ impl Path<'_> {
             let mut work = self.at.totals.work;
             let ends = &self.scene.stages[self.at.stage].ends;
             let outcome = start.advance(step, ends, self.at.here.load_sign, &mut work);
+            let is_lost = match &outcome {
+                Ok(reached) => matches!(reached.event, Some(Watch::End(_))) && reached.determinant.is_none(),
+                Err(refused) => matches!(refused, Refused::Newton(_)),
+            };
+            let sign = self.at.here.load_sign;
+            let ended = is_lost.then(|| bound::beside_singular(&start, step, ends, sign, known, &mut work)).flatten();
             let back = outcome.as_ref().ok().and_then(|reached| self.way_back(&start, reached, &mut work));
-            let outcome = match (outcome, back) {
-                (Ok(_), Some(back)) => Ok((back, None, None, true)),
-                (Ok(reached), None) => {
+            let outcome = match (outcome, back, ended) {
+                (Ok(_), Some(back), _) => Ok((back, None, None, true)),
+                (_, _, Some((reached, crossing, signature))) => Ok((reached, crossing, signature, false)),
+                (Ok(reached), None, None) => {
                     let before =
                         known.or_else(|| Signature::at(start.loading, start.modes, start.state, &rate, &mut work));
                     known = before;
                     first_crossing(&start, before, reached, unresolved < MOST_UNRESOLVED, &mut work)
                         .map(|(reached, crossing, signature)| (reached, crossing, signature, false))
                 }
-                (Err(refused), _) => Err(refused),
+                (Err(refused), ..) => Err(refused),
             };
             let outcome = outcome.and_then(|point| {
                 let corrected = &point.0.corrected;
@@ -186,10 +190,12 @@ impl Path<'_> {
                 Ok((reached, crossing, signature, returned)) => {
                     let mut accepted = self.balance(&rate, reached);
                     (accepted.crossing, accepted.signature, accepted.returned) = (crossing, signature, returned);
-                    // Where the mode ends inside the step, the program names the next one, from there.
-                    accepted.mode_named = named_as_kept.map(|kept| kept || accepted.reached.event.is_some());
                     let factor = self.next_step_factor(&rate, &accepted, step);
                     if factor > REJECTED || step * factor < least {
+                        // Where the mode ends inside the step, the program names the next one, from there.
+                        accepted.mode_named = self
+                            .is_named_by_program()
+                            .then(|| self.program_keeps_mode(&rate, step) || accepted.reached.event.is_some());
                         if jump != Some(step) {
                             self.at.step = (step * factor).clamp(least, most);
                         }
@@ -199,7 +205,7 @@ impl Path<'_> {
                 }
                 Err(Refused::AtStart(watch)) if watch.is_of_contact() && self.mode_ends_here(&rate) => {
                     let mut accepted = self.balance(&rate, self.without_step(watch, &rate));
-                    accepted.mode_named = named_as_kept.map(|_| true);
+                    accepted.mode_named = self.is_named_by_program().then_some(true);
                     return Ok(accepted);
                 }
                 Err(Refused::Unresolved) => {
@@ -237,6 +243,11 @@ impl Path<'_> {
                 && !corner::is_in_plane(loading, corner)
                 && !Pocket::new(loading, &holding, &here.state).keeps(loading, &here.state, rate)
         })
+    }
+
+    /// Whether the program of each increment is asked to name its mode.
+    fn is_named_by_program(&self) -> bool {
+        self.scene.analysis.method == Method::Mpec && !self.scene.contacts.is_empty()
     }
 
     /// Whether the mode cannot go on from the present point.

@@ -28,6 +28,9 @@ pub struct Bar {
     pub strain: Strain,
 }
 
+/// How much stiffer a bar may be than undeformed, over the square of its stretch, for rounding to count: `N'` of Green strain.
+const MOST_STIFFENED: f64 = 1.5;
+
 #[derive(Clone, Copy)]
 struct Deformed {
     direction: [f64; 3],
@@ -149,14 +152,17 @@ impl Bar {
         }
     }
 
-    /// Calls `add(freedom, size)` with the axial force and what displacements of this size would make of it.
+    /// Calls `add(freedom, size)` with the axial force and what displacements of this size would make of it; not what they
+    /// do to the direction of a bar that shrinks to a point: there the forces are lost, which is no equilibrium.
     pub fn each_size(&self, structure: &Structure, displacement: &[f64], least: f64, add: &mut dyn FnMut(usize, f64)) {
         let deformed = self.deformed(structure, displacement);
         let (_, axial, slope) = self.response(deformed.elongation);
         let dimension = structure.dimension;
         let freedoms = || self.nodes.iter().flat_map(|node| node * dimension..(node + 1) * dimension);
         let reach = freedoms().fold(least, |reach: f64, freedom| reach.max(displacement[freedom].abs()));
-        let stiffness = slope.abs() + axial.abs() / deformed.length;
+        let stretch = (deformed.length / self.rest_length).max(1.0);
+        let most = MOST_STIFFENED * self.axial_stiffness / self.rest_length * stretch * stretch;
+        let stiffness = (slope.abs() + axial.abs() / deformed.length).min(most);
         freedoms().for_each(|freedom| add(freedom, axial.abs() + stiffness * reach));
     }
 

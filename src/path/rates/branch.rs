@@ -7,12 +7,10 @@
 //! on the sign of the load rate. Every ray comes from the exact equations of its combination, so that the search decides
 //! only where to look.
 
-use super::certificate::{Certified, is_monotone, options_of, reduce};
 use super::dictionary::{Dictionary, Feasibility};
-use super::line::Line;
+use super::lemke::lemke;
 use super::problem::{Choice, Entity, RateProblem, Signed};
 use crate::cancel::CancelFlag;
-use crate::path::combinations::{combinations, count};
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeSet;
 use std::rc::Rc;
@@ -58,21 +56,36 @@ pub struct Findings {
     pub examined: u64,
 }
 
-/// Combinations of options in doubt that are tried on one line, beside those that violations lead to.
-const MOST_LABELS: u64 = 64;
 /// Entries of a dictionary that make a node count as one; a larger node counts as several.
 const UNIT_OF_WORK: u64 = 4096;
 /// Nodes spent inside sets of solutions of more than one dimension, whose edges are rays like any other.
 const MOST_IN_SETS: u64 = 512;
-/// Bases kept of such sets.
-const MOST_PLANES: usize = 256;
-/// Rays closer than this, relative to their largest weight, are one.
-const SAME: f64 = 1e-9;
 /// A form this small at a node's point is zero as far as the search is concerned.
-const FITS: f64 = 1e-7;
+pub(super) const FITS: f64 = 1e-7;
 
 /// All rays, after at most so many nodes and combinations; `first` are combinations to examine before the others.
 pub fn explore(problem: &RateProblem, first: &[Vec<usize>], most: u64, cancel: &CancelFlag) -> Findings {
+    explore_by(problem, first, most, cancel, lemke)
+}
+
+#[cfg(test)]
+pub(super) fn explore_without_pivoting(
+    problem: &RateProblem,
+    first: &[Vec<usize>],
+    most: u64,
+    cancel: &CancelFlag,
+) -> Findings {
+    explore_by(problem, first, most, cancel, |_, _| Vec::new())
+}
+
+/// The same; `further` names combinations to examine where the search was cut.
+fn explore_by(
+    problem: &RateProblem,
+    first: &[Vec<usize>],
+    most: u64,
+    cancel: &CancelFlag,
+    further: impl Fn(&RateProblem, &CancelFlag) -> Vec<Vec<usize>>,
+) -> Findings {
     let mut search = Search {
         problem,
         findings: Findings::default(),
@@ -87,6 +100,11 @@ pub fn explore(problem: &RateProblem, first: &[Vec<usize>], most: u64, cancel: &
             search.examine(chosen);
         }
         search.branch(cancel);
+        if search.findings.unexplored > 0 {
+            for chosen in further(problem, cancel) {
+                search.examine(&chosen);
+            }
+        }
     }
     let mut findings = search.findings;
     findings.unexplored = findings.unexplored.min(problem.combinations());
@@ -95,13 +113,13 @@ pub fn explore(problem: &RateProblem, first: &[Vec<usize>], most: u64, cancel: &
 }
 
 /// Decided entities and the cone that is left.
-struct Node {
-    chosen: Vec<Option<usize>>,
-    dictionary: Dictionary,
+pub(super) struct Node {
+    pub chosen: Vec<Option<usize>>,
+    pub dictionary: Dictionary,
     /// Sign of the load rate.
-    sign: f64,
+    pub sign: f64,
     /// Inside a set of solutions.
-    in_set: bool,
+    pub in_set: bool,
     /// The entity decided last.
     last: Option<usize>,
 }
@@ -112,194 +130,21 @@ struct Task {
     decision: Option<(usize, usize)>,
 }
 
-/// What one combination turned out to be.
-enum Examined {
-    /// Feasible in one sense or both.
-    Rays,
-    /// One line, and the entities that it violates in the sense that violates fewer.
-    Violated(Vec<usize>),
-    /// No line, or more than one.
-    Nothing,
-    /// Known already.
-    Before,
-}
-
-struct Search<'a> {
-    problem: &'a RateProblem,
-    findings: Findings,
+/// The search as far as it has come.
+pub(super) struct Search<'a> {
+    pub problem: &'a RateProblem,
+    pub findings: Findings,
     /// Combinations whose equations were solved.
-    seen: BTreeSet<Vec<usize>>,
+    pub seen: BTreeSet<Vec<usize>>,
     most: u64,
     /// What all options of each entity have in common.
     common: Vec<Vec<Signed>>,
     coupling: DMatrix<f64>,
     /// What a node counts: large problems take longer over each.
-    cost: u64,
+    pub cost: u64,
 }
 
 impl Search<'_> {
-    fn examine(&mut self, chosen: &[usize]) -> Examined {
-        if !self.seen.insert(chosen.to_vec()) {
-            return Examined::Before;
-        }
-        self.findings.examined += self.cost;
-        match self.problem.line(chosen) {
-            Line::Nothing => Examined::Nothing,
-            Line::Along(weights) => {
-                let senses = [-&weights, weights];
-                let [first, second] = senses.each_ref().map(|weights| self.problem.violated(chosen, weights));
-                let is_ray = first.is_empty() || second.is_empty();
-                for (weights, violated) in senses.into_iter().zip([&first, &second]) {
-                    if violated.is_empty() {
-                        self.keep(chosen, weights);
-                    }
-                }
-                match is_ray {
-                    true => Examined::Rays,
-                    false if first.len() < second.len() => Examined::Violated(first),
-                    false => Examined::Violated(second),
-                }
-            }
-            Line::Plane(basis) => {
-                self.findings.degenerate = true;
-                for weights in self.problem.edges(chosen, &basis) {
-                    self.keep(chosen, weights);
-                }
-                if self.findings.planes.len() < MOST_PLANES {
-                    self.findings.planes.push(basis);
-                }
-                Examined::Nothing
-            }
-            Line::Still | Line::NotFinite => {
-                self.findings.degenerate = true;
-                Examined::Nothing
-            }
-        }
-    }
-
-    fn keep(&mut self, chosen: &[usize], weights: DVector<f64>) {
-        let size = weights.amax();
-        if !self.findings.rays.iter().any(|ray| (&ray.weights - &weights).amax() <= SAME * size) {
-            let fitting = self.problem.fitting(chosen, &weights);
-            let weak = self.problem.is_weak(&fitting, &weights);
-            let in_doubt = self.problem.in_doubt(chosen, &weights);
-            self.findings.rays.push(Ray { weights, fitting, in_doubt, weak });
-        }
-    }
-
-    /// Examines the combinations of the options given for each entity, which all fit one line, hold first.
-    ///
-    /// Where many options are in doubt there are too many combinations to try: what the first one violates is changed,
-    /// and so on until a combination holds.
-    fn examine_all(&mut self, options: &[Vec<usize>]) {
-        let mut places = vec![0; options.len()];
-        let mut settled = false;
-        for _ in 0..MOST_LABELS as usize + options.len() {
-            let chosen: Vec<usize> = options.iter().zip(&places).map(|(options, &place)| options[place]).collect();
-            settled |= self.findings.rays.iter().any(|ray| ray.is_under(&chosen));
-            match self.examine(&chosen) {
-                Examined::Violated(violated) => {
-                    // One that has no other option refutes them all.
-                    settled |= violated.iter().any(|&entity| options[entity].len() == 1);
-                    if settled {
-                        break;
-                    }
-                    violated.iter().for_each(|&entity| places[entity] = (places[entity] + 1) % options[entity].len());
-                }
-                Examined::Rays => {
-                    settled = true;
-                    break;
-                }
-                Examined::Nothing | Examined::Before => break,
-            }
-        }
-        let total = count(options);
-        for chosen in combinations(options, MOST_LABELS) {
-            let known = self.findings.rays.iter().find(|ray| ray.is_under(&chosen));
-            match known.map(|ray| -&ray.weights) {
-                None => settled |= matches!(self.examine(&chosen), Examined::Rays),
-                // Its line is the known one; the other sense may be feasible under this combination only.
-                Some(reversed) if self.problem.violated(&chosen, &reversed).is_empty() => self.keep(&chosen, reversed),
-                Some(_) => {}
-            }
-        }
-        if total > MOST_LABELS && !settled {
-            self.findings.unexplored = self.findings.unexplored.saturating_add(total - MOST_LABELS);
-        }
-    }
-
-    /// The certificate on the whole problem.
-    fn certified_at_once(&mut self) -> bool {
-        let Some(pairs) = self.problem.entities.iter().map(Entity::pair).collect::<Option<Vec<_>>>() else {
-            return false;
-        };
-        let (a, b, load) = self.coordinates(&pairs);
-        let open: Vec<usize> = (0..pairs.len()).collect();
-        let chosen = vec![None; pairs.len()];
-        let done = self.examine_certified(a, b, &load, &open, &chosen, &[1.0, -1.0]);
-        self.findings.certified = done;
-        done
-    }
-
-    /// Forces, velocities and load rate over weights that each move by one.
-    fn coordinates(&self, pairs: &[[Signed; 2]]) -> (DMatrix<f64>, DMatrix<f64>, Vec<f64>) {
-        let motion = &self.problem.motion;
-        let scales = DVector::from_iterator(motion.ncols(), motion.column_iter().map(|column| 1.0 / column.norm()));
-        let rows = |side: usize| {
-            DMatrix::from_fn(pairs.len(), scales.len(), |row, column| {
-                pairs[row][side].sign * self.problem.forms[(pairs[row][side].form, column)] * scales[column]
-            })
-        };
-        let load = motion.row(motion.nrows() - 1).iter().zip(scales.iter()).map(|(a, b)| a * b).collect();
-        (rows(0), rows(1), load)
-    }
-
-    /// Signs of the load rate for which the problem is monotone and a ray is known that must then be the only one.
-    fn settled_signs(&self) -> Vec<f64> {
-        let conjugates: Option<Vec<_>> = self.problem.entities.iter().map(Entity::conjugates).collect();
-        let Some(conjugates) = conjugates else { return Vec::new() };
-        let mut bounds = Vec::new();
-        let mut next = 0;
-        for (entity, pairs) in self.problem.entities.iter().zip(&conjugates) {
-            bounds.extend(entity.touching.map(|_| next));
-            next += pairs.len();
-        }
-        let (a, b, load) = self.coordinates(&conjugates.concat());
-        let Some((matrix, _)) = reduce(&a, &b, &load) else { return Vec::new() };
-        if !is_monotone(&matrix, &bounds) {
-            return Vec::new();
-        }
-        let motion = &self.problem.motion;
-        let load_of = |ray: &Ray| (motion.row(motion.nrows() - 1) * &ray.weights)[0];
-        let strict = |sign: f64| self.findings.rays.iter().any(|ray| !ray.weak && sign * load_of(ray) > FITS);
-        [1.0, -1.0].into_iter().filter(|sign| strict(*sign)).collect()
-    }
-
-    /// Examines the one combination for each load rate given, if there is a certificate that it is the only one.
-    fn examine_certified(
-        &mut self,
-        a: DMatrix<f64>,
-        b: DMatrix<f64>,
-        load: &[f64],
-        open: &[usize],
-        chosen: &[Option<usize>],
-        signs: &[f64],
-    ) -> bool {
-        let Some((matrix, constant)) = reduce(&a, &b, load) else { return false };
-        let Some(certified) = Certified::new(matrix, constant) else { return false };
-        let Some(solutions) = signs.iter().map(|sign| certified.solve(*sign)).collect::<Option<Vec<_>>>() else {
-            return false;
-        };
-        for pairs in solutions {
-            let mut options: Vec<Vec<usize>> = chosen.iter().map(|choice| choice.iter().copied().collect()).collect();
-            for (&entity, fitting) in open.iter().zip(options_of(&pairs)) {
-                options[entity] = fitting;
-            }
-            self.examine_all(&options);
-        }
-        true
-    }
-
     fn branch(&mut self, cancel: &CancelFlag) {
         let Some(dictionary) = Dictionary::new(self.problem) else {
             self.findings.degenerate = true;
@@ -457,25 +302,6 @@ impl Search<'_> {
                 })
             })
             .collect()
-    }
-
-    /// The certificate on what is left at a node.
-    fn certified_below(&mut self, node: &Node, open: &[usize]) -> bool {
-        let dictionary = &node.dictionary;
-        if dictionary.is_lines_only() || dictionary.lines() > 0 || dictionary.dimension() != open.len() || node.in_set {
-            return false;
-        }
-        let pairs = open.iter().map(|&entity| self.problem.entities[entity].pair());
-        let Some(pairs) = pairs.collect::<Option<Vec<_>>>() else { return false };
-        let rows = |side: usize| {
-            let mut rows = DMatrix::zeros(pairs.len(), pairs.len() + 1);
-            for (row, pair) in pairs.iter().enumerate() {
-                rows.row_mut(row).copy_from_slice(&dictionary.coefficients(Some(pair[side].form), pair[side].sign));
-            }
-            rows
-        };
-        let load = dictionary.coefficients(None, 1.0);
-        self.examine_certified(rows(0), rows(1), &load, open, &node.chosen, &[node.sign])
     }
 }
 

@@ -27,6 +27,24 @@ pub enum Line {
     NotFinite,
 }
 
+/// Sizes of the rates of force along a vector of weights.
+struct Forces {
+    largest: f64,
+    /// Rounding of the sums.
+    rounding: f64,
+}
+
+impl Forces {
+    /// What is zero among the forces of an entity. A contact that touches is judged by its own forces: along a chain that
+    /// is close to jamming they fall by orders of magnitude from node to node.
+    fn tolerance(&self, entity: &Entity, values: &DVector<f64>, tolerance: f64) -> f64 {
+        let own = entity
+            .touching
+            .map_or(self.largest, |forms| values[forms.pressing].abs().max(values[forms.traction].abs()));
+        (tolerance * own).max(tolerance / WEAK * self.rounding)
+    }
+}
+
 impl RateProblem {
     /// Arc length of a vector of weights.
     pub(in crate::path) fn size(&self, weights: &DVector<f64>) -> f64 {
@@ -66,16 +84,17 @@ impl RateProblem {
     }
 
     pub(in crate::path) fn force_tolerance(&self, weights: &DVector<f64>) -> f64 {
+        let Forces { largest, rounding } = self.forces(weights);
+        (WEAK * largest).max(rounding)
+    }
+
+    fn forces(&self, weights: &DVector<f64>) -> Forces {
         let largest = (&self.reactions * weights).amax();
         // Where no force changes, what is left is the rounding of the sums.
         let terms =
             self.reactions.row_iter().map(|row| row.iter().zip(weights.iter()).map(|(a, b)| (a * b).abs()).sum());
         let rounding = ROUNDING * terms.fold(0.0, f64::max);
-        (WEAK * largest).max(rounding).max(f64::MIN_POSITIVE)
-    }
-
-    fn value(&self, form: usize, weights: &DVector<f64>) -> f64 {
-        self.forms.row(form).iter().zip(weights.iter()).map(|(a, b)| a * b).sum()
+        Forces { largest, rounding: rounding.max(f64::MIN_POSITIVE) }
     }
 
     /// The edges, of unit arc length, of what a combination leaves of a plane: along each some inequality holds with
@@ -119,15 +138,16 @@ impl RateProblem {
     }
 
     fn within(&self, tolerance: f64, chosen: &[usize], weights: &DVector<f64>) -> Vec<Vec<usize>> {
-        let force = tolerance / WEAK * self.force_tolerance(weights);
-        let tolerance = |form: usize| if self.is_force[form] { force } else { tolerance };
+        let forces = self.forces(weights);
         let values = &self.forms * weights;
-        let fits = |choice: &Choice| {
+        let fits = |entity: &Entity, choice: &Choice| {
+            let force = forces.tolerance(entity, &values, tolerance);
+            let tolerance = |form: usize| if self.is_force[form] { force } else { tolerance };
             choice.zero.iter().all(|&form| values[form].abs() <= tolerance(form))
                 && choice.nonnegative.iter().all(|signed| signed.sign * values[signed.form] >= -tolerance(signed.form))
         };
         let of_entity = |(entity, &chosen): (&Entity, &usize)| {
-            (0..entity.options.len()).filter(|&index| index == chosen || fits(&entity.options[index])).collect()
+            (0..entity.options.len()).filter(|&index| index == chosen || fits(entity, &entity.options[index])).collect()
         };
         self.entities.iter().zip(chosen).map(of_entity).collect()
     }
@@ -135,23 +155,28 @@ impl RateProblem {
     /// The entities whose inequalities a vector of weights violates under a combination: below zero by more
     /// than the weak tolerance.
     pub(in crate::path) fn violated(&self, chosen: &[usize], weights: &DVector<f64>) -> Vec<usize> {
-        let force = self.force_tolerance(weights);
-        let is_violated = |choice: &Choice| {
+        let forces = self.forces(weights);
+        let values = &self.forms * weights;
+        let is_violated = |entity: &Entity, choice: &Choice| {
+            let force = forces.tolerance(entity, &values, WEAK);
             choice.nonnegative.iter().any(|signed| {
                 let tolerance = if self.is_force[signed.form] { force } else { WEAK };
-                signed.sign * self.value(signed.form, weights) < -tolerance
+                signed.sign * values[signed.form] < -tolerance
             })
         };
-        (0..chosen.len()).filter(|&entity| is_violated(&self.entities[entity].options[chosen[entity]])).collect()
+        let options = self.entities.iter().zip(chosen).enumerate();
+        options.filter(|(_, (entity, chosen))| is_violated(entity, &entity.options[**chosen])).map(|(i, _)| i).collect()
     }
 
     /// Whether some inequality of a ray of unit arc length holds with equality under the first of its options.
     pub(in crate::path) fn is_weak(&self, fitting: &[Vec<usize>], weights: &DVector<f64>) -> bool {
-        let force = self.force_tolerance(weights);
+        let forces = self.forces(weights);
+        let values = &self.forms * weights;
         self.entities.iter().zip(fitting).any(|(entity, options)| {
+            let force = forces.tolerance(entity, &values, WEAK);
             entity.options[options[0]].nonnegative.iter().any(|signed| {
                 let tolerance = if self.is_force[signed.form] { force } else { WEAK };
-                signed.sign * self.value(signed.form, weights) <= tolerance
+                signed.sign * values[signed.form] <= tolerance
             })
         })
     }

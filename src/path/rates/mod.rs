@@ -21,13 +21,17 @@
 //! | `certificate` | a cheap sufficient test that each sign of the load rate has exactly one ray, and those rays |
 //! | `near` | combinations that a known vector of weights points to |
 //! | `sweeps` | a likely combination for each sign of the load rate |
-//! | `branch` | branch and bound over the entities with both |
+//! | `lemke` | solutions by complementary pivoting, where the search was cut |
+//! | `branch`, `examine`, `certified` | branch and bound over the entities; one combination; where no branching is needed |
 //!
 //! Knows linear forms only: nothing of structures, contacts or states.
 
 mod branch;
 mod certificate;
+mod certified;
 mod dictionary;
+mod examine;
+mod lemke;
 mod line;
 mod near;
 mod problem;

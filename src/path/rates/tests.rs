@@ -210,3 +210,50 @@ fn inequalities_that_hold_with_equality_as_by_enumeration() {
     check(0..1000, 5, Numbers::Small, false);
     check(0..400, 3, Numbers::Small, true);
 }
+
+/// Where the search is cut Lemke's method goes on: all it names are rays by plain enumeration, and it finds most of them.
+#[test]
+fn what_complementary_pivoting_names_is_among_all_rays() {
+    let (mut named, mut missed, mut both) = (0, 0, 0);
+    for seed in 0..600 {
+        let mut random = Random::new(seed);
+        let count = 1 + random.below(6) as usize;
+        let kinds: Vec<bool> = (0..count).map(|_| random.below(3) == 0).collect();
+        let numbers = if seed % 2 == 0 { Numbers::Real } else { Numbers::Stiffness(1.0) };
+        let problem = random_problem(&mut random, &kinds, numbers);
+        let exact = every_combination(&problem);
+        let found = lemke::lemke(&problem, &CancelFlag::default());
+        for chosen in &found {
+            assert!(exact.rays.iter().any(|ray| ray.is_under(chosen)), "seed {seed}: {chosen:?} is no ray");
+        }
+        named += found.len();
+        missed += exact.rays.len().saturating_sub(found.len());
+        let loads = |sign: f64| {
+            found.iter().any(|chosen| {
+                exact.rays.iter().any(|ray| ray.is_under(chosen) && sign * ray.weights[ray.weights.len() - 1] > 0.0)
+            })
+        };
+        both += usize::from(loads(1.0) && loads(-1.0));
+    }
+    // Of general matrices many runs end on a secondary ray.
+    assert!(named > 700 && 10 * named > 9 * missed, "{named} named, {missed} missed");
+    assert!(both > 100, "{both}");
+}
+
+/// Many contacts, and a search of so few nodes that it ends before it has found anything much.
+#[test]
+fn complementary_pivoting_finds_what_a_cut_search_misses() {
+    let (mut beyond, mut before) = (0, 0);
+    for seed in 0..40 {
+        let mut random = Random::new(seed);
+        let kinds = vec![false; 24];
+        let problem = random_problem(&mut random, &kinds, Numbers::Stiffness(4.0));
+        let cut = branch::explore_without_pivoting(&problem, &[], 40, &CancelFlag::default());
+        let found = explore(&problem, &[], 40, &CancelFlag::default());
+        if cut.unexplored > 0 {
+            before += cut.rays.len();
+            beyond += found.rays.len() - cut.rays.len();
+        }
+    }
+    assert!(beyond > 0 && beyond > before, "{beyond} beyond {before}");
+}
