@@ -213,9 +213,6 @@ impl Path<'_> {
                     step *= 0.7;
                 }
                 Err(refused) => {
-                    if std::env::var("DBG").is_ok() {
-                        eprintln!("refused {refused:?} step {step:e}");
-                    }
                     step *= match refused {
                         Refused::Turned(angle) => (0.5 * TURN_SOUGHT / angle).clamp(0.1, 0.5),
                         Refused::Newton(_) => 0.5,
