@@ -1,6 +1,8 @@
-//! Dense factorisations that say when they cannot be trusted. May be called by everything above; calls nothing.
+//! Factorisations that say when they cannot be trusted: dense, and sparse with thin borders. May be called by everything
+//! above; calls nothing.
 
 pub mod inertia;
+pub mod sparse;
 
 pub use inertia::{Inertia, inertia};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
@@ -13,6 +15,18 @@ pub struct Factorisation {
     lu: LU<f64, Dyn, Dyn>,
     /// Sign by which the determinant of what is factorised differs from the one of the matrix asked for.
     sign: f64,
+}
+
+/// What a matrix is assembled into.
+pub trait Sink {
+    /// Adds to an entry.
+    fn add(&mut self, row: usize, column: usize, value: f64);
+}
+
+impl Sink for DMatrix<f64> {
+    fn add(&mut self, row: usize, column: usize, value: f64) {
+        self[(row, column)] += value;
+    }
 }
 
 /// A summand `k r cᵀ` of a matrix, kept apart from it.
@@ -107,6 +121,38 @@ impl Factorisation {
     fn solve_scaled(&self, right_hand_side: &mut DVector<f64>) -> bool {
         right_hand_side.component_div_assign(&self.row_scales);
         self.lu.solve_mut(right_hand_side) && right_hand_side.iter().all(|value| value.is_finite())
+    }
+}
+
+/// A factorisation of a system, as it was assembled.
+pub enum SystemFactorisation {
+    Dense(Factorisation),
+    Sparse(Box<sparse::SparseFactorisation>),
+}
+
+impl SystemFactorisation {
+    /// Sign of the determinant: 1 or -1.
+    pub fn determinant_sign(&self) -> f64 {
+        match self {
+            Self::Dense(dense) => dense.determinant_sign(),
+            Self::Sparse(sparse) => sparse.determinant_sign(),
+        }
+    }
+
+    /// Smallest pivot over the largest one.
+    pub fn pivot_ratio(&self) -> f64 {
+        match self {
+            Self::Dense(dense) => dense.pivot_ratio(),
+            Self::Sparse(sparse) => sparse.pivot_ratio(),
+        }
+    }
+
+    /// Solves for one right-hand side, overwritten by the solution; `false` when there is no result.
+    pub fn solve(&self, right_hand_side: &mut DVector<f64>) -> bool {
+        match self {
+            Self::Dense(dense) => dense.solve(right_hand_side),
+            Self::Sparse(sparse) => sparse.solve(right_hand_side),
+        }
     }
 }
 

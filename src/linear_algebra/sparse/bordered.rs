@@ -1,0 +1,112 @@
+//! A matrix `[[K, B], [C, D]]` with `K` sparse and nearly symmetric, and few rows and columns beside it.
+
+use super::Entries;
+use super::pattern::Pattern;
+use super::symmetric::SymmetricFactor;
+use crate::linear_algebra::Sink;
+use nalgebra::DVector;
+use std::sync::Arc;
+
+/// The matrix as it is assembled.
+#[derive(Debug, Clone)]
+pub struct Bordered {
+    pub(super) pattern: Arc<Pattern>,
+    /// Entries of `K`, both triangles.
+    pub(super) values: Vec<f64>,
+    /// Columns of `B`.
+    pub(super) right: Vec<Entries>,
+    /// Rows of `[C, D]`.
+    pub(super) lower: Vec<Entries>,
+    /// Entries of `K` that were put in one by one: only these may be unsymmetric.
+    pub(super) touched: Vec<(usize, usize)>,
+    /// Some entry had no place.
+    pub(super) is_outside: bool,
+}
+
+impl Bordered {
+    /// All zero, with so many rows and columns beside `K`.
+    pub fn new(pattern: Arc<Pattern>, borders: usize) -> Self {
+        Self {
+            values: vec![0.0; pattern.entries()],
+            pattern,
+            right: vec![Entries::new(); borders],
+            lower: vec![Entries::new(); borders],
+            touched: Vec::new(),
+            is_outside: false,
+        }
+    }
+
+    /// Rows of the whole.
+    pub fn size(&self) -> usize {
+        self.pattern.size() + self.lower.len()
+    }
+
+    /// Adds to an entry of `K` whose place is known, as a part of symmetric whole.
+    pub fn add_at(&mut self, place: usize, value: f64) {
+        self.values[place] += value;
+    }
+
+    /// Column of `B`; repeated places are to be added.
+    pub fn right_column(&self, border: usize) -> &[(usize, f64)] {
+        &self.right[border]
+    }
+
+    /// `y = A x`, and the sums of the terms' sizes.
+    pub(super) fn multiply(&self, x: &[f64], y: &mut [f64], sizes: &mut [f64]) {
+        let n = self.pattern.size();
+        y.fill(0.0);
+        sizes.fill(0.0);
+        for (column, value) in x.iter().take(n).enumerate() {
+            for place in self.pattern.column(column) {
+                let (row, term) = (self.pattern.rows[place], self.values[place] * value);
+                y[row] += term;
+                sizes[row] += term.abs();
+            }
+        }
+        for (entries, value) in self.right.iter().zip(&x[n..]) {
+            for (row, entry) in entries {
+                y[*row] += entry * value;
+                sizes[*row] += (entry * value).abs();
+            }
+        }
+        for (border, entries) in self.lower.iter().enumerate() {
+            for (column, entry) in entries {
+                let term = entry * x[*column];
+                y[n + border] += term;
+                sizes[n + border] += term.abs();
+            }
+        }
+    }
+
+    /// Vectors of unit size that `K` alone, symmetric, turns to nothing within a tolerance; `None` where it could not be
+    /// factorised.
+    pub fn null_vectors(&self, tolerance: f64) -> Option<Vec<DVector<f64>>> {
+        SymmetricFactor::new(self.pattern.clone(), &self.values).ok()?.null_vectors(tolerance)
+    }
+
+    pub(super) fn is_finite(&self) -> bool {
+        let finite = |entries: &Entries| entries.iter().all(|(_, value)| value.is_finite());
+        self.values.iter().all(|value| value.is_finite())
+            && self.right.iter().all(finite)
+            && self.lower.iter().all(finite)
+    }
+}
+
+impl Sink for Bordered {
+    fn add(&mut self, row: usize, column: usize, value: f64) {
+        let n = self.pattern.size();
+        if value == 0.0 {
+            return;
+        }
+        if row >= n {
+            self.lower[row - n].push((column, value));
+        } else if column >= n {
+            self.right[column - n].push((row, value));
+        } else if let Some(place) = self.pattern.place(row, column) {
+            self.values[place] += value;
+            self.touched.push((row, column));
+        } else {
+            self.is_outside = true;
+        }
+    }
+}

@@ -1,0 +1,26 @@
+//! Sparse systems with thin borders, `[[K, B], [C, D]]`, `K` symmetric: as the path's equations are for many unknowns.
+//!
+//! * [`pattern`]: where `K` may have entries, found once, with the order of elimination that keeps its factors sparse (AMD).
+//! * [`symmetric`]: `K = L D Lᵀ`; small pivots are raised, and the raise is taken back by a border.
+//! * [`bordered`]: the matrix as it is assembled.
+//! * [`held`]: unknowns of a node that border rows hold (closed contacts) are eliminated where they are.
+//! * [`factorisation`]: block elimination with the dense Schur complement of what remains of the borders, refined on the
+//!   whole system.
+
+pub mod bordered;
+pub mod factorisation;
+mod held;
+mod lu;
+pub mod pattern;
+mod reduced;
+pub mod symmetric;
+#[cfg(test)]
+mod tests;
+
+pub use bordered::Bordered;
+pub use factorisation::{SparseFactorisation, held_inertia};
+pub use held::Holding;
+pub use pattern::Pattern;
+
+/// Entries of a row or a column: place and value.
+pub type Entries = Vec<(usize, f64)>;
