@@ -10,9 +10,9 @@ pub const MAX_LISTED_MISTAKES: usize = 100;
 pub const MAX_NAME_BYTES: usize = 200;
 
 /// Nodes of a model; as many may be named in `supports`.
-pub const MAX_NODES: usize = 20_000;
+pub const MAX_NODES: usize = 100_000;
 /// Elements of a model.
-pub const MAX_ELEMENTS: usize = 100_000;
+pub const MAX_ELEMENTS: usize = 250_000;
 /// Obstacles of a model.
 pub const MAX_OBSTACLES: usize = 10_000;
 /// Contacts of a model.
@@ -21,8 +21,11 @@ pub const MAX_CONTACTS: usize = 10_000;
 pub const MAX_ROWS_UNASKED: usize = 100;
 /// Stages of a model.
 pub const MAX_STAGES: usize = 1_000;
-/// Free displacement components; the linear algebra is dense, so memory goes with the square and time with the cube.
-pub const MAX_UNKNOWNS: usize = 3_000;
+/// Free displacement components. From some hundred on matrices are sparse.
+pub const MAX_UNKNOWNS: usize = 150_000;
+/// Free displacement components for the methods `mpec` and `regularised`, whose matrices are dense: memory goes with the
+/// square and time with the cube.
+pub const MAX_DENSE_UNKNOWNS: usize = 3_000;
 /// Upper bound of `analysis.max_increments`.
 pub const MAX_INCREMENTS: u64 = 10_000_000;
 /// Upper bound of `analysis.max_modes`.

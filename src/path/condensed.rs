@@ -17,7 +17,7 @@ use super::turning::{self, Touch, Turning};
 use crate::cancel::CancelFlag;
 use crate::contact::vector::{Vector, add, dot, scaled};
 use crate::contact::{Mode, Reaction};
-use crate::linear_algebra::{Factorisation, null_space};
+use crate::linear_algebra::{Factorisation, Sink, SystemFactorisation, null_space};
 use nalgebra::{DMatrix, DVector};
 
 /// Up to so many contacts the search finds its way alone, and slips of unknown direction are sought one by one.
@@ -382,17 +382,20 @@ fn bordered(
     loading: Loading<'_>,
     state: &State,
     incoming: Option<&Rate>,
-) -> Option<Factorisation> {
+) -> Option<SystemFactorisation> {
     let iterate = system.iterate(state.clone());
-    let by_load = |matrix: &mut DMatrix<f64>| matrix[(system.size() - 1, loading.structure.unknowns())] = 1.0;
+    let by_load = |matrix: &mut dyn Sink| matrix.add(system.size() - 1, loading.structure.unknowns(), 1.0);
     if let Some(factorisation) = system.factorise(&iterate, Kind::Rates, by_load) {
         return Some(factorisation);
     }
     if let Some(rate) = incoming
         && let Some(factorisation) =
-            system.factorise(&iterate, Kind::Rates, |matrix: &mut DMatrix<f64>| system.border(matrix, rate))
+            system.factorise(&iterate, Kind::Rates, |matrix: &mut dyn Sink| system.border(matrix, rate))
     {
         return Some(factorisation);
+    }
+    if !loading.structure.allows_dense() {
+        return None;
     }
     let matrix = system.matrix(state);
     let basis = null_space(&matrix.rows(0, system.size() - 1).into_owned(), RANK)?;
@@ -401,5 +404,5 @@ fn bordered(
     }
     let mut by_null_vector = matrix;
     by_null_vector.set_row(system.size() - 1, &basis.column(0).transpose());
-    Factorisation::new(by_null_vector)
+    Factorisation::new(by_null_vector).map(SystemFactorisation::Dense)
 }

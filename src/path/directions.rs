@@ -112,6 +112,9 @@ pub fn directions(
 
 /// Whether the held structure has a motion that no element resists.
 fn resists_nothing(system: &ModeSystem<'_>, loading: Loading<'_>, state: &State) -> bool {
+    if !loading.structure.allows_dense() {
+        return false;
+    }
     let matrix = system.matrix(state);
     let Some(basis) = null_space(&matrix.rows(0, system.size() - 1).into_owned(), RANK) else { return false };
     basis.column_iter().any(|column| {

@@ -16,7 +16,6 @@ use super::state::{Rate, State};
 use super::track::{self, Rule};
 use crate::contact::Mode;
 use crate::contact::vector::{Vector, add, cross, dot, size};
-use crate::linear_algebra::Factorisation;
 use nalgebra::DVector;
 
 /// A point of the path with its direction.
@@ -30,8 +29,6 @@ impl ModeSystem<'_> {
     /// The drift at the end of an increment, from that at its start (`None`: none yet) and the point half way.
     pub fn drift(&self, start: &Rate, before: Option<&Rate>, middle: Pointed<'_>, end: Pointed<'_>) -> Option<Rate> {
         let iterate = self.iterate_of(end.corrected);
-        let mut matrix = self.assemble(&iterate, Kind::Increment);
-        self.border(&mut matrix, end.rate);
         let mut values = DVector::zeros(self.size);
         for (contact, role) in self.roles.iter().enumerate() {
             let moved = before.map_or([0.0; 3], |before| self.loading.relative_rate(contact, before));
@@ -60,7 +57,8 @@ impl ModeSystem<'_> {
                 }
             }
         }
-        let factorisation = Factorisation::new(matrix)?;
+        let factorisation =
+            self.factorise_as_it_is(&iterate, Kind::Increment, |matrix| self.border(matrix, end.rate))?;
         if !factorisation.solve(&mut values) {
             return None;
         }

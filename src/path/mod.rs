@@ -70,6 +70,8 @@ mod state;
 mod stepping;
 pub mod stop;
 mod straight;
+#[cfg(test)]
+mod tests_of_lattice;
 mod together;
 mod totals;
 mod traced;

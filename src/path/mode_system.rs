@@ -21,9 +21,11 @@ use super::state::{Rate, State};
 use super::track::{self, Start, Turn};
 use crate::contact::vector::{Vector, add, cross, dot, scaled, size};
 use crate::contact::{Frame, Mode, Reaction};
-use crate::linear_algebra::{Factorisation, Stiffener};
+use crate::linear_algebra::sparse::{Bordered, Holding, SparseFactorisation};
+use crate::linear_algebra::{Factorisation, Sink, Stiffener, SystemFactorisation};
 use crate::structure::Stretching;
 use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeMap;
 
 /// What a contact contributes to the equations.
 #[derive(Debug, Clone, Copy)]
@@ -268,35 +270,85 @@ impl<'a> ModeSystem<'a> {
             Stretch::Within => structure.each_stiffness(&state.displacement, &mut add),
             Stretch::Apart => structure.each_stiffness_across(&state.displacement, &mut add),
         }
+        self.add_loads_and_contacts(iterate, kind, &mut matrix);
+        matrix
+    }
+
+    /// The columns of the load and of the contacts, and the contacts' rows.
+    fn add_loads_and_contacts(&self, iterate: &Iterate, kind: Kind, matrix: &mut impl Sink) {
+        let structure = self.loading.structure;
         for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
-            matrix[(unknown, unknowns)] -= self.loading.pattern.forces[*freedom];
+            matrix.add(unknown, structure.unknowns(), -self.loading.pattern.forces[*freedom]);
         }
         for (contact, role) in self.roles.iter().enumerate() {
             match role {
                 Role::Free | Role::HeldBy => {}
-                Role::Stick | Role::Held => self.add_stick(contact, &mut matrix),
+                Role::Stick | Role::Held => self.add_stick(contact, matrix),
                 Role::Frictionless | Role::Line { .. } | Role::Edge { .. } | Role::Plane { .. } => {
-                    self.add_slip(contact, iterate, kind, &mut matrix);
+                    self.add_slip(contact, iterate, kind, matrix);
                 }
             }
         }
-        matrix
+    }
+
+    /// All rows but the last, sparse; `None` for a structure whose matrices are dense.
+    pub(super) fn assemble_sparse(&self, iterate: &Iterate, kind: Kind) -> Option<Bordered> {
+        let structure = self.loading.structure;
+        let layout = structure.layout()?;
+        let unknowns = structure.unknowns();
+        let mut matrix = Bordered::new(layout.pattern.clone(), self.size - unknowns);
+        let mut call = 0;
+        structure.each_stiffness(&iterate.state.displacement, &mut |row, column, value| {
+            match layout.place(call) {
+                Some(place) => matrix.add_at(place, value),
+                None => {
+                    if let (Some(row), None) = (structure.unknown_of[row], structure.unknown_of[column]) {
+                        matrix.add(row, unknowns, value * self.loading.support_rate(column));
+                    }
+                }
+            }
+            call += 1;
+        });
+        self.add_loads_and_contacts(iterate, kind, &mut matrix);
+        Some(matrix)
+    }
+
+    /// What the closed contacts hold at each node.
+    pub(super) fn holdings(&self) -> Vec<Holding> {
+        let structure = self.loading.structure;
+        let (dimension, unknowns) = (structure.dimension, structure.unknowns());
+        let mut holdings: BTreeMap<usize, Holding> = BTreeMap::new();
+        for (contact, role) in self.roles.iter().enumerate() {
+            let count = match role {
+                Role::Free | Role::HeldBy => continue,
+                Role::Stick | Role::Held => self.held_directions(contact).len(),
+                Role::Frictionless | Role::Line { .. } | Role::Edge { .. } | Role::Plane { .. } => 1,
+            };
+            let node = self.loading.contacts[contact].node;
+            let freedoms = node * dimension..(node + 1) * dimension;
+            let own: Vec<usize> = freedoms.filter_map(|freedom| structure.unknown_of[freedom]).collect();
+            let (row, column) = (self.row_of(contact) - unknowns, self.column_of(contact) - unknowns);
+            let nothing = Holding { unknowns: own, rows: Vec::new(), columns: Vec::new() };
+            let holding = holdings.entry(node).or_insert(nothing);
+            holding.rows.extend(row..row + count);
+            holding.columns.extend(column..column + count);
+        }
+        holdings.into_values().collect()
     }
 
     /// Factorises the equations at an iterate with a last row that the caller puts in. Where stiff and soft parts meet, so
-    /// that their sum would cost too many digits, the stiff ones are kept apart.
+    /// that their sum would cost too many digits, the stiff ones are kept apart (in dense matrices; sparse solutions are
+    /// refined instead).
     pub(super) fn factorise(
         &self,
         iterate: &Iterate,
         kind: Kind,
-        put_last: impl Fn(&mut DMatrix<f64>),
-    ) -> Option<Factorisation> {
-        let mut matrix = self.assemble(iterate, kind);
-        put_last(&mut matrix);
-        let plain = Factorisation::new(matrix)?;
-        if plain.pivot_ratio() >= SPREAD {
-            return Some(plain);
-        }
+        put_last: impl Fn(&mut dyn Sink),
+    ) -> Option<SystemFactorisation> {
+        let plain = match self.factorise_as_it_is(iterate, kind, &put_last)? {
+            SystemFactorisation::Dense(plain) if plain.pivot_ratio() < SPREAD => plain,
+            other => return Some(other),
+        };
         let structure = self.loading.structure;
         let unknowns = structure.unknowns();
         let stiffener = |stretching: Stretching| {
@@ -314,35 +366,52 @@ impl<'a> ModeSystem<'a> {
         let stiffeners: Vec<Stiffener> = stretchings.into_iter().filter_map(stiffener).collect();
         let mut apart = self.assemble_parts(iterate, kind, Stretch::Apart);
         put_last(&mut apart);
-        Factorisation::stiffened(apart, &stiffeners).or(Some(plain))
+        Factorisation::stiffened(apart, &stiffeners).or(Some(plain)).map(SystemFactorisation::Dense)
+    }
+
+    /// The same with stiff and soft parts added up.
+    pub(super) fn factorise_as_it_is(
+        &self,
+        iterate: &Iterate,
+        kind: Kind,
+        put_last: impl Fn(&mut dyn Sink),
+    ) -> Option<SystemFactorisation> {
+        if let Some(mut matrix) = self.assemble_sparse(iterate, kind) {
+            put_last(&mut matrix);
+            let factorisation = SparseFactorisation::new(matrix, &self.holdings())?;
+            return Some(SystemFactorisation::Sparse(Box::new(factorisation)));
+        }
+        let mut matrix = self.assemble(iterate, kind);
+        put_last(&mut matrix);
+        Factorisation::new(matrix).map(SystemFactorisation::Dense)
     }
 
     /// A row `vector·(relative motion)`.
-    fn put_motion(&self, contact: usize, row: usize, vector: &Vector, matrix: &mut DMatrix<f64>) {
+    fn put_motion(&self, contact: usize, row: usize, vector: &Vector, matrix: &mut impl Sink) {
         let structure = self.loading.structure;
         let load = structure.unknowns();
         let first = self.loading.contacts[contact].node * structure.dimension;
         for (component, part) in vector.iter().enumerate().take(structure.dimension) {
             match structure.unknown_of[first + component] {
-                Some(unknown) => matrix[(row, unknown)] += part,
-                None => matrix[(row, load)] += part * self.loading.support_rate(first + component),
+                Some(unknown) => matrix.add(row, unknown, *part),
+                None => matrix.add(row, load, part * self.loading.support_rate(first + component)),
             }
         }
-        matrix[(row, load)] -= dot(vector, &self.loading.pattern.shifts[contact]);
+        matrix.add(row, load, -dot(vector, &self.loading.pattern.shifts[contact]));
     }
 
     /// A column of equilibrium: the negative of a force on the contact's node.
-    fn put_force(&self, contact: usize, column: usize, force: &Vector, matrix: &mut DMatrix<f64>) {
+    fn put_force(&self, contact: usize, column: usize, force: &Vector, matrix: &mut impl Sink) {
         let structure = self.loading.structure;
         let first = self.loading.contacts[contact].node * structure.dimension;
         for (component, part) in force.iter().enumerate().take(structure.dimension) {
             if let Some(unknown) = structure.unknown_of[first + component] {
-                matrix[(unknown, column)] -= part;
+                matrix.add(unknown, column, -part);
             }
         }
     }
 
-    fn add_stick(&self, contact: usize, matrix: &mut DMatrix<f64>) {
+    fn add_stick(&self, contact: usize, matrix: &mut impl Sink) {
         let (row, column) = (self.row_of(contact), self.column_of(contact));
         for (k, direction) in self.held_directions(contact).iter().enumerate() {
             self.put_force(contact, column + k, direction, matrix);
@@ -374,7 +443,7 @@ impl<'a> ModeSystem<'a> {
         }
     }
 
-    fn add_slip(&self, contact: usize, iterate: &Iterate, kind: Kind, matrix: &mut DMatrix<f64>) {
+    fn add_slip(&self, contact: usize, iterate: &Iterate, kind: Kind, matrix: &mut impl Sink) {
         let structure = self.loading.structure;
         let frame = self.loading.frame(contact, &iterate.state);
         let (row, column) = (self.row_of(contact), self.column_of(contact));
@@ -399,7 +468,7 @@ impl<'a> ModeSystem<'a> {
                     let chord = self.chord(contact, &iterate.state);
                     let rule = track::Rule::new(&frame, start, turn, &direction, &chord);
                     self.put_motion(contact, row + 1, &rule.across, matrix);
-                    matrix[(row + 1, column + 1)] = rule.by_turn;
+                    matrix.add(row + 1, column + 1, rule.by_turn);
                 }
             }
         }
@@ -462,15 +531,15 @@ impl<'a> ModeSystem<'a> {
     }
 
     /// Puts the bordering row of a rate into a matrix.
-    pub fn border(&self, matrix: &mut DMatrix<f64>, rate: &Rate) {
+    pub fn border(&self, matrix: &mut (impl Sink + ?Sized), rate: &Rate) {
         let structure = self.loading.structure;
         let (last, load) = (self.size - 1, structure.unknowns());
         for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
-            matrix[(last, unknown)] = rate.displacement[*freedom];
+            matrix.add(last, unknown, rate.displacement[*freedom]);
         }
         // Supports that move with the load are part of the arc.
         let supports: f64 = self.loading.pattern.supports.iter().zip(&rate.displacement).map(|(a, b)| a * b).sum();
-        matrix[(last, load)] = rate.load + supports;
+        matrix.add(last, load, rate.load + supports);
     }
 
     /// Equilibrium and contact equations; returns the largest equilibrium residual and the force scale.
@@ -517,7 +586,7 @@ impl<'a> ModeSystem<'a> {
     }
 
     /// Value of the last equation, and its row.
-    pub(super) fn place(&self, state: &State, place: Place<'_>, matrix: Option<&mut DMatrix<f64>>) -> f64 {
+    pub(super) fn place(&self, state: &State, place: Place<'_>, matrix: Option<&mut dyn Sink>) -> f64 {
         let structure = self.loading.structure;
         let (last, unknowns) = (self.size - 1, structure.unknowns());
         match place {
@@ -538,15 +607,15 @@ impl<'a> ModeSystem<'a> {
             }
             Place::Load(value) => {
                 if let Some(matrix) = matrix {
-                    matrix[(last, unknowns)] = 1.0;
+                    matrix.add(last, unknowns, 1.0);
                 }
                 state.load - value
             }
             Place::Displacement { freedom, value } => {
                 if let Some(matrix) = matrix {
                     match structure.unknown_of[freedom] {
-                        Some(unknown) => matrix[(last, unknown)] = 1.0,
-                        None => matrix[(last, unknowns)] = self.loading.support_rate(freedom),
+                        Some(unknown) => matrix.add(last, unknown, 1.0),
+                        None => matrix.add(last, unknowns, self.loading.support_rate(freedom)),
                     }
                 }
                 state.displacement[freedom] - value
@@ -695,11 +764,11 @@ impl<'a> ModeSystem<'a> {
         self.tangent_by(&self.bordered(&iterate, towards)?, &iterate)
     }
 
-    pub(super) fn bordered(&self, iterate: &Iterate, towards: &Rate) -> Option<Factorisation> {
+    pub(super) fn bordered(&self, iterate: &Iterate, towards: &Rate) -> Option<SystemFactorisation> {
         self.factorise(iterate, Kind::Rates, |matrix| self.border(matrix, towards))
     }
 
-    pub(super) fn tangent_by(&self, factorisation: &Factorisation, iterate: &Iterate) -> Option<Rate> {
+    pub(super) fn tangent_by(&self, factorisation: &SystemFactorisation, iterate: &Iterate) -> Option<Rate> {
         let mut values = DVector::zeros(self.size);
         values[self.size - 1] = 1.0;
         if !factorisation.solve(&mut values) {

@@ -7,7 +7,8 @@ use super::state::{Rate, State};
 use super::track;
 use crate::contact::Mode;
 use crate::contact::vector::{Vector, add, dot};
-use nalgebra::{DMatrix, DVector};
+use crate::linear_algebra::Sink;
+use nalgebra::DVector;
 
 /// The last equation: where on the branch the point is to be.
 #[derive(Debug, Clone, Copy)]
@@ -150,7 +151,7 @@ impl ModeSystem<'_> {
                 }
                 return Err(Failure::NotConverged);
             }
-            let put_place = |matrix: &mut DMatrix<f64>| {
+            let put_place = |matrix: &mut dyn Sink| {
                 self.place(&iterate.state, place, Some(matrix));
             };
             let factorisation = self.factorise(&iterate, Kind::Increment, put_place).ok_or(Failure::Singular)?;

@@ -14,16 +14,17 @@ use super::state::State;
 use crate::contact::obstacle::Obstacle;
 use crate::contact::vector::{Vector, size};
 use crate::contact::{Contact, Sliding};
-use crate::linear_algebra::{Factorisation, null_space};
+use crate::linear_algebra::sparse::Bordered;
+use crate::linear_algebra::{Factorisation, Sink, null_space};
 use crate::model::limits::PENETRATION_TOLERANCE;
 use crate::model::request::{self, Analysis, JobRequest, Model, Side};
 use crate::model::{InputError, InputErrors};
-use crate::structure::Structure;
 use crate::structure::bar::Bar;
 use crate::structure::element::Element;
 use crate::structure::spring::Spring;
+use crate::structure::{MOST_ANALYSED, Structure};
 use indexmap::IndexMap;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -244,14 +245,37 @@ impl Scene {
         &self.plan
     }
 
-    /// Refuses a structure that can move with no element resisting although every closed contact holds.
-    fn refuse_mechanism(&self) -> Result<(), InputErrors> {
+    /// Motions at rest, all closed contacts holding, that hardly any force resists; `None` where there are none.
+    fn unresisted_motions(&self, still: &[f64]) -> Option<Vec<DVector<f64>>> {
         let structure = &self.structure;
-        let (dimension, unknowns) = (structure.dimension, structure.unknowns());
-        let still = vec![0.0; structure.freedoms()];
+        let unknowns = structure.unknowns();
+        if let Some(layout) = structure.layout() {
+            let mut matrix = Bordered::new(layout.pattern.clone(), 0);
+            let (mut call, mut stiffness) = (0, 0.0_f64);
+            structure.each_stiffness(still, &mut |_, _, value| {
+                if let Some(place) = layout.place(call) {
+                    matrix.add_at(place, value);
+                    stiffness = stiffness.max(value.abs());
+                }
+                call += 1;
+            });
+            self.hold_closed_contacts(stiffness, &mut matrix);
+            return matrix.null_vectors(1e-9).filter(|motions| !motions.is_empty());
+        }
         let mut matrix = DMatrix::zeros(unknowns, unknowns);
-        structure.add_tangent(&still, &mut matrix);
+        structure.add_tangent(still, &mut matrix);
         let stiffness = matrix.amax();
+        self.hold_closed_contacts(stiffness, &mut matrix);
+        if unknowns == 0 || Factorisation::new(matrix.clone()).is_some() {
+            return None;
+        }
+        null_space(&matrix, 1e-12).map(|basis| basis.column_iter().map(|column| column.into_owned()).collect())
+    }
+
+    /// Adds a stiffness in every direction in which a closed contact holds its node.
+    fn hold_closed_contacts(&self, stiffness: f64, matrix: &mut impl Sink) {
+        let structure = &self.structure;
+        let dimension = structure.dimension;
         for contact in &self.contacts {
             let frame = contact.frame(&[0.0; 3]);
             if frame.gap > CLOSED {
@@ -263,17 +287,21 @@ impl Scene {
                     for column in 0..dimension {
                         let place = |component| structure.unknown_of[contact.node * dimension + component];
                         if let (Some(row_unknown), Some(column_unknown)) = (place(row), place(column)) {
-                            matrix[(row_unknown, column_unknown)] += stiffness * vector[row] * vector[column];
+                            matrix.add(row_unknown, column_unknown, stiffness * vector[row] * vector[column]);
                         }
                     }
                 }
             }
         }
-        if unknowns == 0 || Factorisation::new(matrix.clone()).is_some() {
-            return Ok(());
-        }
-        let Some(motions) = null_space(&matrix, 1e-12) else { return Ok(()) };
-        for motion in motions.column_iter() {
+    }
+
+    /// Refuses a structure that can move with no element resisting although every closed contact holds.
+    fn refuse_mechanism(&self) -> Result<(), InputErrors> {
+        let structure = &self.structure;
+        let dimension = structure.dimension;
+        let still = vec![0.0; structure.freedoms()];
+        let Some(motions) = self.unresisted_motions(&still) else { return Ok(()) };
+        for motion in &motions {
             let mut rate = still.clone();
             for (unknown, value) in motion.iter().enumerate() {
                 rate[structure.freedom_of[unknown]] = *value;
@@ -623,6 +651,12 @@ fn plan_what_is_left_out(model: &Model, contacts: &[Contact], structure: &Struct
     }
     if model.dimension == 2 && !contacts.is_empty() {
         leave("second-order cones", "in two dimensions the friction cone is polyhedral");
+    }
+    if !structure.allows_dense() {
+        leave(
+            "smooth bifurcation points, and directions at points where the held structure is singular",
+            &format!("they are looked for up to {MOST_ANALYSED} unknowns"),
+        );
     }
     if structure.elements.iter().all(Element::is_linear) {
         leave("nonlinear iterations", "every element is linear: one correction is exact");

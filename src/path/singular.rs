@@ -22,11 +22,12 @@
 use super::advance::{Reached, Start, Work};
 use super::directions::RANK;
 use super::loading::Loading;
-use super::mode_system::ModeSystem;
+use super::mode_system::{Kind, ModeSystem};
 use super::standing::ZERO;
 use super::state::{Rate, State};
 use super::watch::Watch;
 use crate::contact::{Contact, Mode};
+use crate::linear_algebra::sparse::held_inertia;
 use crate::linear_algebra::{Determinant, determinant, inertia, null_space};
 use crate::structure::element::Element;
 use nalgebra::{DMatrix, DVector};
@@ -69,6 +70,17 @@ fn slips(loading: Loading<'_>, modes: &[Mode]) -> bool {
 /// that slip with friction left out. `None` where fewer than two motions remain (the determinant says all), and where the
 /// tangent cannot change.
 pub fn counted_tangent(loading: Loading<'_>, modes: &[Mode], start: &State, state: &State) -> Option<DMatrix<f64>> {
+    let (modes, anchor) = counted_modes(loading, modes, start, state)?;
+    reduced_tangent(&ModeSystem::new(loading, &modes, anchor), loading, state)
+}
+
+/// The modes in which the tangent is counted, and where they begin.
+fn counted_modes<'s>(
+    loading: Loading<'_>,
+    modes: &[Mode],
+    start: &'s State,
+    state: &'s State,
+) -> Option<(Vec<Mode>, &'s State)> {
     let unknowns = loading.structure.unknowns();
     if unknowns < 2
         || (loading.structure.elements.iter().all(Element::is_linear)
@@ -77,14 +89,26 @@ pub fn counted_tangent(loading: Loading<'_>, modes: &[Mode], start: &State, stat
         return None;
     }
     if !slips(loading, modes) {
-        return reduced_tangent(&ModeSystem::new(loading, modes, start), loading, state);
+        return Some((modes.to_vec(), start));
     }
-    let held: Vec<Mode> = modes
-        .iter()
-        .zip(loading.contacts)
-        .map(|(mode, contact)| if mode.is_active() && contact.tangents() > 0 { Mode::Stick } else { *mode })
-        .collect();
-    reduced_tangent(&ModeSystem::new(loading, &held, state), loading, state)
+    let held = |(mode, contact): (&Mode, &Contact)| {
+        if mode.is_active() && contact.tangents() > 0 { Mode::Stick } else { *mode }
+    };
+    Some((modes.iter().zip(loading.contacts).map(held).collect(), state))
+}
+
+/// Negative eigenvalues of that tangent, by a sparse factorisation: `Some(None)` where they are not counted, `None` where
+/// the count fails.
+fn count_sparse(loading: Loading<'_>, modes: &[Mode], start: &State, state: &State) -> Option<Option<usize>> {
+    let Some((modes, anchor)) = counted_modes(loading, modes, start, state) else { return Some(None) };
+    let system = ModeSystem::new(loading, &modes, anchor);
+    let unknowns = loading.structure.unknowns();
+    if system.size() + 1 > 2 * unknowns {
+        return Some(None);
+    }
+    let matrix = system.assemble_sparse(&system.iterate(state.clone()), Kind::Rates)?;
+    let inertia = held_inertia(&matrix, &system.holdings(), ZERO_PIVOT)?;
+    Some(Some(inertia.negative))
 }
 
 fn reduced_tangent(system: &ModeSystem<'_>, loading: Loading<'_>, state: &State) -> Option<DMatrix<f64>> {
@@ -132,9 +156,16 @@ impl Signature {
         state: &State,
         sign: f64,
     ) -> Option<Self> {
-        let negative = match counted_tangent(loading, modes, start, state) {
-            Some(tangent) => Some(inertia(tangent, ZERO_PIVOT)?.negative),
-            None => None,
+        let negative = if loading.structure.layout().is_some() {
+            if !loading.structure.allows_dense() {
+                return None;
+            }
+            count_sparse(loading, modes, start, state)?
+        } else {
+            match counted_tangent(loading, modes, start, state) {
+                Some(tangent) => Some(inertia(tangent, ZERO_PIVOT)?.negative),
+                None => None,
+            }
         };
         Some(Self { determinant: sign, negative })
     }
@@ -155,7 +186,18 @@ impl Signature {
     /// At a point from which a step is to start; `None` where the equations are singular.
     pub fn at(loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate, work: &mut Work) -> Option<Self> {
         let system = ModeSystem::new(loading, modes, state);
+        if !loading.structure.allows_dense() {
+            return None;
+        }
         work.factorisations += 1;
+        if loading.structure.layout().is_some() {
+            let iterate = system.iterate(state.clone());
+            let bordered = system.bordered(&iterate, rate)?;
+            if bordered.pivot_ratio() <= UNCERTAIN {
+                return None;
+            }
+            return Self::with_determinant(loading, modes, state, state, bordered.determinant_sign());
+        }
         let determinant = bordered_determinant(&system, loading, state, rate)?;
         if determinant.pivot_ratio <= UNCERTAIN {
             return None;
@@ -226,13 +268,16 @@ pub fn compare(start: &Start<'_>, before: Signature, reached: &Reached) -> (Opti
     if let Some(Watch::LoadRate { sign }) = reached.event {
         // K u̇ = ṡ f: the eigenvalue that vanishes at the limit point goes the way of the load, times the sign of f·u̇.
         let system = ModeSystem::new(start.loading, start.modes, start.state);
-        let matrix = system.matrix(state);
         let structure = start.loading.structure;
-        let column =
-            structure.freedom_of.iter().enumerate().map(|(unknown, freedom)| {
-                -matrix[(unknown, structure.unknowns())] * reached.rate.displacement[*freedom]
-            });
-        let work: f64 = column.sum();
+        let motion = |unknown: usize| reached.rate.displacement[structure.freedom_of[unknown]];
+        let work: f64 = match system.assemble_sparse(&system.iterate(state.clone()), Kind::Rates) {
+            Some(matrix) => matrix.right_column(0).iter().map(|(unknown, value)| -value * motion(*unknown)).sum(),
+            None => {
+                let matrix = system.matrix(state);
+                let column = matrix.column(structure.unknowns());
+                (0..structure.unknowns()).map(|unknown| -column[unknown] * motion(unknown)).sum()
+            }
+        };
         let own = if sign * work > 0.0 { 1 } else { -1 };
         // Which side of zero it has at the point itself is chance.
         if (net % 2 != 0) != odd {

@@ -4,6 +4,7 @@
 //! some of them; a test holds them to that. [`exact`] has the paths that are known in closed form.
 
 pub mod exact;
+pub mod lattice;
 
 /// A model ready to post.
 #[derive(Debug, Clone, Copy)]

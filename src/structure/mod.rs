@@ -9,10 +9,13 @@
 
 pub mod bar;
 pub mod element;
+pub mod layout;
 pub mod spring;
 
 use element::Element;
+use layout::Layout;
 use nalgebra::DMatrix;
+use std::sync::Arc;
 
 /// A summand `k c cᵀ` of the tangent: the stiffness `k` against motions along `c`.
 #[derive(Debug, Clone)]
@@ -22,6 +25,13 @@ pub struct Stretching {
     /// Entries of `c`, one a degree of freedom.
     pub along: Vec<(usize, f64)>,
 }
+
+/// Unknowns up to which matrices are dense.
+pub const MOST_DENSE: usize = 200;
+
+/// Unknowns up to which null spaces and eigenvalues are sought, in dense matrices: smooth bifurcation points and
+/// directions at singular points are not looked for beyond.
+pub const MOST_ANALYSED: usize = crate::model::limits::MAX_DENSE_UNKNOWNS;
 
 /// A checked structure. Degrees of freedom are numbered node by node: `node * dimension + component`.
 #[derive(Debug, Clone)]
@@ -34,6 +44,7 @@ pub struct Structure {
     pub elements: Vec<Element>,
     /// The elements at each node.
     elements_at: Vec<Vec<usize>>,
+    layout: Option<Arc<Layout>>,
 }
 
 impl Structure {
@@ -50,7 +61,24 @@ impl Structure {
         for (index, element) in elements.iter().enumerate() {
             element.nodes().for_each(|node| elements_at[node].push(index));
         }
-        Self { dimension, unknown_of, freedom_of, elements, elements_at }
+        let mut structure = Self { dimension, unknown_of, freedom_of, elements, elements_at, layout: None };
+        structure.set_sparse(structure.unknowns() > MOST_DENSE);
+        structure
+    }
+
+    /// Whether matrices are to be sparse; they stay dense where there is not the memory to find their layout.
+    pub fn set_sparse(&mut self, sparse: bool) {
+        self.layout = if sparse { Layout::new(self).map(Arc::new) } else { None };
+    }
+
+    /// Whether dense matrices of this size may be formed.
+    pub fn allows_dense(&self) -> bool {
+        self.unknowns() <= MOST_ANALYSED
+    }
+
+    /// Where the tangent has its entries; `None` where matrices are dense.
+    pub fn layout(&self) -> Option<&Layout> {
+        self.layout.as_deref()
     }
 
     /// Number of unknown displacements.

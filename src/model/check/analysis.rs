@@ -1,7 +1,10 @@
 //! How the path is to be traced.
 
 use super::numbers;
-use crate::model::limits::{MAX_DESIRED_ITERATIONS, MAX_EXPLORE_DEPTH, MAX_EXPLORE_JOBS, MAX_INCREMENTS, MAX_MODES};
+use crate::model::limits::{
+    MAX_DENSE_UNKNOWNS, MAX_DESIRED_ITERATIONS, MAX_EXPLORE_DEPTH, MAX_EXPLORE_JOBS, MAX_INCREMENTS, MAX_MODES,
+    MAX_UNKNOWNS,
+};
 use crate::model::mistakes::{Mistakes, Place};
 use crate::model::names::{quoted, suggestion};
 use crate::model::request::{Analysis, ArcLength, Method, Model, Record, RecordedContact, Regularised};
@@ -32,6 +35,19 @@ pub(super) fn analysis(analysis: &Analysis, at: &Place, mistakes: &mut Mistakes)
             mistakes.add(&at, || "parameters of the method `regularised`, which is not the one chosen; leave them out, or give `\"method\": \"regularised\"`".to_owned());
         }
         regularised(given, &at, mistakes);
+    }
+}
+
+/// The methods with dense matrices take fewer unknowns.
+pub(super) fn unknowns_of_method(free: usize, method: Method, mistakes: &mut Mistakes) {
+    let is_dense = matches!(method, Method::Mpec | Method::Regularised);
+    if is_dense && (MAX_DENSE_UNKNOWNS + 1..=MAX_UNKNOWNS).contains(&free) {
+        mistakes.add(&Place::ROOT.member("analysis").member("method"), || {
+            format!(
+                "the nodes have {free} free displacement components; this method takes at most {MAX_DENSE_UNKNOWNS}: \
+                 give `\"method\": \"auto\"`"
+            )
+        });
     }
 }
 

@@ -35,7 +35,8 @@ pub fn check(request: &JobRequest) -> Result<(), InputErrors> {
     let mut mistakes = Mistakes::default();
     let at = Place::ROOT.member("model");
     if sizes(&request.model, &at, &mut mistakes) && dimension(&request.model, &at, &mut mistakes) {
-        model(&request.model, &at, &mut mistakes);
+        let free = model(&request.model, &at, &mut mistakes);
+        analysis::unknowns_of_method(free, request.analysis.method, &mut mistakes);
         if let Some(record) = &request.analysis.record {
             let at = Place::ROOT.member("analysis");
             analysis::recorded(record, &request.model, &at.member("record"), &mut mistakes);
@@ -71,7 +72,7 @@ fn dimension(model: &Model, at: &Place, mistakes: &mut Mistakes) -> bool {
     known
 }
 
-fn model(model: &Model, at: &Place, mistakes: &mut Mistakes) {
+fn model(model: &Model, at: &Place, mistakes: &mut Mistakes) -> usize {
     if let Some(name) = &model.name {
         printable(name, &at.member("name"), mistakes);
     }
@@ -83,10 +84,11 @@ fn model(model: &Model, at: &Place, mistakes: &mut Mistakes) {
     contacts::contacts(&scope, mistakes);
     mechanism::mechanism(&scope, mistakes);
     stages::stages(&scope, mistakes);
-    unknowns(&scope, mistakes);
+    unknowns(&scope, mistakes)
 }
 
-fn unknowns(scope: &Scope, mistakes: &mut Mistakes) {
+/// Free displacement components.
+fn unknowns(scope: &Scope, mistakes: &mut Mistakes) -> usize {
     let dimension = scope.model.dimension;
     let free: usize =
         scope.supported.iter().map(|held| held.iter().take(dimension).filter(|&&held| !held).count()).sum();
@@ -97,6 +99,7 @@ fn unknowns(scope: &Scope, mistakes: &mut Mistakes) {
             )
         });
     }
+    free
 }
 
 /// The model with what several checks look up. Its dimension is 2 or 3; nothing else in it can be relied on.

@@ -122,14 +122,14 @@ pub fn sizes() -> Vec<BadDocument> {
     let long_name = "n".repeat(201);
     let very_long_name = format!("/model/nodes/{}", "n".repeat(1_000_000));
     vec![
-        at("too many nodes", "/model/nodes", named(20_001, json!([0, 0])), "found 20001 nodes; at most 20000"),
+        at("too many nodes", "/model/nodes", named(100_001, json!([0, 0])), "found 100001 nodes; at most 100000"),
         at(
             "too many unknowns",
             "/model/nodes",
-            named(1_501, json!([0, 0])),
-            "3002 free displacement components; at most 3000",
+            named(75_001, json!([0, 0])),
+            "150002 free displacement components; at most 150000",
         ),
-        at("too many elements", "/model/elements", json!(vec![bar; 100_001]), "at most 100000"),
+        at("too many elements", "/model/elements", json!(vec![bar; 250_001]), "at most 250000"),
         at("too many contacts", "/model/contacts", json!(vec![contact; 10_001]), "at most 10000"),
         at("too many stages", "/model/stages", json!(vec![stage; 1_001]), "at most 1000"),
         at("long model name", "/model/name", json!(long_name), "has 201 bytes; at most 200"),

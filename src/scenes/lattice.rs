@@ -1,0 +1,100 @@
+//! A lattice arch of any size over a floor: chords of bars, posts and diagonals, clamped at both ends, pressed down a little
+//! off the crown. It snaps through, and what is below the crown lands on the floor. The cells are about square: two chords
+//! where they are coarse, more where they are fine, so that the arch is as slender whatever its unknowns.
+
+use crate::model::JobRequest;
+use serde_json::{Value, json};
+
+/// A lattice arch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LatticeArch {
+    /// Fields between posts, 2 or more.
+    pub panels: usize,
+    /// Fields between chords, 1 or more.
+    pub layers: usize,
+    /// Nodes of the lower chord, those nearest the crown, that may land on the floor.
+    pub contacts: usize,
+    pub friction: f64,
+    /// Height of the crown, half the span being 1.
+    pub rise: f64,
+    /// Distance of the outer chords.
+    pub depth: f64,
+    /// How far the crown is above the floor.
+    pub clearance: f64,
+    /// Increments that are asked for.
+    pub increments: usize,
+}
+
+impl LatticeArch {
+    /// The lattice of about so many unknowns.
+    pub fn of_unknowns(unknowns: usize) -> Self {
+        let depth = 0.08;
+        let layers_of = |panels: usize| ((0.5 * depth * panels as f64).round() as usize).max(1);
+        let mut panels = 4;
+        while 2 * (layers_of(panels) + 1) * (panels - 1) < unknowns {
+            panels += 1;
+        }
+        let layers = layers_of(panels);
+        Self { panels, layers, contacts: 0, friction: 0.3, rise: 0.25, depth, clearance: 0.15, increments: 100 }
+    }
+
+    /// Free displacement components.
+    pub fn unknowns(&self) -> usize {
+        2 * (self.layers + 1) * (self.panels - 1)
+    }
+
+    /// The job request. An increment of a rigid fall of the crown by `1/50` of the rise is one step.
+    pub fn request(&self) -> Result<JobRequest, serde_json::Error> {
+        let x = |post: usize| 2.0 * post as f64 / self.panels as f64 - 1.0;
+        let y = |post: usize| self.rise * (1.0 - x(post).powi(2));
+        let mut nodes = serde_json::Map::new();
+        let mut elements = Vec::new();
+        let mut bar = |first: String, second: String| {
+            elements.push(json!({"kind": "bar", "nodes": [first, second], "axial_stiffness": 1.0}));
+        };
+        let node = |layer: usize, post: usize| format!("c{layer}_{post}");
+        for post in 0..=self.panels {
+            for layer in 0..=self.layers {
+                let height = y(post) + self.depth * layer as f64 / self.layers as f64;
+                nodes.insert(node(layer, post), json!([x(post), height]));
+                if layer > 0 && post > 0 && post < self.panels {
+                    bar(node(layer - 1, post), node(layer, post));
+                }
+                if post > 0 {
+                    bar(node(layer, post - 1), node(layer, post));
+                }
+                if post > 0 && layer > 0 {
+                    bar(node(layer - 1, post - 1), node(layer, post));
+                    bar(node(layer, post - 1), node(layer - 1, post));
+                }
+            }
+        }
+        let mut supports = serde_json::Map::new();
+        for layer in 0..=self.layers {
+            supports.insert(node(layer, 0), json!(["x", "y"]));
+            supports.insert(node(layer, self.panels), json!(["x", "y"]));
+        }
+        let crown = self.panels / 2;
+        let first = (crown + 1).saturating_sub(self.contacts.div_ceil(2)).max(1);
+        let last = (first + self.contacts).min(self.panels);
+        let contacts: Vec<Value> = (first..last)
+            .map(|post| json!({"node": node(0, post), "obstacle": "floor", "friction": self.friction}))
+            .collect();
+        let loaded = node(self.layers, (self.panels * 11).div_ceil(24));
+        let step = self.rise / 50.0 * (0.2 * self.unknowns() as f64).sqrt();
+        serde_json::from_value(json!({
+            "model": {
+                "dimension": 2, "nodes": nodes, "elements": elements, "supports": supports,
+                "obstacles": {"floor": {"kind": "plane", "point": [0, self.rise - self.clearance], "normal": [0, 1]}},
+                "contacts": contacts,
+                "stages": [{
+                    "name": "press", "forces": {loaded: [0, -0.001]}, "until": {"increments": self.increments},
+                }],
+            },
+            "analysis": {
+                "arc_length": {"initial": step, "max": step, "displacement_scale": 1.0},
+                "record": {"nodes": [node(self.layers, crown)], "contacts": "in_reach"},
+            },
+        }))
+    }
+}
