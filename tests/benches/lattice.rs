@@ -20,7 +20,8 @@ fn main() {
     );
     for size in sizes {
         let plain = LatticeArch { increments: INCREMENTS, ..LatticeArch::of_unknowns(size) };
-        let contacts = (size / 100).max(10);
+        // No more than have room over the floor.
+        let contacts = (size / 100).max(10).min(plain.panels / 2);
         for arch in [
             LatticeArch { contacts: 0, ..plain },
             LatticeArch { contacts, friction: 0.0, ..plain },

@@ -47,7 +47,7 @@ fn system(random: &mut Random, dimension: usize, nodes: usize, kind: Kind) -> Sy
     let n = dimension * nodes;
     let mut links: Vec<(usize, usize)> = (1..nodes).map(|node| (node - 1, node)).collect();
     (0..nodes / 3).for_each(|_| links.push((random.below(nodes), random.below(nodes))));
-    let loose = kind.loose.then(|| nodes / 2);
+    let loose = kind.loose.then_some(nodes / 2);
     links.retain(|(a, b)| a != b && Some(*a) != loose && Some(*b) != loose);
     let block = |a: usize, b: usize| {
         (0..dimension).flat_map(move |i| (0..dimension).map(move |j| (a * dimension + i, b * dimension + j)))
