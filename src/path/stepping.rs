@@ -139,8 +139,10 @@ impl Path<'_> {
     /// Steps until a point is accepted.
     pub(super) fn step(&mut self) -> Result<Accepted, StopReason> {
         let (least, most) = (self.scene.analysis.arc_length.min, self.scene.analysis.arc_length.max);
-        let jump = self.way_to_next_event();
-        let mut step = jump.unwrap_or(self.at.step.min(most));
+        // An event nearer than that is located within an ordinary step.
+        let ordinary = self.at.step.min(most);
+        let jump = self.way_to_next_event().filter(|way| *way > ordinary);
+        let mut step = jump.unwrap_or(ordinary);
         self.look_ahead(step);
         let mut unresolved = 0;
         let mut known = self.at.here.signature;

@@ -5,6 +5,7 @@
 //! stands, and nothing lies in between. Along stretches of bifurcations the increments are kept, because from any of
 //! them another direction can be followed.
 
+use super::corner;
 use super::plan::LeftOut;
 use super::scene::{End, Scene};
 use super::tracer::Path;
@@ -63,7 +64,10 @@ impl Path<'_> {
     fn straight_way(&self) -> Option<f64> {
         let (loading, here) = (self.loading(), &self.at.here);
         let rate = here.rate.as_ref()?;
-        if !loading.contacts.iter().all(is_straight) {
+        // The force of several obstacles in space reaches the bound of what they hold along no straight line.
+        if !loading.contacts.iter().all(is_straight)
+            || loading.corners.iter().any(|corner| !corner::is_in_plane(loading, corner))
+        {
             return None;
         }
         let ends = &self.scene.stages[self.at.stage].ends;
