@@ -137,10 +137,13 @@ impl Scene {
         let mut left_out = Vec::new();
         let Contacts { contacts, contact_names, reported, corners } =
             build_contacts(model, &numbers, length, &structure, &mut left_out);
-        left_out.extend(plan_what_is_left_out(model, &contacts, &structure));
-        left_out.extend(super::regularised::left_out(&request.analysis));
-        let first_contacts: Vec<usize> =
-            (0..contacts.len()).filter_map(|contact| reported.iter().position(|one| one.contact == contact)).collect();
+        // A contact that is solved for is numbered when the first of the request's for it is read.
+        let mut first_contacts: Vec<usize> = Vec::with_capacity(contacts.len());
+        for (index, one) in reported.iter().enumerate() {
+            if one.contact == first_contacts.len() {
+                first_contacts.push(index);
+            }
+        }
         let scaled = Scaled {
             model,
             analysis: &request.analysis,
@@ -177,8 +180,7 @@ impl Scene {
             jumps,
             plan,
         };
-        scene.plan.left_out.extend(super::near::left_out(&scene));
-        scene.plan.left_out.extend(super::straight::left_out(&scene));
+        scene.plan.left_out.extend(super::plan::left_out(&scene));
         scene.refuse_mechanism()?;
         scene.refuse_imbalance()?;
         scene.refuse_dragged_supports(model)?;
@@ -611,21 +613,4 @@ fn build_stage(stage: &request::Stage, scaled: &Scaled<'_>) -> StageLoad {
     let loads = stage.until.as_ref().map(|until| [until.load_above, until.load_below]);
     let given_loads = loads.into_iter().flatten().flatten().collect();
     StageLoad { name: Arc::from(stage.name.as_str()), pattern, load_scale, ends, given_loads }
-}
-
-fn plan_what_is_left_out(model: &Model, contacts: &[Contact], structure: &Structure) -> Vec<LeftOut> {
-    let mut left_out = Vec::new();
-    let mut leave = |what: &str, why: &str| left_out.push(LeftOut { what: what.to_owned(), why: why.to_owned() });
-    if contacts.is_empty() {
-        leave("contact unknowns, directions and complementarity programs", "the scene has no contacts");
-    } else if contacts.iter().all(|contact| contact.friction == 0.0) {
-        leave("tangential reactions and slip", "no contact has friction");
-    }
-    if model.dimension == 2 && !contacts.is_empty() {
-        leave("second-order cones", "in two dimensions the friction cone is polyhedral");
-    }
-    if structure.elements.iter().all(Element::is_linear) {
-        leave("nonlinear iterations", "every element is linear: one correction is exact");
-    }
-    left_out
 }

@@ -13,6 +13,7 @@ use super::loading::Loading;
 use super::near::{self, FarContacts, Near};
 use super::pocket::taken_over;
 use super::progress::{Phase, Progress};
+use super::rates::Effort;
 use super::record::{self, Row};
 use super::report::Report;
 use super::scene::Scene;
@@ -78,7 +79,8 @@ impl<'a> Path<'a> {
         let loads = self.scene.stages[self.at.stage].pattern.forces.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         let so_far = self.at.totals.force_scale;
         let force_scale = if so_far > 0.0 { so_far } else { loads.max(f64::MIN_POSITIVE) };
-        Rules { selection: analysis.selection, most_modes: analysis.max_modes, force_scale, cancel: &self.cancel }
+        let effort = Effort { most_modes: analysis.max_modes, certify: !analysis.keep_all, cancel: &self.cancel };
+        Rules { selection: analysis.selection, effort, force_scale }
     }
 
     pub(super) fn end(&mut self, reason: StopReason) {
