@@ -24,7 +24,7 @@ use crate::structure::element::Element;
 use crate::structure::spring::Spring;
 use indexmap::IndexMap;
 use nalgebra::DMatrix;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 /// Everything a path needs to know; shared by all who trace it.
@@ -427,6 +427,8 @@ fn build_contacts(
     // Which contacts of the request each one stands for.
     let mut members: Vec<Vec<usize>> = Vec::new();
     let mut of_node: HashMap<usize, Vec<usize>> = HashMap::new();
+    // By node and gap, so that only those of nearly the same gap are compared.
+    let mut by_gap: HashMap<usize, BTreeMap<u64, Vec<usize>>> = HashMap::new();
     for (index, contact) in model.contacts.iter().enumerate() {
         let built = build_contact(model, contact, numbers[contact.node.as_str()], length, structure);
         if built.friction == 0.0 && contact.friction > 0.0 {
@@ -441,13 +443,17 @@ fn build_contacts(
             model.stages.iter().all(|stage| motion(stage, &contact.obstacle) == motion(stage, &other.obstacle))
         };
         let neighbours = of_node.entry(built.node).or_default();
-        let twin = neighbours
-            .iter()
-            .copied()
-            .find(|other| coincide(&contacts[*other], &built) && moves_with(&model.contacts[members[*other][0]]));
+        let alike = by_gap.entry(built.node).or_default();
+        let (gap, near) = (built.initial_gap, COINCIDENT * (1.0 + built.initial_gap.abs()));
+        let twin = alike
+            .range(ordered(gap - near)..=ordered(gap + near))
+            .flat_map(|(_, others)| others.iter().copied())
+            .filter(|other| coincide(&contacts[*other], &built) && moves_with(&model.contacts[members[*other][0]]))
+            .min();
         let place = twin.unwrap_or(contacts.len());
         if twin.is_none() {
             neighbours.push(place);
+            alike.entry(ordered(gap)).or_default().push(place);
             contacts.push(built);
             contact_names.push((Arc::clone(&node), Arc::clone(&obstacle)));
             members.push(Vec::new());
@@ -483,6 +489,12 @@ fn build_contacts(
         .map(|contacts| Corner { contacts: contacts.clone() })
         .collect();
     Contacts { contacts, contact_names, reported, corners }
+}
+
+/// Numbers in the order of these.
+fn ordered(value: f64) -> u64 {
+    let bits = value.to_bits();
+    if value.is_sign_negative() { !bits } else { bits | (1 << 63) }
 }
 
 /// Whether two contacts are one: the same node before the same surface.

@@ -11,6 +11,7 @@ use super::follow::{Arriving, Listed};
 use super::increment::{Increment, Point, PointKind};
 use super::loading::Loading;
 use super::near::{self, FarContacts, Near};
+use super::newton::NO_FORCE;
 use super::pocket::taken_over;
 use super::progress::{Phase, Progress};
 use super::rates::Effort;
@@ -46,9 +47,10 @@ impl<'a> Path<'a> {
     }
 
     /// At a point that fits the scene; `elapsed_before`: solver time that led there.
-    pub(super) fn at(scene: &'a Scene, at: Progress, elapsed_before: f64, cancel: CancelFlag) -> Self {
+    pub(super) fn at(scene: &'a Scene, mut at: Progress, elapsed_before: f64, cancel: CancelFlag) -> Self {
         let undeformed = vec![0.0; scene.structure.freedoms()];
         let initial_strain = scene.structure.strain_energy(&undeformed);
+        at.hold(scene);
         let near = Near::of(scene, &at);
         let far = near::far_contacts(scene, &at);
         Self { scene, cancel, began: Instant::now(), elapsed_before, initial_strain, at, near, far }
@@ -78,7 +80,7 @@ impl<'a> Path<'a> {
         let analysis = &self.scene.analysis;
         let loads = self.scene.stages[self.at.stage].pattern.forces.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         let so_far = self.at.totals.force_scale;
-        let force_scale = if so_far > 0.0 { so_far } else { loads.max(f64::MIN_POSITIVE) };
+        let force_scale = if so_far > NO_FORCE { so_far } else { loads.max(NO_FORCE) };
         let effort = Effort { most_modes: analysis.max_modes, certify: !analysis.keep_all, cancel: &self.cancel };
         Rules { selection: analysis.selection, effort, force_scale }
     }
