@@ -3,6 +3,7 @@
 //! Between events the path keeps its contact mode and is followed by arc-length steps; where the mode ends, the
 //! directions are listed and one is taken. The step follows the turn of the path and the work of Newton's method.
 
+use super::arrival::ROUND_OFF;
 use super::carried::Carried;
 use super::contact_law;
 use super::corner::{is_in_plane, taken_apart, total_force};
@@ -175,13 +176,13 @@ impl<'a> Path<'a> {
             let what = format!("stage \"{}\" ends", stage.name);
             point.event = Some(point.event.map_or(what.clone(), |event| format!("{event}; {what}")));
         }
-        // A contact that has just closed may take over from another: not yet where the increment ends.
-        let now = &self.at.here.state.reactions;
-        let taken_over =
-            modes.iter().zip(now).any(|(mode, reaction)| *mode == Mode::Free && *reaction != Reaction::default());
+        // Where contacts of a node share its force in another way as the path goes on, they do not yet where it arrives.
+        let round_off = ROUND_OFF * self.at.totals.force_scale;
+        let now = self.at.here.state.reactions.iter();
+        let shared_anew = now.zip(&arrived).any(|(now, arrived)| now.difference(arrived) > round_off);
         let row = self.emit(Emitted {
             before: &before,
-            reactions: taken_over.then_some(arrived),
+            reactions: shared_anew.then_some(arrived),
             modes: &modes,
             step: reached.step,
             point,

@@ -12,7 +12,7 @@
 //! comes down almost along the obstacle is hardly pressed). With one such node this finds every slip that a scan of the circle tells apart. Of several, each is taken here to begin to
 //! slip while the others stick or leave; `together` finds those that begin at once.
 
-use super::rates::{self, Choice, Effort, Entity, RateProblem, Ray};
+use super::rates::{self, Choice, Effort, Entity, RateProblem, Ray, own_column};
 use super::root::find_root;
 use nalgebra::DVector;
 use std::f64::consts::TAU;
@@ -142,10 +142,26 @@ impl Touch {
     /// Whether the node moves along the direction, otherwise it sticks, and is pressed, otherwise it is free.
     fn is_slip(&self, problem: &RateProblem, ray: &Ray, angle: f64) -> bool {
         let value = |form: usize| problem.forms.row(form).transpose().dot(&ray.weights);
-        let along = value(self.velocities[1]) * angle.cos() + value(self.velocities[2]) * angle.sin();
         let size = (&problem.reactions * &ray.weights).amax().max(f64::MIN_POSITIVE);
         let opens = self.opening.iter().all(|gap| value(*gap) >= -ROOT);
-        along > ROOT && value(self.forces[0]) > ROOT * size && opens
+        self.motion(problem, &ray.weights, angle) > ROOT && value(self.forces[0]) > ROOT * size && opens
+    }
+
+    /// How clearly the node moves along a direction, dimensionless: by its velocity, or, of a node on stiff supports, which
+    /// is slow, by what that velocity changes in its own forces.
+    pub(super) fn motion(&self, problem: &RateProblem, weights: &DVector<f64>, angle: f64) -> f64 {
+        let value = |form: usize| problem.forms.row(form).transpose().dot(weights);
+        let parts = [angle.cos(), angle.sin()];
+        let along = value(self.velocities[1]) * parts[0] + value(self.velocities[2]) * parts[1];
+        let columns = [1, 2].map(|tangent| own_column(problem, self.velocities[tangent]));
+        let [Some(first), Some(second)] = columns else { return along };
+        let largest = |values: [f64; 3]| values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        let stiffness = largest(
+            self.forces
+                .map(|force| problem.forms[(force, first)] * parts[0] + problem.forms[(force, second)] * parts[1]),
+        );
+        let forces = largest(self.forces.map(value)).max(f64::MIN_POSITIVE);
+        along * (stiffness / forces).max(1.0)
     }
 
     fn keep(&self, found: &mut Vec<Turning>, problem: &RateProblem, ray: Ray, angle: f64) {
