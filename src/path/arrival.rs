@@ -26,7 +26,7 @@ pub(super) struct Arrival {
     pub taken: Option<usize>,
     pub stop: Option<StopReason>,
     pub stage_ends: bool,
-    /// The program was asked which way to go on and confirmed none of the directions.
+    /// The program was asked for the direction taken and does not name its mode.
     pub unconfirmed: bool,
 }
 
@@ -175,16 +175,15 @@ impl Path<'_> {
         }
         let before = Before::Incoming(incoming);
         let rules = self.rules();
-        let mut decision = decide::decide(self.loading(), &self.at.here.state, &standings, before, rules);
-        // Where the program confirms no direction, the listed ones decide, and the increment says so.
-        let mut confirmed_one = true;
-        if self.scene.analysis.method == Method::Mpec && decision.taken.is_some() {
-            let confirmed = self.confirmed_by_program(&decision.options);
-            let open = |index: usize| confirmed[index] != Some(false) && !decision.options[index].retrace;
-            let best = decide::preferred(&decision.options, incoming, self.rules(), open);
-            confirmed_one = best.is_some_and(|best| confirmed[best] == Some(true));
-            decision.taken = best.or(decision.taken);
-        }
+        let decision = decide::decide(self.loading(), &self.at.here.state, &standings, before, rules);
+        // The rule decides among the directions, each of which holds over a finite step; the program says whether it names
+        // the mode of the one taken.
+        let confirmed = match decision.taken {
+            Some(taken) if self.scene.analysis.method == Method::Mpec => {
+                self.is_confirmed_by_program(&decision.options[taken])
+            }
+            _ => true,
+        };
         let old_modes = self.at.here.modes.clone();
         let old_sign = self.at.here.load_sign;
         let mut stop = decision.stop;
@@ -219,7 +218,7 @@ impl Path<'_> {
             taken: decision.taken,
             stop,
             stage_ends: false,
-            unconfirmed: !confirmed_one,
+            unconfirmed: !confirmed,
         }
     }
 
