@@ -1,6 +1,7 @@
 //! What a point turned out to be, and how the path goes on from it.
 
 use super::branches;
+use super::confirm::later_load;
 use super::critical::Crossing;
 use super::decide::{self, Before, Choice};
 use super::increment::{Point, PointKind};
@@ -175,7 +176,8 @@ impl Path<'_> {
         }
         let before = Before::Incoming(incoming);
         let rules = self.rules();
-        let decision = decide::decide(self.loading(), &self.at.here.state, &standings, before, rules);
+        let mut decision = decide::decide(self.loading(), &self.at.here.state, &standings, before, rules);
+        let force_scale = rules.force_scale;
         // The rule decides among the directions, each of which holds over a finite step; the program says whether it names
         // the mode of the one taken.
         let confirmed = match decision.taken {
@@ -184,6 +186,14 @@ impl Path<'_> {
             }
             _ => true,
         };
+        // By the load rates here: of a load that turns, the way back falls as the way on does.
+        let bifurcation = decide::is_bifurcation(&decision.options, decision.taken, None);
+        if let Some(choice) = decision.taken.map(|taken| &mut decision.options[taken])
+            && choice.load_sign == 0.0
+        {
+            let later = later_load(self.loading(), &self.at.here.state, &choice.rate, &choice.modes, force_scale);
+            choice.load_sign = decide::sign_of(later);
+        }
         let old_modes = self.at.here.modes.clone();
         let old_sign = self.at.here.load_sign;
         let mut stop = decision.stop;
@@ -201,7 +211,7 @@ impl Path<'_> {
         }
         let point = Point {
             kind,
-            bifurcation: decide::is_bifurcation(&decision.options, decision.taken, None),
+            bifurcation,
             event: Some(describe_change(
                 self.names(),
                 &old_modes,
