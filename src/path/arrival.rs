@@ -2,6 +2,7 @@
 
 use super::branches;
 use super::carried::Carried;
+use super::confirm::later_load;
 use super::corner;
 use super::critical::Crossing;
 use super::decide::{self, Before, Choice};
@@ -28,7 +29,7 @@ pub(super) struct Arrival {
     pub taken: Option<usize>,
     pub stop: Option<StopReason>,
     pub stage_ends: bool,
-    /// The program was asked which way to go on and confirmed none of the directions.
+    /// The program was asked for the direction taken and does not name its mode.
     pub unconfirmed: bool,
 }
 
@@ -185,16 +186,22 @@ impl Path<'_> {
             let best = decide::preferred(&decision.options, incoming, rules, open);
             decision.taken = best.filter(|best| !decision.options[*best].mechanism).or(decision.taken);
         }
-        // Where the program confirms no direction, the listed ones decide, and the increment says so.
-        let mut confirmed_one = true;
-        if self.scene.analysis.method == Method::Mpec && decision.taken.is_some() {
-            let confirmed = self.confirmed_by_program(&decision.options);
-            let open = |index: usize| confirmed[index] != Some(false) && !decision.options[index].retrace;
-            let best =
-                decide::preferred(&decision.options, incoming, self.rules(), |index| keeps[index] && open(index))
-                    .or_else(|| decide::preferred(&decision.options, incoming, self.rules(), open));
-            confirmed_one = best.is_some_and(|best| confirmed[best] == Some(true));
-            decision.taken = best.or(decision.taken);
+        let force_scale = rules.force_scale;
+        // The rule decides among the directions, each of which holds over a finite step; the program says whether it names
+        // the mode of the one taken.
+        let confirmed = match decision.taken {
+            Some(taken) if self.scene.analysis.method == Method::Mpec => {
+                self.is_confirmed_by_program(&decision.options[taken])
+            }
+            _ => true,
+        };
+        // By the load rates here: of a load that turns, the way back falls as the way on does.
+        let bifurcation = decide::is_bifurcation(&decision.options, decision.taken, None);
+        if let Some(choice) = decision.taken.map(|taken| &mut decision.options[taken])
+            && choice.load_sign == 0.0
+        {
+            let later = later_load(self.loading(), &self.at.here.state, &choice.rate, &choice.modes, force_scale);
+            choice.load_sign = decide::sign_of(later);
         }
         let old_modes = self.at.here.modes.clone();
         let old_sign = self.at.here.load_sign;
@@ -213,7 +220,7 @@ impl Path<'_> {
         }
         let point = Point {
             kind,
-            bifurcation: decide::is_bifurcation(&decision.options, decision.taken, None),
+            bifurcation,
             event: Some(describe_change(
                 self.names(),
                 &old_modes,
@@ -230,7 +237,7 @@ impl Path<'_> {
             taken: decision.taken,
             stop,
             stage_ends: false,
-            unconfirmed: !confirmed_one,
+            unconfirmed: !confirmed,
         }
     }
 

@@ -81,7 +81,7 @@ fn crossing_when_loose(
     work: &mut Work,
 ) -> Option<(Reached, Crossing)> {
     let loosened = Start { modes: loose, ..*start };
-    let before = Signature::at(start.loading, loose, start.state, start.rate, work)?;
+    let before = Signature::past_start(&loosened, reached.step, work)?;
     let mut end = loosened.reach_near(reached.corrected.state.clone(), reached.step, work).ok()?;
     end.event = reached.event;
     let (_, change) = singular::compare(&loosened, before, &end);
@@ -173,8 +173,7 @@ impl Path<'_> {
                 (Ok(_), Some(back), _) => Ok((back, None, None, true)),
                 (_, _, Some((reached, crossing, signature))) => Ok((reached, crossing, signature, false)),
                 (Ok(reached), None, None) => {
-                    let before =
-                        known.or_else(|| Signature::at(start.loading, start.modes, start.state, &rate, &mut work));
+                    let before = known.or_else(|| Signature::past_start(&start, reached.step, &mut work));
                     known = before;
                     first_crossing(&start, before, reached, unresolved < MOST_UNRESOLVED, &mut work)
                         .map(|(reached, crossing, signature)| (reached, crossing, signature, false))
