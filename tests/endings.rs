@@ -207,3 +207,28 @@ fn the_load_turns_where_a_slipping_block_comes_to_rest() {
         assert!(!last.point.bifurcation);
     }
 }
+
+/// Two nodes on a floor that they reach from different heights are pushed together: the direction of the bar between them is
+/// a difference of rounded places.
+#[test]
+fn nodes_that_meet_end_the_path_before_their_bar_has_no_direction() {
+    for method in ["auto", "mpec"] {
+        let ground = |node: &str| json!({"kind": "spring", "nodes": [node], "stiffness": [[0.5, 0], [0, 0.5]]});
+        let model = json!({"model": {
+            "name": "two nodes meet", "dimension": 2,
+            "nodes": {"a": [0, 0.4436110578680075], "b": [1, 0.7205299882651125]},
+            "elements": [ground("a"), ground("b"), {"kind": "bar", "nodes": ["a", "b"], "axial_stiffness": 0.1}],
+            "obstacles": {"floor": {"kind": "plane", "point": [0, 0.24006814741196636], "normal": [0, 1]}},
+            "contacts": [{"node": "a", "obstacle": "floor"}, {"node": "b", "obstacle": "floor"}],
+            "stages": [
+                {"name": "press", "forces": {"a": [0, -1], "b": [0, -1]}, "until": {"load_above": 1}},
+                {"name": "meet", "forces": {"a": [1, 0], "b": [-1, 0]}, "until": {"load_above": 2}},
+            ],
+        }, "analysis": {"method": method}});
+        let (increments, report) = trace(&request(&model.to_string()));
+        assert_eq!(report.stop_reason, StopReason::CollapsedBar, "{method}");
+        let last = increments.last().expect("an end");
+        let length = 1.0 + last.displacements["b"][0] - last.displacements["a"][0];
+        assert!(length > 0.0 && length < 1e-4, "{method}: {length}");
+    }
+}
