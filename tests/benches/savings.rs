@@ -8,7 +8,7 @@ use allocation_counter::measure;
 use arcslip::cancel::CancelFlag;
 use arcslip::judged::JudgedPath;
 use arcslip::model::JobRequest;
-use arcslip::model::limits::{MAX_CONTACTS, MAX_OBSTACLES};
+use arcslip::model::limits::MAX_OBSTACLES;
 use arcslip::model::request::{Contact, Obstacle, Record, RecordedContacts, Side};
 use arcslip::path::Scene;
 use serde_json::json;
@@ -16,6 +16,8 @@ use std::time::Instant;
 
 /// Whole paths traced of each; the median is printed.
 const REPEATS: usize = 9;
+/// Contacts of which all but the scene's own are far.
+const FAR: usize = 10_000;
 /// Increments of a path that are timed at most among many contacts: with every contact kept each takes long.
 const MOST_INCREMENTS: u64 = 40;
 
@@ -65,7 +67,7 @@ fn kept(mut request: JobRequest) -> JobRequest {
 /// The scene among far contacts beside the scene alone, then with every contact kept.
 fn among_far_contacts(name: &str, mut request: JobRequest) {
     request.analysis.max_increments = MOST_INCREMENTS;
-    let among = with_far_contacts(request.clone(), MAX_CONTACTS);
+    let among = with_far_contacts(request.clone(), FAR);
     compare(&format!("{name}, and among 10,000 far"), "nothing: what far ones cost", &request, &among);
     let among = with_far_contacts(request, 200);
     compare(&format!("{name} among 200 far"), "contacts out of reach", &among, &kept(among.clone()));
