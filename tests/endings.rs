@@ -175,3 +175,60 @@ fn a_bar_about_to_collapse_keeps_to_the_bar_of_the_measure() {
         }
     }
 }
+
+/// A truss under the load that pulls a block over a floor: at the truss's maximum the block, no longer pulled on, comes to
+/// rest. The load turns there, whatever the step.
+#[test]
+fn the_load_turns_where_a_slipping_block_comes_to_rest() {
+    let rest = 1.0_f64.hypot(0.3);
+    // Height y of the apex, bars of length l: s = 2 y (1/l - 1/l0), stationary where l³ = l0.
+    let length = rest.cbrt();
+    let maximum = 2.0 * (length * length - 1.0).sqrt() * (1.0 / length - 1.0 / rest);
+    for longest in [0.2, 0.05, 0.013] {
+        let model = json!({"model": {
+            "name": "truss and block", "dimension": 2,
+            "nodes": {"left": [-1, 0], "right": [1, 0], "apex": [0, 0.3], "block": [3, 0]},
+            "supports": {"left": ["x", "y"], "right": ["x", "y"], "apex": ["x"]},
+            "elements": [
+                {"kind": "bar", "nodes": ["left", "apex"], "axial_stiffness": 1},
+                {"kind": "bar", "nodes": ["right", "apex"], "axial_stiffness": 1},
+                {"kind": "spring", "nodes": ["block"], "stiffness": [[0.1, 0], [0, 0.1]]}],
+            "obstacles": {"floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]}},
+            "contacts": [{"node": "block", "obstacle": "floor", "friction": 0.1}],
+            "stages": [
+                {"name": "press", "forces": {"block": [0, -1]}, "until": {"load_above": 0.05}},
+                {"name": "load", "forces": {"apex": [0, -1], "block": [1, 0]}, "until": {"limit_points": 1}}]
+        }, "analysis": {"max_increments": 200, "arc_length": {"max": longest}}});
+        let (increments, report) = trace(&request(&model.to_string()));
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted, "steps of {longest}");
+        let last = increments.last().expect("an end");
+        assert!((last.load_factor - maximum).abs() < 1e-12, "{} {maximum}", last.load_factor);
+        assert_eq!(last.point.kind, PointKind::NonsmoothLimit);
+        assert!(!last.point.bifurcation);
+    }
+}
+
+/// Two nodes on a floor that they reach from different heights are pushed together: the direction of the bar between them is
+/// a difference of rounded places.
+#[test]
+fn nodes_that_meet_end_the_path_before_their_bar_has_no_direction() {
+    for method in ["auto", "mpec"] {
+        let ground = |node: &str| json!({"kind": "spring", "nodes": [node], "stiffness": [[0.5, 0], [0, 0.5]]});
+        let model = json!({"model": {
+            "name": "two nodes meet", "dimension": 2,
+            "nodes": {"a": [0, 0.4436110578680075], "b": [1, 0.7205299882651125]},
+            "elements": [ground("a"), ground("b"), {"kind": "bar", "nodes": ["a", "b"], "axial_stiffness": 0.1}],
+            "obstacles": {"floor": {"kind": "plane", "point": [0, 0.24006814741196636], "normal": [0, 1]}},
+            "contacts": [{"node": "a", "obstacle": "floor"}, {"node": "b", "obstacle": "floor"}],
+            "stages": [
+                {"name": "press", "forces": {"a": [0, -1], "b": [0, -1]}, "until": {"load_above": 1}},
+                {"name": "meet", "forces": {"a": [1, 0], "b": [-1, 0]}, "until": {"load_above": 2}},
+            ],
+        }, "analysis": {"method": method}});
+        let (increments, report) = trace(&request(&model.to_string()));
+        assert_eq!(report.stop_reason, StopReason::CollapsedBar, "{method}");
+        let last = increments.last().expect("an end");
+        let length = 1.0 + last.displacements["b"][0] - last.displacements["a"][0];
+        assert!(length > 0.0 && length < 1e-4, "{method}: {length}");
+    }
+}

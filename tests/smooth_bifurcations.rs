@@ -361,3 +361,27 @@ fn beside_slip_in_space() {
         assert!(directions[1..].iter().all(|d| d.contacts == [Status::Stick]), "{directions:?}");
     }
 }
+
+/// A column of two bars held in the middle by springs of 0.1 and 0.2, and a wall that the middle touches without force.
+/// It buckles off the wall at `s = k/(2 + k)` for the one and along it for the other, both within the reach of a step
+/// from the first point.
+#[test]
+fn a_second_point_just_past_the_first() {
+    let model = json!({"model": {
+        "name": "column at a wall", "dimension": 3, "nodes": {"base": [0, 0, 0], "mid": [1, 0, 0], "top": [2, 0, 0]},
+        "supports": {"base": ["x", "y", "z"], "top": ["y", "z"]},
+        "elements": [
+            {"kind": "bar", "nodes": ["base", "mid"], "axial_stiffness": 1},
+            {"kind": "bar", "nodes": ["mid", "top"], "axial_stiffness": 1},
+            {"kind": "spring", "nodes": ["mid"], "stiffness": [[0, 0, 0], [0, 0.1, 0], [0, 0, 0.2]]}],
+        "obstacles": {"wall": {"kind": "plane", "point": [0, 0, 0], "normal": [0, 1, 0]}},
+        "contacts": [{"node": "mid", "obstacle": "wall", "friction": 0.3}],
+        "stages": [{"name": "press", "forces": {"top": [-1, 0, 0]}, "until": {"load_above": 0.3}}]
+    }});
+    let (increments, _) = trace(&request(&model.to_string()));
+    let loads: Vec<f64> = bifurcations(&increments).iter().map(|point| point.load_factor).collect();
+    assert_eq!(loads.len(), 2, "{loads:?}");
+    for (load, k) in loads.iter().zip([0.1, 0.2]) {
+        assert!((load - k / (2.0 + k)).abs() < 1e-12, "{load}");
+    }
+}

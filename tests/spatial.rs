@@ -248,3 +248,45 @@ fn a_slip_that_begins_hardly_pressed() {
         }
     }
 }
+
+/// A bar on a rough floor whose foot a very stiff tie holds: it slips at once, slowly, as it does in the plane.
+#[test]
+fn a_foot_on_a_stiff_tie_slips_in_space_as_in_the_plane() {
+    for stiffness in [1e6, 1e9, 1e12] {
+        let tied = |dimension: usize| {
+            // In the plane the vertical is y.
+            let at = |x: f64, z: f64| if dimension == 2 { vec![x, z] } else { vec![x, 0.0, z] };
+            let fixed = if dimension == 2 { vec!["x", "y"] } else { vec!["x", "y", "z"] };
+            let mut elements = vec![
+                json!({"kind": "bar", "nodes": ["pin", "foot"], "axial_stiffness": 1.0}),
+                json!({"kind": "bar", "nodes": ["wall", "foot"], "axial_stiffness": stiffness}),
+            ];
+            if dimension == 3 {
+                let aside = [[0.0; 3], [0.0, 0.05, 0.0], [0.0; 3]];
+                elements.push(json!({"kind": "spring", "nodes": ["foot"], "stiffness": aside}));
+            }
+            typed(json!({
+                "model": {
+                    "name": format!("tie of {stiffness:e} in {dimension}D"),
+                    "dimension": dimension,
+                    "nodes": {"pin": at(0.0, 1.0), "foot": at(-1.5, 0.0), "wall": at(-2.5, 0.0)},
+                    "supports": {"pin": fixed, "wall": fixed},
+                    "elements": elements,
+                    "obstacles": {"floor": {"kind": "plane", "point": at(0.0, 0.0), "normal": at(0.0, 1.0)}},
+                    "contacts": [{"node": "foot", "obstacle": "floor", "friction": 0.3}],
+                    "stages": [{"name": "push", "forces": {"foot": at(1.0, 0.0)}, "until": {"load_above": 5.0}}]
+                },
+                "analysis": {"max_increments": 60}
+            }))
+        };
+        let ends = [2, 3].map(|dimension| {
+            let (increments, report) = trace(&tied(dimension));
+            assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{stiffness:e} in {dimension}D");
+            let last = increments.last().expect("an end");
+            (last.displacements["foot"][0], last.contacts[0].normal_reaction)
+        });
+        let [(plane, pressed), (space, also)] = ends;
+        assert!(plane > 0.0 && (plane - space).abs() <= 1e-6 * plane, "{stiffness:e}: {plane:e} and {space:e}");
+        assert!((pressed - also).abs() <= 1e-6 * pressed, "{stiffness:e}: {pressed:e} and {also:e}");
+    }
+}

@@ -440,6 +440,50 @@ fn a_wall_that_moves_askew_drags_a_node_up() {
     }
 }
 
+/// A node on a floor (μ = 1/2) under a plane at 45° that moves down and slips on it: carried to the left by `5/8 s`, with
+/// `R = (5/4 - 9/8 x, 5/4 + 15/32 x)` at `x`. Where that is on the floor's cone, at `x = 0.625/1.359375`, the plane
+/// carries nothing. It leaves, and the node stays on the floor to the end of the stage.
+#[test]
+fn a_node_carried_between_planes_lets_that_go_which_carries_nothing() {
+    for method in METHODS {
+        let request = typed(json!({
+            "model": {
+                "name": "let go",
+                "dimension": 2,
+                "nodes": {"node": [0.0, 0.0]},
+                "elements": [{"kind": "spring", "nodes": ["node"],
+                    "stiffness": [[1.125, -0.46875], [-0.46875, 0.890625]]}],
+                "obstacles": {
+                    "plane": {"kind": "plane", "point": [0.0, 0.0], "normal": [1.0, 1.0]},
+                    "floor": {"kind": "plane", "point": [0.0, 0.0], "normal": [0.0, 1.0]}
+                },
+                "contacts": [
+                    {"node": "node", "obstacle": "plane", "friction": 1.4042431888619333},
+                    {"node": "node", "obstacle": "floor", "friction": 0.5}
+                ],
+                "stages": [
+                    {"name": "press", "until": {"load_above": 1.0}, "forces": {"node": [-1.25, -1.25]}},
+                    {"name": "move", "until": {"load_above": 1.0}, "obstacle_motion": {"plane": [0.125, -0.75]}}
+                ]
+            },
+            "analysis": {"max_increments": 60}
+        }));
+        let (increments, report) = trace(&with(request, method));
+        assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{:?}", increments.last());
+        let place = 0.625 / 1.359375;
+        let event = increments.iter().find(|increment| (increment.load_factor - place / 0.625).abs() < 1e-11);
+        let [plane, floor] = &event.expect("the plane's force falls to zero").contacts[..] else { panic!("two") };
+        assert_eq!((plane.status, floor.status), (Status::Slip, Status::Slip));
+        close(plane.normal_reaction, 0.0, 1e-12, "plane");
+        close(floor.normal_reaction, 1.25 + 0.46875 * place, 1e-12, "floor");
+        close(floor.tangential_reaction[0], 0.5 * floor.normal_reaction, 1e-12, "friction");
+        let last = increments.last().expect("an end");
+        assert_eq!((last.contacts[0].status, last.contacts[1].status), (Status::Free, Status::Stick));
+        close(last.load_factor, 1.0, 1e-12, "end");
+        close(last.displacements["node"][0], -place, 1e-12, "the node stays");
+    }
+}
+
 /// Smooth floor, wall and back of a box in space, springs k = 1: pressed against floor and wall the node slides along their
 /// edge to the back at y = 1/2 and stays in the corner of the three; the back then moves on by `s` against the others, and
 /// last a pull out of the wall frees the node of it at s = 1.

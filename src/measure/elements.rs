@@ -62,6 +62,14 @@ impl Element {
     }
 
     /// Under these displacements of the nodes.
+    /// Force by unit displacement, undeformed: the largest in any direction, near enough.
+    pub fn stiffness(&self) -> f64 {
+        match self {
+            Self::Bar { rest, stiffness, .. } => stiffness / rest,
+            Self::Spring { stiffness, .. } => stiffness.iter().map(norm).fold(0.0, f64::max),
+        }
+    }
+
     pub fn response(&self, u: &[Vector]) -> Response {
         match self {
             Self::Bar { ends, reference, before, rest, stiffness, prestress, strain } => {

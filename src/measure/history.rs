@@ -5,6 +5,7 @@ use super::Judge;
 use super::posted::{Loading, Posted};
 use super::vector::{Vector, ZERO};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Changes when a history of before would be read as something else.
 const VERSION: u32 = 2;
@@ -14,8 +15,8 @@ const VERSION: u32 = 2;
 pub(super) struct Before {
     pub displacements: Vec<Vector>,
     pub shifts: Vec<Vector>,
-    /// `-r_t/|r_t|` in space of each contact, if it has a row and is on its cone; in 3D only.
-    pub directions: Vec<Option<Vector>>,
+    /// `-r_t/|r_t|` in space of the contacts that are on their cones; in 3D only.
+    pub directions: BTreeMap<usize, Vector>,
     /// Load factor in the running stage.
     pub load: f64,
     pub arc_length: f64,
@@ -26,7 +27,7 @@ impl Before {
         Self {
             displacements: vec![ZERO; posted.nodes.len()],
             shifts: vec![ZERO; posted.moving],
-            directions: vec![None; posted.contacts.len()],
+            directions: BTreeMap::new(),
             load: 0.0,
             arc_length: 0.0,
         }
@@ -61,14 +62,13 @@ pub enum HistoryError {
 
 impl Judge {
     pub fn history(&self) -> History {
-        let directions = self.before.directions.iter().enumerate();
         History {
             version: VERSION,
             reached: self.reached.clone(),
             load: self.before.load,
             arc_length: self.before.arc_length,
             displacements: self.before.displacements.clone(),
-            directions: directions.filter_map(|(contact, direction)| Some((contact, (*direction)?))).collect(),
+            directions: self.before.directions.iter().map(|(contact, direction)| (*contact, *direction)).collect(),
             largest_force: self.largest_force,
             largest_energy: self.largest_energy,
         }
@@ -107,9 +107,7 @@ impl Judge {
         self.held = held;
         let mut before =
             Before { displacements, shifts: loading.shifts.clone(), load, arc_length, ..Before::at_rest(posted) };
-        for (contact, direction) in directions {
-            before.directions[contact] = Some(direction);
-        }
+        before.directions.extend(directions);
         self.before = before;
         self.apart.begin(&self.posted, &loading, &self.before.displacements);
         self.largest_force = largest_force;

@@ -55,6 +55,7 @@ use crate::model::JobRequest;
 use crate::path::increment::Increment;
 use apart::Apart;
 use contacts::Seen;
+use elements::Element;
 use errors::worse;
 use history::Before;
 use obstacles::Frame;
@@ -62,12 +63,19 @@ use posted::{Loading, Posted};
 use rows::{Change, Rows};
 use vector::{Vector, ZERO, add, largest, padded, scaled};
 
+/// Forces below this part of what the stiffest element takes to be stretched by the displacement scale are none.
+const NO_FORCE: f64 = 1e-20;
+/// Energies below this part of the largest force times the displacement scale are rounding.
+const NO_ENERGY: f64 = 1e-10;
+
 /// Judges the increments of one path, in order.
 #[derive(Debug, Clone)]
 pub struct Judge {
     posted: Posted,
     /// The plan's displacement scale.
     length: f64,
+    /// Forces below this are none: what rounding leaves where nothing is loaded.
+    no_force: f64,
     stage: usize,
     /// Loads at which the stages before ended.
     reached: Vec<f64>,
@@ -102,11 +110,14 @@ impl Judge {
         let nodes = posted.nodes.len();
         let (displacements, balance, rounding) = (vec![ZERO; nodes], vec![ZERO; nodes], vec![0.0; nodes]);
         let frames = Vec::new();
+        let stiffest = posted.elements.iter().map(Element::stiffness).fold(0.0, f64::max);
+        let no_force = (NO_FORCE * stiffest * displacement_scale).max(f64::MIN_POSITIVE);
         let mut apart = Apart::new(&posted, displacement_scale);
         apart.begin(&posted, &none, &displacements);
         let initial_strain = posted.elements.iter().map(|element| element.response(&displacements).energy).sum();
         Self {
             length: displacement_scale,
+            no_force,
             stage: 0,
             reached: Vec::new(),
             held: none.clone(),
@@ -128,12 +139,14 @@ impl Judge {
             errors.reported = f64::MAX;
         }
         let strain = self.forces(increment);
-        let force = if self.largest_force > 0.0 { self.largest_force } else { 1.0 };
+        let force = self.largest_force.max(self.no_force);
         errors.equilibrium = worse(0.0, self.unbalanced() / force);
         errors.support = self.off_support();
         let distance = self.distance(increment);
-        let of_step = (distance - increment.step).abs();
-        let of_sum = (increment.arc_length - (self.before.arc_length + increment.step)).abs();
+        // Of long steps the part that rounding may change is as much longer.
+        let of_step = (distance - increment.step).abs() / distance.max(1.0);
+        let sum = self.before.arc_length + increment.step;
+        let of_sum = (increment.arc_length - sum).abs() / sum.max(1.0);
         errors.arc_length = worse(worse(0.0, of_step), of_sum);
         for ((state, index), frame) in increment.contacts.iter().zip(self.rows.contacts()).zip(&self.work.frames) {
             let contact = self.posted.contacts[*index];
@@ -145,10 +158,13 @@ impl Judge {
                 frame,
                 friction: contact.friction,
                 motion: add(&moved, -1.0, &shifted),
-                direction_before: self.before.directions[*index],
+                direction_before: self.before.directions.get(index).copied(),
                 dimension: self.posted.dimension,
             };
-            self.before.directions[*index] = seen.judge(self.length, force, &mut errors);
+            match seen.judge(self.length, force, &mut errors) {
+                Some(direction) => self.before.directions.insert(*index, direction),
+                None => self.before.directions.remove(index),
+            };
         }
         self.apart.judge(&self.posted, &self.work.loading, &self.work.displacements, distance, &mut errors);
         self.energy(increment, strain, &mut errors);
@@ -260,8 +276,7 @@ impl Judge {
         if most.is_finite() {
             self.largest_energy = most;
         }
-        let size = self.largest_energy.max(1e-12 * self.largest_force * self.length);
-        let size = if size > 0.0 { size } else { 1.0 };
+        let size = self.largest_energy.max(NO_ENERGY * self.largest_force.max(self.no_force) * self.length);
         let imbalance = energy.external_work - energy.strain - energy.dissipated;
         errors.energy = worse(0.0, imbalance.abs() / size);
         errors.strain_energy = worse(0.0, (energy.strain - (strain - self.initial_strain)).abs() / size);

@@ -14,9 +14,9 @@ pub const MAX_NODES: usize = 100_000;
 /// Elements of a model.
 pub const MAX_ELEMENTS: usize = 250_000;
 /// Obstacles of a model.
-pub const MAX_OBSTACLES: usize = 10_000;
+pub const MAX_OBSTACLES: usize = 20_000;
 /// Contacts of a model.
-pub const MAX_CONTACTS: usize = 10_000;
+pub const MAX_CONTACTS: usize = 20_000;
 /// Contacts up to which every increment has a row of each; of more, those out of reach have none unless asked for.
 pub const MAX_ROWS_UNASKED: usize = 100;
 /// Stages of a model.

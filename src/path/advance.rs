@@ -60,6 +60,8 @@ pub enum Refused {
     AtStart(Watch),
     /// The point reached breaks the laws of contact and friction.
     Unlawful,
+    /// A bar would shrink to a point.
+    Collapsed,
     /// The signs of the equations changed, and no bifurcation point could be made out.
     Unresolved,
 }

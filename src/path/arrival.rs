@@ -1,11 +1,14 @@
 //! What a point turned out to be, and how the path goes on from it.
 
 use super::branches;
+use super::carried::Carried;
+use super::confirm::later_load;
+use super::corner;
 use super::critical::Crossing;
 use super::decide::{self, Before, Choice};
 use super::increment::{Point, PointKind};
 use super::name_event::describe_change;
-use super::standing::Standing;
+use super::standing::{Standing, ZERO};
 use super::state::Rate;
 use super::stop::StopReason;
 use super::tracer::Path;
@@ -17,7 +20,7 @@ use std::sync::Arc;
 /// States closer than this are one.
 pub(super) const SAME_STATE: f64 = 1e-9;
 /// A reaction this small against the largest force so far is what the location of its zero left over.
-const ROUND_OFF: f64 = 1e-14;
+pub(super) const ROUND_OFF: f64 = 1e-14;
 
 /// What a point turned out to be.
 pub(super) struct Arrival {
@@ -26,7 +29,7 @@ pub(super) struct Arrival {
     pub taken: Option<usize>,
     pub stop: Option<StopReason>,
     pub stage_ends: bool,
-    /// The program was asked which way to go on and confirmed none of the directions.
+    /// The program was asked for the direction taken and does not name its mode.
     pub unconfirmed: bool,
 }
 
@@ -176,14 +179,29 @@ impl Path<'_> {
         let before = Before::Incoming(incoming);
         let rules = self.rules();
         let mut decision = decide::decide(self.loading(), &self.at.here.state, &standings, before, rules);
-        // Where the program confirms no direction, the listed ones decide, and the increment says so.
-        let mut confirmed_one = true;
-        if self.scene.analysis.method == Method::Mpec && decision.taken.is_some() {
-            let confirmed = self.confirmed_by_program(&decision.options);
-            let open = |index: usize| confirmed[index] != Some(false) && !decision.options[index].retrace;
-            let best = decide::preferred(&decision.options, incoming, self.rules(), open);
-            confirmed_one = best.is_some_and(|best| confirmed[best] == Some(true));
-            decision.taken = best.or(decision.taken);
+        // Ways that share a node's force anew come last: they begin with a rest, not with the motion that led here.
+        let keeps: Vec<bool> = decision.options.iter().map(|option| self.keeps_shares(option)).collect();
+        if decision.taken.is_some_and(|taken| !keeps[taken]) {
+            let open = |index: usize| keeps[index] && !decision.options[index].retrace;
+            let best = decide::preferred(&decision.options, incoming, rules, open);
+            decision.taken = best.filter(|best| !decision.options[*best].mechanism).or(decision.taken);
+        }
+        let force_scale = rules.force_scale;
+        // The rule decides among the directions, each of which holds over a finite step; the program says whether it names
+        // the mode of the one taken.
+        let confirmed = match decision.taken {
+            Some(taken) if self.scene.analysis.method == Method::Mpec => {
+                self.is_confirmed_by_program(&decision.options[taken])
+            }
+            _ => true,
+        };
+        // By the load rates here: of a load that turns, the way back falls as the way on does.
+        let bifurcation = decide::is_bifurcation(&decision.options, decision.taken, None);
+        if let Some(choice) = decision.taken.map(|taken| &mut decision.options[taken])
+            && choice.load_sign == 0.0
+        {
+            let later = later_load(self.loading(), &self.at.here.state, &choice.rate, &choice.modes, force_scale);
+            choice.load_sign = decide::sign_of(later);
         }
         let old_modes = self.at.here.modes.clone();
         let old_sign = self.at.here.load_sign;
@@ -202,7 +220,7 @@ impl Path<'_> {
         }
         let point = Point {
             kind,
-            bifurcation: decide::is_bifurcation(&decision.options, decision.taken, None),
+            bifurcation,
             event: Some(describe_change(
                 self.names(),
                 &old_modes,
@@ -219,8 +237,33 @@ impl Path<'_> {
             taken: decision.taken,
             stop,
             stage_ends: false,
-            unconfirmed: !confirmed_one,
+            unconfirmed: !confirmed,
         }
+    }
+
+    /// Whether a direction begins with the reactions that are. Where a node is carried by planes that move against each
+    /// other and slips along both, equilibrium gives them; another way to share its force begins with a rest.
+    fn keeps_shares(&self, choice: &Choice) -> bool {
+        let (loading, here) = (self.loading(), &self.at.here);
+        let (state, zero) = (&here.state, ZERO * self.rules().force_scale);
+        loading.corners.iter().filter(|corner| corner::is_in_plane(loading, corner)).all(|corner| {
+            let closed = corner.closed(loading, state);
+            let slips = |contact: &usize| matches!(here.modes[*contact], Mode::Slip { .. });
+            // What sticks while another presses the node may bear what it did.
+            let any_share = closed.iter().any(|contact| choice.modes[*contact] == Mode::Stick)
+                && closed.iter().all(|contact| choice.modes[*contact].is_active());
+            match Carried::of(loading, &closed, state) {
+                Some(carried) if closed.iter().all(slips) && !any_share => {
+                    let force = corner::total_force(loading, closed.iter().copied(), state);
+                    let begins = carried.reactions(loading, &choice.modes, &force, state);
+                    closed
+                        .iter()
+                        .zip(&begins)
+                        .all(|(contact, begins)| begins.difference(&state.reactions[*contact]) <= zero)
+                }
+                _ => true,
+            }
+        })
     }
 
     /// Whether the path has left this very state in these modes before; remembers it if not.

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Changes when a checkpoint of before would be read as something else.
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 
 /// A path at one of its points.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -112,8 +112,7 @@ impl Checkpoint {
             listed.arriving.iter().try_for_each(|arriving| modes(&arriving.modes))?;
             listed.options.iter().try_for_each(|option| rate(&option.rate).and_then(|()| modes(&option.modes)))
         };
-        same("degrees of freedom", self.at.held.forces.len(), freedoms)?;
-        same("contacts", self.at.held.shifts.len(), all)?;
+        same("stages before", self.at.reached.len(), self.at.stage)?;
         if let Some((begun, direction)) = &self.at.begun {
             state(begun)?;
             rate(direction)?;

@@ -9,12 +9,11 @@ use super::corner::whole_rates;
 use super::directions::{Alternative, Candidate, Found, RANK, WEAK, is_mechanism, merge, sort};
 use super::loading::Loading;
 use super::mode_system::{Kind, ModeSystem};
-use super::rates::{self, RateProblem, Ray};
+use super::rates::{self, Effort, RateProblem, Ray};
 use super::standing::Standing;
 use super::state::{Rate, State};
 use super::together;
 use super::turning::{self, Touch, Turning};
-use crate::cancel::CancelFlag;
 use crate::contact::vector::{Vector, add, dot, scaled};
 use crate::contact::{Mode, Reaction};
 use crate::linear_algebra::{Factorisation, Sink, SystemFactorisation, null_space};
@@ -101,8 +100,7 @@ impl<'a> Condensed<'a> {
         held: &[Mode],
         state: &State,
         incoming: Option<&Rate>,
-        most_modes: u64,
-        cancel: &CancelFlag,
+        effort: Effort<'_>,
         found: &mut Found,
     ) {
         let mut first = vec![vec![0; self.changeable.len()]];
@@ -110,9 +108,9 @@ impl<'a> Condensed<'a> {
             first.extend(rates::near(&self.problem, &self.weights_of(rate)));
         }
         if self.changeable.len() > FEW {
-            first.extend(rates::sweeps(&self.problem, cancel));
+            first.extend(rates::sweeps(&self.problem, effort.cancel));
         }
-        let findings = rates::explore(&self.problem, &first, most_modes, cancel);
+        let findings = rates::explore(&self.problem, &first, effort);
         found.unexplored = findings.unexplored;
         found.degenerate |= findings.degenerate;
         for basis in &findings.planes {
@@ -134,17 +132,17 @@ impl<'a> Condensed<'a> {
             .collect();
         let mut turning: Vec<Turning> = Vec::new();
         if touches.len() <= FEW {
-            turning.extend(touches.iter().flat_map(|touch| turning::slips(&self.problem, touch, most_modes, cancel)));
+            turning.extend(touches.iter().flat_map(|touch| turning::slips(&self.problem, touch, effort)));
         }
         if touches.len() > 1 {
-            let at_once = together::slips(&self.problem, &touches, cancel);
+            let at_once = together::slips(&self.problem, &touches, effort.cancel);
             turning.extend(at_once.rays);
             if !at_once.complete {
                 found.slips_in_doubt = touches.len() as u64;
                 found.unexplored = found.unexplored.saturating_add(found.slips_in_doubt);
             }
         }
-        self.add_slips_out_of_pockets(held, state, most_modes, cancel, found);
+        self.add_slips_out_of_pockets(held, state, effort, found);
         for slip in &turning {
             let directions: Vec<(usize, Vector)> = slip
                 .slips
@@ -160,14 +158,7 @@ impl<'a> Condensed<'a> {
     }
 
     /// Where a node in a pocket is not pressed, first slips along one of its obstacles in a direction that is unknown.
-    fn add_slips_out_of_pockets(
-        &self,
-        held: &[Mode],
-        state: &State,
-        most_modes: u64,
-        cancel: &CancelFlag,
-        found: &mut Found,
-    ) {
+    fn add_slips_out_of_pockets(&self, held: &[Mode], state: &State, effort: Effort<'_>, found: &mut Found) {
         let normals = |contact: usize| self.loading.frame(contact, state).normal;
         let mut forms = Forms {
             columns: &self.columns,
@@ -192,7 +183,7 @@ impl<'a> Condensed<'a> {
         };
         for (contact, touch) in &touches {
             let tangents = self.loading.frame(*contact, state).tangents;
-            for slip in turning::slips(&problem, touch, most_modes, cancel) {
+            for slip in turning::slips(&problem, touch, effort) {
                 let parts = slip.slips[0].1;
                 let direction = add(&scaled(&tangents[0], parts[0]), parts[1], &tangents[1]);
                 self.add(&slip.ray, &[(*contact, direction)], held, state, found);

@@ -8,11 +8,12 @@
 
 use super::advance::MOST_TURN;
 use super::combinations;
+use super::decide::sign_of;
 use super::directions::Candidate;
 use super::loading::Loading;
 use super::mode_system::ModeSystem;
-use super::newton::Place;
-use super::state::State;
+use super::newton::{Corrected, Place};
+use super::state::{Rate, State};
 use super::watch::{self, Watch};
 use crate::contact::Mode;
 use crate::contact::vector::size as size_of;
@@ -92,6 +93,31 @@ pub(super) fn confirm_by(
     combinations.iter().find_map(|places| trial.judge(places).ok())
 }
 
+/// The load rate after the shortest step along a direction in its modes after which it has a sign; 0 where it has none.
+pub(super) fn later_load(loading: Loading<'_>, state: &State, rate: &Rate, modes: &[Mode], force_scale: f64) -> f64 {
+    let after = |step: &f64| stepped(loading, state, rate, modes, *step, force_scale).map(|(_, rate)| rate.load);
+    TRIAL_STEPS.iter().filter_map(after).find(|load| sign_of(*load) != 0.0).unwrap_or(0.0)
+}
+
+/// The point a small step along a direction in these modes, with the direction there.
+fn stepped(
+    loading: Loading<'_>,
+    state: &State,
+    rate: &Rate,
+    modes: &[Mode],
+    step: f64,
+    force_scale: f64,
+) -> Option<(Corrected, Rate)> {
+    let system = ModeSystem::new(loading, modes, state);
+    let place = Place::ArcLength { from: state, step };
+    let corrected = system.correct(state.advanced(rate, step), place, force_scale).ok()?;
+    if state.angle_of_chord(&corrected.state, rate) > MOST_TURN {
+        return None;
+    }
+    let rate = system.tangent(&corrected, rate)?;
+    Some((corrected, rate))
+}
+
 /// The first combinations of alternatives, those with more sticking contacts first.
 fn in_order(candidate: &Candidate) -> Vec<Vec<usize>> {
     let places: Vec<Vec<usize>> =
@@ -138,14 +164,9 @@ impl Trial<'_> {
     fn step(&self, modes: &[Mode], step: f64) -> Verdict {
         let Self { loading, state, candidate, force_scale, .. } = *self;
         let nobody = || Verdict::Fails(Vec::new());
-        let system = ModeSystem::new(loading, modes, state);
-        let guess = state.advanced(&candidate.rate, step);
-        let place = Place::ArcLength { from: state, step };
-        let Ok(corrected) = system.correct(guess, place, force_scale) else { return nobody() };
-        if state.angle_of_chord(&corrected.state, &candidate.rate) > MOST_TURN {
+        let Some((corrected, rate)) = stepped(loading, state, &candidate.rate, modes, step, force_scale) else {
             return nobody();
-        }
-        let Some(rate) = system.tangent(&corrected, &candidate.rate) else { return nobody() };
+        };
         let forces = force_scale.max(corrected.force_scale);
         let rates = candidate.rate.largest_reaction().max(rate.largest_reaction()).max(f64::MIN_POSITIVE);
         let mut unclear = false;

@@ -5,6 +5,7 @@
 //! ```
 
 use super::loading::Loading;
+use super::newton::NO_FORCE;
 use super::state::State;
 use crate::contact::Reaction;
 
@@ -14,7 +15,7 @@ pub const MOST_VIOLATION: f64 = 1e-10;
 /// The largest violation over the contacts; gaps dimensionless, reactions over the force scale at their nodes.
 pub fn violation(loading: Loading<'_>, state: &State, force_scale: f64) -> f64 {
     let of_contact = |(index, reaction): (usize, &Reaction)| {
-        let scaled = 1.0 / loading.force_scale_at(index, state, force_scale).max(f64::MIN_POSITIVE);
+        let scaled = 1.0 / loading.force_scale_at(index, state, force_scale).max(NO_FORCE);
         let gap = loading.gap(index, state);
         let normal = reaction.normal * scaled;
         let cone = reaction.tangential_size() * scaled - loading.contacts[index].friction * normal;

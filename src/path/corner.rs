@@ -114,14 +114,6 @@ pub fn is_not_available(loading: Loading<'_>, state: &State) -> bool {
     })
 }
 
-/// Whether several obstacles hold a node, in space or guided, whose equilibrium does not give their reactions.
-pub fn has_indeterminate(loading: Loading<'_>, state: &State) -> bool {
-    loading.corners.iter().filter(|corner| !is_in_plane(loading, corner)).any(|corner| {
-        let closed = corner.closed(loading, state);
-        closed.len() > 1 && !are_determinate(loading, &closed, state)
-    })
-}
-
 /// Whether the running stage drives a node against some closed obstacles by its supports, or them against each other.
 pub fn is_driven(loading: Loading<'_>, closed: &[usize]) -> bool {
     let dimension = loading.structure.dimension;

@@ -15,10 +15,10 @@ use super::corner::whole_rates;
 use super::directions::{Candidate, Found, difference_of_forces, directions, is_mechanism};
 use super::energy;
 use super::loading::Loading;
+use super::rates::Effort;
 use super::standing::Standing;
 use super::state::{Rate, State, dot};
 use super::stop::StopReason;
-use crate::cancel::CancelFlag;
 use crate::contact::Mode;
 use crate::model::request::Selection;
 use serde::{Deserialize, Serialize};
@@ -75,9 +75,8 @@ const STILL: f64 = 1e-12;
 #[derive(Debug, Clone, Copy)]
 pub struct Rules<'a> {
     pub selection: Selection,
-    pub most_modes: u64,
+    pub effort: Effort<'a>,
     pub force_scale: f64,
-    pub cancel: &'a CancelFlag,
 }
 
 /// Lists the directions at a point.
@@ -92,7 +91,7 @@ pub fn list(
         Before::Incoming(rate) => Some(rate),
         Before::StageStart => None,
     };
-    let mut found = directions(loading, state, standings, incoming, rules.most_modes, rules.cancel);
+    let mut found = directions(loading, state, standings, incoming, rules.effort);
     let candidates = std::mem::take(&mut found.candidates);
     let mut options = Vec::with_capacity(candidates.len());
     let mut off = Vec::with_capacity(candidates.len());
@@ -279,6 +278,7 @@ pub fn is_worth_listing(options: &[Choice]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cancel::CancelFlag;
 
     fn choice(displacement: [f64; 2], dissipation: f64, potential_rate: f64) -> Choice {
         let rate = Rate { displacement: displacement.to_vec(), load: 0.0, reactions: Vec::new() };
@@ -298,7 +298,8 @@ mod tests {
         for selection in [Selection::MaxDissipation, Selection::MinPotentialEnergy, Selection::Straightest] {
             for (load, index) in [(0.5, 1), (-0.5, 0)] {
                 let previous = Rate { displacement: vec![-0.3 * load, 0.8], load, reactions: Vec::new() };
-                let rules = Rules { selection, most_modes: 1, force_scale: 1.0, cancel: &cancel };
+                let effort = Effort { most_modes: 1, certify: true, cancel: &cancel };
+                let rules = Rules { selection, effort, force_scale: 1.0 };
                 assert_eq!(preferred(&options, &previous, rules, |_| true), Some(index));
             }
         }
@@ -310,7 +311,8 @@ mod tests {
         let previous = choice([0.0, 1.0], 0.0, 0.0).rate;
         let cancel = CancelFlag::default();
         let taken = |selection| {
-            let rules = Rules { selection, most_modes: 1, force_scale: 1.0, cancel: &cancel };
+            let effort = Effort { most_modes: 1, certify: true, cancel: &cancel };
+            let rules = Rules { selection, effort, force_scale: 1.0 };
             preferred(&options, &previous, rules, |_| true)
         };
         assert_eq!(taken(Selection::MaxDissipation), Some(0));

@@ -25,9 +25,9 @@ use super::condensed::Condensed;
 use super::corner;
 use super::loading::Loading;
 use super::mode_system::ModeSystem;
+use super::rates::Effort;
 use super::standing::Standing;
 use super::state::{Rate, State};
-use crate::cancel::CancelFlag;
 use crate::contact::Mode;
 use crate::contact::vector::{Vector, add, size};
 use crate::linear_algebra::null_space;
@@ -82,8 +82,7 @@ pub fn directions(
     state: &State,
     standings: &[Standing],
     incoming: Option<&Rate>,
-    most_modes: u64,
-    cancel: &CancelFlag,
+    effort: Effort<'_>,
 ) -> Found {
     let held: Vec<Mode> = standings
         .iter()
@@ -106,7 +105,7 @@ pub fn directions(
         found.mechanism = resists_nothing(&system, loading, state);
         return found;
     };
-    condensed.enumerate(&held, state, incoming, most_modes, cancel, &mut found);
+    condensed.enumerate(&held, state, incoming, effort, &mut found);
     found
 }
 

@@ -1,6 +1,6 @@
-//! Where the MPEC names the mode: every increment of `method: "mpec"`, and its directions where a mode ends.
+//! Where the MPEC names the mode: every increment of `method: "mpec"`, and the direction taken where a mode ends.
 
-use super::corner::{self, agree};
+use super::corner::agree;
 use super::decide::Choice;
 use super::program::{IncrementProgram, Named};
 use super::standing::ZERO;
@@ -75,32 +75,25 @@ impl Path<'_> {
         named
     }
 
-    /// Which of the directions at the present point the program confirms: started along the direction, it ends in the
-    /// direction's own mode. `None` where the next change is too near for the program to tell.
+    /// Whether the program confirms a direction at the present point: started along it, it ends in the direction's own
+    /// mode. Not where the next change is too near for the program to tell.
     ///
     /// The forward term rewards the direction that is tried, not the one in which the path came: where the path turns
     /// against its past (a contact closes, the load turns), that term would hold the increment back at zero.
-    pub(super) fn confirmed_by_program(&mut self, options: &[Choice]) -> Vec<Option<bool>> {
-        let state = self.at.here.state.clone();
-        let mut confirmed = Vec::with_capacity(options.len());
-        let several = corner::has_indeterminate(self.loading(), &state);
-        for option in options {
-            let within = WITHIN * self.way_to_next_change(&option.modes, &option.rate);
-            let mut step = (FIRST_TRIAL * self.at.step).min(within);
-            let mut agrees = (within >= RESOLVED).then_some(false);
-            if !option.retrace && !option.mechanism && agrees.is_some() {
-                for _ in 0..TRIALS {
-                    let named = self.name(&state, &option.rate, &option.modes, step);
-                    if named.is_some_and(|named| agree(self.loading(), &named.modes, &option.modes)) {
-                        agrees = Some(true);
-                        break;
-                    }
-                    step *= 0.1;
-                }
-            }
-            // Where reactions are not unique, those of the program may name another mode than the path's.
-            confirmed.push(agrees.filter(|agrees| *agrees || !several));
+    pub(super) fn is_confirmed_by_program(&mut self, choice: &Choice) -> bool {
+        let within = WITHIN * self.way_to_next_change(&choice.modes, &choice.rate);
+        if within < RESOLVED {
+            return false;
         }
-        confirmed
+        let state = self.at.here.state.clone();
+        let mut step = (FIRST_TRIAL * self.at.step).min(within);
+        for _ in 0..TRIALS {
+            let named = self.name(&state, &choice.rate, &choice.modes, step);
+            if named.is_some_and(|named| agree(self.loading(), &named.modes, &choice.modes)) {
+                return true;
+            }
+            step *= 0.1;
+        }
+        false
     }
 }

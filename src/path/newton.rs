@@ -64,7 +64,7 @@ const MOST_ITERATIONS: u64 = 16;
 /// Relative residual that an accepted point must have.
 pub const ACCEPTED_RESIDUAL: f64 = 1e-11;
 /// Forces (dimensionless) below this are none: what rounding leaves where nothing is loaded.
-const NO_FORCE: f64 = 1e-20;
+pub(super) const NO_FORCE: f64 = 1e-20;
 /// Relative residual below which iterating on gains nothing.
 const ROUND_OFF: f64 = 1e-15;
 /// Error below which Newton's method is as good as converged.

@@ -18,8 +18,11 @@ pub(super) struct Progress {
     pub stage: usize,
     /// The stage ended at the present point; the next one begins with the next increment.
     pub stage_over: bool,
-    /// What earlier stages hold; of every contact of the scene.
-    pub held: LoadPattern,
+    /// Loads at which the stages before ended.
+    pub reached: Vec<f64>,
+    /// What they hold, of every contact of the scene: see [`hold`](Self::hold).
+    #[serde(skip)]
+    pub held: Arc<LoadPattern>,
     /// Which of the scene's contacts are in reach, in order: reactions and modes are theirs, one each.
     pub near: Vec<usize>,
     pub here: Here,
@@ -114,7 +117,8 @@ impl Progress {
             phase: Phase::NotStarted,
             stage: 0,
             stage_over: false,
-            held: scene.stages[0].pattern.zeroed(),
+            reached: Vec::new(),
+            held: Arc::default(),
             near,
             here: Here {
                 state: State::at_rest(&scene.structure, contacts),
@@ -132,6 +136,17 @@ impl Progress {
             listed: None,
             followed: None,
         }
+    }
+}
+
+impl Progress {
+    /// Sums up what the stages before hold: the same bits whenever it is done.
+    pub fn hold(&mut self, scene: &Scene) {
+        let mut held = scene.stages[0].pattern.zeroed();
+        for (stage, load) in scene.stages.iter().zip(&self.reached) {
+            held.add(*load, &stage.pattern);
+        }
+        self.held = Arc::new(held);
     }
 }
 

@@ -22,10 +22,10 @@ use crate::model::{InputError, InputErrors};
 use crate::structure::bar::Bar;
 use crate::structure::element::Element;
 use crate::structure::spring::Spring;
-use crate::structure::{MOST_ANALYSED, Structure};
+use crate::structure::Structure;
 use indexmap::IndexMap;
 use nalgebra::{DMatrix, DVector};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 /// Everything a path needs to know; shared by all who trace it.
@@ -138,10 +138,13 @@ impl Scene {
         let mut left_out = Vec::new();
         let Contacts { contacts, contact_names, reported, corners } =
             build_contacts(model, &numbers, length, &structure, &mut left_out);
-        left_out.extend(plan_what_is_left_out(model, &contacts, &structure));
-        left_out.extend(super::regularised::left_out(&request.analysis));
-        let first_contacts: Vec<usize> =
-            (0..contacts.len()).filter_map(|contact| reported.iter().position(|one| one.contact == contact)).collect();
+        // A contact that is solved for is numbered when the first of the request's for it is read.
+        let mut first_contacts: Vec<usize> = Vec::with_capacity(contacts.len());
+        for (index, one) in reported.iter().enumerate() {
+            if one.contact == first_contacts.len() {
+                first_contacts.push(index);
+            }
+        }
         let scaled = Scaled {
             model,
             analysis: &request.analysis,
@@ -178,8 +181,7 @@ impl Scene {
             jumps,
             plan,
         };
-        scene.plan.left_out.extend(super::near::left_out(&scene));
-        scene.plan.left_out.extend(super::straight::left_out(&scene));
+        scene.plan.left_out.extend(super::plan::left_out(&scene));
         scene.refuse_mechanism()?;
         scene.refuse_imbalance()?;
         scene.refuse_dragged_supports(model)?;
@@ -453,6 +455,8 @@ fn build_contacts(
     // Which contacts of the request each one stands for.
     let mut members: Vec<Vec<usize>> = Vec::new();
     let mut of_node: HashMap<usize, Vec<usize>> = HashMap::new();
+    // By node and gap, so that only those of nearly the same gap are compared.
+    let mut by_gap: HashMap<usize, BTreeMap<u64, Vec<usize>>> = HashMap::new();
     for (index, contact) in model.contacts.iter().enumerate() {
         let built = build_contact(model, contact, numbers[contact.node.as_str()], length, structure);
         if built.friction == 0.0 && contact.friction > 0.0 {
@@ -467,13 +471,17 @@ fn build_contacts(
             model.stages.iter().all(|stage| motion(stage, &contact.obstacle) == motion(stage, &other.obstacle))
         };
         let neighbours = of_node.entry(built.node).or_default();
-        let twin = neighbours
-            .iter()
-            .copied()
-            .find(|other| coincide(&contacts[*other], &built) && moves_with(&model.contacts[members[*other][0]]));
+        let alike = by_gap.entry(built.node).or_default();
+        let (gap, near) = (built.initial_gap, COINCIDENT * (1.0 + built.initial_gap.abs()));
+        let twin = alike
+            .range(ordered(gap - near)..=ordered(gap + near))
+            .flat_map(|(_, others)| others.iter().copied())
+            .filter(|other| coincide(&contacts[*other], &built) && moves_with(&model.contacts[members[*other][0]]))
+            .min();
         let place = twin.unwrap_or(contacts.len());
         if twin.is_none() {
             neighbours.push(place);
+            alike.entry(ordered(gap)).or_default().push(place);
             contacts.push(built);
             contact_names.push((Arc::clone(&node), Arc::clone(&obstacle)));
             members.push(Vec::new());
@@ -509,6 +517,12 @@ fn build_contacts(
         .map(|contacts| Corner { contacts: contacts.clone() })
         .collect();
     Contacts { contacts, contact_names, reported, corners }
+}
+
+/// Numbers in the order of these.
+fn ordered(value: f64) -> u64 {
+    let bits = value.to_bits();
+    if value.is_sign_negative() { !bits } else { bits | (1 << 63) }
 }
 
 /// Whether two contacts are one: the same node before the same surface.
@@ -639,27 +653,4 @@ fn build_stage(stage: &request::Stage, scaled: &Scaled<'_>) -> StageLoad {
     let loads = stage.until.as_ref().map(|until| [until.load_above, until.load_below]);
     let given_loads = loads.into_iter().flatten().flatten().collect();
     StageLoad { name: Arc::from(stage.name.as_str()), pattern, load_scale, ends, given_loads }
-}
-
-fn plan_what_is_left_out(model: &Model, contacts: &[Contact], structure: &Structure) -> Vec<LeftOut> {
-    let mut left_out = Vec::new();
-    let mut leave = |what: &str, why: &str| left_out.push(LeftOut { what: what.to_owned(), why: why.to_owned() });
-    if contacts.is_empty() {
-        leave("contact unknowns, directions and complementarity programs", "the scene has no contacts");
-    } else if contacts.iter().all(|contact| contact.friction == 0.0) {
-        leave("tangential reactions and slip", "no contact has friction");
-    }
-    if model.dimension == 2 && !contacts.is_empty() {
-        leave("second-order cones", "in two dimensions the friction cone is polyhedral");
-    }
-    if !structure.allows_dense() {
-        leave(
-            "smooth bifurcation points, and directions at points where the held structure is singular",
-            &format!("they are looked for up to {MOST_ANALYSED} unknowns"),
-        );
-    }
-    if structure.elements.iter().all(Element::is_linear) {
-        leave("nonlinear iterations", "every element is linear: one correction is exact");
-    }
-    left_out
 }

@@ -16,8 +16,8 @@
 //!
 //! In a mode with frictional slip the eigenvalues are those of the structure with the slipping contacts held: two that
 //! cross at once are seen where their motions do not move these contacts. Others are not. Nor are, in any mode,
-//! eigenvalues that cross one step to and fro, nor those within the first step from a singular start. Under slip in a plane the
-//! determinant changes its sign also where the direction is not determined (`folded`).
+//! eigenvalues that cross one step to and fro, nor those within the first ten-thousandth of a step from a singular start. Under slip
+//! in a plane the determinant changes its sign also where the direction is not determined (`folded`).
 
 use super::advance::{Reached, Start, Work};
 use super::directions::RANK;
@@ -59,6 +59,9 @@ pub enum Change {
 pub const UNCERTAIN: f64 = 1e-10;
 /// Pivots below this fraction of the largest entry count as zero.
 const ZERO_PIVOT: f64 = 1e-13;
+
+/// Parts of a step after which the signs of a singular start are looked for.
+const FURTHER_ON: [f64; 3] = [1e-4, 1e-3, 1e-2];
 
 /// Whether some contact slips with friction.
 fn slips(loading: Loading<'_>, modes: &[Mode]) -> bool {
@@ -181,6 +184,17 @@ impl Signature {
             _ => None,
         };
         Some(Self { determinant: turns * self.determinant, negative })
+    }
+
+    /// At the start of a step; where the equations are singular there, a little further on.
+    pub fn past_start(start: &Start<'_>, step: f64, work: &mut Work) -> Option<Self> {
+        Self::at(start.loading, start.modes, start.state, start.rate, work).or_else(|| {
+            FURTHER_ON.iter().find_map(|part| {
+                let near = start.reach(part * step, work).ok()?;
+                let sign = near.determinant?;
+                Self::with_determinant(start.loading, start.modes, start.state, &near.corrected.state, sign)
+            })
+        })
     }
 
     /// At a point from which a step is to start; `None` where the equations are singular.

@@ -79,7 +79,8 @@ impl Path<'_> {
             return false;
         }
         let at = &mut self.at;
-        at.held.add(at.here.state.load, &self.scene.stages[at.stage].pattern);
+        at.reached.push(at.here.state.load);
+        at.hold(self.scene);
         at.stage += 1;
         at.here.state.load = 0.0;
         at.here.rate = None;

@@ -31,6 +31,8 @@ const IMBALANCE_SOUGHT: f64 = 5e-9;
 const ROUNDING_OF_WORK: f64 = 16.0 * f64::EPSILON;
 /// Stretch of a bar at which steps that do not converge are its collapse.
 pub(super) const COLLAPSED: f64 = 1e-4;
+/// Stretch of a bar at which the rounding of displacements of its length turns it by as much as forces may be off.
+const A_POINT: f64 = 1e-6;
 /// A step after which the next would have to be shorter than this fraction of it is taken again, shorter.
 const REJECTED: f64 = 0.55;
 
@@ -81,7 +83,7 @@ fn crossing_when_loose(
     work: &mut Work,
 ) -> Option<(Reached, Crossing)> {
     let loosened = Start { modes: loose, ..*start };
-    let before = Signature::at(start.loading, loose, start.state, start.rate, work)?;
+    let before = Signature::past_start(&loosened, reached.step, work)?;
     let mut end = loosened.reach_near(reached.corrected.state.clone(), reached.step, work).ok()?;
     end.event = reached.event;
     let (_, change) = singular::compare(&loosened, before, &end);
@@ -139,8 +141,10 @@ impl Path<'_> {
     /// Steps until a point is accepted.
     pub(super) fn step(&mut self) -> Result<Accepted, StopReason> {
         let (least, most) = (self.scene.analysis.arc_length.min, self.scene.analysis.arc_length.max);
-        let jump = self.way_to_next_event();
-        let mut step = jump.unwrap_or(self.at.step.min(most));
+        // An event nearer than that is located within an ordinary step.
+        let ordinary = self.at.step.min(most);
+        let jump = self.way_to_next_event().filter(|way| *way > ordinary);
+        let mut step = jump.unwrap_or(ordinary);
         self.look_ahead(step);
         let mut unresolved = 0;
         let mut known = self.at.here.signature;
@@ -171,8 +175,7 @@ impl Path<'_> {
                 (Ok(_), Some(back), _) => Ok((back, None, None, true)),
                 (_, _, Some((reached, crossing, signature))) => Ok((reached, crossing, signature, false)),
                 (Ok(reached), None, None) => {
-                    let before =
-                        known.or_else(|| Signature::at(start.loading, start.modes, start.state, &rate, &mut work));
+                    let before = known.or_else(|| Signature::past_start(&start, reached.step, &mut work));
                     known = before;
                     first_crossing(&start, before, reached, unresolved < MOST_UNRESOLVED, &mut work)
                         .map(|(reached, crossing, signature)| (reached, crossing, signature, false))
@@ -182,8 +185,13 @@ impl Path<'_> {
             let outcome = outcome.and_then(|point| {
                 let corrected = &point.0.corrected;
                 let forces = self.at.totals.force_scale.max(corrected.force_scale);
-                let lawful = contact_law::holds(self.loading(), &corrected.state, forces);
-                if lawful { Ok(point) } else { Err(Refused::Unlawful) }
+                if !contact_law::holds(self.loading(), &corrected.state, forces) {
+                    Err(Refused::Unlawful)
+                } else if self.shrinks_to_a_point(&corrected.state) {
+                    Err(Refused::Collapsed)
+                } else {
+                    Ok(point)
+                }
             });
             self.at.totals.work = work;
             match outcome {
@@ -216,13 +224,14 @@ impl Path<'_> {
                     step *= match refused {
                         Refused::Turned(angle) => (0.5 * TURN_SOUGHT / angle).clamp(0.1, 0.5),
                         Refused::Newton(_) => 0.5,
-                        Refused::AtStart(_) | Refused::Unlawful | Refused::Unresolved => 0.25,
+                        Refused::AtStart(_) | Refused::Unlawful | Refused::Collapsed | Refused::Unresolved => 0.25,
                     };
                     if step < least {
                         return Err(match refused {
                             // Past the cones together of a node that no slide can free.
                             Refused::Unlawful if self.is_held_beyond(&rate) => StopReason::NoDirection,
                             Refused::Unlawful => StopReason::ContactViolated,
+                            Refused::Collapsed => StopReason::CollapsedBar,
                             _ => self.reason_of_underflow(),
                         });
                     }
@@ -240,6 +249,13 @@ impl Path<'_> {
                 && !corner::is_in_plane(loading, corner)
                 && !Pocket::new(loading, &holding, &here.state).keeps(loading, &here.state, rate)
         })
+    }
+
+    /// Whether some bar has come to have no direction that the displacements could tell.
+    fn shrinks_to_a_point(&self, state: &State) -> bool {
+        let structure = &self.scene.structure;
+        structure.smallest_stretch(&state.displacement) < A_POINT
+            && structure.smallest_stretch(&self.at.here.state.displacement) >= A_POINT
     }
 
     /// Whether the program of each increment is asked to name its mode.

@@ -5,6 +5,7 @@
 //! stands, and nothing lies in between. Along stretches of bifurcations the increments are kept, because from any of
 //! them another direction can be followed.
 
+use super::corner;
 use super::plan::LeftOut;
 use super::scene::{End, Scene};
 use super::tracer::Path;
@@ -19,6 +20,8 @@ use crate::structure::element::Element;
 const PAST: f64 = 1.0 / 64.0;
 /// A quantity that changes by less than this fraction of its scale by unit arc length does not change.
 const CONSTANT: f64 = 1e-10;
+/// The same of the load and displacements, which are no differences of others.
+const CONSTANT_BOUND: f64 = 1e-14;
 /// What counts as zero, over a quantity's scale.
 const ZERO: f64 = 1e-12;
 
@@ -32,9 +35,11 @@ pub(super) fn jumps(analysis: &Analysis, structure: &Structure) -> bool {
 
 /// What the plan says of it.
 pub(super) fn left_out(scene: &Scene) -> Option<LeftOut> {
-    (scene.jumps && scene.contacts.iter().all(is_straight)).then(|| LeftOut {
+    scene.jumps.then(|| LeftOut {
         what: "increments between events, but for stretches of bifurcations".to_owned(),
-        why: "the path is straight from event to event; give `arc_length.max` to have points in between".to_owned(),
+        why: "every element is linear: the path is straight while the obstacles in reach are planes and no slip turns; give \
+              `arc_length.max` to have points in between"
+            .to_owned(),
     })
 }
 
@@ -63,7 +68,10 @@ impl Path<'_> {
     fn straight_way(&self) -> Option<f64> {
         let (loading, here) = (self.loading(), &self.at.here);
         let rate = here.rate.as_ref()?;
-        if !loading.contacts.iter().all(is_straight) {
+        // The force of several obstacles in space reaches the bound of what they hold along no straight line.
+        if !loading.contacts.iter().all(is_straight)
+            || loading.corners.iter().any(|corner| !corner::is_in_plane(loading, corner))
+        {
             return None;
         }
         let ends = &self.scene.stages[self.at.stage].ends;
@@ -78,7 +86,8 @@ impl Path<'_> {
             let scale = watch.scale(loading, &here.state, self.at.totals.force_scale);
             let now = watch.value(loading, &here.modes, &here.state, rate);
             let change = watch.value(loading, &here.modes, &ahead, rate) - now;
-            if change < -CONSTANT * scale {
+            let constant = if watch.is_of_contact() { CONSTANT } else { CONSTANT_BOUND };
+            if change < -constant * scale {
                 if now <= ZERO * scale {
                     return None;
                 }

@@ -281,8 +281,7 @@ impl<'a> System<'a> {
                 Own::Stick => (node.touch.friction * forces[0] - traction) / force,
                 Own::Free => velocity[0] / WEAK,
                 Own::Slip { angle } => {
-                    let along = velocity[1] * angle.cos() + velocity[2] * angle.sin();
-                    (along / WEAK).min(forces[0] / force)
+                    (node.touch.motion(self.problem, &weights, *angle) / WEAK).min(forces[0] / force)
                 }
             };
             // A slip that is just none is a stick, or no contact.

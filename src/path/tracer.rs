@@ -3,6 +3,7 @@
 //! Between events the path keeps its contact mode and is followed by arc-length steps; where the mode ends, the
 //! directions are listed and one is taken. The step follows the turn of the path and the work of Newton's method.
 
+use super::arrival::ROUND_OFF;
 use super::carried::Carried;
 use super::contact_law;
 use super::corner::{is_in_plane, taken_apart, total_force};
@@ -11,8 +12,10 @@ use super::follow::{Arriving, Listed};
 use super::increment::{Increment, Point, PointKind};
 use super::loading::Loading;
 use super::near::{self, FarContacts, Near};
+use super::newton::NO_FORCE;
 use super::pocket::taken_over;
 use super::progress::{Phase, Progress};
+use super::rates::Effort;
 use super::record::{self, Row};
 use super::report::Report;
 use super::scene::Scene;
@@ -45,9 +48,10 @@ impl<'a> Path<'a> {
     }
 
     /// At a point that fits the scene; `elapsed_before`: solver time that led there.
-    pub(super) fn at(scene: &'a Scene, at: Progress, elapsed_before: f64, cancel: CancelFlag) -> Self {
+    pub(super) fn at(scene: &'a Scene, mut at: Progress, elapsed_before: f64, cancel: CancelFlag) -> Self {
         let undeformed = vec![0.0; scene.structure.freedoms()];
         let initial_strain = scene.structure.strain_energy(&undeformed);
+        at.hold(scene);
         let near = Near::of(scene, &at);
         let far = near::far_contacts(scene, &at);
         Self { scene, cancel, began: Instant::now(), elapsed_before, initial_strain, at, near, far }
@@ -77,8 +81,9 @@ impl<'a> Path<'a> {
         let analysis = &self.scene.analysis;
         let loads = self.scene.stages[self.at.stage].pattern.forces.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         let so_far = self.at.totals.force_scale;
-        let force_scale = if so_far > 0.0 { so_far } else { loads.max(f64::MIN_POSITIVE) };
-        Rules { selection: analysis.selection, most_modes: analysis.max_modes, force_scale, cancel: &self.cancel }
+        let force_scale = if so_far > NO_FORCE { so_far } else { loads.max(NO_FORCE) };
+        let effort = Effort { most_modes: analysis.max_modes, certify: !analysis.keep_all, cancel: &self.cancel };
+        Rules { selection: analysis.selection, effort, force_scale }
     }
 
     pub(super) fn end(&mut self, reason: StopReason) {
@@ -171,13 +176,13 @@ impl<'a> Path<'a> {
             let what = format!("stage \"{}\" ends", stage.name);
             point.event = Some(point.event.map_or(what.clone(), |event| format!("{event}; {what}")));
         }
-        // A contact that has just closed may take over from another: not yet where the increment ends.
-        let now = &self.at.here.state.reactions;
-        let taken_over =
-            modes.iter().zip(now).any(|(mode, reaction)| *mode == Mode::Free && *reaction != Reaction::default());
+        // Where contacts of a node share its force in another way as the path goes on, they do not yet where it arrives.
+        let round_off = ROUND_OFF * self.at.totals.force_scale;
+        let now = self.at.here.state.reactions.iter();
+        let shared_anew = now.zip(&arrived).any(|(now, arrived)| now.difference(arrived) > round_off);
         let row = self.emit(Emitted {
             before: &before,
-            reactions: taken_over.then_some(arrived),
+            reactions: shared_anew.then_some(arrived),
             modes: &modes,
             step: reached.step,
             point,

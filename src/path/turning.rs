@@ -12,9 +12,8 @@
 //! comes down almost along the obstacle is hardly pressed). With one such node this finds every slip that a scan of the circle tells apart. Of several, each is taken here to begin to
 //! slip while the others stick or leave; `together` finds those that begin at once.
 
-use super::rates::{self, Choice, Entity, RateProblem, Ray};
+use super::rates::{self, Choice, Effort, Entity, RateProblem, Ray, own_column};
 use super::root::find_root;
-use crate::cancel::CancelFlag;
 use nalgebra::DVector;
 use std::f64::consts::TAU;
 
@@ -43,15 +42,15 @@ pub(super) struct Touch {
 }
 
 /// All rays along which a touching entity slips while the others take one of their options.
-pub(super) fn slips(problem: &RateProblem, touch: &Touch, most: u64, cancel: &CancelFlag) -> Vec<Turning> {
+pub(super) fn slips(problem: &RateProblem, touch: &Touch, effort: Effort<'_>) -> Vec<Turning> {
     let mut found: Vec<Turning> = Vec::new();
     let mut before: Vec<(Ray, f64)> = Vec::new();
     for sector in 0..=SECTORS {
-        if cancel.is_cancelled() {
+        if effort.cancel.is_cancelled() {
             return found;
         }
         let angle = TAU * sector as f64 / SECTORS as f64;
-        let here = touch.rays(problem, angle, most, cancel);
+        let here = touch.rays(problem, angle, effort);
         for (ray, misfit) in &here {
             if misfit.abs() <= ROOT {
                 touch.keep(&mut found, problem, ray.clone(), angle);
@@ -67,7 +66,7 @@ pub(super) fn slips(problem: &RateProblem, touch: &Touch, most: u64, cancel: &Ca
             let first = TAU * (sector as f64 - 1.0) / SECTORS as f64;
             let mut last_ray = other.clone();
             let evaluate = |angle: f64| {
-                let rays = touch.rays(problem, angle, most, cancel);
+                let rays = touch.rays(problem, angle, effort);
                 let near = rays.into_iter().filter(|(one, _)| one.chosen() == ray.chosen());
                 let (one, value) =
                     near.max_by(|a, b| cosine(problem, &a.0, ray).total_cmp(&cosine(problem, &b.0, ray)))?;
@@ -102,7 +101,7 @@ impl Touch {
     }
 
     /// The rays for one angle, and how far the traction is from the direction, over the size of the force rates.
-    fn rays(&self, problem: &RateProblem, angle: f64, most: u64, cancel: &CancelFlag) -> Vec<(Ray, f64)> {
+    fn rays(&self, problem: &RateProblem, angle: f64, effort: Effort<'_>) -> Vec<(Ray, f64)> {
         let (sine, cosine) = angle.sin_cos();
         let row = |forms: [usize; 3], parts: [f64; 3]| {
             (0..3).fold(DVector::zeros(problem.weights()), |sum, k| {
@@ -131,7 +130,7 @@ impl Touch {
             motion: problem.motion.clone(),
             reactions: problem.reactions.clone(),
         };
-        let findings = rates::explore(&turned, &[], most, cancel);
+        let findings = rates::explore(&turned, &[], effort);
         let with_misfit = |ray: Ray| {
             let size = (&problem.reactions * &ray.weights).amax().max(f64::MIN_POSITIVE);
             let misfit = misfit.dot(&ray.weights) / size;
@@ -143,10 +142,26 @@ impl Touch {
     /// Whether the node moves along the direction, otherwise it sticks, and is pressed, otherwise it is free.
     fn is_slip(&self, problem: &RateProblem, ray: &Ray, angle: f64) -> bool {
         let value = |form: usize| problem.forms.row(form).transpose().dot(&ray.weights);
-        let along = value(self.velocities[1]) * angle.cos() + value(self.velocities[2]) * angle.sin();
         let size = (&problem.reactions * &ray.weights).amax().max(f64::MIN_POSITIVE);
         let opens = self.opening.iter().all(|gap| value(*gap) >= -ROOT);
-        along > ROOT && value(self.forces[0]) > ROOT * size && opens
+        self.motion(problem, &ray.weights, angle) > ROOT && value(self.forces[0]) > ROOT * size && opens
+    }
+
+    /// How clearly the node moves along a direction, dimensionless: by its velocity, or, of a node on stiff supports, which
+    /// is slow, by what that velocity changes in its own forces.
+    pub(super) fn motion(&self, problem: &RateProblem, weights: &DVector<f64>, angle: f64) -> f64 {
+        let value = |form: usize| problem.forms.row(form).transpose().dot(weights);
+        let parts = [angle.cos(), angle.sin()];
+        let along = value(self.velocities[1]) * parts[0] + value(self.velocities[2]) * parts[1];
+        let columns = [1, 2].map(|tangent| own_column(problem, self.velocities[tangent]));
+        let [Some(first), Some(second)] = columns else { return along };
+        let largest = |values: [f64; 3]| values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        let stiffness = largest(
+            self.forces
+                .map(|force| problem.forms[(force, first)] * parts[0] + problem.forms[(force, second)] * parts[1]),
+        );
+        let forces = largest(self.forces.map(value)).max(f64::MIN_POSITIVE);
+        along * (stiffness / forces).max(1.0)
     }
 
     fn keep(&self, found: &mut Vec<Turning>, problem: &RateProblem, ray: Ray, angle: f64) {

@@ -177,7 +177,8 @@ impl Structure {
     }
 
     /// The largest change of any element's nodal forces under a displacement rate, over its stiffness times the rate's
-    /// size: zero for a motion that no element resists.
+    /// size: zero for a motion that no element resists. The stiffness is a bar's largest; of a spring that of the row, since
+    /// its rows are as the user gives them, and a soft one beside a stiff one is no round-off.
     pub fn resistance(&self, displacement: &[f64], rate: &[f64]) -> f64 {
         let size = rate.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
         if size == 0.0 {
@@ -185,18 +186,24 @@ impl Structure {
         }
         let mut largest = 0.0_f64;
         for element in &self.elements {
-            let mut change = vec![(0usize, 0.0_f64); 0];
-            let mut stiffness = 0.0_f64;
-            element.add_stiffness(self, displacement, &mut |row, column, value| {
-                stiffness = stiffness.max(value.abs());
-                match change.iter_mut().find(|(freedom, _)| *freedom == row) {
-                    Some((_, sum)) => *sum += value * rate[column],
-                    None => change.push((row, value * rate[column])),
+            // Row, force and stiffness.
+            let mut changes: Vec<(usize, f64, f64)> = Vec::new();
+            element.add_stiffness(self, displacement, &mut |row, column, value| match changes
+                .iter_mut()
+                .find(|(freedom, _, _)| *freedom == row)
+            {
+                Some((_, sum, stiffness)) => {
+                    *sum += value * rate[column];
+                    *stiffness = stiffness.max(value.abs());
                 }
+                None => changes.push((row, value * rate[column], value.abs())),
             });
-            let force = change.iter().fold(0.0_f64, |force, (_, value)| force.max(value.abs()));
-            if stiffness > 0.0 {
-                largest = largest.max(force / (stiffness * size));
+            let stiffest = changes.iter().fold(0.0_f64, |most, (_, _, stiffness)| most.max(*stiffness));
+            for (_, force, of_row) in changes {
+                let stiffness = if element.is_linear() { of_row } else { stiffest };
+                if stiffness > 0.0 {
+                    largest = largest.max(force.abs() / (stiffness * size));
+                }
             }
         }
         largest

@@ -15,10 +15,11 @@ mod published;
 use crate::cancel::CancelFlag;
 use crate::measure::Judge;
 use crate::model::JobRequest;
-use crate::model::request::Method;
+use crate::model::request::{Element, Method};
 use crate::path::{Increment, Path, Scene, StopReason};
 use compare::worse;
 use serde::Serialize;
+use std::sync::Arc;
 
 /// The largest error of state (equilibrium, supports, contact, cone, friction) that an increment may have.
 pub const STATE_BAR: f64 = 1e-10;
@@ -29,9 +30,10 @@ const BOTH: &[Method] = &[Method::Auto, Method::Mpec];
 const AUTO: &[Method] = &[Method::Auto];
 
 /// Error of a path against the exact solution, dimensionless; infinite where something that has to be there is missing.
-type PathError = Box<dyn Fn(&[Increment]) -> f64 + Send + Sync>;
+type PathError = Arc<dyn Fn(&[Increment]) -> f64 + Send + Sync>;
 
 /// A request and its answer.
+#[derive(Clone)]
 pub struct Case {
     /// The scene, or the family of extreme cases.
     pub family: &'static str,
@@ -89,11 +91,10 @@ impl Row {
     }
 }
 
-/// Every case: built-in scenes and published problems first, then the extreme families.
+/// Every case: built-in scenes and published problems first, then the extreme families; linear structures both with jumps
+/// from event to event and in steps.
 pub fn cases() -> Vec<Case> {
-    let mut cases = published::cases();
-    cases.extend(extreme::cases());
-    cases
+    published::cases().into_iter().chain(extreme::cases()).flat_map(Case::with_steps).collect()
 }
 
 impl Case {
@@ -106,12 +107,12 @@ impl Case {
             long: false,
             ending: Ending::Stops(StopReason::StagesCompleted),
             bar: 1e-10,
-            error: Box::new(|_| 0.0),
+            error: Arc::new(|_| 0.0),
         }
     }
 
     fn exact(mut self, bar: f64, error: impl Fn(&[Increment]) -> f64 + Send + Sync + 'static) -> Self {
-        (self.bar, self.error) = (bar, Box::new(error));
+        (self.bar, self.error) = (bar, Arc::new(error));
         self
     }
 
@@ -133,6 +134,19 @@ impl Case {
     fn by(mut self, methods: &'static [Method]) -> Self {
         self.methods = methods;
         self
+    }
+
+    /// The case, and where its structure is linear the same in steps.
+    fn with_steps(self) -> Vec<Self> {
+        let elements = &self.request.model.elements;
+        let linear = elements.iter().all(|element| matches!(element, Element::Spring { .. }));
+        if !linear || !self.request.analysis.arc_length.jump || matches!(self.ending, Ending::Refused(_)) {
+            return vec![self];
+        }
+        let mut in_steps = self.clone();
+        in_steps.name += ", in steps";
+        in_steps.request.analysis.arc_length.jump = false;
+        vec![self, in_steps]
     }
 
     /// Solves the case by a method and judges it.

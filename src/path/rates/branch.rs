@@ -56,6 +56,16 @@ pub struct Findings {
     pub examined: u64,
 }
 
+/// How far a search may go.
+#[derive(Debug, Clone, Copy)]
+pub struct Effort<'a> {
+    /// Nodes and combinations looked at.
+    pub most_modes: u64,
+    /// Whether it may end where a certificate says that there is one ray for each sign of the load rate.
+    pub certify: bool,
+    pub cancel: &'a CancelFlag,
+}
+
 /// Entries of a dictionary that make a node count as one; a larger node counts as several.
 const UNIT_OF_WORK: u64 = 4096;
 /// Nodes spent inside sets of solutions of more than one dimension, whose edges are rays like any other.
@@ -63,34 +73,28 @@ const MOST_IN_SETS: u64 = 512;
 /// A form this small at a node's point is zero as far as the search is concerned.
 pub(super) const FITS: f64 = 1e-7;
 
-/// All rays, after at most so many nodes and combinations; `first` are combinations to examine before the others.
-pub fn explore(problem: &RateProblem, first: &[Vec<usize>], most: u64, cancel: &CancelFlag) -> Findings {
-    explore_by(problem, first, most, cancel, lemke)
+/// All rays, as far as the effort goes; `first` are combinations to examine before the others.
+pub fn explore(problem: &RateProblem, first: &[Vec<usize>], effort: Effort<'_>) -> Findings {
+    explore_by(problem, first, effort, lemke)
 }
 
 #[cfg(test)]
-pub(super) fn explore_without_pivoting(
-    problem: &RateProblem,
-    first: &[Vec<usize>],
-    most: u64,
-    cancel: &CancelFlag,
-) -> Findings {
-    explore_by(problem, first, most, cancel, |_, _| Vec::new())
+pub(super) fn explore_without_pivoting(problem: &RateProblem, first: &[Vec<usize>], effort: Effort<'_>) -> Findings {
+    explore_by(problem, first, effort, |_, _| Vec::new())
 }
 
 /// The same; `further` names combinations to examine where the search was cut.
 fn explore_by(
     problem: &RateProblem,
     first: &[Vec<usize>],
-    most: u64,
-    cancel: &CancelFlag,
+    effort: Effort<'_>,
     further: impl Fn(&RateProblem, &CancelFlag) -> Vec<Vec<usize>>,
 ) -> Findings {
     let mut search = Search {
         problem,
         findings: Findings::default(),
         seen: BTreeSet::new(),
-        most,
+        effort,
         common: problem.entities.iter().map(Entity::common).collect(),
         coupling: problem.coupling(),
         cost: 1 + (problem.forms.nrows() * problem.weights()) as u64 / UNIT_OF_WORK,
@@ -99,9 +103,9 @@ fn explore_by(
         for chosen in first {
             search.examine(chosen);
         }
-        search.branch(cancel);
+        search.branch();
         if search.findings.unexplored > 0 {
-            for chosen in further(problem, cancel) {
+            for chosen in further(problem, effort.cancel) {
                 search.examine(&chosen);
             }
         }
@@ -136,7 +140,7 @@ pub(super) struct Search<'a> {
     pub findings: Findings,
     /// Combinations whose equations were solved.
     pub seen: BTreeSet<Vec<usize>>,
-    most: u64,
+    pub effort: Effort<'a>,
     /// What all options of each entity have in common.
     common: Vec<Vec<Signed>>,
     coupling: DMatrix<f64>,
@@ -145,7 +149,7 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
-    fn branch(&mut self, cancel: &CancelFlag) {
+    fn branch(&mut self) {
         let Some(dictionary) = Dictionary::new(self.problem) else {
             self.findings.degenerate = true;
             return;
@@ -181,7 +185,7 @@ impl Search<'_> {
                 },
                 None => break,
             };
-            if cancel.is_cancelled() || self.findings.examined >= self.most {
+            if self.effort.cancel.is_cancelled() || self.findings.examined >= self.effort.most_modes {
                 tasks.push(task);
                 break;
             }

@@ -9,6 +9,9 @@ use nalgebra::{DMatrix, DVector};
 impl Search<'_> {
     /// The certificate on the whole problem.
     pub(super) fn certified_at_once(&mut self) -> bool {
+        if !self.effort.certify {
+            return false;
+        }
         let Some(pairs) = self.problem.entities.iter().map(Entity::pair).collect::<Option<Vec<_>>>() else {
             return false;
         };
@@ -82,7 +85,12 @@ impl Search<'_> {
     /// The certificate on what is left at a node.
     pub(super) fn certified_below(&mut self, node: &Node, open: &[usize]) -> bool {
         let dictionary = &node.dictionary;
-        if dictionary.is_lines_only() || dictionary.lines() > 0 || dictionary.dimension() != open.len() || node.in_set {
+        if !self.effort.certify
+            || dictionary.is_lines_only()
+            || dictionary.lines() > 0
+            || dictionary.dimension() != open.len()
+            || node.in_set
+        {
             return false;
         }
         let pairs = open.iter().map(|&entity| self.problem.entities[entity].pair());

@@ -42,7 +42,7 @@ mod tests;
 #[cfg(test)]
 pub(super) use tests::every_combination;
 
-pub use branch::{Ray, explore};
+pub use branch::{Effort, Ray, explore};
 pub use near::near;
 pub use problem::{Choice, Entity, RateProblem, Signed, Touching};
 pub use sweeps::{Local, own_column, rising, sweeps};

@@ -7,6 +7,10 @@ use crate::cancel::CancelFlag;
 use crate::path::combinations::combinations;
 use nalgebra::{DMatrix, DVector};
 
+fn effort(most_modes: u64, cancel: &CancelFlag) -> Effort<'_> {
+    Effort { most_modes, certify: true, cancel }
+}
+
 /// Whether the vectors of a plane (two columns) that satisfy a combination's inequalities fill more than a line.
 fn plane_is_wide(problem: &RateProblem, chosen: &[usize], basis: &DMatrix<f64>) -> bool {
     let inequalities: Vec<[f64; 2]> = problem
@@ -183,7 +187,7 @@ fn check(seeds: std::ops::Range<u64>, contacts: u64, numbers: Numbers, touching:
         let kinds: Vec<bool> = (0..count).map(|_| touching && random.below(2) == 0).collect();
         let problem = random_problem(&mut random, &kinds, numbers);
         let exact = every_combination(&problem);
-        let found = explore(&problem, &[], 1_000_000, &CancelFlag::default());
+        let found = explore(&problem, &[], effort(1_000_000, &CancelFlag::default()));
         certified += usize::from(found.certified);
         rays += exact.rays.len();
         compare(&problem, &found, &exact, &format!("seed {seed}, {kinds:?}, {numbers:?}"));
@@ -248,8 +252,8 @@ fn complementary_pivoting_finds_what_a_cut_search_misses() {
         let mut random = Random::new(seed);
         let kinds = vec![false; 24];
         let problem = random_problem(&mut random, &kinds, Numbers::Stiffness(4.0));
-        let cut = branch::explore_without_pivoting(&problem, &[], 40, &CancelFlag::default());
-        let found = explore(&problem, &[], 40, &CancelFlag::default());
+        let cut = branch::explore_without_pivoting(&problem, &[], effort(40, &CancelFlag::default()));
+        let found = explore(&problem, &[], effort(40, &CancelFlag::default()));
         if cut.unexplored > 0 {
             before += cut.rays.len();
             beyond += found.rays.len() - cut.rays.len();

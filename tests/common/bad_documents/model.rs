@@ -130,7 +130,7 @@ pub fn sizes() -> Vec<BadDocument> {
             "150002 free displacement components; at most 150000",
         ),
         at("too many elements", "/model/elements", json!(vec![bar; 250_001]), "at most 250000"),
-        at("too many contacts", "/model/contacts", json!(vec![contact; 10_001]), "at most 10000"),
+        at("too many contacts", "/model/contacts", json!(vec![contact; 20_001]), "at most 20000"),
         at("too many stages", "/model/stages", json!(vec![stage; 1_001]), "at most 1000"),
         at("long model name", "/model/name", json!(long_name), "has 201 bytes; at most 200"),
         elsewhere("long node name", &[(&very_long_name, json!([0, 0]))], "/model/nodes", "has 1000000 bytes"),
