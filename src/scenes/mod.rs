@@ -1,10 +1,12 @@
 //! The built-in scenes: models as JSON, ready to post.
 //!
 //! They are served, demonstrated, tested and verified from here. `pictures` holds what `arcslip solve --plot` draws of
-//! some of them; a test holds them to that. [`exact`] has the paths that are known in closed form.
+//! some of them; a test holds them to that. [`exact`] has the paths that are known in closed form,
+//! [`lattice`] and [`of_any_size`] make scenes from their numbers.
 
 pub mod exact;
 pub mod lattice;
+pub mod of_any_size;
 
 /// A model ready to post.
 #[derive(Debug, Clone, Copy)]
