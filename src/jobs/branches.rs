@@ -1,7 +1,7 @@
 //! Points from which another direction can be followed, on their way to the store and back.
 //!
-//! The states that a path has passed (for telling a cycle) only grow: each branch is stored with those that are new since
-//! the one before, and reading one gathers them.
+//! The states that a path has passed (for telling a cycle) are stored once: each branch with those that are new since the
+//! one before, and reading one gathers them.
 
 use super::solver::Beginning;
 use crate::judged::JudgedCheckpoint;
@@ -12,7 +12,7 @@ use crate::store::{Branch, Origin, Parent};
 pub struct Recorder {
     stage: usize,
     /// How much of the running stage's trail has been written.
-    written: usize,
+    written: u64,
 }
 
 impl Recorder {

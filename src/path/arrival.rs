@@ -6,6 +6,7 @@ use super::confirm::later_load;
 use super::corner;
 use super::critical::Crossing;
 use super::decide::{self, Before, Choice};
+use super::history;
 use super::increment::{Point, PointKind};
 use super::name_event::describe_change;
 use super::standing::{Standing, ZERO};
@@ -15,7 +16,6 @@ use super::tracer::Path;
 use super::watch::Watch;
 use crate::contact::{Mode, Reaction};
 use crate::model::request::Method;
-use std::sync::Arc;
 
 /// States closer than this are one.
 pub(super) const SAME_STATE: f64 = 1e-9;
@@ -270,8 +270,8 @@ impl Path<'_> {
     fn is_cycle(&mut self) -> bool {
         let here = self.visit();
         let force = SAME_STATE * self.at.totals.force_scale;
-        let known = self.at.visited.iter().any(|visited| visited.is(&here, SAME_STATE, force));
-        self.at.visited.push(Arc::new(here));
+        let known = self.at.visited.states().any(|visited| visited.is(&here, SAME_STATE, force));
+        self.at.visited.remember(here, history::room(self.scene));
         known
     }
 }

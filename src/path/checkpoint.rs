@@ -6,17 +6,17 @@
 //! up with the scene that it was made with, or with one that differs in `max_increments` alone.
 
 use super::follow::Listed;
-use super::progress::{Progress, Visited};
+use super::history::Numbered;
+use super::progress::Progress;
 use super::scene::Scene;
 use super::state::{Rate, State};
 use super::tracer::Path;
 use crate::cancel::CancelFlag;
 use crate::contact::Mode;
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 
 /// Changes when a checkpoint of before would be read as something else.
-const VERSION: u32 = 5;
+const VERSION: u32 = 6;
 
 /// A path at one of its points.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -27,10 +27,10 @@ pub struct Checkpoint {
     at: Progress,
 }
 
-/// States that a path has passed, for telling a cycle. They only grow along a stage: kept apart from the checkpoints,
-/// each is stored once.
+/// States that a path has passed, for telling a cycle. Along a stage new ones come and old ones are forgotten: kept apart
+/// from the checkpoints, each is stored once, and a checkpoint takes back those that it knew.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Trail(Vec<Arc<Visited>>);
+pub struct Trail(Vec<Numbered>);
 
 impl Trail {
     pub fn is_empty(&self) -> bool {
@@ -66,21 +66,20 @@ impl Checkpoint {
         self.at.stage
     }
 
-    pub fn trail_length(&self) -> usize {
-        self.at.visited.len()
+    /// How many states there were, those that are forgotten among them.
+    pub fn trail_length(&self) -> u64 {
+        self.at.visited.seen()
     }
 
-    /// Takes the trail out, and of it the part that begins at this place.
-    pub fn take_trail(&mut self, from: usize) -> Trail {
-        let mut trail = std::mem::take(&mut self.at.visited);
-        Trail(trail.split_off(from.min(trail.len())))
+    /// Takes the trail out, and of it the part that begins at this number.
+    pub fn take_trail(&mut self, from: u64) -> Trail {
+        Trail(self.at.visited.take(from))
     }
 
     /// Puts the parts of a trail back, in the order in which they were taken.
     pub fn put_trail(&mut self, parts: impl IntoIterator<Item = Trail>) {
         let stage = self.at.stage;
-        let visited = parts.into_iter().flat_map(|part| part.0).filter(|visited| visited.stage == stage);
-        self.at.visited = visited.collect();
+        self.at.visited.put(parts.into_iter().flat_map(|part| part.0), stage);
     }
 
     fn fits(&self, scene: &Scene) -> Result<(), CheckpointError> {
@@ -121,7 +120,7 @@ impl Checkpoint {
         modes(&self.at.here.modes)?;
         self.at.here.rate.iter().try_for_each(rate)?;
         self.at.here.drift.iter().try_for_each(rate)?;
-        self.at.visited.iter().try_for_each(|visited| {
+        self.at.visited.states().try_for_each(|visited| {
             same("degrees of freedom", visited.displacement.len(), freedoms)?;
             let last = visited.held.iter().map(|held| held.contact).max();
             last.filter(|last| *last >= all).map_or(Ok(()), |last| same("contacts", last + 1, all))

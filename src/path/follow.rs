@@ -3,6 +3,7 @@
 use super::advance::AT_END;
 use super::checkpoint::{Checkpoint, CheckpointError};
 use super::decide::{Choice, STATIONARY};
+use super::history;
 use super::increment::{Increment, Point, PointKind};
 use super::progress::{Phase, StageCounts};
 use super::scene::{End, Scene};
@@ -11,7 +12,6 @@ use super::tracer::{Emitted, Path};
 use crate::cancel::CancelFlag;
 use crate::contact::{Mode, all_continue};
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 
 /// The directions listed at a point, and what was true before one of them was taken.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -125,8 +125,8 @@ impl<'a> Path<'a> {
     fn turn(&mut self, choice: &Choice) {
         self.go(choice);
         let visited = self.visit();
-        if !self.at.visited.iter().any(|known| **known == visited) {
-            self.at.visited.push(Arc::new(visited));
+        if !self.at.visited.states().any(|known| *known == visited) {
+            self.at.visited.remember(visited, history::room(self.scene));
         }
     }
 

@@ -21,6 +21,7 @@
 //! | `program`, `naming` | the MPEC of an increment; where it names the mode |
 //! | `energy`, `record`, `increment`, `report`, `stop` | balances, rows, totals, reasons |
 //! | `tracer`, `stages`, `stepping`, `arrival` | the iterator; how a stage begins; how far a step goes; what a point turned out to be |
+//! | `history` | states that the path has left, for telling a cycle |
 //! | `totals` | sums and maxima along a path, of either method |
 //! | `progress`, `checkpoint`, `follow` | what decides how a path goes on; a path put down at a point and taken up again; along another direction |
 //! | `regularised`, `traced` | the rival method; the path by whichever method is named |
@@ -46,6 +47,7 @@ mod energy;
 mod exhaustive;
 mod folded;
 mod follow;
+mod history;
 pub mod increment;
 mod loading;
 mod mode_system;

@@ -1,6 +1,7 @@
 //! Everything that decides how a path goes on from its present point: what a checkpoint holds.
 
 use super::follow::{Followed, Listed};
+use super::history::History;
 use super::loading::LoadPattern;
 use super::scene::{End, Scene};
 use super::singular::Signature;
@@ -31,7 +32,7 @@ pub(super) struct Progress {
     pub totals: Totals,
     pub counts: StageCounts,
     /// States at which a direction was taken, for telling a cycle.
-    pub visited: Vec<Arc<Visited>>,
+    pub visited: History,
     /// Where the stage began and the direction it took.
     pub begun: Option<(State, Rate)>,
     /// Directions listed with the present point.
@@ -75,6 +76,11 @@ pub(super) struct Held {
 }
 
 impl Visited {
+    /// Bytes that a state of a scene takes, with all contacts held.
+    pub fn most_bytes(scene: &Scene) -> usize {
+        scene.structure.freedoms() * size_of::<f64>() + scene.contacts.len() * size_of::<Held>() + size_of::<Self>()
+    }
+
     /// Whether another state is this one, but for differences below `distance` (of displacements and load together) and
     /// `force`.
     pub fn is(&self, other: &Self, distance: f64, force: f64) -> bool {
@@ -84,7 +90,9 @@ impl Visited {
                 && one.reaction.difference(&other.reaction) < force
         };
         let apart = |(one, other): (&f64, &f64)| (one - other).powi(2);
+        // Most differ in the load alone.
         self.stage == other.stage
+            && (self.load - other.load).abs() < distance
             && self.held.len() == other.held.len()
             && self.held.iter().zip(&other.held).all(alike)
             && self.displacement.iter().zip(&other.displacement).map(apart).sum::<f64>()
@@ -131,7 +139,7 @@ impl Progress {
             step: scene.analysis.arc_length.initial,
             totals: Totals::begun(),
             counts: StageCounts::default(),
-            visited: Vec::new(),
+            visited: History::default(),
             begun: None,
             listed: None,
             followed: None,

@@ -2,6 +2,7 @@
 
 use super::advance::AT_END;
 use super::decide::{self, Before};
+use super::history::History;
 use super::increment::{Increment, Point, PointKind};
 use super::mode_system::ModeSystem;
 use super::name_event::describe_start;
@@ -86,7 +87,7 @@ impl Path<'_> {
         at.here.rate = None;
         at.here.signature = None;
         at.counts = StageCounts::default();
-        at.visited.clear();
+        at.visited = History::default();
         self.load_anew();
         true
     }

@@ -6,6 +6,7 @@ pub mod bad_documents;
 #[cfg(feature = "server")]
 pub mod faulty_store;
 pub mod generators;
+pub mod long_paths;
 pub mod paths;
 pub mod random;
 #[cfg(feature = "server")]
