@@ -26,6 +26,7 @@ use super::corner;
 use super::loading::Loading;
 use super::mode_system::ModeSystem;
 use super::rates::Effort;
+use super::sole;
 use super::standing::Standing;
 use super::state::{Rate, State};
 use crate::contact::Mode;
@@ -98,6 +99,9 @@ pub fn directions(
     let mut found = Found::default();
     if corner::is_not_available(loading, state) {
         found.corner_not_available = true;
+        return found;
+    }
+    if sole::directions(loading, state, standings, incoming, effort, &mut found) {
         return found;
     }
     let Some(condensed) = Condensed::new(&system, loading, state, standings, incoming) else {

@@ -15,6 +15,7 @@
 //! | `bound` | a bound of the stage at or beside a smooth bifurcation |
 //! | `folded` | points of slip in a plane at which the direction is not determined |
 //! | `standing`, `directions`, `condensed` | which contacts can change; every direction |
+//! | `sole` | many contacts that can change: one direction for each sign of the load rate, without condensation |
 //! | `combinations` | one of each of several lists, in one order |
 //! | `confirm`, `decide` | those that hold beyond first order; which one is taken |
 //! | `rates`, `turning`, `together` | all rays of a rate problem, linear forms only; slip whose direction is unknown, of one node and of several at once |
@@ -66,6 +67,7 @@ pub mod report;
 mod root;
 pub mod scene;
 mod singular;
+mod sole;
 mod stages;
 mod standing;
 mod state;

@@ -3,11 +3,13 @@
 //! * [`pattern`]: where `K` may have entries, found once, with the order of elimination that keeps its factors sparse (AMD).
 //! * [`symmetric`]: `K = L D Lᵀ`; small pivots are raised, and the raise is taken back by a border.
 //! * [`bordered`]: the matrix as it is assembled.
+//! * [`definite`]: whether a symmetric matrix is positive definite.
 //! * [`held`]: unknowns of a node that border rows hold (closed contacts) are eliminated where they are.
 //! * [`factorisation`]: block elimination with the dense Schur complement of what remains of the borders, refined on the
 //!   whole system.
 
 pub mod bordered;
+pub mod definite;
 pub mod factorisation;
 mod held;
 mod lu;
@@ -18,6 +20,7 @@ pub mod symmetric;
 mod tests;
 
 pub use bordered::Bordered;
+pub use definite::is_positive_definite;
 pub use factorisation::{SparseFactorisation, held_inertia};
 pub use held::Holding;
 pub use pattern::Pattern;

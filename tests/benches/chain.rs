@@ -1,0 +1,123 @@
+//! The chain of n sliders to its end, by size: every block's first slip at its exact load, every block at its exact place,
+//! and how time and memory grow with n. Beside the time of the pull stands that of the start, where the directions of all
+//! blocks that touch without reaction are searched.
+//!
+//! `cargo bench --bench chain` (100, 316 and 1,000 blocks), `cargo bench --bench chain -- 10000` (others)
+
+use allocation_counter::measure;
+use arcslip::cancel::CancelFlag;
+use arcslip::model::JobRequest;
+use arcslip::model::request::{Record, RecordedContacts};
+use arcslip::path::increment::PointKind;
+use arcslip::path::{Increment, Path, Scene};
+use arcslip::scenes::of_any_size::slider_chain;
+use std::time::Instant;
+
+const FRICTION: f64 = 0.3;
+const WEIGHT: f64 = 1.0;
+const STIFFNESS: f64 = 1.0;
+/// Loads, and displacements over the largest one, may be off their exact values by this.
+const BAR: f64 = 1e-9;
+
+fn main() {
+    let asked: Vec<usize> = std::env::args().filter_map(|word| word.parse().ok()).collect();
+    let sizes = if asked.is_empty() { vec![100, 316, 1_000] } else { asked };
+    println!(
+        "{:>6} {:>11} {:>7} {:>9} {:>10} {:>11} {:>10} {:>9} {:>12} {:>13} {:>10}  end",
+        "blocks",
+        "increments",
+        "events",
+        "start s",
+        "pull s",
+        "ms/event",
+        "exponent",
+        "LU/event",
+        "load error",
+        "place error",
+        "peak MB"
+    );
+    let mut before: Option<(usize, f64)> = None;
+    for size in sizes {
+        let mut traced = None;
+        let allocated = measure(|| traced = Some(trace(size)));
+        let Some(Ok(traced)) = traced else { return println!("{size} blocks: no path") };
+        let exponent = before.map_or(String::new(), |(smaller, time)| {
+            format!("{:.2}", (traced.pull_s / time).ln() / (size as f64 / smaller as f64).ln())
+        });
+        before = Some((size, traced.pull_s));
+        println!(
+            "{:>6} {:>11} {:>7} {:>9.3} {:>10.3} {:>11.4} {:>10} {:>9.1} {:>12.1e} {:>13.1e} {:>10.1}  {}",
+            size,
+            traced.increments,
+            traced.events,
+            traced.start_s,
+            traced.pull_s,
+            traced.pull_s / traced.events.max(1) as f64 * 1e3,
+            exponent,
+            traced.factorisations as f64 / traced.events.max(1) as f64,
+            traced.load_error,
+            traced.place_error,
+            allocated.bytes_max as f64 / 1e6,
+            traced.end
+        );
+        assert_eq!(traced.events, size, "one event a block");
+        assert!(traced.load_error <= BAR && traced.place_error <= BAR, "{size} blocks are off their exact path");
+    }
+}
+
+struct Traced {
+    increments: u64,
+    events: usize,
+    start_s: f64,
+    pull_s: f64,
+    factorisations: u64,
+    /// Largest, of any event, over its load.
+    load_error: f64,
+    /// Largest of any block at any event, over the first block's displacement.
+    place_error: f64,
+    end: String,
+}
+
+fn trace(size: usize) -> Result<Traced, String> {
+    let document = slider_chain(size, FRICTION, WEIGHT, STIFFNESS);
+    let mut request: JobRequest = serde_json::from_value(document).map_err(|error| error.to_string())?;
+    request.analysis.max_increments = 10 * size as u64 + 100;
+    // Rows of all contacts at all events would be read by nobody.
+    request.analysis.record =
+        Some(Record { contacts: Some(RecordedContacts::Named(Vec::new())), directions: false, ..Record::default() });
+    let scene = Scene::new(&request).map_err(|errors| errors.to_string())?;
+    let mut path = Path::new(&scene, CancelFlag::default());
+    let began = Instant::now();
+    let (mut increments, mut events, mut start_s) = (0, 0, 0.0);
+    let (mut load_error, mut place_error) = (0.0_f64, 0.0_f64);
+    for increment in path.by_ref() {
+        increments += 1;
+        if &*increment.stage != "pull" {
+            start_s = began.elapsed().as_secs_f64();
+            continue;
+        }
+        if matches!(increment.point.kind, PointKind::ContactChange | PointKind::End) {
+            events += 1;
+            let exact = events as f64 * FRICTION * WEIGHT;
+            load_error = load_error.max((increment.load_factor / exact - 1.0).abs());
+            place_error = place_error.max(error_of_places(&increment, events));
+        }
+    }
+    let pull_s = began.elapsed().as_secs_f64() - start_s;
+    let report = path.report().ok_or("a path without a report")?;
+    let (factorisations, end) = (report.factorisations, format!("{:?}", report.stop_reason));
+    Ok(Traced { increments, events, start_s, pull_s, factorisations, load_error, place_error, end })
+}
+
+/// When block `m = events - 1` begins to slip, spring `j` carries what blocks `j + 1` to `m` hold back less the last:
+/// `k (u_j - u_{j+1}) = (m - j) μ W`.
+fn error_of_places(increment: &Increment, events: usize) -> f64 {
+    let mut exact = (events * (events - 1) / 2) as f64 * FRICTION * WEIGHT / STIFFNESS;
+    let largest = exact.max(FRICTION * WEIGHT / STIFFNESS);
+    let mut error = 0.0_f64;
+    for (block, place) in increment.displacements.values().enumerate() {
+        error = error.max((place[0] - exact).abs() / largest);
+        exact -= (events - 1).saturating_sub(block) as f64 * FRICTION * WEIGHT / STIFFNESS;
+    }
+    error
+}
