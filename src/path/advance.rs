@@ -104,7 +104,7 @@ impl Start<'_> {
     ) -> Result<Reached, Refused> {
         let mut corrected = system.correct(guess, place, self.force_scale).map_err(Refused::Newton)?;
         work.newton_iterations += corrected.iterations;
-        work.factorisations += corrected.iterations + 1;
+        work.factorisations += corrected.factorisations + 1;
         let singular = Refused::Newton(Failure::Singular);
         let mut tangent = system.tangent_and_error(&corrected, self.rate).ok_or(singular)?;
         if system.has_tracks() {
@@ -115,7 +115,7 @@ impl Start<'_> {
                     .correct_from(system.iterate_of(&corrected), place, self.force_scale)
                     .map_err(Refused::Newton)?;
                 work.newton_iterations += again.iterations;
-                work.factorisations += again.iterations + 1;
+                work.factorisations += again.factorisations + 1;
                 // How hard the increment is shows in the first solve.
                 let hardness = corrected.iterations_to_small;
                 let change = system.largest_turn(&again, Some(&corrected));

@@ -25,7 +25,8 @@ use crate::linear_algebra::sparse::{Bordered, Holding, SparseFactorisation};
 use crate::linear_algebra::{Factorisation, Sink, Stiffener, SystemFactorisation};
 use crate::structure::Stretching;
 use nalgebra::{DMatrix, DVector};
-use std::collections::BTreeMap;
+use smallvec::SmallVec;
+use std::cell::OnceCell;
 
 /// What a contact contributes to the equations.
 #[derive(Debug, Clone, Copy)]
@@ -72,6 +73,8 @@ enum Stretch {
 
 /// Smallest pivot over the largest below which digits are worth the larger system that saves them.
 const SPREAD: f64 = 1e-4;
+/// Unknowns up to which they are saved so.
+const MOST_APART: usize = 200;
 
 /// A state on the way to convergence, with the directions of slip (one a contact; empty where none is unknown).
 #[derive(Debug, Clone)]
@@ -83,6 +86,9 @@ pub(super) struct Iterate {
 /// Friction force (dimensionless) below which Newton's matrix takes it as this.
 const LEAST_PRESSED: f64 = 1e-10;
 
+/// Up to three orthonormal directions.
+pub(super) type Directions = SmallVec<[Vector; 3]>;
+
 /// One mode's equations.
 pub struct ModeSystem<'a> {
     pub(super) loading: Loading<'a>,
@@ -93,6 +99,8 @@ pub struct ModeSystem<'a> {
     /// First row and column of each closed contact.
     first_of: Vec<usize>,
     pub(super) size: usize,
+    /// Made when first needed.
+    holdings: OnceCell<Vec<Holding>>,
 }
 
 impl<'a> ModeSystem<'a> {
@@ -136,7 +144,7 @@ impl<'a> ModeSystem<'a> {
             };
             roles.push(role);
         }
-        Self { loading, anchor, roles, modes, first_of, size: next }
+        Self { loading, anchor, roles, modes, first_of, size: next, holdings: OnceCell::new() }
     }
 
     /// Number of unknowns.
@@ -313,44 +321,62 @@ impl<'a> ModeSystem<'a> {
         Some(matrix)
     }
 
-    /// What the closed contacts hold at each node.
-    pub(super) fn holdings(&self) -> Vec<Holding> {
+    /// What the closed contacts hold at each node, in the order of the nodes.
+    pub(super) fn holdings(&self) -> &[Holding] {
+        self.holdings.get_or_init(|| {
+            let closed = |contact: &usize| !matches!(self.roles[*contact], Role::Free | Role::HeldBy);
+            let mut contacts: Vec<usize> = (0..self.roles.len()).filter(closed).collect();
+            contacts.sort_by_key(|contact| self.loading.contacts[*contact].node);
+            let same_node = |a: &usize, b: &usize| self.loading.contacts[*a].node == self.loading.contacts[*b].node;
+            contacts.chunk_by(same_node).map(|contacts| self.holding(contacts)).collect()
+        })
+    }
+
+    /// What closed contacts hold at their node.
+    fn holding(&self, contacts: &[usize]) -> Holding {
         let structure = self.loading.structure;
         let (dimension, unknowns) = (structure.dimension, structure.unknowns());
-        let mut holdings: BTreeMap<usize, Holding> = BTreeMap::new();
-        for (contact, role) in self.roles.iter().enumerate() {
-            let count = match role {
-                Role::Free | Role::HeldBy => continue,
-                Role::Stick | Role::Held => self.held_directions(contact).len(),
+        let node = contacts.first().map_or(0, |contact| self.loading.contacts[*contact].node);
+        let freedoms = node * dimension..(node + 1) * dimension;
+        let mut holding = Holding::new(freedoms.filter_map(|freedom| structure.unknown_of[freedom]));
+        for contact in contacts {
+            let count = match self.roles[*contact] {
+                Role::Free | Role::HeldBy => 0,
+                Role::Stick | Role::Held => self.held_directions(*contact).len(),
                 Role::Frictionless | Role::Line { .. } | Role::Edge { .. } | Role::Plane { .. } => 1,
             };
-            let node = self.loading.contacts[contact].node;
-            let freedoms = node * dimension..(node + 1) * dimension;
-            let own: Vec<usize> = freedoms.filter_map(|freedom| structure.unknown_of[freedom]).collect();
-            let (row, column) = (self.row_of(contact) - unknowns, self.column_of(contact) - unknowns);
-            let nothing = Holding { unknowns: own, rows: Vec::new(), columns: Vec::new() };
-            let holding = holdings.entry(node).or_insert(nothing);
+            let (row, column) = (self.row_of(*contact) - unknowns, self.column_of(*contact) - unknowns);
             holding.rows.extend(row..row + count);
             holding.columns.extend(column..column + count);
         }
-        holdings.into_values().collect()
+        holding
     }
 
     /// Factorises the equations at an iterate with a last row that the caller puts in. Where stiff and soft parts meet, so
-    /// that their sum would cost too many digits, the stiff ones are kept apart (in dense matrices; sparse solutions are
-    /// refined instead).
+    /// that their sum would cost too many digits, the stiff ones are kept apart (in dense matrices; for many unknowns
+    /// solutions are refined instead).
     pub(super) fn factorise(
         &self,
         iterate: &Iterate,
         kind: Kind,
         put_last: impl Fn(&mut dyn Sink),
     ) -> Option<SystemFactorisation> {
-        let plain = match self.factorise_as_it_is(iterate, kind, &put_last)? {
-            SystemFactorisation::Dense(plain) if plain.pivot_ratio() < SPREAD => plain,
-            other => return Some(other),
-        };
         let structure = self.loading.structure;
         let unknowns = structure.unknowns();
+        let plain = match self.factorise_as_it_is(iterate, kind, &put_last) {
+            Some(SystemFactorisation::Dense(plain)) if plain.pivot_ratio() < SPREAD => plain,
+            Some(SystemFactorisation::Sparse(sparse)) if sparse.spread() < SPREAD && unknowns <= MOST_APART => {
+                self.factorise_dense(iterate, kind, &put_last)?
+            }
+            Some(other) => return Some(other),
+            None if structure.layout().is_some() && unknowns <= MOST_APART => {
+                self.factorise_dense(iterate, kind, &put_last)?
+            }
+            None => return None,
+        };
+        if plain.pivot_ratio() >= SPREAD {
+            return Some(SystemFactorisation::Dense(plain));
+        }
         let stiffener = |stretching: Stretching| {
             let unknown = |(freedom, value): &(usize, f64)| Some((structure.unknown_of[*freedom]?, *value));
             let rows: Vec<(usize, f64)> = stretching.along.iter().filter_map(unknown).collect();
@@ -378,12 +404,21 @@ impl<'a> ModeSystem<'a> {
     ) -> Option<SystemFactorisation> {
         if let Some(mut matrix) = self.assemble_sparse(iterate, kind) {
             put_last(&mut matrix);
-            let factorisation = SparseFactorisation::new(matrix, &self.holdings())?;
+            let factorisation = SparseFactorisation::new(matrix, self.holdings())?;
             return Some(SystemFactorisation::Sparse(Box::new(factorisation)));
         }
+        self.factorise_dense(iterate, kind, put_last).map(SystemFactorisation::Dense)
+    }
+
+    fn factorise_dense(
+        &self,
+        iterate: &Iterate,
+        kind: Kind,
+        put_last: impl Fn(&mut dyn Sink),
+    ) -> Option<Factorisation> {
         let mut matrix = self.assemble(iterate, kind);
         put_last(&mut matrix);
-        Factorisation::new(matrix).map(SystemFactorisation::Dense)
+        Factorisation::new(matrix)
     }
 
     /// A row `vector·(relative motion)`.
@@ -421,7 +456,7 @@ impl<'a> ModeSystem<'a> {
 
     /// Orthonormal directions in which a sticking contact holds its node, along which it has a force: the normal and the
     /// tangents with friction; where it holds the node together with others, all in which the node is free.
-    pub(super) fn held_directions(&self, contact: usize) -> Vec<Vector> {
+    pub(super) fn held_directions(&self, contact: usize) -> Directions {
         let data = &self.loading.contacts[contact];
         let in_frame = |tangents: usize| {
             let frame = self.loading.frame(contact, self.anchor);
@@ -432,14 +467,14 @@ impl<'a> ModeSystem<'a> {
             Role::Held => {
                 let free = free_directions(self.loading, data.node);
                 let dimension = self.loading.structure.dimension;
-                if free.len() == dimension { in_frame(dimension - 1) } else { free }
+                if free.len() == dimension { in_frame(dimension - 1) } else { Directions::from_vec(free) }
             }
             Role::Free
             | Role::Frictionless
             | Role::Line { .. }
             | Role::Edge { .. }
             | Role::Plane { .. }
-            | Role::HeldBy => Vec::new(),
+            | Role::HeldBy => Directions::new(),
         }
     }
 

@@ -7,7 +7,7 @@ use super::state::{Rate, State};
 use super::track;
 use crate::contact::Mode;
 use crate::contact::vector::{Vector, add, dot};
-use crate::linear_algebra::Sink;
+use crate::linear_algebra::{Sink, SystemFactorisation};
 use nalgebra::DVector;
 
 /// The last equation: where on the branch the point is to be.
@@ -28,6 +28,8 @@ pub struct Corrected {
     /// The modes with the directions of slip as they are at the point.
     pub modes: Vec<Mode>,
     pub iterations: u64,
+    /// Matrices factorised for them.
+    pub factorisations: u64,
     /// Iterations until the error was small; those after it polish, and their number is round-off's.
     pub iterations_to_small: u64,
     /// Equilibrium residual over the force scale; where the rounding of the displacements alone leaves more than is
@@ -69,6 +71,8 @@ pub(super) const NO_FORCE: f64 = 1e-20;
 const ROUND_OFF: f64 = 1e-15;
 /// Error below which Newton's method is as good as converged.
 const SMALL: f64 = 1e-6;
+/// Error down to which a correction that does not make it smaller calls for the matrix at the iterate itself.
+const REUSED_TO: f64 = 1e-13;
 /// Multiple of the bound on rounding within which what is left over counts as rounding.
 const ROOM: f64 = 8.0;
 /// Rows with forces below this part of the force scale are judged by their own.
@@ -103,6 +107,9 @@ impl ModeSystem<'_> {
         let mut small_by_correction = None;
         // Rows are judged by the largest force first, and each by its own once that is done.
         let mut row_by_row = false;
+        // Near the solution the last factorisation serves on: what it is off by is as small as the error was.
+        let mut last_factorisation: Option<SystemFactorisation> = None;
+        let (mut factorisations, mut reused) = (0, false);
         loop {
             let (largest, forces) = self.residual(&iterate, &mut values, &mut force);
             let scale = forces.max(force_scale).max(NO_FORCE);
@@ -126,7 +133,10 @@ impl ModeSystem<'_> {
                 best = Some((error, iterate.clone(), figures));
             }
             let least = best.as_ref().map_or(f64::INFINITY, |(least, ..)| *least);
-            let settled = least <= ROUND_OFF || (!improved && (row_by_row || least <= ACCEPTED_RESIDUAL));
+            let serves = error <= SMALL && (improved || least <= REUSED_TO) && !row_by_row;
+            let was_reused = std::mem::replace(&mut reused, serves && last_factorisation.is_some());
+            let stalled = !improved && (!was_reused || least <= REUSED_TO);
+            let settled = least <= ROUND_OFF || (stalled && (row_by_row || least <= ACCEPTED_RESIDUAL));
             if settled && iterations > 0 {
                 let done = row_by_row || iterations == MOST_ITERATIONS;
                 if done || self.residual_of_rows(&iterate.state, &values, scale) <= ACCEPTED_RESIDUAL {
@@ -154,8 +164,11 @@ impl ModeSystem<'_> {
             let put_place = |matrix: &mut dyn Sink| {
                 self.place(&iterate.state, place, Some(matrix));
             };
-            let factorisation = self.factorise(&iterate, Kind::Increment, put_place).ok_or(Failure::Singular)?;
-            if !factorisation.solve(&mut values) {
+            if !reused {
+                last_factorisation = self.factorise(&iterate, Kind::Increment, put_place);
+                factorisations += 1;
+            }
+            if !last_factorisation.as_ref().ok_or(Failure::Singular)?.solve(&mut values) {
                 return Err(Failure::Singular);
             }
             (before, correction) = (correction, values.rows(0, self.loading.structure.unknowns() + 1).norm());
@@ -179,6 +192,7 @@ impl ModeSystem<'_> {
             state: iterate.state,
             directions: iterate.directions,
             iterations: figures.iterations,
+            factorisations,
             iterations_to_small: iterations_to_small.unwrap_or(figures.iterations).min(figures.iterations),
             residual: figures.residual,
             left_over: figures.left_over,
@@ -279,6 +293,7 @@ impl ModeSystem<'_> {
             state: iterate.state,
             directions: iterate.directions,
             iterations: 0,
+            factorisations: 0,
             iterations_to_small: 0,
             residual,
             left_over,

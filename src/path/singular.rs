@@ -110,7 +110,7 @@ fn count_sparse(loading: Loading<'_>, modes: &[Mode], start: &State, state: &Sta
         return Some(None);
     }
     let matrix = system.assemble_sparse(&system.iterate(state.clone()), Kind::Rates)?;
-    let inertia = held_inertia(&matrix, &system.holdings(), ZERO_PIVOT)?;
+    let inertia = held_inertia(&matrix, system.holdings(), ZERO_PIVOT)?;
     Some(Some(inertia.negative))
 }
 

@@ -27,7 +27,7 @@ pub struct Stretching {
 }
 
 /// Unknowns up to which matrices are dense.
-pub const MOST_DENSE: usize = 200;
+pub const MOST_DENSE: usize = 16;
 
 /// Unknowns up to which null spaces and eigenvalues are sought, in dense matrices: smooth bifurcation points and
 /// directions at singular points are not looked for beyond.

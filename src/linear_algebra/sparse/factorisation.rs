@@ -8,12 +8,14 @@
 
 use super::Entries;
 use super::bordered::Bordered;
-use super::held::{Elimination, Holding};
+use super::held::{Elimination, Friction, Holding};
 use super::lu::WholeLu;
-use super::reduced::Reduced;
+use super::reduced::{Factor, Reduced};
 use super::symmetric::SymmetricFactor;
+use super::unsymmetric::UnsymmetricFactor;
 use crate::linear_algebra::Inertia;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Vector3};
+use smallvec::smallvec;
 use std::cell::OnceCell;
 
 /// See the module.
@@ -42,22 +44,34 @@ const MOST_BORDERS: usize = 400;
 impl SparseFactorisation {
     /// Factorises; `None` when the matrix is singular to working precision or holds a number that is not finite.
     pub fn new(matrix: Bordered, holdings: &[Holding]) -> Option<Self> {
+        let friction = friction_of(&matrix, holdings);
+        Self::with(matrix, holdings, friction)
+    }
+
+    pub(super) fn with(matrix: Bordered, holdings: &[Holding], friction: Friction) -> Option<Self> {
         if matrix.is_outside || !matrix.is_finite() {
             return None;
         }
-        let blocks = Blocks::new(&matrix, holdings);
+        // A complement that is nothing but rounding says nothing.
+        let blocks =
+            Blocks::new(&matrix, holdings, friction).filter(|blocks| blocks.reduced.pivot_ratio > f64::EPSILON);
         let (sign, pivot_ratio) =
             blocks.as_ref().map_or((1.0, 0.0), |blocks| (blocks.sign, blocks.reduced.pivot_ratio));
         let factorisation = Self { matrix, blocks, whole: OnceCell::new(), sign, pivot_ratio };
         (pivot_ratio > CERTAIN || factorisation.finds_what_is_known()).then_some(factorisation)
     }
 
-    /// Whether a solution that is known comes out: near a singular matrix it does not, however small the residual.
+    /// Whether solutions that are known come out: near a singular matrix they do not, however small the residual.
     fn finds_what_is_known(&self) -> bool {
-        let known = DVector::from_fn(self.matrix.size(), |row, _| 1.0 + (row % 7) as f64 / 8.0);
-        let (mut values, mut sizes) = (DVector::zeros(known.len()), vec![0.0; known.len()]);
-        self.matrix.multiply(known.as_slice(), values.as_mut_slice(), &mut sizes);
-        self.solve(&mut values) && (values - known).amax() <= SINGULAR
+        let first = |row: usize| 1.0 + (row % 7) as f64 / 8.0;
+        let second = |row: usize| if row % 3 == 1 { -1.0 } else { 1.0 - (row % 11) as f64 / 16.0 };
+        let comes_out = |entry: &dyn Fn(usize) -> f64| {
+            let known = DVector::from_fn(self.matrix.size(), |row, _| entry(row));
+            let (mut values, mut sizes) = (DVector::zeros(known.len()), vec![0.0; known.len()]);
+            self.matrix.multiply(known.as_slice(), values.as_mut_slice(), &mut sizes);
+            self.solve(&mut values) && (values - known).amax() <= SINGULAR
+        };
+        comes_out(&first) && comes_out(&second)
     }
 
     /// Sign of the determinant: 1 or -1; certain only where [`Self::pivot_ratio`] is not 0.
@@ -68,6 +82,12 @@ impl SparseFactorisation {
     /// Smallest pivot of the complement of the borders over the size of its terms; 0 where that was not formed.
     pub fn pivot_ratio(&self) -> f64 {
         self.pivot_ratio
+    }
+
+    /// How far pivots are from each other at the most, those of the complement with them: where this is small, stiff and
+    /// soft parts may have been added up.
+    pub fn spread(&self) -> f64 {
+        self.blocks.as_ref().map_or(0.0, |blocks| blocks.reduced.pivot_ratio.min(blocks.reduced.factor.pivot_ratio()))
     }
 
     /// Solves for one right-hand side, overwritten by the solution; `false` when no accurate solution was found.
@@ -152,11 +172,12 @@ enum Row {
 }
 
 impl Blocks {
-    fn new(matrix: &Bordered, holdings: &[Holding]) -> Option<Self> {
+    fn new(matrix: &Bordered, holdings: &[Holding], friction: Friction) -> Option<Self> {
         let (unknowns, given) = (matrix.pattern.size(), matrix.lower.len());
-        let matrix = symmetrised(matrix);
+        let symmetric = (friction == Friction::Bordered).then(|| symmetrised(matrix));
+        let matrix = symmetric.as_ref().unwrap_or(matrix);
         let borders = matrix.lower.len();
-        let (elimination, values) = Elimination::new(&matrix, holdings);
+        let (elimination, values) = Elimination::new(matrix, holdings, friction);
         let mut sign = if (borders - given) % 2 == 1 { -1.0 } else { 1.0 };
         let mut is_kept = vec![true; borders];
         let mut equilibrium: Vec<Option<Option<usize>>> = vec![None; borders];
@@ -164,16 +185,16 @@ impl Blocks {
         let mut stiffness_of = vec![None; unknowns];
         for node in &elimination.nodes {
             sign *= node.sign;
-            for (index, (row, column)) in node.rows.iter().zip(&node.columns).enumerate() {
-                equilibrium[*row] = Some(node.keeps.then_some(node.unknowns[index]));
+            for (index, (row, column)) in node.rows().iter().zip(node.columns()).enumerate() {
+                equilibrium[*row] = Some(node.keeps.then_some(node.held()[index]));
                 if !node.keeps {
                     is_kept[*column] = false;
                     sign *= if (row + column) % 2 == 1 { -1.0 } else { 1.0 };
                 }
-                stiffness_of[node.unknowns[index]] = Some(&node.stiffness[index]);
+                stiffness_of[node.held()[index]] = Some(elimination.stiffness(node, index));
                 for (border, value) in &node.couplings[index] {
-                    for held in 0..node.held {
-                        shifts[*border].push((node.unknowns[held], -node.constraint[(held, index)] * value));
+                    for (held, unknown) in node.held().iter().enumerate() {
+                        shifts[*border].push((*unknown, -node.constraint[(held, index)] * value));
                     }
                 }
             }
@@ -188,6 +209,7 @@ impl Blocks {
         let (mut columns, mut held_parts, mut kept_shifts) = (Vec::new(), Vec::new(), Vec::new());
         for column in &kept_columns {
             let (mut free, mut held) = elimination.rotated(&matrix.right[*column]);
+            free.extend(elimination.folded(&held));
             for (unknown, motion) in &shifts[*column] {
                 let moved = stiffness_of[*unknown]?.iter().map(|(row, value)| (*row, value * motion));
                 let (to_free, to_held) = elimination.split(&moved.collect::<Entries>());
@@ -216,7 +238,7 @@ impl Blocks {
                 }
                 None => {
                     let (inner, outer): (Entries, Entries) =
-                        matrix.lower[row].iter().partition(|(column, _)| *column < unknowns);
+                        matrix.lower[row].iter().copied().partition(|(column, _)| *column < unknowns);
                     let (free, held) = elimination.rotated(&inner);
                     for (column, value) in outer {
                         *corner.get_mut((place, *index_of.get(column - unknowns)?))? += value;
@@ -235,7 +257,10 @@ impl Blocks {
         if rows.len() != count {
             return None;
         }
-        let factor = SymmetricFactor::new(matrix.pattern.clone(), &values).ok()?;
+        let factor = match friction {
+            Friction::Bordered => Factor::Symmetric(SymmetricFactor::new(matrix.pattern.clone(), &values).ok()?),
+            Friction::Folded => Factor::Unsymmetric(UnsymmetricFactor::new(matrix.pattern.clone(), &values)?),
+        };
         let reduced = Reduced::new(factor, unknowns, columns, rows, corner)?;
         let sign = sign * reduced.sign;
         let shifts = kept_shifts;
@@ -246,13 +271,14 @@ impl Blocks {
         let (upper, lower) = values.split_at_mut(self.unknowns);
         let mut force = upper.to_vec();
         self.elimination.rotate(&mut force, false);
+        self.elimination.fold(&mut force);
         let mut held = vec![0.0; self.unknowns];
         for node in &self.elimination.nodes {
-            let given = DVector::from_iterator(node.held, node.rows.iter().map(|row| lower[*row]));
-            let motion = &node.constraint * given;
-            for (index, motion) in motion.iter().enumerate() {
-                held[node.unknowns[index]] = *motion;
-                node.stiffness[index].iter().for_each(|(row, value)| force[*row] -= value * motion);
+            let motion = node.constraint * gathered(node.rows(), lower);
+            for (index, (unknown, motion)) in node.held().iter().zip(motion.iter()).enumerate() {
+                held[*unknown] = *motion;
+                let stiffness = self.elimination.stiffness(node, index);
+                stiffness.iter().for_each(|(row, value)| force[*row] -= value * motion);
             }
         }
         let right = |row: &Row| match row {
@@ -265,7 +291,7 @@ impl Blocks {
         };
         let mut weights: Vec<f64> = self.kept_rows.iter().map(right).collect();
         let mut motion = force.clone();
-        self.elimination.nodes.iter().flat_map(|node| &node.unknowns[..node.held]).for_each(|h| motion[*h] = 0.0);
+        self.elimination.nodes.iter().flat_map(|node| node.held()).for_each(|unknown| motion[*unknown] = 0.0);
         if !self.reduced.solve(&mut motion, &mut weights) {
             return false;
         }
@@ -278,24 +304,52 @@ impl Blocks {
             part.iter().for_each(|(unknown, value)| force[*unknown] -= weight * value);
         }
         for node in &self.elimination.nodes {
-            for (index, unknown) in node.unknowns[..node.held].iter().enumerate() {
+            for (index, unknown) in node.held().iter().enumerate() {
                 // `motion` is zero at held unknowns: their part is in `force`.
-                force[*unknown] -= node.stiffness[index].iter().map(|(row, value)| value * motion[*row]).sum::<f64>();
+                let equilibrium = self.elimination.equilibrium(node, index);
+                force[*unknown] -= equilibrium.iter().map(|(row, value)| value * motion[*row]).sum::<f64>();
             }
         }
         for node in &self.elimination.nodes {
             if !node.keeps {
-                let rest = node.unknowns[..node.held].iter().map(|unknown| force[*unknown]);
-                let reactions = &node.reaction * DVector::from_iterator(node.held, rest);
-                node.columns.iter().zip(reactions.iter()).for_each(|(column, value)| borders[*column] = *value);
+                let reactions = node.reaction * gathered(node.held(), &force);
+                node.columns().iter().zip(reactions.iter()).for_each(|(column, value)| borders[*column] = *value);
             }
-            node.unknowns[..node.held].iter().for_each(|unknown| motion[*unknown] = held[*unknown]);
+            node.held().iter().for_each(|unknown| motion[*unknown] = held[*unknown]);
         }
         self.elimination.rotate(&mut motion, true);
         upper.copy_from_slice(&motion);
         lower.copy_from_slice(&borders[..lower.len()]);
         true
     }
+}
+
+/// Values at up to three places, zero after them.
+fn gathered(places: &[usize], values: &[f64]) -> Vector3<f64> {
+    let mut gathered = Vector3::zeros();
+    places.iter().enumerate().for_each(|(index, place)| gathered[index] = values[*place]);
+    gathered
+}
+
+/// Multiplications that a factorisation without symmetry may take where nothing speaks against it.
+const LITTLE: u64 = 1_000_000;
+/// A multiplication in it takes so many times one of the symmetric factorisation and its solves, which go by blocks.
+const SLOWER: u64 = 4;
+
+/// What is cheaper: borders for what is not symmetric, a solve each, or a factorisation without symmetry.
+fn friction_of(matrix: &Bordered, holdings: &[Holding]) -> Friction {
+    let pattern = &matrix.pattern;
+    let entries = pattern.factor_entries() as u64;
+    let rubs = |(row, column): &(&usize, &usize)| {
+        let row = &matrix.lower[**row];
+        matrix.right[**column].iter().any(|(unknown, value)| !row.contains(&(*unknown, -value)))
+    };
+    let pairs = holdings.iter().flat_map(|holding| holding.rows.iter().zip(&holding.columns));
+    let solves = pairs.filter(rubs).count() as u64;
+    // The work is at least the entries squared over the unknowns: it need not be counted where that is already too much.
+    let least = entries.saturating_mul(entries) / (pattern.size() as u64).max(1);
+    let most = LITTLE.max(entries.saturating_mul(2 * solves) / SLOWER);
+    if least <= most && pattern.fill().work <= most { Friction::Folded } else { Friction::Bordered }
 }
 
 /// The matrix with a symmetric `K`: a row `a` that it has more becomes a border `[[K, e], [a, -1]]`.
@@ -321,13 +375,13 @@ fn symmetrised(matrix: &Bordered) -> Bordered {
         whole.values[below] = matrix.values[above];
         match extra.iter_mut().find(|(known, _)| *known == row) {
             Some((_, entries)) => entries.push((column, difference)),
-            None => extra.push((row, vec![(column, difference)])),
+            None => extra.push((row, smallvec![(column, difference)])),
         }
     }
     for (index, (row, mut entries)) in extra.into_iter().enumerate() {
         let border = matrix.pattern.size() + borders + index;
         entries.push((border, -1.0));
-        whole.right.push(vec![(row, 1.0)]);
+        whole.right.push(smallvec![(row, 1.0)]);
         whole.lower.push(entries);
     }
     whole
@@ -339,11 +393,11 @@ pub fn held_inertia(matrix: &Bordered, holdings: &[Holding], tolerance: f64) -> 
     if matrix.is_outside || symmetrised(matrix).lower.len() != matrix.lower.len() {
         return None;
     }
-    let (elimination, values) = Elimination::new(matrix, holdings);
+    let (elimination, values) = Elimination::new(matrix, holdings, Friction::Bordered);
     if elimination.nodes.len() != holdings.len() {
         return None;
     }
-    let held: usize = elimination.nodes.iter().map(|node| node.held).sum();
+    let held: usize = elimination.nodes.iter().map(|node| node.held().len()).sum();
     let mut inertia = SymmetricFactor::new(matrix.pattern.clone(), &values).ok()?.inertia(tolerance)?;
     inertia.positive = inertia.positive.checked_sub(held)?;
     Some(inertia)

@@ -7,50 +7,82 @@
 //! y_H = M⁻¹ (g - d L),      R r = f_H - (K y)_H - ...,      QᵀB = [R; F]
 //! ```
 //!
-//! Rows and columns `H` leave the symmetric matrix (a one stays on the diagonal), whose pattern remains. Without friction
-//! `F = 0` and `r` follows in the end; with friction (`F != 0`) `r` stays a border, and the equations `H` are its rows.
+//! Rows and columns `H` leave the matrix (a one stays on the diagonal), whose pattern remains. Without friction `F = 0`
+//! and `r` follows in the end. With friction (`F != 0`) there are two ways: `r` stays a border, and the equations `H` are
+//! its rows, so that the matrix stays symmetric; or the equations `H` times `F R⁻¹` are taken from the equations `T`, which
+//! makes it unsymmetric, and `r` follows in the end, too.
 
 use super::Entries;
 use super::bordered::Bordered;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Matrix3, Vector3};
+use smallvec::SmallVec;
+use std::ops::Range;
 
 /// Border rows that hold unknowns of one node, and the border columns with its reactions, one for each row.
 #[derive(Debug, Clone)]
 pub struct Holding {
-    /// Unknowns of the node.
-    pub unknowns: Vec<usize>,
-    pub rows: Vec<usize>,
-    pub columns: Vec<usize>,
+    /// Unknowns of the node: at most three.
+    pub unknowns: Places,
+    pub rows: Places,
+    pub columns: Places,
 }
 
-/// One node.
+/// Some numbers of rows, columns or unknowns.
+pub type Places = SmallVec<[usize; 3]>;
+
+impl Holding {
+    /// Of a node that nothing holds yet.
+    pub fn new(unknowns: impl IntoIterator<Item = usize>) -> Self {
+        Self { unknowns: unknowns.into_iter().collect(), rows: Places::new(), columns: Places::new() }
+    }
+}
+
+/// What becomes of the reactions of contacts with friction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Friction {
+    /// They stay borders.
+    Bordered,
+    /// They are eliminated, and the matrix is unsymmetric.
+    Folded,
+}
+
+/// One node; matrices have ones on the diagonal where the node has less.
 pub(super) struct HeldNode {
-    pub unknowns: Vec<usize>,
+    unknowns: [usize; 3],
+    count: usize,
     /// So many of the rotated unknowns are held.
-    pub held: usize,
+    held: usize,
+    /// Whether `Q` is not the identity.
+    turns: bool,
     /// `Q`
-    rotation: DMatrix<f64>,
+    rotation: Matrix3<f64>,
     /// `M⁻¹`
-    pub constraint: DMatrix<f64>,
+    pub constraint: Matrix3<f64>,
     /// `R⁻¹`
-    pub reaction: DMatrix<f64>,
-    pub rows: Vec<usize>,
-    pub columns: Vec<usize>,
+    pub reaction: Matrix3<f64>,
+    /// `F R⁻¹`, rows of `T` after those of `H`; where it is folded.
+    friction: Option<Matrix3<f64>>,
+    rows: [usize; 3],
+    columns: [usize; 3],
     /// Its reactions stay borders.
     pub keeps: bool,
     /// Sign of the part of the determinant that is eliminated, its place apart.
     pub sign: f64,
     /// `d`: for each row, other borders and values.
-    pub couplings: Vec<Entries>,
-    /// Columns `H` of the rotated matrix.
-    pub stiffness: Vec<Entries>,
+    pub couplings: [Entries; 3],
+    /// Where the elimination has its columns `H` of the matrix.
+    columns_at: [Range<usize>; 3],
+    /// Where the elimination has its rows `H` of the matrix.
+    rows_at: [Range<usize>; 3],
 }
 
 /// All of them.
 pub(super) struct Elimination {
     pub nodes: Vec<HeldNode>,
     /// Node and place in it of each unknown.
-    place_of: Vec<Option<(usize, usize)>>,
+    place_of: Vec<Option<(u32, u32)>>,
+    /// Entries of all rows and columns `H`.
+    entries: Vec<(usize, f64)>,
 }
 
 /// Relative size of what counts as nothing.
@@ -59,8 +91,8 @@ const NOTHING: f64 = 1e-14;
 const DEPENDENT: f64 = 1e-6;
 
 impl Elimination {
-    /// Eliminates; with the symmetric matrix that is left. A holding that cannot be eliminated so stays in the borders.
-    pub fn new(matrix: &Bordered, holdings: &[Holding]) -> (Self, Vec<f64>) {
+    /// Eliminates; with the matrix that is left. A holding that cannot be eliminated so stays in the borders.
+    pub fn new(matrix: &Bordered, holdings: &[Holding], friction: Friction) -> (Self, Vec<f64>) {
         let n = matrix.pattern.size();
         let mut is_reaction = vec![false; matrix.lower.len()];
         holdings.iter().flat_map(|holding| &holding.columns).for_each(|column| is_reaction[*column] = true);
@@ -72,36 +104,48 @@ impl Elimination {
             }
         }
         let mut place_of = vec![None; n];
-        let mut nodes: Vec<HeldNode> = Vec::new();
+        let mut nodes: Vec<HeldNode> = Vec::with_capacity(holdings.len());
         for holding in holdings {
             let free = holding.unknowns.iter().all(|unknown| place_of[*unknown].is_none());
             if !free || holding.columns.iter().any(|column| enters[*column]) {
                 continue;
             }
-            let Some(node) = HeldNode::new(matrix, holding, &is_reaction) else { continue };
-            for (local, unknown) in node.unknowns.iter().enumerate() {
-                place_of[*unknown] = Some((nodes.len(), local));
+            let Some(node) = HeldNode::new(matrix, holding, &is_reaction, friction) else { continue };
+            for (local, unknown) in node.unknowns().iter().enumerate() {
+                place_of[*unknown] = Some((nodes.len() as u32, local as u32));
             }
             nodes.push(node);
         }
-        let mut elimination = Self { nodes, place_of };
         let mut values = matrix.values.clone();
-        elimination.nodes.iter().for_each(|node| node.rotate_matrix(matrix, &mut values));
-        // All columns are taken before any row is cleared: those of neighbours have entries in each other's.
-        elimination.nodes.iter_mut().for_each(|node| node.take_columns(matrix, &values));
-        elimination.nodes.iter().for_each(|node| node.clear(matrix, &mut values));
-        (elimination, values)
+        let mut entries = Vec::with_capacity(4 * nodes.iter().map(|node| node.count * node.held).sum::<usize>());
+        nodes.iter().for_each(|node| node.rotate_matrix(matrix, &mut values));
+        // All rows and columns are taken before any is cleared: those of neighbours have entries in each other's.
+        nodes.iter_mut().for_each(|node| node.take_rows(matrix, &values, &mut entries));
+        nodes.iter().for_each(|node| node.fold(matrix, &mut values));
+        nodes.iter_mut().for_each(|node| node.take_columns(matrix, &values, &mut entries));
+        nodes.iter().for_each(|node| node.clear(matrix, &mut values));
+        (Self { nodes, place_of, entries }, values)
+    }
+
+    /// A column `H` of a node.
+    pub fn stiffness(&self, node: &HeldNode, index: usize) -> &[(usize, f64)] {
+        &self.entries[node.columns_at[index].clone()]
+    }
+
+    /// A row `H` of a node.
+    pub fn equilibrium(&self, node: &HeldNode, index: usize) -> &[(usize, f64)] {
+        &self.entries[node.rows_at[index].clone()]
     }
 
     /// Whether an unknown of the rotated system is held.
     pub fn is_held(&self, unknown: usize) -> bool {
-        self.place_of[unknown].is_some_and(|(node, local)| local < self.nodes[node].held)
+        self.place_of[unknown].is_some_and(|(node, local)| (local as usize) < self.nodes[node as usize].held)
     }
 
     /// Entries of a row or a column over the rotated unknowns: those that are not held, and those that are.
     pub fn rotated(&self, entries: &[(usize, f64)]) -> (Entries, Entries) {
         let (mut free, mut held) = (Entries::with_capacity(entries.len()), Entries::new());
-        let mut at_nodes: Vec<(usize, usize, f64)> = Vec::new();
+        let mut at_nodes: SmallVec<[(u32, u32, f64); 8]> = SmallVec::new();
         for (unknown, value) in entries {
             match self.place_of[*unknown] {
                 None => free.push((*unknown, *value)),
@@ -110,9 +154,10 @@ impl Elimination {
         }
         at_nodes.sort_by_key(|(node, local, _)| (*node, *local));
         for group in at_nodes.chunk_by(|a, b| a.0 == b.0) {
-            let node = &self.nodes[group[0].0];
-            for (place, unknown) in node.unknowns.iter().enumerate() {
-                let value: f64 = group.iter().map(|(_, local, value)| node.rotation[(*local, place)] * value).sum();
+            let node = &self.nodes[group[0].0 as usize];
+            for (place, unknown) in node.unknowns().iter().enumerate() {
+                let part = |(_, local, value): &(u32, u32, f64)| node.rotation[(*local as usize, place)] * value;
+                let value: f64 = group.iter().map(part).sum();
                 if value != 0.0 {
                     if place < node.held { &mut held } else { &mut free }.push((*unknown, value));
                 }
@@ -123,29 +168,58 @@ impl Elimination {
 
     /// Splits a column of the rotated matrix.
     pub fn split(&self, entries: &[(usize, f64)]) -> (Entries, Entries) {
-        entries.iter().partition(|(unknown, _)| !self.is_held(*unknown))
+        entries.iter().copied().partition(|(unknown, _)| !self.is_held(*unknown))
+    }
+
+    /// What entries of a column at held unknowns become in the other equations of their nodes, where friction is folded.
+    pub fn folded(&self, held: &[(usize, f64)]) -> Entries {
+        let mut free = Entries::new();
+        for (unknown, value) in held {
+            let Some((node, local)) = self.place_of[*unknown] else { continue };
+            let node = &self.nodes[node as usize];
+            if let Some(friction) = &node.friction {
+                for other in node.held..node.count {
+                    free.push((node.unknowns[other], -friction[(other, local as usize)] * value));
+                }
+            }
+        }
+        free
     }
 
     /// `Qᵀ x` or `Q x` at every node.
     pub fn rotate(&self, x: &mut [f64], back: bool) {
+        for node in self.nodes.iter().filter(|node| node.turns) {
+            let here = node.gather(x);
+            let turned = if back { node.rotation * here } else { node.rotation.tr_mul(&here) };
+            node.unknowns().iter().zip(turned.iter()).for_each(|(unknown, value)| x[*unknown] = *value);
+        }
+    }
+
+    /// Folds a right-hand side that was rotated.
+    pub fn fold(&self, x: &mut [f64]) {
         for node in &self.nodes {
-            let here = DVector::from_iterator(node.unknowns.len(), node.unknowns.iter().map(|unknown| x[*unknown]));
-            let turned = if back { &node.rotation * here } else { node.rotation.tr_mul(&here) };
-            node.unknowns.iter().zip(turned.iter()).for_each(|(unknown, value)| x[*unknown] = *value);
+            if let Some(friction) = &node.friction {
+                let here = node.gather(x);
+                for other in node.held..node.count {
+                    x[node.unknowns[other]] -=
+                        (0..node.held).map(|held| friction[(other, held)] * here[held]).sum::<f64>();
+                }
+            }
         }
     }
 }
 
 impl HeldNode {
-    fn new(matrix: &Bordered, holding: &Holding, is_reaction: &[bool]) -> Option<Self> {
+    fn new(matrix: &Bordered, holding: &Holding, is_reaction: &[bool], friction: Friction) -> Option<Self> {
         let n = matrix.pattern.size();
         let (count, held) = (holding.unknowns.len(), holding.rows.len());
         if held == 0 || held > count || holding.columns.len() != held || !same_columns(matrix, &holding.unknowns) {
             return None;
         }
-        let local = |unknown: usize| holding.unknowns.iter().position(|own| *own == unknown);
-        let (mut rows, mut columns) = (DMatrix::zeros(held, count), DMatrix::zeros(count, held));
-        let mut couplings = vec![Entries::new(); held];
+        let unknowns = held_first(matrix, holding);
+        let local = |unknown: usize| unknowns.iter().position(|own| *own == unknown);
+        let (mut rows, mut columns) = (Matrix3::zeros(), Matrix3::zeros());
+        let mut couplings = [const { Entries::new_const() }; 3];
         for (index, row) in holding.rows.iter().enumerate() {
             for (column, value) in &matrix.lower[*row] {
                 if *column < n {
@@ -162,63 +236,133 @@ impl HeldNode {
                 columns[(local(*row)?, index)] += value;
             }
         }
-        let rotation = if held == count { DMatrix::identity(count, count) } else { completed(&rows)? };
-        let constraint = (&rows * &rotation).columns(0, held).into_owned();
+        let is_first = held == count || rows.columns(held, count - held).iter().all(|value| *value == 0.0);
+        let rotation = if is_first { Matrix3::identity() } else { completed(&rows, held, count)? };
+        let largest = columns.amax();
+        let constraint = leading(&(rows * rotation), held);
         let turned = rotation.tr_mul(&columns);
-        let reaction = turned.rows(0, held).into_owned();
-        let friction = turned.rows(held, count - held).amax();
-        let sign = constraint.determinant().signum() * if held % 2 == 1 { -1.0 } else { 1.0 };
-        let keeps = friction > NOTHING * columns.amax();
-        let sign = if keeps { sign } else { sign * reaction.determinant().signum() };
+        let reaction = leading(&turned, held);
+        let mut rest = turned;
+        rest.rows_mut(0, held).fill(0.0);
+        let rubs = rest.amax() > NOTHING * largest;
+        let keeps = rubs && friction == Friction::Bordered;
+        let sign_of = |block: &Matrix3<f64>| if held == 1 { block[(0, 0)] } else { block.determinant() }.signum();
+        let sign = sign_of(&constraint) * if held % 2 == 1 { -1.0 } else { 1.0 };
+        let sign = if keeps { sign } else { sign * sign_of(&reaction) };
+        let reaction = inverse(&reaction, held)?;
+        let mut own = [[usize::MAX; 3]; 3];
+        for (own, given) in own.iter_mut().zip([&unknowns, &holding.rows, &holding.columns]) {
+            own[..given.len()].copy_from_slice(given);
+        }
         Some(Self {
-            unknowns: holding.unknowns.clone(),
+            unknowns: own[0],
+            count,
             held,
+            turns: !is_first,
             rotation,
-            constraint: inverse(&constraint)?,
-            reaction: inverse(&reaction)?,
-            rows: holding.rows.clone(),
-            columns: holding.columns.clone(),
+            constraint: inverse(&constraint, held)?,
+            reaction,
+            friction: (rubs && !keeps).then(|| rest * reaction),
+            rows: own[1],
+            columns: own[2],
             keeps,
             sign,
             couplings,
-            stiffness: Vec::new(),
+            columns_at: [const { 0..0 }; 3],
+            rows_at: [const { 0..0 }; 3],
         })
+    }
+
+    fn unknowns(&self) -> &[usize] {
+        &self.unknowns[..self.count]
+    }
+
+    /// Its rotated unknowns that are held.
+    pub fn held(&self) -> &[usize] {
+        &self.unknowns[..self.held]
+    }
+
+    pub fn rows(&self) -> &[usize] {
+        &self.rows[..self.held]
+    }
+
+    pub fn columns(&self) -> &[usize] {
+        &self.columns[..self.held]
+    }
+
+    fn gather(&self, x: &[f64]) -> Vector3<f64> {
+        let mut here = Vector3::zeros();
+        self.unknowns().iter().enumerate().for_each(|(local, unknown)| here[local] = x[*unknown]);
+        here
     }
 
     /// `Qᵀ K Q`; columns of one node have one pattern.
     fn rotate_matrix(&self, matrix: &Bordered, values: &mut [f64]) {
-        if self.held == self.unknowns.len() {
+        if !self.turns {
             return;
         }
-        let count = self.unknowns.len();
-        let starts: Vec<usize> = self.unknowns.iter().map(|unknown| matrix.pattern.starts[*unknown]).collect();
-        let entries = matrix.pattern.column(self.unknowns[0]).len();
+        let count = self.count;
         for by_row in [false, true] {
-            for entry in 0..entries {
-                let place = |local: usize| {
-                    let place = starts[local] + entry;
-                    if by_row { matrix.pattern.mirrors[place] } else { place }
-                };
+            self.each_place(matrix, by_row, |places| {
                 let mut before = [0.0; 3];
-                (0..count).for_each(|local| before[local] = values[place(local)]);
+                (0..count).for_each(|local| before[local] = values[places[local]]);
                 for local in 0..count {
-                    values[place(local)] = (0..count).map(|other| self.rotation[(other, local)] * before[other]).sum();
+                    values[places[local]] = (0..count).map(|other| self.rotation[(other, local)] * before[other]).sum();
                 }
-            }
+            });
         }
     }
 
-    fn take_columns(&mut self, matrix: &Bordered, values: &[f64]) {
+    /// Calls with the places of the entries that the node's columns (or rows) have in each row (or column).
+    fn each_place(&self, matrix: &Bordered, by_row: bool, mut each: impl FnMut([usize; 3])) {
         let pattern = &matrix.pattern;
-        let entry = |place: usize| (values[place] != 0.0).then_some((pattern.rows[place], values[place]));
-        let column = |unknown: &usize| pattern.column(*unknown).filter_map(entry).collect();
-        self.stiffness = self.unknowns[..self.held].iter().map(column).collect();
+        let mut starts = [0; 3];
+        self.unknowns().iter().enumerate().for_each(|(local, unknown)| starts[local] = pattern.starts[*unknown]);
+        for entry in 0..pattern.column(self.unknowns[0]).len() {
+            let mut places = [0; 3];
+            for local in 0..self.count {
+                let place = starts[local] + entry;
+                places[local] = if by_row { pattern.mirrors[place] } else { place };
+            }
+            each(places);
+        }
+    }
+
+    fn take_rows(&mut self, matrix: &Bordered, values: &[f64], taken: &mut Vec<(usize, f64)>) {
+        let pattern = &matrix.pattern;
+        for (range, row) in self.rows_at.iter_mut().zip(&self.unknowns[..self.held]) {
+            let entry = |place: usize| (pattern.rows[place], values[pattern.mirrors[place]]);
+            let start = taken.len();
+            taken.extend(pattern.column(*row).map(entry).filter(|(_, value)| *value != 0.0));
+            *range = start..taken.len();
+        }
+    }
+
+    /// Rows `T` less `F R⁻¹` times rows `H`.
+    fn fold(&self, matrix: &Bordered, values: &mut [f64]) {
+        let Some(friction) = &self.friction else { return };
+        self.each_place(matrix, true, |places| {
+            for other in self.held..self.count {
+                let taken: f64 = (0..self.held).map(|held| friction[(other, held)] * values[places[held]]).sum();
+                values[places[other]] -= taken;
+            }
+        });
+    }
+
+    fn take_columns(&mut self, matrix: &Bordered, values: &[f64], taken: &mut Vec<(usize, f64)>) {
+        let pattern = &matrix.pattern;
+        for (range, column) in self.columns_at.iter_mut().zip(&self.unknowns[..self.held]) {
+            let entry = |place: usize| (pattern.rows[place], values[place]);
+            let start = taken.len();
+            taken.extend(pattern.column(*column).map(entry).filter(|(_, value)| *value != 0.0));
+            *range = start..taken.len();
+        }
     }
 
     /// Leaves a one on the diagonal in the held rows and columns.
     fn clear(&self, matrix: &Bordered, values: &mut [f64]) {
         let pattern = &matrix.pattern;
-        for column in &self.unknowns[..self.held] {
+        for column in self.held() {
             for place in pattern.column(*column) {
                 values[pattern.mirrors[place]] = 0.0;
                 values[place] = if pattern.rows[place] == *column { 1.0 } else { 0.0 };
@@ -227,41 +371,70 @@ impl HeldNode {
     }
 }
 
+/// The node's unknowns, those first that are held where border rows hold as many as they name.
+fn held_first(matrix: &Bordered, holding: &Holding) -> Places {
+    let is_named = |unknown: &usize| {
+        let names = |row: &usize| matrix.lower[*row].iter().any(|(column, value)| column == unknown && *value != 0.0);
+        holding.rows.iter().any(names)
+    };
+    let (named, others): (Places, Places) = holding.unknowns.iter().copied().partition(is_named);
+    if named.len() == holding.rows.len() { named.into_iter().chain(others).collect() } else { holding.unknowns.clone() }
+}
+
 /// Whether columns have entries in the same rows.
 fn same_columns(matrix: &Bordered, unknowns: &[usize]) -> bool {
     let rows = |unknown: usize| &matrix.pattern.rows[matrix.pattern.column(unknown)];
     unknowns.len() <= 3 && unknowns.iter().all(|unknown| rows(*unknown) == rows(unknowns[0]))
 }
 
-fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let largest = matrix.amax();
-    let inverse = matrix.clone().try_inverse()?;
-    (inverse.iter().all(|value| value.is_finite()) && inverse.amax() * largest * DEPENDENT < 1.0).then_some(inverse)
+/// The leading block, with ones on the rest of the diagonal.
+fn leading(matrix: &Matrix3<f64>, size: usize) -> Matrix3<f64> {
+    Matrix3::from_fn(|row, column| match (row < size, column < size) {
+        (true, true) => matrix[(row, column)],
+        _ => f64::from(row == column),
+    })
+}
+
+/// The inverse of a leading block that [`leading`] made.
+fn inverse(matrix: &Matrix3<f64>, size: usize) -> Option<Matrix3<f64>> {
+    if size == 1 {
+        let own = 1.0 / matrix[(0, 0)];
+        let mut inverse = Matrix3::identity();
+        inverse[(0, 0)] = own;
+        return own.is_finite().then_some(inverse);
+    }
+    let largest = matrix.view((0, 0), (size, size)).amax();
+    let inverse = matrix.try_inverse()?;
+    let own = inverse.view((0, 0), (size, size)).amax();
+    (inverse.iter().all(|value| value.is_finite()) && own * largest * DEPENDENT < 1.0).then_some(inverse)
 }
 
 /// An orthogonal matrix whose first columns span the rows.
-fn completed(rows: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let count = rows.ncols();
-    let mut basis: Vec<DVector<f64>> = Vec::with_capacity(count);
-    let rest = |basis: &[DVector<f64>], vector: &DVector<f64>| {
-        let mut rest = vector.clone();
+fn completed(rows: &Matrix3<f64>, held: usize, count: usize) -> Option<Matrix3<f64>> {
+    let mut basis = Matrix3::identity();
+    let rest = |basis: &Matrix3<f64>, known: usize, vector: Vector3<f64>| {
+        let mut rest = vector;
         for _ in 0..2 {
-            basis.iter().for_each(|known| rest -= known * known.dot(&rest));
+            for column in 0..known {
+                let own = basis.column(column);
+                rest -= own * own.dot(&rest);
+            }
         }
         rest
     };
-    for row in rows.row_iter() {
-        let row = row.transpose();
-        let (own, size) = (rest(&basis, &row), row.norm());
+    for row in 0..held {
+        let row_vector: Vector3<f64> = rows.row(row).transpose();
+        let (own, size) = (rest(&basis, row, row_vector), row_vector.norm());
         if own.norm() <= DEPENDENT * size || size == 0.0 {
             return None;
         }
-        basis.push(own.normalize());
+        basis.set_column(row, &own.normalize());
     }
-    while basis.len() < count {
-        let units = (0..count).map(|place| rest(&basis, &DVector::from_fn(count, |row, _| f64::from(row == place))));
+    for known in held..count {
+        let unit = |place: usize| Vector3::from_fn(|row, _| f64::from(row == place));
+        let units = (0..count).map(|place| rest(&basis, known, unit(place)));
         let longest = units.reduce(|best, other| if other.norm() > best.norm() { other } else { best })?;
-        basis.push(longest.normalize());
+        basis.set_column(known, &longest.normalize());
     }
-    Some(DMatrix::from_columns(&basis))
+    Some(basis)
 }

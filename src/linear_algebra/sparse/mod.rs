@@ -1,7 +1,8 @@
-//! Sparse systems with thin borders, `[[K, B], [C, D]]`, `K` symmetric: as the path's equations are for many unknowns.
+//! Sparse systems with thin borders, `[[K, B], [C, D]]`, `K` symmetric but for friction: as the path's equations are for many unknowns.
 //!
 //! * [`pattern`]: where `K` may have entries, found once, with the order of elimination that keeps its factors sparse (AMD).
 //! * [`symmetric`]: `K = L D Lᵀ`; small pivots are raised, and the raise is taken back by a border.
+//! * `unsymmetric`: `K = L U` in the same order, where friction makes `K` unsymmetric, and for few unknowns.
 //! * [`bordered`]: the matrix as it is assembled.
 //! * [`definite`]: whether a symmetric matrix is positive definite.
 //! * [`held`]: unknowns of a node that border rows hold (closed contacts) are eliminated where they are.
@@ -18,12 +19,15 @@ mod reduced;
 pub mod symmetric;
 #[cfg(test)]
 mod tests;
+mod unsymmetric;
 
 pub use bordered::Bordered;
 pub use definite::is_positive_definite;
 pub use factorisation::{SparseFactorisation, held_inertia};
-pub use held::Holding;
+pub use held::{Holding, Places};
 pub use pattern::Pattern;
 
+use smallvec::SmallVec;
+
 /// Entries of a row or a column: place and value.
-pub type Entries = Vec<(usize, f64)>;
+pub type Entries = SmallVec<[(usize, f64); 4]>;

@@ -1,7 +1,9 @@
 //! Where a symmetric sparse matrix may have entries, and the order in which it is eliminated.
 
+use super::unsymmetric::Fill;
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::cholesky::{SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky};
+use std::sync::OnceLock;
 
 /// The entries of a symmetric matrix, both triangles, column by column; with the symbolic factorisation.
 #[derive(Debug)]
@@ -13,6 +15,8 @@ pub struct Pattern {
     /// Place of the transposed entry.
     pub(super) mirrors: Vec<usize>,
     pub(super) symbolic: SymbolicCholesky<usize>,
+    /// Made when first needed.
+    fill: OnceLock<Fill>,
 }
 
 impl Pattern {
@@ -53,7 +57,7 @@ impl Pattern {
             faer::sparse::linalg::cholesky::CholeskySymbolicParams::default(),
         )
         .ok()?;
-        Some(Self { size, starts, rows, mirrors, symbolic })
+        Some(Self { size, starts, rows, mirrors, symbolic, fill: OnceLock::new() })
     }
 
     /// Rows of the matrix.
@@ -76,6 +80,11 @@ impl Pattern {
         let start = *self.starts.get(column)?;
         let rows = self.rows.get(start..*self.starts.get(column + 1)?)?;
         rows.binary_search(&row).ok().map(|index| start + index)
+    }
+
+    /// Where unsymmetric factors have entries.
+    pub(super) fn fill(&self) -> &Fill {
+        self.fill.get_or_init(|| Fill::new(self))
     }
 
     pub(super) fn column(&self, column: usize) -> std::ops::Range<usize> {

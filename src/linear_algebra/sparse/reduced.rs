@@ -2,11 +2,52 @@
 
 use super::Entries;
 use super::symmetric::SymmetricFactor;
+use super::unsymmetric::UnsymmetricFactor;
 use nalgebra::{DMatrix, DVector, Dyn, LU};
+use smallvec::smallvec;
+
+/// Factors of `K` with some diagonal entries raised.
+pub(super) enum Factor {
+    Symmetric(SymmetricFactor),
+    Unsymmetric(UnsymmetricFactor),
+}
+
+impl Factor {
+    fn solve(&self, right_hand_sides: &mut [f64], count: usize) -> bool {
+        match self {
+            Self::Symmetric(factor) => factor.solve(right_hand_sides, count),
+            Self::Unsymmetric(factor) => factor.solve(right_hand_sides, count),
+        }
+    }
+
+    fn raised(&self) -> &[(usize, f64)] {
+        match self {
+            Self::Symmetric(factor) => factor.raised(),
+            Self::Unsymmetric(factor) => factor.raised(),
+        }
+    }
+
+    /// Smallest pivot over the largest one; those of the symmetric factors are between [`super::symmetric::SMALL`] and 1.
+    pub fn pivot_ratio(&self) -> f64 {
+        match self {
+            Self::Symmetric(_) => 1.0,
+            Self::Unsymmetric(factor) => factor.pivot_ratio(),
+        }
+    }
+
+    /// Sign of the determinant of the raised matrix.
+    fn determinant_sign(&self) -> f64 {
+        match self {
+            Self::Symmetric(factor) if factor.negative_pivots() % 2 == 1 => -1.0,
+            Self::Symmetric(_) => 1.0,
+            Self::Unsymmetric(factor) => factor.determinant_sign(),
+        }
+    }
+}
 
 /// `[[K, B], [C, D]]` with `K` factorised, and the raises of its pivots as borders more.
 pub(super) struct Reduced {
-    factor: SymmetricFactor,
+    pub factor: Factor,
     size: usize,
     columns: Vec<Entries>,
     rows: Vec<Entries>,
@@ -29,7 +70,7 @@ const KEPT: usize = 4_000_000;
 impl Reduced {
     /// `None` where memory does not suffice or a number is not finite.
     pub fn new(
-        factor: SymmetricFactor,
+        factor: Factor,
         size: usize,
         mut columns: Vec<Entries>,
         mut rows: Vec<Entries>,
@@ -39,8 +80,8 @@ impl Reduced {
         let count = given + factor.raised().len();
         let mut complement = corner.resize(count, count, 0.0);
         for (index, (unknown, raise)) in factor.raised().iter().enumerate() {
-            columns.push(vec![(*unknown, -raise)]);
-            rows.push(vec![(*unknown, 1.0)]);
+            columns.push(smallvec![(*unknown, -raise)]);
+            rows.push(smallvec![(*unknown, 1.0)]);
             complement[(given + index, given + index)] = -1.0;
         }
         let mut sizes = complement.abs();
@@ -76,9 +117,10 @@ impl Reduced {
         let complement = complement.lu();
         let pivots = complement.lu_internal().diagonal();
         let raises_sign = if factor.raised().len() % 2 == 1 { -1.0 } else { 1.0 };
-        let factor_sign = if factor.negative_pivots() % 2 == 1 { -1.0 } else { 1.0 };
         let exchanges: f64 = complement.p().determinant();
-        let sign = pivots.iter().fold(raises_sign * factor_sign * exchanges, |sign, pivot| sign * pivot.signum());
+        let sign = pivots
+            .iter()
+            .fold(raises_sign * factor.determinant_sign() * exchanges, |sign, pivot| sign * pivot.signum());
         let pivot_ratio = pivots.iter().fold(1.0, |least: f64, pivot| least.min(pivot.abs()));
         if !pivot_ratio.is_finite() {
             return None;

@@ -35,7 +35,7 @@ pub struct SymmetricFactor {
 }
 
 /// Pivots below this are raised, entries of the row being about 1.
-const SMALL: f64 = 1e-6;
+pub(super) const SMALL: f64 = 1e-6;
 /// Pivots below this are taken as this on the way, so that the rest can be seen.
 const ZERO: f64 = 1e-15;
 /// Raises beyond which there is something else wrong.
@@ -236,16 +236,18 @@ impl SymmetricFactor {
 }
 
 /// Powers of two near `1/√(largest entry of the row)`; a row without entries is taken as the stiffest.
-fn scales(pattern: &Pattern, values: &[f64]) -> Vec<f64> {
+pub(super) fn scales(pattern: &Pattern, values: &[f64]) -> Vec<f64> {
     let mut largest = vec![0.0_f64; pattern.size()];
     for (row, value) in pattern.rows.iter().zip(values) {
         largest[*row] = largest[*row].max(value.abs());
     }
     let most = largest.iter().fold(0.0_f64, |most, value| most.max(*value));
     let usual = if most > 0.0 { most } else { 1.0 };
+    // Half the binary exponent, taken off the number itself.
+    let exponent = |value: f64| ((value.to_bits() >> 52) & 0x7ff) as i64 - 1023;
     let power = |value: &f64| {
         let value = if *value > 0.0 { *value } else { usual };
-        (-0.5 * value.log2()).round().exp2()
+        f64::from_bits(((1023 - exponent(value).div_euclid(2)) as u64) << 52)
     };
     largest.iter().map(power).collect()
 }
