@@ -14,8 +14,13 @@ them.
 """
 
 import json
+import os
 import sys
 import time
+
+# Matrices of this size are slower on several threads.
+for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+    os.environ.setdefault(threads, "1")
 
 try:
     import casadi as ca

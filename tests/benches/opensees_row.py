@@ -1,8 +1,8 @@
 """The row of n snapping bars by OpenSees, for the bench `peers`.
 
 Corotational trusses, penalty contact with Coulomb friction (zeroLengthContact2D) and displacement control of the first
-tip, which goes on when the others stick: no other tip gets farther past the limit. The step is halved
-where Newton's method fails and grows again; a path ends where the smallest step fails, after some failures in all, or
+tip, which goes on when the others stick: no other tip gets farther past the limit. The step is halved where Newton's
+method fails and grows again; a path ends where the smallest step fails, after some failures in all, or
 when the tip has gone all the way.
 
 Reads one n a line and answers each with one line of JSON. What is timed are the steps before the first that fails: not
@@ -10,8 +10,13 @@ the building of the model, and not the search for a step that converges.
 """
 
 import json
+import os
 import sys
 import time
+
+# Matrices of this size are slower on several threads.
+for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+    os.environ.setdefault(threads, "1")
 
 try:
     import openseespy.opensees as ops
