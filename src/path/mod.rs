@@ -15,6 +15,7 @@
 //! | `bound` | a bound of the stage at or beside a smooth bifurcation |
 //! | `folded` | points of slip in a plane at which the direction is not determined |
 //! | `standing`, `directions`, `condensed` | which contacts can change; every direction |
+//! | `going_on` | the directions where the mode goes on, if a cheap test says that there are two |
 //! | `combinations` | one of each of several lists, in one order |
 //! | `confirm`, `decide` | those that hold beyond first order; which one is taken |
 //! | `rates`, `turning`, `together` | all rays of a rate problem, linear forms only; slip whose direction is unknown, of one node and of several at once |
@@ -46,6 +47,7 @@ mod energy;
 mod exhaustive;
 mod folded;
 mod follow;
+mod going_on;
 pub mod increment;
 mod loading;
 mod mode_system;
