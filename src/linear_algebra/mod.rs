@@ -228,9 +228,9 @@ fn eliminated(mut work: DMatrix<f64>, tolerance: f64, most: usize) -> Option<DMa
     while rank < rows.min(columns).min(most) {
         let (mut best, mut place) = (0.0_f64, (rank, rank));
         for column in rank..columns {
-            for row in rank..rows {
-                if work[(row, column)].abs() > best {
-                    best = work[(row, column)].abs();
+            for (row, value) in work.column(column).iter().enumerate().skip(rank) {
+                if value.abs() > best {
+                    best = value.abs();
                     place = (row, column);
                 }
             }
@@ -244,12 +244,15 @@ fn eliminated(mut work: DMatrix<f64>, tolerance: f64, most: usize) -> Option<DMa
         work.swap_rows(rank, place.0);
         work.swap_columns(rank, place.1);
         order.swap(rank, place.1);
-        for row in rank + 1..rows {
-            let factor = work[(row, rank)] / work[(rank, rank)];
-            if factor != 0.0 {
-                for column in rank..columns {
-                    work[(row, column)] -= factor * work[(rank, column)];
-                }
+        // Column by column, as they lie in memory; what is below the pivot holds the factors.
+        let pivot = work[(rank, rank)];
+        work.column_mut(rank).iter_mut().skip(rank + 1).for_each(|value| *value /= pivot);
+        let (before, after) = work.as_mut_slice().split_at_mut((rank + 1) * rows);
+        let factors = &before[rank * rows + rank + 1..];
+        for column in after.chunks_exact_mut(rows) {
+            let (head, rest) = column[rank..].split_at_mut(1);
+            if head[0] != 0.0 {
+                rest.iter_mut().zip(factors).for_each(|(value, factor)| *value -= factor * head[0]);
             }
         }
         rank += 1;

@@ -7,6 +7,8 @@ use super::corner;
 use super::critical::Crossing;
 use super::decide::{self, Before, Choice};
 use super::history;
+use super::directions::Found;
+use super::going_on::directions_going_on;
 use super::increment::{Point, PointKind};
 use super::name_event::describe_change;
 use super::standing::{Standing, ZERO};
@@ -74,8 +76,12 @@ impl Path<'_> {
             return Arrival { point, options: Vec::new(), taken: None, stop: None, stage_ends, unconfirmed: false };
         }
         let rules = self.rules();
-        let before = Before::Incoming(incoming);
-        let (options, found) = decide::list(self.loading(), &self.at.here.state, &standings, before, rules);
+        let (loading, here) = (self.loading(), &self.at.here);
+        let at_once = directions_going_on(loading, &here.state, &standings, &here.modes, incoming, rules);
+        let (options, found) = match at_once {
+            Some(options) => (options, Found::default()),
+            None => decide::list(loading, &here.state, &standings, Before::Incoming(incoming), rules),
+        };
         let taken = options.iter().position(|option| option.rate.product(incoming) > 1.0 - 1e-9);
         point.bifurcation = decide::is_bifurcation(&options, taken, sign);
         point.unexplored_modes = found.unexplored;

@@ -103,14 +103,17 @@ impl<'a> Condensed<'a> {
         effort: Effort<'_>,
         found: &mut Found,
     ) {
-        let mut first = vec![vec![0; self.changeable.len()]];
-        if let Some(rate) = incoming {
-            first.extend(rates::near(&self.problem, &self.weights_of(rate)));
-        }
-        if self.changeable.len() > FEW {
-            first.extend(rates::sweeps(&self.problem, effort.cancel));
-        }
-        let findings = rates::explore(&self.problem, &first, effort);
+        let first = || {
+            let mut first = vec![vec![0; self.changeable.len()]];
+            if let Some(rate) = incoming {
+                first.extend(rates::near(&self.problem, &self.weights_of(rate)));
+            }
+            if self.changeable.len() > FEW {
+                first.extend(rates::sweeps(&self.problem, effort.cancel));
+            }
+            first
+        };
+        let findings = rates::explore(&self.problem, first, effort);
         found.unexplored = findings.unexplored;
         found.degenerate |= findings.degenerate;
         for basis in &findings.planes {

@@ -12,7 +12,7 @@
 
 use super::confirm::confirm;
 use super::corner::whole_rates;
-use super::directions::{Candidate, Found, difference_of_forces, directions, is_mechanism};
+use super::directions::{Found, difference_of_forces, directions, is_mechanism};
 use super::energy;
 use super::loading::Loading;
 use super::rates::Effort;
@@ -94,7 +94,6 @@ pub fn list(
     let mut found = directions(loading, state, standings, incoming, rules.effort);
     let candidates = std::mem::take(&mut found.candidates);
     let mut options = Vec::with_capacity(candidates.len());
-    let mut off = Vec::with_capacity(candidates.len());
     for candidate in candidates {
         let mechanism = is_mechanism(loading, state, &candidate.rate);
         let confirmed = if candidate.weak && !mechanism {
@@ -104,7 +103,6 @@ pub fn list(
         };
         let Some((modes, later_load)) = confirmed else { continue };
         let load_sign = sign_of(if sign_of(candidate.rate.load) == 0.0 { later_load } else { candidate.rate.load });
-        off.push(incoming.and_then(|incoming| off_reverse(loading, state, &candidate, incoming)));
         let potential_rate = potential_rate(loading, state, &candidate.rate, candidate.dissipation);
         options.push(Choice {
             rate: candidate.rate,
@@ -116,12 +114,19 @@ pub fn list(
             mechanism,
         });
     }
-    // Several may run close to the way back; that is the closest.
-    let back = options.iter_mut().zip(off).filter_map(|(option, off)| Some((off?, option)));
+    if let Some(incoming) = incoming {
+        mark_retrace(loading, state, &mut options, incoming);
+    }
+    (options, found)
+}
+
+/// Marks the way back. Several directions may run close to it; it is the closest.
+pub fn mark_retrace(loading: Loading<'_>, state: &State, options: &mut [Choice], incoming: &Rate) {
+    let off = |option: &Choice| off_reverse(loading, state, &option.rate, incoming);
+    let back = options.iter_mut().filter_map(|option| Some((off(option)?, option)));
     if let Some((_, option)) = back.min_by(|a, b| a.0.total_cmp(&b.0)) {
         option.retrace = true;
     }
-    (options, found)
 }
 
 /// Rate of the potential energy of structure and loads, `Π̇ = -D - ṡ f·u`; what supports and obstacles that move put in
@@ -141,12 +146,15 @@ pub fn sign_of(load: f64) -> f64 {
 }
 
 /// How far a direction is from the incoming one reversed, forces on the nodes included; `None` where it is another.
-fn off_reverse(loading: Loading<'_>, state: &State, candidate: &Candidate, incoming: &Rate) -> Option<f64> {
-    let mut sum = candidate.rate.clone();
-    sum.add(incoming, 1.0);
-    let motion = sum.size();
-    let forces = difference_of_forces(&candidate.forces, &whole_rates(loading, state, incoming), -1.0);
-    (motion <= BACK && forces <= BACK_FORCES).then(|| motion.max(forces))
+fn off_reverse(loading: Loading<'_>, state: &State, rate: &Rate, incoming: &Rate) -> Option<f64> {
+    let sums = rate.displacement.iter().zip(&incoming.displacement).map(|(a, b)| a + b);
+    let motion = sums.chain(std::iter::once(rate.load + incoming.load)).map(|sum| sum * sum).sum::<f64>().sqrt();
+    if motion > BACK {
+        return None;
+    }
+    let [own, other] = [rate, incoming].map(|rate| whole_rates(loading, state, rate));
+    let forces = difference_of_forces(&own, &other, -1.0);
+    (forces <= BACK_FORCES).then(|| motion.max(forces))
 }
 
 /// Lists the directions and takes one.

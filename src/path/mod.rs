@@ -16,6 +16,7 @@
 //! | `folded` | points of slip in a plane at which the direction is not determined |
 //! | `standing`, `directions`, `condensed` | which contacts can change; every direction |
 //! | `sole` | many contacts that can change: one direction for each sign of the load rate, without condensation |
+//! | `going_on` | the directions where the mode goes on, if a cheap test says that there are two |
 //! | `combinations` | one of each of several lists, in one order |
 //! | `confirm`, `decide` | those that hold beyond first order; which one is taken |
 //! | `rates`, `turning`, `together` | all rays of a rate problem, linear forms only; slip whose direction is unknown, of one node and of several at once |
@@ -49,6 +50,7 @@ mod exhaustive;
 mod folded;
 mod follow;
 mod history;
+mod going_on;
 pub mod increment;
 mod loading;
 mod mode_system;

@@ -130,7 +130,7 @@ impl Touch {
             motion: problem.motion.clone(),
             reactions: problem.reactions.clone(),
         };
-        let findings = rates::explore(&turned, &[], effort);
+        let findings = rates::explore(&turned, Vec::new, effort);
         let with_misfit = |ray: Ray| {
             let size = (&problem.reactions * &ray.weights).amax().max(f64::MIN_POSITIVE);
             let misfit = misfit.dot(&ray.weights) / size;

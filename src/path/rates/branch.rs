@@ -73,20 +73,21 @@ const MOST_IN_SETS: u64 = 512;
 /// A form this small at a node's point is zero as far as the search is concerned.
 pub(super) const FITS: f64 = 1e-7;
 
-/// All rays, as far as the effort goes; `first` are combinations to examine before the others.
-pub fn explore(problem: &RateProblem, first: &[Vec<usize>], effort: Effort<'_>) -> Findings {
+/// All rays, as far as the effort goes; `first` gives combinations to examine before the others, where there is no
+/// certificate.
+pub fn explore(problem: &RateProblem, first: impl FnOnce() -> Vec<Vec<usize>>, effort: Effort<'_>) -> Findings {
     explore_by(problem, first, effort, lemke)
 }
 
 #[cfg(test)]
-pub(super) fn explore_without_pivoting(problem: &RateProblem, first: &[Vec<usize>], effort: Effort<'_>) -> Findings {
-    explore_by(problem, first, effort, |_, _| Vec::new())
+pub(super) fn explore_without_pivoting(problem: &RateProblem, effort: Effort<'_>) -> Findings {
+    explore_by(problem, Vec::new, effort, |_, _| Vec::new())
 }
 
 /// The same; `further` names combinations to examine where the search was cut.
 fn explore_by(
     problem: &RateProblem,
-    first: &[Vec<usize>],
+    first: impl FnOnce() -> Vec<Vec<usize>>,
     effort: Effort<'_>,
     further: impl Fn(&RateProblem, &CancelFlag) -> Vec<Vec<usize>>,
 ) -> Findings {
@@ -96,12 +97,12 @@ fn explore_by(
         seen: BTreeSet::new(),
         effort,
         common: problem.entities.iter().map(Entity::common).collect(),
-        coupling: problem.coupling(),
+        coupling: DMatrix::zeros(0, 0),
         cost: 1 + (problem.forms.nrows() * problem.weights()) as u64 / UNIT_OF_WORK,
     };
     if !search.certified_at_once() {
-        for chosen in first {
-            search.examine(chosen);
+        for chosen in first() {
+            search.examine(&chosen);
         }
         search.branch();
         if search.findings.unexplored > 0 {
@@ -143,6 +144,7 @@ pub(super) struct Search<'a> {
     pub effort: Effort<'a>,
     /// What all options of each entity have in common.
     common: Vec<Vec<Signed>>,
+    /// How strongly entities feel each other, once there is branching.
     coupling: DMatrix<f64>,
     /// What a node counts: large problems take longer over each.
     pub cost: u64,
@@ -154,6 +156,7 @@ impl Search<'_> {
             self.findings.degenerate = true;
             return;
         };
+        self.coupling = self.problem.coupling();
         let root = |sign: f64| {
             let mut dictionary = dictionary.clone();
             dictionary.require(None, sign);

@@ -75,20 +75,10 @@ pub fn reduce(a: &DMatrix<f64>, b: &DMatrix<f64>, load: &[f64]) -> Option<(DMatr
 impl Certified {
     /// `None` where neither test succeeds.
     pub fn new(mut matrix: DMatrix<f64>, mut load: DVector<f64>) -> Option<Self> {
-        for row in 0..matrix.nrows() {
-            let diagonal = matrix[(row, row)];
-            if !diagonal.is_finite() || diagonal <= 0.0 || diagonal <= MARGIN * matrix.row(row).amax() {
-                return None;
-            }
-        }
-        // A congruence: the diagonal becomes 1 and definiteness stays.
-        let scales = matrix.diagonal().map(|diagonal| 1.0 / diagonal.sqrt());
-        for (row, scale) in scales.iter().enumerate() {
-            matrix.row_mut(row).scale_mut(*scale);
-            matrix.column_mut(row).scale_mut(*scale);
-            load[row] *= scale;
-        }
-        (is_positive_definite(&matrix) || is_dominant(&matrix)).then_some(Self { matrix, load })
+        let scales = scales(&matrix, |row| load[row].abs())?;
+        scale(&mut matrix, &scales);
+        load.component_mul_assign(&scales);
+        is_p_matrix(&matrix).then_some(Self { matrix, load })
     }
 
     /// The one solution for a load rate.
@@ -116,14 +106,73 @@ pub fn is_monotone(matrix: &DMatrix<f64>, bounds: &[usize]) -> bool {
     size == 0.0 || symmetric.cholesky().is_some()
 }
 
-/// Symmetric part positive definite, with a margin.
-fn is_positive_definite(matrix: &DMatrix<f64>) -> bool {
-    let mut symmetric = (matrix + matrix.transpose()) * 0.5;
-    let size = symmetric.amax();
-    for index in 0..symmetric.nrows() {
-        symmetric[(index, index)] -= MARGIN * size;
+/// Factors of rows and columns that make every diagonal entry 1: a congruence, so that definiteness stays. `None` where
+/// one is not positive by more than round-off, of its row or of what else there is in the row.
+pub(super) fn scales(matrix: &DMatrix<f64>, beside: impl Fn(usize) -> f64) -> Option<DVector<f64>> {
+    let mut sizes = vec![0.0_f64; matrix.nrows()];
+    for column in matrix.column_iter() {
+        sizes.iter_mut().zip(column.iter()).for_each(|(size, value)| *size = size.max(value.abs()));
     }
-    size.is_finite() && symmetric.cholesky().is_some()
+    let is_positive = |(row, size): (usize, &f64)| {
+        let diagonal = matrix[(row, row)];
+        diagonal.is_finite() && diagonal > 0.0 && diagonal > MARGIN * size && diagonal > ROUND_OFF * beside(row)
+    };
+    let all = sizes.iter().enumerate().all(is_positive);
+    all.then(|| matrix.diagonal().map(|diagonal| 1.0 / diagonal.sqrt()))
+}
+
+pub(super) fn scale(matrix: &mut DMatrix<f64>, scales: &DVector<f64>) {
+    for (mut column, scale) in matrix.column_iter_mut().zip(scales.iter()) {
+        column.iter_mut().zip(scales.iter()).for_each(|(value, own)| *value *= own * scale);
+    }
+}
+
+/// Whether one of the tests succeeds for a matrix whose diagonal is 1.
+pub(super) fn is_p_matrix(matrix: &DMatrix<f64>) -> bool {
+    is_positive_definite(matrix) || is_dominant(matrix)
+}
+
+/// Whether the symmetric part of any square matrix is positive definite, beyond round-off.
+pub fn is_definite(mut matrix: DMatrix<f64>) -> bool {
+    let Some(scales) = scales(&matrix, |_| 0.0) else { return false };
+    scale(&mut matrix, &scales);
+    is_positive_definite(&matrix)
+}
+
+/// Symmetric part positive definite, with a margin: by a Cholesky factorisation within the profile, so that a matrix with
+/// a narrow band costs no more than its band (A. Jennings, Comput. J. 9 (1966) 281, doi:10.1093/comjnl/9.3.281).
+fn is_positive_definite(matrix: &DMatrix<f64>) -> bool {
+    let count = matrix.nrows();
+    let size = matrix.amax();
+    if !size.is_finite() {
+        return false;
+    }
+    let mut factor: Vec<f64> = Vec::new();
+    // First column and place of each row.
+    let mut rows: Vec<(usize, usize)> = Vec::with_capacity(count);
+    let entry = |row: usize, column: usize| 0.5 * (matrix[(row, column)] + matrix[(column, row)]);
+    for row in 0..count {
+        let first = (0..row).find(|&column| entry(row, column) != 0.0).unwrap_or(row);
+        let start = factor.len();
+        rows.push((first, start));
+        for column in first..=row {
+            let (other, place) = rows[column];
+            let from = first.max(other);
+            let own = &factor[start + from - first..start + column - first];
+            let before = if column == row { own } else { &factor[place + from - other..place + column - other] };
+            let sum: f64 = own.iter().zip(before).map(|(a, b)| a * b).sum();
+            let value = entry(row, column) - sum;
+            if column < row {
+                let pivot = factor[place + column - other];
+                factor.push(value / pivot);
+            } else if value > MARGIN * size {
+                factor.push((value - MARGIN * size).sqrt());
+            } else {
+                return false;
+            }
+        }
+    }
+    true
 }
 
 /// The comparison matrix has a positive vector with positive image.

@@ -2,7 +2,8 @@
 //! rate that a known ray settles.
 
 use super::branch::{FITS, Node, Ray, Search};
-use super::certificate::{Certified, is_monotone, options_of, reduce};
+use super::certificate::{is_monotone, options_of, reduce};
+use super::parametric::all_solutions;
 use super::problem::{Entity, Signed};
 use nalgebra::{DMatrix, DVector};
 
@@ -18,9 +19,9 @@ impl Search<'_> {
         let (a, b, load) = self.coordinates(&pairs);
         let open: Vec<usize> = (0..pairs.len()).collect();
         let chosen = vec![None; pairs.len()];
-        let done = self.examine_certified(a, b, &load, &open, &chosen, &[1.0, -1.0]);
-        self.findings.certified = done;
-        done
+        let certified = self.examine_certified(a, b, &load, &open, &chosen, &[1.0, -1.0]);
+        self.findings.certified = certified == Some(true);
+        certified.is_some()
     }
 
     /// Forces, velocities and load rate over weights that each move by one.
@@ -57,7 +58,8 @@ impl Search<'_> {
         [1.0, -1.0].into_iter().filter(|sign| strict(*sign)).collect()
     }
 
-    /// Examines the one combination for each load rate given, if there is a certificate that it is the only one.
+    /// Examines the one combination for each load rate given, if there is a certificate that it is the only one, or those
+    /// that all rays are among. Whether each load rate has one; `None` where neither is certain.
     fn examine_certified(
         &mut self,
         a: DMatrix<f64>,
@@ -66,12 +68,9 @@ impl Search<'_> {
         open: &[usize],
         chosen: &[Option<usize>],
         signs: &[f64],
-    ) -> bool {
-        let Some((matrix, constant)) = reduce(&a, &b, load) else { return false };
-        let Some(certified) = Certified::new(matrix, constant) else { return false };
-        let Some(solutions) = signs.iter().map(|sign| certified.solve(*sign)).collect::<Option<Vec<_>>>() else {
-            return false;
-        };
+    ) -> Option<bool> {
+        let (matrix, constant) = reduce(&a, &b, load)?;
+        let (is_p, solutions) = all_solutions(matrix, constant, signs)?;
         for pairs in solutions {
             let mut options: Vec<Vec<usize>> = chosen.iter().map(|choice| choice.iter().copied().collect()).collect();
             for (&entity, fitting) in open.iter().zip(options_of(&pairs)) {
@@ -79,7 +78,7 @@ impl Search<'_> {
             }
             self.examine_all(&options);
         }
-        true
+        Some(is_p)
     }
 
     /// The certificate on what is left at a node.
@@ -103,6 +102,6 @@ impl Search<'_> {
             rows
         };
         let load = dictionary.coefficients(None, 1.0);
-        self.examine_certified(rows(0), rows(1), &load, open, &node.chosen, &[node.sign])
+        self.examine_certified(rows(0), rows(1), &load, open, &node.chosen, &[node.sign]).is_some()
     }
 }

@@ -91,9 +91,11 @@ impl RateProblem {
     fn forces(&self, weights: &DVector<f64>) -> Forces {
         let largest = (&self.reactions * weights).amax();
         // Where no force changes, what is left is the rounding of the sums.
-        let terms =
-            self.reactions.row_iter().map(|row| row.iter().zip(weights.iter()).map(|(a, b)| (a * b).abs()).sum());
-        let rounding = ROUNDING * terms.fold(0.0, f64::max);
+        let mut terms = vec![0.0; self.reactions.nrows()];
+        for (column, weight) in self.reactions.column_iter().zip(weights.iter()) {
+            terms.iter_mut().zip(column.iter()).for_each(|(sum, value)| *sum += (value * weight).abs());
+        }
+        let rounding = ROUNDING * terms.into_iter().fold(0.0, f64::max);
         Forces { largest, rounding: rounding.max(f64::MIN_POSITIVE) }
     }
 

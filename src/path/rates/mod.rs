@@ -19,6 +19,7 @@
 //! | `line` | the exact ray of one combination of options, and whether its inequalities hold |
 //! | `dictionary` | the cone that is left when some entities are decided: is there anything but zero in it? |
 //! | `certificate` | a cheap sufficient test that each sign of the load rate has exactly one ray, and those rays |
+//! | `parametric` | the same where one pair stands in the way: all rays, found along a function of one variable |
 //! | `near` | combinations that a known vector of weights points to |
 //! | `sweeps` | a likely combination for each sign of the load rate |
 //! | `lemke` | solutions by complementary pivoting, where the search was cut |
@@ -34,6 +35,7 @@ mod examine;
 mod lemke;
 mod line;
 mod near;
+mod parametric;
 mod problem;
 mod sweeps;
 #[cfg(test)]
@@ -43,6 +45,8 @@ mod tests;
 pub(super) use tests::every_combination;
 
 pub use branch::{Effort, Ray, explore};
+pub use certificate::{Pairs, is_definite};
 pub use near::near;
+pub use parametric::all_solutions;
 pub use problem::{Choice, Entity, RateProblem, Signed, Touching};
 pub use sweeps::{Local, own_column, rising, sweeps};

@@ -187,7 +187,7 @@ fn check(seeds: std::ops::Range<u64>, contacts: u64, numbers: Numbers, touching:
         let kinds: Vec<bool> = (0..count).map(|_| touching && random.below(2) == 0).collect();
         let problem = random_problem(&mut random, &kinds, numbers);
         let exact = every_combination(&problem);
-        let found = explore(&problem, &[], effort(1_000_000, &CancelFlag::default()));
+        let found = explore(&problem, Vec::new, effort(1_000_000, &CancelFlag::default()));
         certified += usize::from(found.certified);
         rays += exact.rays.len();
         compare(&problem, &found, &exact, &format!("seed {seed}, {kinds:?}, {numbers:?}"));
@@ -252,12 +252,73 @@ fn complementary_pivoting_finds_what_a_cut_search_misses() {
         let mut random = Random::new(seed);
         let kinds = vec![false; 24];
         let problem = random_problem(&mut random, &kinds, Numbers::Stiffness(4.0));
-        let cut = branch::explore_without_pivoting(&problem, &[], effort(40, &CancelFlag::default()));
-        let found = explore(&problem, &[], effort(40, &CancelFlag::default()));
+        let cut = branch::explore_without_pivoting(&problem, effort(40, &CancelFlag::default()));
+        let found = explore(&problem, Vec::new, effort(40, &CancelFlag::default()));
         if cut.unexplored > 0 {
             before += cut.rays.len();
             beyond += found.rays.len() - cut.rays.len();
         }
     }
     assert!(beyond > 0 && beyond > before, "{beyond} beyond {before}");
+}
+
+/// Matrices that are definite but for one direction: most are settled without branching, and nothing is missed.
+#[test]
+fn one_pair_in_the_way_of_a_p_matrix_as_by_enumeration() {
+    let mut settled = 0;
+    for seed in 0..600 {
+        let mut random = Random::new(seed);
+        let count = 1 + random.below(8) as usize;
+        let kinds = vec![false; count];
+        let mut problem = random_problem(&mut random, &kinds, Numbers::Stiffness(0.2));
+        // Softer along one direction, by more than it is stiff.
+        let along = DVector::from_fn(count, |_, _| random.value());
+        let softer = DMatrix::from_fn(count, count, |row, column| {
+            // Force forms have odd places: see `random_problem`.
+            3.0 * along[row] * along[column] - if row == column { 0.3 } else { 0.0 }
+        });
+        for row in 0..count {
+            for column in 0..count {
+                problem.forms[(2 * row + 1, column)] -= softer[(row, column)];
+                problem.reactions[(row, column)] = problem.forms[(2 * row + 1, column)];
+            }
+        }
+        let matrix = DMatrix::from_fn(count, count, |row, column| problem.forms[(2 * row + 1, column)]);
+        let load = DVector::from_fn(count, |row, _| problem.forms[(2 * row + 1, count)]);
+        let is_settled = certificate::Certified::new(matrix.clone(), load.clone()).is_none()
+            && parametric::solutions(&matrix, &load).is_some();
+        settled += usize::from(is_settled);
+        let exact = every_combination(&problem);
+        let found = explore(&problem, Vec::new, effort(1_000_000, &CancelFlag::default()));
+        assert!(!is_settled || !found.certified && found.examined <= 8 * (1 + count as u64), "seed {seed}");
+        compare(&problem, &found, &exact, &format!("seed {seed}, {count} contacts"));
+    }
+    assert!(settled > 150, "{settled}");
+}
+
+/// Equal contacts, so that many pairs change at once along the function whose zeros are sought.
+#[test]
+fn equal_contacts_with_one_soft_direction_as_by_enumeration() {
+    let mut settled = 0;
+    for count in 2..8 {
+        for softness in [0.05, 0.3, 0.6] {
+            let matrix = DMatrix::from_fn(count, count, |row, column| {
+                (if row == column { 1.0 } else { 0.0 }) - (1.0 + softness) / count as f64
+            });
+            let load = DVector::from_element(count, -1.0);
+            settled += usize::from(parametric::solutions(&matrix, &load).is_some());
+            let mut problem = random_problem(&mut Random::new(1), &vec![false; count], Numbers::Real);
+            for row in 0..count {
+                for column in 0..count {
+                    problem.forms[(2 * row + 1, column)] = matrix[(row, column)];
+                }
+                problem.forms[(2 * row + 1, count)] = load[row];
+                problem.reactions.row_mut(row).copy_from(&problem.forms.row(2 * row + 1).into_owned());
+            }
+            let exact = every_combination(&problem);
+            let found = explore(&problem, Vec::new, effort(1_000_000, &CancelFlag::default()));
+            compare(&problem, &found, &exact, &format!("{count} contacts, {softness}"));
+        }
+    }
+    assert!(settled > 5, "{settled}");
 }

@@ -56,7 +56,8 @@ impl Dictionary {
                 None if largest_small * self.columns.len() as f64 <= -0.1 * value => return Feasibility::OnlyLines,
                 None => return Feasibility::Feasible,
             }
-            if !self.table.iter().all(|value| value.is_finite()) {
+            // What is not finite anywhere shows in the values of the point, at the latest when it enters them.
+            if !(0..self.rows.len()).all(|row| self.entry(row, 0).is_finite()) {
                 return Feasibility::Feasible;
             }
         }

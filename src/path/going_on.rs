@@ -1,0 +1,469 @@
+//! The directions at a point within a mode whose contacts on the cone all slip, where a cheap test says that there are two.
+//!
+//! With every contact on the cone kept closed let `b` be their slip velocities and `x` the other free motions. Equilibrium
+//! along `x`, and along the slips with `μ` times the normal added, so that what friction bears drops out, is
+//!
+//! ```text
+//! a = A (x, b) + q ṡ,      a_x = 0,      0 <= a_b ⊥ b >= 0,      A = Wᵀ K T (and how reactions turn with the place)
+//! ```
+//!
+//! with the motions `T` and the tests `W = T + μ n`; `a_b` is how fast the tractions leave the cone. Where the symmetric part
+//! of `A` is positive definite, so is that of the matrix of the slips alone (`b` with the `x` that it makes), which is then
+//! a P-matrix: each sign of the load rate has one ray (see `rates::certificate`). One is the way on. The other, as a rule,
+//! is all contacts stuck, which its own equations confirm. Where it is not definite the slips are few as a rule, and their
+//! matrix is formed (see `rates::parametric`).
+//!
+//! `None` is returned where anything is not so, or by less than a wide margin: then `directions` looks everywhere.
+
+use super::decide::{Choice, Rules, mark_retrace, potential_rate, sign_of};
+use super::directions::is_mechanism;
+use super::loading::Loading;
+use super::rates::{Pairs, all_solutions, is_definite};
+use super::standing::Standing;
+use super::state::{Rate, State};
+use crate::contact::vector::{Vector, add, dot};
+use crate::contact::{Frame, Mode, Reaction};
+use crate::linear_algebra::Factorisation;
+use crate::linear_algebra::sparse::symmetric::SymmetricFactor;
+use crate::linear_algebra::sparse::{Bordered, SparseFactorisation};
+use nalgebra::{DMatrix, DVector};
+
+/// What is not zero by this much (rates of unit arc length; forces against the largest of them) leaves no doubt.
+const MARGIN: f64 = 1e-7;
+/// Eigenvalues up to this, relative, count as zero.
+const DEFINITE: f64 = 1e-9;
+/// Unknowns up to which matrices are dense: their entries are few, and only the profile is factorised.
+const MOST_DENSE: usize = 200;
+/// Load rates below this may be zero.
+const RESTING: f64 = 1e-8;
+
+/// A motion of a degree of freedom with one of the unknowns, and the weight of its equation in that of the unknown.
+#[derive(Clone, Copy)]
+struct Part {
+    unknown: usize,
+    motion: f64,
+    test: f64,
+}
+
+/// A contact that slips.
+struct Slip {
+    contact: usize,
+    direction: Vector,
+}
+
+/// The unknowns `(x, b)`, in the order of the nodes.
+struct Reduced<'a> {
+    loading: Loading<'a>,
+    state: &'a State,
+    /// Of each degree of freedom the first and the number of its parts.
+    places: Vec<(usize, usize)>,
+    parts: Vec<Part>,
+    /// Velocity of each degree of freedom per load rate.
+    driven: Vec<f64>,
+    slips: Vec<Slip>,
+    /// Whether an unknown is a slip.
+    is_slip: Vec<bool>,
+    /// A degree of freedom at the unknown's own node, each another.
+    freedom_of: Vec<usize>,
+    /// Entries on the diagonal blocks by which reactions turn with the place.
+    turning: Vec<(usize, usize, f64)>,
+    /// The closed contact of each node.
+    holder: Vec<Option<usize>>,
+}
+
+/// The way on and the other direction, if there are no more.
+pub fn directions_going_on(
+    loading: Loading<'_>,
+    state: &State,
+    standings: &[Standing],
+    modes: &[Mode],
+    incoming: &Rate,
+    rules: Rules<'_>,
+) -> Option<Vec<Choice>> {
+    if !rules.effort.certify {
+        return None;
+    }
+    let reduced = Reduced::new(loading, state, standings, modes)?;
+    let goes_on = |slip: &Slip| dot(&slip.direction, &loading.relative_rate(slip.contact, incoming)) > MARGIN;
+    if reduced.slips.is_empty() || !reduced.slips.iter().all(goes_on) {
+        return None;
+    }
+    let stuck = reduced.stuck(incoming)?;
+    let stuck_modes = standings.iter().zip(modes).map(|(standing, mode)| match standing {
+        Standing::OnCone { .. } => Mode::Stick,
+        Standing::Settled(_) | Standing::Touching | Standing::Cornered { .. } => *mode,
+    });
+    let dissipation: f64 = reduced
+        .slips
+        .iter()
+        .map(|slip| -dot(&state.reactions[slip.contact].tangential, &loading.relative_rate(slip.contact, incoming)))
+        .sum();
+    let choice = |rate: Rate, modes: Vec<Mode>, dissipation: f64| Choice {
+        dissipation,
+        potential_rate: potential_rate(loading, state, &rate, dissipation),
+        load_sign: sign_of(rate.load),
+        retrace: false,
+        mechanism: is_mechanism(loading, state, &rate),
+        rate,
+        modes,
+    };
+    let slipping_modes = standings.iter().zip(modes).map(|(standing, mode)| match standing {
+        Standing::OnCone { direction } => Mode::Slip { direction: *direction },
+        Standing::Settled(_) | Standing::Touching | Standing::Cornered { .. } => *mode,
+    });
+    let mut options = vec![
+        choice(stuck, stuck_modes.collect(), 0.0),
+        choice(incoming.clone(), slipping_modes.collect(), dissipation),
+    ];
+    mark_retrace(loading, state, &mut options, incoming);
+    Some(options)
+}
+
+impl<'a> Reduced<'a> {
+    /// `None` where some contact can do more than slip or stick, where several close on one node, and where supports guide
+    /// a closed node.
+    fn new(loading: Loading<'a>, state: &'a State, standings: &[Standing], modes: &[Mode]) -> Option<Self> {
+        let structure = loading.structure;
+        let dimension = structure.dimension;
+        let freedoms = structure.freedoms();
+        let mut holder = vec![None; freedoms / dimension];
+        for (contact, (standing, mode)) in standings.iter().zip(modes).enumerate() {
+            let agrees = match (standing, mode) {
+                (Standing::Settled(Mode::Free), Mode::Free) => continue,
+                (Standing::Settled(Mode::Stick), Mode::Stick) => true,
+                (Standing::Settled(Mode::Slip { .. }), Mode::Slip { .. }) => loading.contacts[contact].tangents() == 0,
+                (Standing::OnCone { direction }, Mode::Slip { direction: along }) => dot(direction, along) > 0.0,
+                _ => false,
+            };
+            let node = loading.contacts[contact].node;
+            let is_free = structure.unknown_of[node * dimension..(node + 1) * dimension].iter().all(Option::is_some);
+            if !agrees || !is_free || holder[node].replace(contact).is_some() {
+                return None;
+            }
+        }
+        let mut reduced = Self {
+            loading,
+            state,
+            places: Vec::with_capacity(freedoms),
+            parts: Vec::with_capacity(freedoms),
+            driven: Vec::with_capacity(freedoms),
+            slips: Vec::new(),
+            is_slip: Vec::new(),
+            freedom_of: Vec::new(),
+            turning: Vec::new(),
+            holder: Vec::new(),
+        };
+        for (node, holder) in holder.iter().enumerate() {
+            match holder {
+                Some(contact) => reduced.add_closed(node, *contact, &standings[*contact]),
+                None => (node * dimension..(node + 1) * dimension).for_each(|freedom| reduced.add_free(freedom)),
+            }
+        }
+        reduced.holder = holder;
+        Some(reduced)
+    }
+
+    fn add_free(&mut self, freedom: usize) {
+        let is_free = self.loading.structure.unknown_of[freedom].is_some();
+        self.places.push((self.parts.len(), usize::from(is_free)));
+        self.driven.push(self.loading.support_rate(freedom));
+        if is_free {
+            self.parts.push(Part { unknown: self.is_slip.len(), motion: 1.0, test: 1.0 });
+            self.freedom_of.push(freedom);
+            self.is_slip.push(false);
+        }
+    }
+
+    fn add_closed(&mut self, node: usize, contact: usize, standing: &Standing) {
+        let dimension = self.loading.structure.dimension;
+        let frame = self.loading.frame(contact, self.state);
+        let first = self.is_slip.len();
+        let normal_reaction = self.state.reactions[contact].normal;
+        // Motions and tests.
+        let mut along: [(Vector, Vector); 2] = Default::default();
+        let count = match standing {
+            Standing::OnCone { direction } => {
+                let friction = self.loading.contacts[contact].friction;
+                along[0] = (*direction, add(direction, friction, &frame.normal));
+                self.turning.push((first, first, -frame.curvature * normal_reaction * (1.0 + friction * friction)));
+                self.slips.push(Slip { contact, direction: *direction });
+                self.is_slip.push(true);
+                1
+            }
+            Standing::Settled(Mode::Slip { .. }) => {
+                for (k, tangent) in frame.tangents.iter().enumerate().take(dimension - 1) {
+                    along[k] = (*tangent, *tangent);
+                    self.turning.push((first + k, first + k, -frame.curvature * normal_reaction));
+                    self.is_slip.push(false);
+                }
+                dimension - 1
+            }
+            Standing::Settled(_) | Standing::Touching | Standing::Cornered { .. } => 0,
+        };
+        self.freedom_of.extend((0..count).map(|k| node * dimension + k));
+        for component in 0..dimension {
+            self.places.push((self.parts.len(), count));
+            self.driven.push(self.loading.pattern.shifts[contact][component]);
+            for (k, (motion, test)) in along.iter().enumerate().take(count) {
+                self.parts.push(Part { unknown: first + k, motion: motion[component], test: test[component] });
+            }
+        }
+    }
+
+    fn parts_of(&self, freedom: usize) -> &[Part] {
+        let (first, count) = self.places[freedom];
+        &self.parts[first..first + count]
+    }
+
+    /// Calls `add` for every entry of `A`, and of the column of the load rate (`None`).
+    fn each_entry(&self, add: &mut dyn FnMut(usize, Option<usize>, f64)) {
+        let structure = self.loading.structure;
+        structure.each_stiffness(&self.state.displacement, &mut |row, column, value| {
+            for test in self.parts_of(row) {
+                let value = test.test * value;
+                if value == 0.0 {
+                    continue;
+                }
+                for part in self.parts_of(column) {
+                    add(test.unknown, Some(part.unknown), value * part.motion);
+                }
+                if self.driven[column] != 0.0 {
+                    add(test.unknown, None, value * self.driven[column]);
+                }
+            }
+        });
+        for (freedom, force) in self.loading.pattern.forces.iter().enumerate().filter(|(_, force)| **force != 0.0) {
+            for test in self.parts_of(freedom) {
+                add(test.unknown, None, -test.test * force);
+            }
+        }
+        self.turning.iter().for_each(|(row, column, value)| add(*row, Some(*column), *value));
+    }
+
+    /// The direction along which all contacts on the cone stick, if that and the way on are all there are.
+    fn stuck(&self, incoming: &Rate) -> Option<Rate> {
+        let count = self.is_slip.len();
+        if count > MOST_DENSE {
+            return self.stuck_among_many(incoming);
+        }
+        let (mut matrix, mut load) = (DMatrix::zeros(count, count), DVector::zeros(count));
+        self.each_entry(&mut |row, column, value| match column {
+            Some(column) => matrix[(row, column)] += value,
+            None => load[row] += value,
+        });
+        let others = self.unknowns(false);
+        let response = Response::new(&matrix, &load, &others)?;
+        if incoming.load.abs() > RESTING && is_definite(matrix.clone()) {
+            return self.stuck_rate(&others, &response.load, -incoming.load.signum());
+        }
+        let slips = self.unknowns(true);
+        let (matrix, load) = response.condensed(&matrix, &load, &others, &slips)?;
+        let (_, solutions) = all_solutions(matrix, load, &[1.0, -1.0])?;
+        let slip = |pairs: &Pairs| pairs.iter().all(|[a, b]| *a == 0.0 && *b > 0.0);
+        let stick = |pairs: &Pairs| pairs.iter().all(|[a, b]| *b == 0.0 && *a > 0.0);
+        if solutions.len() != 2 || !solutions.iter().any(slip) || !solutions.iter().any(stick) {
+            return None;
+        }
+        [1.0, -1.0].into_iter().find_map(|sign| self.stuck_rate(&others, &response.load, sign))
+    }
+
+    fn unknowns(&self, slips: bool) -> Vec<usize> {
+        (0..self.is_slip.len()).filter(|unknown| self.is_slip[*unknown] == slips).collect()
+    }
+
+    /// The same with sparse matrices: only where the whole is definite.
+    fn stuck_among_many(&self, incoming: &Rate) -> Option<Rate> {
+        let structure = self.loading.structure;
+        let layout = structure.layout()?;
+        let pattern = &layout.pattern;
+        let place_of: Vec<usize> =
+            self.freedom_of.iter().map(|freedom| structure.unknown_of[*freedom]).collect::<Option<_>>()?;
+        if incoming.load.abs() <= RESTING {
+            return None;
+        }
+        let (mut values, mut load) = (vec![0.0; pattern.entries()], DVector::zeros(pattern.size()));
+        // The equations of the other unknowns alone.
+        let mut held = Bordered::new(pattern.clone(), 0);
+        let mut is_outside = false;
+        self.each_entry(&mut |row, column, value| match column {
+            Some(column) => {
+                let (own, transposed) = (place_of[row], place_of[column]);
+                match (pattern.place(own, transposed), pattern.place(transposed, own)) {
+                    (Some(place), Some(mirror)) => {
+                        values[place] += 0.5 * value;
+                        values[mirror] += 0.5 * value;
+                        if !self.is_slip[row] && !self.is_slip[column] {
+                            held.add_at(place, value);
+                        }
+                    }
+                    _ => is_outside = true,
+                }
+            }
+            None if !self.is_slip[row] => load[place_of[row]] -= value,
+            None => {}
+        });
+        let (mut is_used, mut is_other) = (vec![false; pattern.size()], vec![false; pattern.size()]);
+        for (place, is_slip) in place_of.iter().zip(&self.is_slip) {
+            (is_used[*place], is_other[*place]) = (true, !is_slip);
+        }
+        for unknown in 0..pattern.size() {
+            let place = pattern.place(unknown, unknown)?;
+            if !is_used[unknown] {
+                values[place] = 1.0;
+            }
+            if !is_other[unknown] {
+                held.add_at(place, 1.0);
+            }
+        }
+        if is_outside {
+            return None;
+        }
+        let inertia = SymmetricFactor::new(pattern.clone(), &values).ok()?.inertia(DEFINITE)?;
+        if inertia.negative + inertia.zero > 0 {
+            return None;
+        }
+        let others = self.unknowns(false);
+        if !others.is_empty() && !SparseFactorisation::new(held, &[])?.solve(&mut load) {
+            return None;
+        }
+        let response = DVector::from_iterator(others.len(), others.iter().map(|other| load[place_of[*other]]));
+        self.stuck_rate(&others, &response, -incoming.load.signum())
+    }
+
+    /// The rate at which nothing slips, of unit arc length; `None` where some contact would not stay within its cone by a
+    /// wide margin.
+    fn stuck_rate(&self, others: &[usize], response: &DVector<f64>, load: f64) -> Option<Rate> {
+        let (loading, structure) = (self.loading, self.loading.structure);
+        let mut motions = vec![0.0; self.is_slip.len()];
+        others.iter().zip(response.iter()).for_each(|(unknown, value)| motions[*unknown] = load * value);
+        let velocity = |freedom: usize| {
+            let own: f64 = self.parts_of(freedom).iter().map(|part| part.motion * motions[part.unknown]).sum();
+            own + load * self.driven[freedom]
+        };
+        let displacement: Vec<f64> = (0..structure.freedoms()).map(velocity).collect();
+        let mut forces: Vec<f64> = loading.pattern.forces.iter().map(|force| -load * force).collect();
+        structure.each_stiffness(&self.state.displacement, &mut |row, column, value| {
+            forces[row] += value * displacement[column];
+        });
+        let mut rate = Rate { displacement, load, reactions: vec![Reaction::default(); loading.contacts.len()] };
+        let dimension = structure.dimension;
+        let is_smooth = |contact: usize| loading.contacts[contact].tangents() == 0;
+        for (node, contact) in self.holder.iter().enumerate().filter_map(|(node, holder)| Some((node, (*holder)?))) {
+            let frame: Frame = loading.frame(contact, self.state);
+            let mut force = [0.0; 3];
+            force[..dimension].copy_from_slice(&forces[node * dimension..(node + 1) * dimension]);
+            let normal = dot(&force, &frame.normal);
+            let tangential = if is_smooth(contact) { [0.0; 3] } else { add(&force, -normal, &frame.normal) };
+            rate.reactions[contact] = Reaction { normal, tangential };
+        }
+        let size = rate.size();
+        if !size.is_finite() || size <= MARGIN * rate.largest_reaction() {
+            return None;
+        }
+        rate.scale(1.0 / size);
+        let least = MARGIN * rate.largest_reaction().max(f64::MIN_POSITIVE);
+        let stays = |slip: &Slip| {
+            let reaction = &rate.reactions[slip.contact];
+            let friction = loading.contacts[slip.contact].friction;
+            friction * reaction.normal + dot(&slip.direction, &reaction.tangential) > least
+        };
+        self.slips.iter().all(stays).then_some(rate)
+    }
+}
+
+/// How the other unknowns follow the load rate with all slips held.
+struct Response {
+    factorisation: Option<Factorisation>,
+    load: DVector<f64>,
+}
+
+impl Response {
+    fn new(matrix: &DMatrix<f64>, load: &DVector<f64>, others: &[usize]) -> Option<Self> {
+        if others.is_empty() {
+            return Some(Self { factorisation: None, load: DVector::zeros(0) });
+        }
+        let block = DMatrix::from_fn(others.len(), others.len(), |row, column| matrix[(others[row], others[column])]);
+        let factorisation = Factorisation::new(block)?;
+        let mut response = DVector::from_fn(others.len(), |row, _| -load[others[row]]);
+        factorisation.solve(&mut response).then_some(Self { factorisation: Some(factorisation), load: response })
+    }
+
+    /// `M` and `q` of the slips alone.
+    fn condensed(
+        &self,
+        matrix: &DMatrix<f64>,
+        load: &DVector<f64>,
+        others: &[usize],
+        slips: &[usize],
+    ) -> Option<(DMatrix<f64>, DVector<f64>)> {
+        let along = |row: usize, motion: &DVector<f64>| -> f64 {
+            others.iter().zip(motion.iter()).map(|(other, value)| matrix[(slips[row], *other)] * value).sum()
+        };
+        let mut own = DMatrix::from_fn(slips.len(), slips.len(), |row, column| matrix[(slips[row], slips[column])]);
+        let by_load = DVector::from_fn(slips.len(), |row, _| load[slips[row]] + along(row, &self.load));
+        if let Some(factorisation) = &self.factorisation {
+            for (index, slip) in slips.iter().enumerate() {
+                let mut motion = DVector::from_fn(others.len(), |row, _| -matrix[(others[row], *slip)]);
+                if !factorisation.solve(&mut motion) {
+                    return None;
+                }
+                (0..slips.len()).for_each(|row| own[(row, index)] += along(row, &motion));
+            }
+        }
+        Some((own, by_load))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cancel::CancelFlag;
+    use crate::path::decide::{self, Before};
+    use crate::path::{Path, Scene};
+    use crate::scenes;
+
+    /// At every point of the built-in scenes: what is found at once is what the search everywhere lists.
+    #[test]
+    fn what_is_found_at_once_is_what_is_found_everywhere() {
+        let mut found = 0;
+        for built_in in scenes::ALL {
+            let request = crate::model::decode::decode(built_in.request.as_bytes()).expect("a request");
+            let mut scene = Scene::new(&request).expect("a scene");
+            // Both dense matrices and sparse ones.
+            for sparse in [false, true] {
+                scene.structure.set_sparse(sparse);
+                let mut path = Path::new(&scene, CancelFlag::default());
+                while let Some(increment) = path.next() {
+                    let here = &path.at.here;
+                    let (Some(incoming), true) = (&here.rate, increment.index > 0) else { continue };
+                    let standings = path.standings(&here.state);
+                    let (loading, rules) = (path.loading(), path.rules());
+                    let Some(at_once) =
+                        directions_going_on(loading, &here.state, &standings, &here.modes, incoming, rules)
+                    else {
+                        continue;
+                    };
+                    let before = Before::Incoming(incoming);
+                    let (everywhere, rest) = decide::list(loading, &here.state, &standings, before, rules);
+                    let place = format!("{} {}", built_in.name, increment.index);
+                    assert_eq!((rest.unexplored, rest.degenerate), (0, false), "{place}");
+                    assert_eq!(at_once.len(), everywhere.len(), "{place}");
+                    for (one, other) in at_once.iter().zip(&everywhere) {
+                        assert_eq!(one.modes, other.modes, "{place}");
+                        assert_eq!(one.load_sign, other.load_sign, "{place}");
+                        let mut difference = one.rate.clone();
+                        difference.add(&other.rate, -1.0);
+                        assert!(difference.size() < 1e-9, "{place}: {one:?} {other:?}");
+                        let forces = 1e-9 * (1.0 + one.rate.largest_reaction());
+                        assert!(difference.largest_reaction() < forces, "{place}: {difference:?}");
+                        assert_eq!((one.retrace, one.mechanism), (other.retrace, other.mechanism), "{place}");
+                        assert!((one.dissipation - other.dissipation).abs() < 1e-9, "{place}");
+                        assert!((one.potential_rate - other.potential_rate).abs() < 1e-9, "{place}");
+                    }
+                    found += 1;
+                }
+            }
+        }
+        assert!(found > 500, "{found}");
+    }
+}
