@@ -4,8 +4,8 @@
 //! solver to the listed objective, feasibility, complementarity, and the kind of stationarity it reports.
 
 use arcslip::cancel::CancelFlag;
-use arcslip::mpec::{self, Problem, Settings, Solution, StationarityKind, Status};
-use nalgebra::{DMatrix, DVector};
+use arcslip::mpec::{self, Problem, Settings, Solution, SparseRows, StationarityKind, Status};
+use nalgebra::DVector;
 
 const INF: f64 = f64::INFINITY;
 
@@ -80,13 +80,13 @@ impl Problem for Listed {
     fn equality_values(&self, x: &DVector<f64>, values: &mut DVector<f64>) {
         values.copy_from_slice(&(self.equalities)(x.as_slice()));
     }
-    fn equality_jacobian(&self, x: &DVector<f64>, jacobian: &mut DMatrix<f64>) {
+    fn equality_jacobian(&self, x: &DVector<f64>, jacobian: &mut SparseRows) {
         self.differences(x, &|v| (self.equalities)(v), |i, j, slope| jacobian[(i, j)] = slope);
     }
     fn inequality_values(&self, x: &DVector<f64>, values: &mut DVector<f64>) {
         values.copy_from_slice(&(self.inequalities)(x.as_slice()));
     }
-    fn inequality_jacobian(&self, x: &DVector<f64>, jacobian: &mut DMatrix<f64>) {
+    fn inequality_jacobian(&self, x: &DVector<f64>, jacobian: &mut SparseRows) {
         self.differences(x, &|v| (self.inequalities)(v), |i, j, slope| jacobian[(i, j)] = slope);
     }
     fn pair_values(&self, x: &DVector<f64>, first: &mut DVector<f64>, second: &mut DVector<f64>) {
@@ -94,7 +94,7 @@ impl Problem for Listed {
             (first[i], second[i]) = (a, b);
         }
     }
-    fn pair_jacobians(&self, x: &DVector<f64>, first: &mut DMatrix<f64>, second: &mut DMatrix<f64>) {
+    fn pair_jacobians(&self, x: &DVector<f64>, first: &mut SparseRows, second: &mut SparseRows) {
         let members = |v: &[f64]| (self.pairs)(v).into_iter().flat_map(|(a, b)| [a, b]).collect();
         self.differences(x, &members, |i, j, slope| {
             let jacobian = if i % 2 == 0 { &mut *first } else { &mut *second };

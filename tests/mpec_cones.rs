@@ -2,7 +2,9 @@
 //! chosen, the nearest complementary pair; each with an answer by hand.
 
 use arcslip::cancel::CancelFlag;
-use arcslip::mpec::{self, ConeActivity, Problem, Settings, Solution, StationarityKind, Status, cone, semismooth};
+use arcslip::mpec::{
+    self, ConeActivity, Problem, Settings, Solution, SparseRows, StationarityKind, Status, cone, semismooth,
+};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 /// A point mass on the plane `z = 0`, springs `stiffness` to the ground, pressed by 1 and pushed by a tangential force
@@ -62,8 +64,10 @@ impl Problem for Mass {
         }
         values[2] = force[2] + 1.0 - x[3];
     }
-    fn equality_jacobian(&self, _x: &DVector<f64>, jacobian: &mut DMatrix<f64>) {
-        jacobian.view_mut((0, 0), (3, 3)).copy_from(&self.stiffness);
+    fn equality_jacobian(&self, _x: &DVector<f64>, jacobian: &mut SparseRows) {
+        for (i, j) in (0..9).map(|place| (place / 3, place % 3)) {
+            jacobian[(i, j)] = self.stiffness[(i, j)];
+        }
         for k in 0..2 {
             jacobian[(k, 4 + k)] = -1.0;
             jacobian[(3 + k, k)] = 1.0;
@@ -78,7 +82,7 @@ impl Problem for Mass {
         first[0] = x[2];
         second[0] = x[3];
     }
-    fn pair_jacobians(&self, _x: &DVector<f64>, first: &mut DMatrix<f64>, second: &mut DMatrix<f64>) {
+    fn pair_jacobians(&self, _x: &DVector<f64>, first: &mut SparseRows, second: &mut SparseRows) {
         first[(0, 2)] = 1.0;
         second[(0, 3)] = 1.0;
     }
@@ -223,7 +227,7 @@ impl Problem for Nearest {
         gradient.iter_mut().zip(x.iter().zip(self.p.iter().chain(&self.q))).for_each(|(g, (x, t))| *g = x - t);
     }
     fn pair_values(&self, _x: &DVector<f64>, _first: &mut DVector<f64>, _second: &mut DVector<f64>) {}
-    fn pair_jacobians(&self, _x: &DVector<f64>, _first: &mut DMatrix<f64>, _second: &mut DMatrix<f64>) {}
+    fn pair_jacobians(&self, _x: &DVector<f64>, _first: &mut SparseRows, _second: &mut SparseRows) {}
     fn cone_sizes(&self) -> Vec<usize> {
         vec![3]
     }
@@ -353,7 +357,7 @@ fn members_of_size_one_are_refused() {
         }
         fn objective_gradient(&self, _x: &DVector<f64>, _gradient: &mut DVector<f64>) {}
         fn pair_values(&self, _x: &DVector<f64>, _first: &mut DVector<f64>, _second: &mut DVector<f64>) {}
-        fn pair_jacobians(&self, _x: &DVector<f64>, _first: &mut DMatrix<f64>, _second: &mut DMatrix<f64>) {}
+        fn pair_jacobians(&self, _x: &DVector<f64>, _first: &mut SparseRows, _second: &mut SparseRows) {}
         fn cone_sizes(&self) -> Vec<usize> {
             vec![1]
         }

@@ -5,8 +5,8 @@
 //! Slipping towards +x: `s = P (μ - x)/L`, `r_n = P/L`, `P = 1 - L/L0`.
 
 use arcslip::cancel::CancelFlag;
-use arcslip::mpec::{self, Finish, PairActivity, Problem, Settings, Status};
-use nalgebra::{DMatrix, DVector};
+use arcslip::mpec::{self, Finish, PairActivity, Problem, Settings, SparseRows, Status};
+use nalgebra::DVector;
 
 const START: f64 = -1.5;
 const FRICTION: f64 = 0.3;
@@ -79,7 +79,7 @@ impl Problem for Increment {
         values[1] = force[1] - v[3];
         values[2] = v[0] - v[4] + v[5];
     }
-    fn equality_jacobian(&self, v: &DVector<f64>, jacobian: &mut DMatrix<f64>) {
+    fn equality_jacobian(&self, v: &DVector<f64>, jacobian: &mut SparseRows) {
         let (_, stiffness) = internal_force(self.tip[0] + v[0], self.tip[1] + v[1]);
         for i in 0..2 {
             for j in 0..2 {
@@ -97,14 +97,14 @@ impl Problem for Increment {
         first.copy_from_slice(&[self.tip[1] + v[1], FRICTION * v[3] + v[6], FRICTION * v[3] - v[6]]);
         second.copy_from_slice(&[v[3], v[4], v[5]]);
     }
-    fn pair_jacobians(&self, _v: &DVector<f64>, first: &mut DMatrix<f64>, second: &mut DMatrix<f64>) {
+    fn pair_jacobians(&self, _v: &DVector<f64>, first: &mut SparseRows, second: &mut SparseRows) {
         first[(0, 1)] = 1.0;
         (first[(1, 3)], first[(1, 6)]) = (FRICTION, 1.0);
         (first[(2, 3)], first[(2, 6)]) = (FRICTION, -1.0);
         (second[(0, 3)], second[(1, 4)], second[(2, 5)]) = (1.0, 1.0, 1.0);
     }
-    fn quadratic_model(&self, _v: &DVector<f64>) -> Option<DMatrix<f64>> {
-        let mut model = DMatrix::zeros(7, 7);
+    fn quadratic_model(&self, _v: &DVector<f64>) -> Option<SparseRows> {
+        let mut model = SparseRows::zeros(7, 7);
         for j in 0..3 {
             model[(j, j)] = self.arc_weight;
         }

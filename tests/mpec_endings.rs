@@ -5,7 +5,9 @@ use std::cell::Cell;
 
 use arcslip::cancel::CancelFlag;
 use arcslip::mpec::quadratic::{QuadraticProgram, solve_interior};
-use arcslip::mpec::{self, InputError, PairActivity, Problem, Quantity, Settings, StationarityKind, Status};
+use arcslip::mpec::{
+    self, InputError, PairActivity, Problem, Quantity, Settings, SparseRows, StationarityKind, Status,
+};
 use nalgebra::{DMatrix, DVector};
 
 /// `min ½ xᵀQx + c·x` s.t. `A x + a0 ⊥ B x + b0`, `E x + e = 0`; optionally raises a flag or returns NaN on the way.
@@ -83,14 +85,14 @@ impl Problem for Quadratic {
     fn equality_values(&self, x: &DVector<f64>, values: &mut DVector<f64>) {
         values.copy_from(&(&self.equality.0 * x + &self.equality.1));
     }
-    fn equality_jacobian(&self, _x: &DVector<f64>, jacobian: &mut DMatrix<f64>) {
+    fn equality_jacobian(&self, _x: &DVector<f64>, jacobian: &mut SparseRows) {
         jacobian.copy_from(&self.equality.0);
     }
     fn pair_values(&self, x: &DVector<f64>, first: &mut DVector<f64>, second: &mut DVector<f64>) {
         first.copy_from(&(&self.first.0 * x + &self.first.1));
         second.copy_from(&(&self.second.0 * x + &self.second.1));
     }
-    fn pair_jacobians(&self, _x: &DVector<f64>, first: &mut DMatrix<f64>, second: &mut DMatrix<f64>) {
+    fn pair_jacobians(&self, _x: &DVector<f64>, first: &mut SparseRows, second: &mut SparseRows) {
         first.copy_from(&self.first.0);
         second.copy_from(&self.second.0);
     }
@@ -213,11 +215,11 @@ fn branch_minima(problem: &Quadratic) -> Vec<f64> {
         let (equality, equality_values) = pick(true);
         let (inequality, inequality_values) = pick(false);
         let program = QuadraticProgram {
-            hessian: problem.q.clone(),
+            hessian: SparseRows::from(&problem.q),
             gradient: problem.c.clone(),
-            equality,
+            equality: SparseRows::from(&equality),
             equality_values,
-            inequality,
+            inequality: SparseRows::from(&inequality),
             inequality_values,
             lower: DVector::from_element(n, f64::NEG_INFINITY),
             upper: DVector::from_element(n, f64::INFINITY),

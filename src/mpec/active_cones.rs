@@ -9,7 +9,7 @@
 //! Source: the treatment of the friction cone by P. W. Christensen, A. Klarbring, J. S. Pang and N. Strömberg,
 //! Int. J. Numer. Meth. Engng 42 (1998), carried over to a quadratic program's rows.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use super::cone;
 use super::quadratic::{ConeRows, QuadraticProgram, QuadraticSolution};
@@ -99,25 +99,25 @@ impl Expansions {
         &self,
         program: &QuadraticProgram,
         states: &[ConeState],
-        matrix: &mut DMatrix<f64>,
+        entries: &mut Vec<(usize, usize, f64)>,
         right: &mut DVector<f64>,
     ) {
-        let n = self.step.len();
         for ((rows, state), expansion) in program.cones.iter().zip(states).zip(&self.cones) {
             if *state != ConeState::Boundary || expansion.stiffness == 0.0 {
                 continue;
             }
-            let mut across = rows.rows.clone();
-            for mut column in across.column_iter_mut() {
-                let projected = expansion.across(&column.clone_owned());
-                column.copy_from(&projected);
+            let moving = |&j: &usize| rows.rows.column(j).iter().any(|value| *value != 0.0);
+            let across: Vec<(usize, DVector<f64>)> = (0..self.step.len())
+                .filter(moving)
+                .map(|j| (j, expansion.across(&rows.rows.column(j).clone_owned())))
+                .collect();
+            for (i, first) in &across {
+                for (j, second) in &across {
+                    let entry = expansion.stiffness * first.dot(second);
+                    entries.push((*i, *j, entry));
+                    right[*i] += entry * self.step[*j];
+                }
             }
-            let block = across.tr_mul(&across) * expansion.stiffness;
-            let force = &block * &self.step;
-            let mut corner = matrix.view_mut((0, 0), (n, n));
-            corner += block;
-            let mut top = right.rows_mut(0, n);
-            top += force;
         }
     }
 
@@ -212,19 +212,21 @@ impl Expansions {
 mod tests {
     use super::super::active_set::{self, WorkingSet};
     use super::super::quadratic::solve_interior;
+    use super::super::sparse_rows::SparseRows;
     use super::*;
     use crate::cancel::CancelFlag;
+    use nalgebra::DMatrix;
 
     /// The point of a cone nearest to `target`, at some distance `weight` stretches.
     fn nearest_in_cone(target: [f64; 3], weights: [f64; 3]) -> QuadraticProgram {
         let hessian = DMatrix::from_diagonal(&DVector::from_column_slice(&weights));
         let gradient = -&hessian * DVector::from_column_slice(&target);
         QuadraticProgram {
-            hessian,
+            hessian: SparseRows::from(&hessian),
             gradient,
-            equality: DMatrix::zeros(0, 3),
+            equality: SparseRows::zeros(0, 3),
             equality_values: DVector::zeros(0),
-            inequality: DMatrix::zeros(0, 3),
+            inequality: SparseRows::zeros(0, 3),
             inequality_values: DVector::zeros(0),
             lower: DVector::repeat(3, f64::NEG_INFINITY),
             upper: DVector::repeat(3, f64::INFINITY),

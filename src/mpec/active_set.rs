@@ -13,10 +13,11 @@
 //! M. Hintermüller, K. Ito and K. Kunisch, SIAM J. Optim. 13 (2002), doi:10.1137/S1052623401383558. Second-order cones
 //! take part in it (`mpec::active_cones`). It may fail, and then the interior-point method answers; what it does return is exact to round-off and costs microseconds.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use super::active_cones::{CORRECTIONS, ConeState, Expansions};
 use super::quadratic::{QuadraticProgram, QuadraticSolution};
+use super::system::{Factors, product};
 
 /// Relative slack in "holds", "nonnegative" and "solves the system".
 const ROUND_OFF: f64 = 1e-11;
@@ -59,6 +60,12 @@ impl WorkingSet {
                 .map(|(cone, multiplier)| ConeState::of_solution(&cone.at(step), multiplier))
                 .collect(),
         }
+    }
+
+    /// Whether nothing is in it.
+    pub fn is_empty(&self) -> bool {
+        ![&self.inequality, &self.lower, &self.upper].into_iter().flatten().any(|active| *active)
+            && self.cones.iter().all(|state| *state == ConeState::Inside)
     }
 
     fn fits(&self, program: &QuadraticProgram) -> bool {
@@ -105,47 +112,41 @@ fn solve_equalities(
     if active > 2 * variables {
         return None;
     }
-    let mut matrix = DMatrix::zeros(variables + active, variables + active);
+    let mut entries: Vec<(usize, usize, f64)> = program.hessian.entries().collect();
     let mut right = DVector::zeros(variables + active);
-    matrix.view_mut((0, 0), (variables, variables)).copy_from(&program.hessian);
-    for j in 0..variables {
-        right[j] = -program.gradient[j];
-    }
-    expansions.add_curvature(program, &set.cones, &mut matrix, &mut right);
+    right.rows_mut(0, variables).copy_from(&-&program.gradient);
+    expansions.add_curvature(program, &set.cones, &mut entries, &mut right);
     let mut place = variables;
-    let mut put_row = |values: &dyn Fn(usize) -> f64, value: f64| {
-        for j in 0..variables {
-            let entry = values(j);
-            matrix[(place, j)] = entry;
-            matrix[(j, place)] = entry;
+    let mut put_row = |row: &[(usize, f64)], value: f64| {
+        for &(column, entry) in row {
+            entries.push((place, column, entry));
+            entries.push((column, place, entry));
         }
         right[place] = -value;
         place += 1;
     };
     for i in 0..equalities {
-        put_row(&|j| program.equality[(i, j)], program.equality_values[i]);
+        put_row(program.equality.row(i), program.equality_values[i]);
     }
     for &i in &rows {
-        put_row(&|j| program.inequality[(i, j)], program.inequality_values[i]);
+        put_row(program.inequality.row(i), program.inequality_values[i]);
     }
     for &k in &below {
-        put_row(&|j| if j == k { 1.0 } else { 0.0 }, -program.lower[k]);
+        put_row(&[(k, 1.0)], -program.lower[k]);
     }
     for &k in &above {
-        put_row(&|j| if j == k { -1.0 } else { 0.0 }, program.upper[k]);
+        put_row(&[(k, -1.0)], program.upper[k]);
     }
     for (row, value) in &on_cones {
-        put_row(&|j| row[j], *value);
+        let entries: Vec<_> = row.iter().copied().enumerate().filter(|(_, entry)| *entry != 0.0).collect();
+        put_row(&entries, *value);
     }
-    let unknowns = solve_refined(&matrix, matrix.clone(), &right, 1).or_else(|| {
+    let unknowns = solve_refined(&entries, &[], &right, 1).or_else(|| {
         // Rows that say the same twice make the system singular but not contradictory. A small negative block for the
         // multipliers makes it regular, and refinement against the true matrix takes the block's effect out again.
-        let mut regular = matrix.clone();
         let weight = MULTIPLIER_BLOCK * (1.0 + program.hessian.amax());
-        for place in variables..variables + active {
-            regular[(place, place)] -= weight;
-        }
-        solve_refined(&matrix, regular, &right, 4)
+        let block: Vec<_> = (variables..variables + active).map(|place| (place, place, -weight)).collect();
+        solve_refined(&entries, &block, &right, 4)
     })?;
     let mut solution = QuadraticSolution {
         step: unknowns.rows(0, variables).into_owned(),
@@ -168,21 +169,25 @@ fn solve_equalities(
     Some(solution)
 }
 
-/// Solves with the factors of `factored`, refined against `matrix`; `None` where a residual remains. The residual is
-/// measured against the right-hand side alone, since a nearly singular system has huge unknowns.
+/// Solves with the factors of the matrix and of what is `added` to it, refined against the matrix; `None` where a residual
+/// remains. The residual is measured against the right-hand side alone, since a nearly singular system has huge unknowns.
 fn solve_refined(
-    matrix: &DMatrix<f64>,
-    factored: DMatrix<f64>,
+    matrix: &[(usize, usize, f64)],
+    added: &[(usize, usize, f64)],
     right: &DVector<f64>,
     refinements: usize,
 ) -> Option<DVector<f64>> {
-    let factors = factored.lu();
+    let factors = if added.is_empty() {
+        Factors::new(right.len(), matrix, None)?
+    } else {
+        Factors::new(right.len(), &[matrix, added].concat(), None)?
+    };
     let mut unknowns = factors.solve(right)?;
     for _ in 0..refinements {
-        let residual = right - matrix * &unknowns;
+        let residual = right - product(matrix, &unknowns);
         unknowns += factors.solve(&residual)?;
     }
-    let residual = (right - matrix * &unknowns).amax();
+    let residual = (right - product(matrix, &unknowns)).amax();
     let is_solved = unknowns.iter().all(|value| value.is_finite()) && residual <= ROUND_OFF * (1.0 + right.amax());
     is_solved.then_some(unknowns)
 }

@@ -19,12 +19,16 @@ use super::problem::Problem;
 use super::relaxed::{Multipliers, Rows};
 use super::result::StationarityKind;
 use super::settings::{Finish, Settings};
-use super::sqp::{self, SqpEnd, SqpSettings};
+use super::sqp::{self, SqpEnd, SqpOutcome, SqpSettings};
 use super::stationarity::{self, NoVerdict};
 use crate::cancel::CancelFlag;
 
 /// A pair whose smaller member is less than this part of the larger has a clear pattern.
 const CLEAR_RATIO: f64 = 0.05;
+/// Members of a pair, at a converged point, within which both are zero to rounding.
+const BOTH_ZERO: f64 = 1e-11;
+/// How much further than what a settled point leaves violated its members are from certain.
+const LEEWAY: f64 = 10.0;
 /// Decrease of the objective that justifies another branch, relative to `1 + |f|`.
 const WORTHWHILE: f64 = 1e-10;
 
@@ -156,8 +160,8 @@ pub fn descend<P: Problem + ?Sized>(
                 Some(_) | None => candidate,
             };
         }
-        let settled_clearly =
-            candidate.end == SqpEnd::Settled && !stationarity::is_biactive(&candidate.at, settings.biactive_tolerance);
+        let settled_clearly = candidate.end == SqpEnd::Settled
+            && !stationarity::is_biactive(&candidate.at, uncertain(&candidate.at, settings));
         if stopped || settled_clearly || candidate.end == SqpEnd::Unbounded || changes_left == 0 {
             return candidate;
         }
@@ -183,6 +187,53 @@ pub fn descend<P: Problem + ?Sized>(
         pattern = next;
         best = Some(candidate);
         changes_left -= 1;
+    }
+}
+
+/// Members of a pair at a settled point that may both be zero: what is left violated says how far they may still move.
+fn uncertain(at: &Evaluation, settings: &Settings) -> f64 {
+    settings.biactive_tolerance.max(LEEWAY * at.largest_violation())
+}
+
+/// Solves the branch `pattern` from `start` and goes into no other. The candidate is settled or stationary where no row but
+/// those of the branch bound it: strongly, or in one branch where a pair is zero that another branch might lead down from.
+/// It is of no kind where a row bound it.
+pub fn follow<P: Problem + ?Sized>(
+    problem: &P,
+    bounds: &(DVector<f64>, DVector<f64>),
+    start: &DVector<f64>,
+    pattern: &Pattern,
+    settings: &Settings,
+    steps: &mut StepSolver,
+    cancel: &CancelFlag,
+) -> Candidate {
+    let rows = Rows::new(problem.equalities(), problem.inequalities(), &problem.cone_sizes(), pattern.clone());
+    let (tolerance, iteration_limit) = (settings.tolerance, settings.iteration_limit);
+    let mut start = start.clone();
+    let mut stop_when_settled = settings.finish == Finish::PatternSettled;
+    loop {
+        steps.counts.branches += 1;
+        let sequence = SqpSettings { tolerance, iteration_limit, stop_when_settled };
+        let outcome = sqp::solve(problem, &rows, bounds, &start, sequence, steps, cancel);
+        let is_unclear = steps.is_bound() || stationarity::is_biactive(&outcome.at, uncertain(&outcome.at, settings));
+        if outcome.end == SqpEnd::Settled && is_unclear {
+            start = outcome.x;
+            stop_when_settled = false;
+            continue;
+        }
+        let pairs = outcome.multipliers.first.iter().zip(outcome.multipliers.second.iter());
+        let least = -tolerance * (1.0 + outcome.at.gradient.iter().fold(0.0_f64, |most, entry| most.max(entry.abs())));
+        let members = outcome.at.first.iter().zip(outcome.at.second.iter());
+        let may_leave = pairs
+            .zip(members)
+            .any(|((of_first, of_second), (a, b))| a.max(*b) <= BOTH_ZERO && of_first.min(*of_second) < least);
+        let stationarity = match (outcome.end == SqpEnd::Converged && !steps.is_bound(), may_leave) {
+            (true, false) => StationarityKind::Strong,
+            (true, true) => StationarityKind::OneBranch,
+            (false, _) => StationarityKind::Unknown,
+        };
+        let SqpOutcome { end, x, at, multipliers } = outcome;
+        return Candidate { end, x, at, multipliers, stationarity };
     }
 }
 

@@ -182,8 +182,8 @@ impl Member {
 mod tests {
     use super::super::evaluation::Evaluation;
     use super::super::problem::Problem;
+    use super::super::sparse_rows::SparseRows;
     use super::*;
-    use nalgebra::DMatrix;
 
     /// Six variables, the two members of one pair.
     struct Members;
@@ -209,7 +209,7 @@ mod tests {
         }
         fn objective_gradient(&self, _x: &DVector<f64>, _gradient: &mut DVector<f64>) {}
         fn pair_values(&self, _x: &DVector<f64>, _first: &mut DVector<f64>, _second: &mut DVector<f64>) {}
-        fn pair_jacobians(&self, _x: &DVector<f64>, _first: &mut DMatrix<f64>, _second: &mut DMatrix<f64>) {}
+        fn pair_jacobians(&self, _x: &DVector<f64>, _first: &mut SparseRows, _second: &mut SparseRows) {}
         fn cone_sizes(&self) -> Vec<usize> {
             vec![3]
         }

@@ -1,8 +1,9 @@
 //! One step's quadratic program, by the cheapest way that works.
 //!
-//! 1. the linear system of the working set that the last program ended with (`mpec::active_set`);
-//! 2. the interior-point method, its active set taken to round-off by the same linear system;
-//! 3. the elastic program, where the constraints seem contradictory:
+//! 1. where the equalities leave a line, the program condensed on it (`mpec::line`);
+//! 2. the linear system of the working set that the last program ended with (`mpec::active_set`);
+//! 3. the interior-point method, its active set taken to round-off by the same linear system;
+//! 4. the elastic program, where the constraints seem contradictory:
 //!
 //! ```text
 //! min ½ dᵀHd + q·d + ρ Σ (p + m + t)   s.t.   e + E d = p - m,   c + C d >= -t,   v + V d + t (1, 0) ∈ K,
@@ -12,11 +13,13 @@
 //! which always has a solution; `ρ` is raised until the violation that remains no longer falls. Source: P. E. Gill,
 //! W. Murray and M. A. Saunders, *SNOPT*, SIAM Review 47 (2005), doi:10.1137/S0036144504446096, section on elastic mode.
 
-use nalgebra::DMatrix;
+use nalgebra::DVector;
 
 use super::active_set::{self, WorkingSet};
-use super::quadratic::{self, ConeRows, QuadraticFailure, QuadraticProgram, QuadraticSolution};
+use super::line::{Binding, LineSolver, Outcome};
+use super::quadratic::{ConeRows, InteriorSolver, QuadraticFailure, QuadraticProgram, QuadraticSolution};
 use super::result::Counts;
+use super::sparse_rows::SparseRows;
 use crate::cancel::CancelFlag;
 
 /// Changes of the working set before the interior-point method is asked.
@@ -38,22 +41,59 @@ pub struct Step {
 }
 
 /// Solves the programs of one sequence, keeping the working set from one to the next.
-#[derive(Debug, Clone, Default)]
 pub struct StepSolver {
-    working_set: Option<WorkingSet>,
+    ended_with: Option<Ended>,
+    line: LineSolver,
+    interior: InteriorSolver,
+    /// Whether rows that contradict each other on a line are relaxed.
+    pub is_elastic: bool,
     pub counts: Counts,
+}
+
+impl Default for StepSolver {
+    fn default() -> Self {
+        Self {
+            ended_with: None,
+            line: LineSolver::default(),
+            interior: InteriorSolver::default(),
+            is_elastic: true,
+            counts: Counts::default(),
+        }
+    }
+}
+
+/// What bound the last program's solution.
+#[derive(Debug, Clone, PartialEq)]
+enum Ended {
+    OnLine(Option<Binding>),
+    With(WorkingSet),
 }
 
 impl StepSolver {
     /// Forgets the working set: the next program has other rows.
     pub fn forget(&mut self) {
-        self.working_set = None;
+        self.ended_with = None;
+    }
+
+    /// Whether anything but equalities bound the last solution.
+    pub fn is_bound(&self) -> bool {
+        match &self.ended_with {
+            Some(Ended::OnLine(binding)) => binding.is_some(),
+            Some(Ended::With(set)) => !set.is_empty(),
+            None => true,
+        }
+    }
+
+    /// Tells where the next programs are likely to go: the step from the origin to `x`.
+    pub fn head_for(&mut self, program: &QuadraticProgram, x: &DVector<f64>) {
+        self.line.head_for(&program.hessian, x);
     }
 
     /// Solves one program.
     ///
     /// # Errors
-    /// [`QuadraticFailure::NotFinite`], [`QuadraticFailure::Cancelled`], or the elastic program's own failure.
+    /// [`QuadraticFailure::NotFinite`], [`QuadraticFailure::Cancelled`], or the elastic program's own failure;
+    /// [`QuadraticFailure::SuspectedInfeasible`] on a line where that is not asked.
     pub fn solve(&mut self, program: &QuadraticProgram, cancel: &CancelFlag) -> Result<Step, QuadraticFailure> {
         if cancel.is_cancelled() {
             return Err(QuadraticFailure::Cancelled);
@@ -62,12 +102,26 @@ impl StepSolver {
             return Err(QuadraticFailure::NotFinite);
         }
         self.counts.qp_solves += 1;
-        let before = self.working_set.take();
-        let mut set = before.clone().unwrap_or_else(|| WorkingSet::at_rest(program, REST_MARGIN));
+        let before = self.ended_with.take();
+        match self.line.solve(program) {
+            Outcome::Solved(solution, binding) => {
+                let ended = Ended::OnLine(binding);
+                // Before the first program nothing is taken to bind.
+                let same_working_set = *before.as_ref().unwrap_or(&Ended::OnLine(None)) == ended;
+                self.ended_with = Some(ended);
+                return Ok(Step { solution, remaining_violation: 0.0, same_working_set });
+            }
+            Outcome::Contradictory if !self.is_elastic => return Err(QuadraticFailure::SuspectedInfeasible),
+            Outcome::Contradictory | Outcome::Declined => {}
+        }
+        let mut set = match &before {
+            Some(Ended::With(set)) => set.clone(),
+            Some(Ended::OnLine(_)) | None => WorkingSet::at_rest(program, REST_MARGIN),
+        };
         let mut solution = active_set::solve(program, &mut set, WORKING_SET_CHANGES);
         if solution.is_none() {
             self.counts.interior_point_solves += 1;
-            match quadratic::solve_interior(program, cancel) {
+            match self.interior.solve(program, cancel) {
                 Ok(approximate) => {
                     set = WorkingSet::of_solution(program, &approximate);
                     solution = active_set::solve(program, &mut set, WORKING_SET_CHANGES).or(Some(approximate));
@@ -81,8 +135,9 @@ impl StepSolver {
             }
         }
         let Some(solution) = solution else { return self.solve_elastic(program, cancel) };
-        let same_working_set = before.as_ref() == Some(&set);
-        self.working_set = Some(set);
+        let ended = Ended::With(set);
+        let same_working_set = before.as_ref() == Some(&ended);
+        self.ended_with = Some(ended);
         Ok(Step { solution, remaining_violation: 0.0, same_working_set })
     }
 
@@ -92,7 +147,7 @@ impl StepSolver {
         for raise in 0..=WEIGHT_RAISES {
             self.counts.elastic_solves += 1;
             self.counts.interior_point_solves += 1;
-            let solution = match quadratic::solve_interior(&relax_rows(program, weight), cancel) {
+            let solution = match self.interior.solve(&relax_rows(program, weight), cancel) {
                 Ok(solution) => solution,
                 Err(failure @ QuadraticFailure::Cancelled) => return Err(failure),
                 Err(failure) => return best.ok_or(failure),
@@ -125,16 +180,16 @@ fn relax_rows(program: &QuadraticProgram, weight: f64) -> QuadraticProgram {
     let (equalities, inequalities) = (program.equality_values.len(), program.inequality_values.len());
     let in_cones = n + 2 * equalities + inequalities;
     let total = in_cones + program.cones.len();
-    let mut hessian = DMatrix::zeros(total, total);
-    hessian.view_mut((0, 0), (n, n)).copy_from(&program.hessian);
-    let mut equality = DMatrix::zeros(equalities, total);
-    equality.view_mut((0, 0), (equalities, n)).copy_from(&program.equality);
+    let mut hessian = SparseRows::zeros(total, total);
+    (0..n).for_each(|i| hessian.set_row(i, program.hessian.row(i).iter().copied()));
+    let mut equality = program.equality.clone();
+    equality.widen(total);
     for i in 0..equalities {
         equality[(i, n + i)] = -1.0;
         equality[(i, n + equalities + i)] = 1.0;
     }
-    let mut inequality = DMatrix::zeros(inequalities, total);
-    inequality.view_mut((0, 0), (inequalities, n)).copy_from(&program.inequality);
+    let mut inequality = program.inequality.clone();
+    inequality.widen(total);
     for i in 0..inequalities {
         inequality[(i, n + 2 * equalities + i)] = 1.0;
     }
@@ -168,18 +223,19 @@ fn first_variables(solution: QuadraticSolution, n: usize) -> QuadraticSolution {
 
 #[cfg(test)]
 mod tests {
+    use super::super::quadratic;
     use super::*;
-    use nalgebra::DVector;
+    use nalgebra::DMatrix;
 
     /// `min ½ x²` s.t. `x >= 1` and `x <= -1`: every x in [-1, 1] violates by 2 in sum, and the smallest x wins.
     #[test]
     fn contradictory_rows_end_elastic_with_the_least_violation() {
         let program = QuadraticProgram {
-            hessian: DMatrix::identity(1, 1),
+            hessian: SparseRows::identity(1),
             gradient: DVector::zeros(1),
-            equality: DMatrix::zeros(0, 1),
+            equality: SparseRows::zeros(0, 1),
             equality_values: DVector::zeros(0),
-            inequality: DMatrix::from_column_slice(2, 1, &[1.0, -1.0]),
+            inequality: SparseRows::from(&DMatrix::from_column_slice(2, 1, &[1.0, -1.0])),
             inequality_values: DVector::from_column_slice(&[-1.0, -1.0]),
             lower: DVector::from_element(1, f64::NEG_INFINITY),
             upper: DVector::from_element(1, f64::INFINITY),
@@ -195,11 +251,11 @@ mod tests {
     #[test]
     fn data_that_are_not_finite_are_named_before_any_solve() {
         let program = QuadraticProgram {
-            hessian: DMatrix::identity(1, 1),
+            hessian: SparseRows::identity(1),
             gradient: DVector::from_element(1, f64::NAN),
-            equality: DMatrix::zeros(0, 1),
+            equality: SparseRows::zeros(0, 1),
             equality_values: DVector::zeros(0),
-            inequality: DMatrix::zeros(0, 1),
+            inequality: SparseRows::zeros(0, 1),
             inequality_values: DVector::zeros(0),
             lower: DVector::from_element(1, f64::NEG_INFINITY),
             upper: DVector::from_element(1, f64::INFINITY),

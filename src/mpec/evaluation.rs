@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::cone;
 use super::problem::Problem;
+use super::sparse_rows::SparseRows;
 
 /// The function of a [`Problem`] that returned a number that is not finite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,13 +30,13 @@ pub struct Evaluation {
     pub objective: f64,
     pub gradient: DVector<f64>,
     pub equality: DVector<f64>,
-    pub equality_jacobian: DMatrix<f64>,
+    pub equality_jacobian: SparseRows,
     pub inequality: DVector<f64>,
-    pub inequality_jacobian: DMatrix<f64>,
+    pub inequality_jacobian: SparseRows,
     pub first: DVector<f64>,
     pub second: DVector<f64>,
-    pub first_jacobian: DMatrix<f64>,
-    pub second_jacobian: DMatrix<f64>,
+    pub first_jacobian: SparseRows,
+    pub second_jacobian: SparseRows,
     pub cones: ConeMembers,
 }
 
@@ -99,13 +100,13 @@ impl Evaluation {
             objective: 0.0,
             gradient: DVector::zeros(n),
             equality: DVector::zeros(equalities),
-            equality_jacobian: DMatrix::zeros(equalities, n),
+            equality_jacobian: SparseRows::zeros(equalities, n),
             inequality: DVector::zeros(inequalities),
-            inequality_jacobian: DMatrix::zeros(inequalities, n),
+            inequality_jacobian: SparseRows::zeros(inequalities, n),
             first: DVector::zeros(pairs),
             second: DVector::zeros(pairs),
-            first_jacobian: DMatrix::zeros(pairs, n),
-            second_jacobian: DMatrix::zeros(pairs, n),
+            first_jacobian: SparseRows::zeros(pairs, n),
+            second_jacobian: SparseRows::zeros(pairs, n),
             cones: ConeMembers::new(&problem.cone_sizes(), n),
         }
     }
@@ -141,21 +142,21 @@ impl Evaluation {
             &mut self.inequality_jacobian,
             &mut self.first_jacobian,
             &mut self.second_jacobian,
-            &mut self.cones.first_jacobian,
-            &mut self.cones.second_jacobian,
         ] {
-            jacobian.fill(0.0);
+            jacobian.clear();
         }
+        self.cones.first_jacobian.fill(0.0);
+        self.cones.second_jacobian.fill(0.0);
         self.gradient.fill(0.0);
         problem.objective_gradient(x, &mut self.gradient);
         problem.equality_jacobian(x, &mut self.equality_jacobian);
         problem.inequality_jacobian(x, &mut self.inequality_jacobian);
         problem.pair_jacobians(x, &mut self.first_jacobian, &mut self.second_jacobian);
         finite(self.gradient.as_slice(), Quantity::ObjectiveGradient)?;
-        finite(self.equality_jacobian.as_slice(), Quantity::EqualityJacobian)?;
-        finite(self.inequality_jacobian.as_slice(), Quantity::InequalityJacobian)?;
-        finite(self.first_jacobian.as_slice(), Quantity::PairJacobians)?;
-        finite(self.second_jacobian.as_slice(), Quantity::PairJacobians)?;
+        finite_rows(&self.equality_jacobian, Quantity::EqualityJacobian)?;
+        finite_rows(&self.inequality_jacobian, Quantity::InequalityJacobian)?;
+        finite_rows(&self.first_jacobian, Quantity::PairJacobians)?;
+        finite_rows(&self.second_jacobian, Quantity::PairJacobians)?;
         if self.cones.count() > 0 {
             problem.cone_jacobians(x, &mut self.cones.first_jacobian, &mut self.cones.second_jacobian);
         }
@@ -204,4 +205,8 @@ impl AbsoluteMaximum for DVector<f64> {
 
 fn finite(values: &[f64], quantity: Quantity) -> Result<(), Quantity> {
     if values.iter().all(|value| value.is_finite()) { Ok(()) } else { Err(quantity) }
+}
+
+fn finite_rows(rows: &SparseRows, quantity: Quantity) -> Result<(), Quantity> {
+    if rows.is_finite() { Ok(()) } else { Err(quantity) }
 }

@@ -1,5 +1,6 @@
 //! How each pair is treated in a smooth program; the rows that follow from it are `mpec::relaxed`'s and `mpec::cone_rows`'.
 
+use super::activity::PairActivity;
 use super::cone_rows::ConeTreatment;
 
 /// How one pair enters the smooth program.
@@ -37,5 +38,17 @@ impl Pattern {
             pairs: vec![PairTreatment::Product(relaxation); pairs],
             cones: vec![ConeTreatment::Product(relaxation); cones],
         }
+    }
+
+    /// The same with the members zero that are named; what names none, or both, changes nothing.
+    pub fn with_zeros(mut self, members: &[PairActivity]) -> Self {
+        for (treatment, member) in self.pairs.iter_mut().zip(members) {
+            match member {
+                PairActivity::FirstZero => *treatment = PairTreatment::FirstZero,
+                PairActivity::SecondZero => *treatment = PairTreatment::SecondZero,
+                PairActivity::BothZero | PairActivity::NeitherZero => {}
+            }
+        }
+        self
     }
 }

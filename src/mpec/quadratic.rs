@@ -18,6 +18,7 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use nalgebra::{DMatrix, DVector};
 
+use super::sparse_rows::SparseRows;
 use crate::cancel::CancelFlag;
 
 /// Accuracy asked of the interior-point method; the active-set step that follows takes it to round-off.
@@ -29,15 +30,15 @@ const ITERATIONS: u32 = 100;
 #[derive(Debug, Clone)]
 pub struct QuadraticProgram {
     /// `H`, n x n, symmetric positive semidefinite.
-    pub hessian: DMatrix<f64>,
+    pub hessian: SparseRows,
     /// `q`, n.
     pub gradient: DVector<f64>,
     /// `E`, one row an equality.
-    pub equality: DMatrix<f64>,
+    pub equality: SparseRows,
     /// `e`.
     pub equality_values: DVector<f64>,
     /// `C`, one row an inequality.
-    pub inequality: DMatrix<f64>,
+    pub inequality: SparseRows,
     /// `c`.
     pub inequality_values: DVector<f64>,
     /// Bounds on `d`; infinite where there is none.
@@ -97,11 +98,11 @@ impl QuadraticProgram {
     /// True where every number is finite, bounds excepted, and no lower bound lies above its upper bound.
     pub fn is_well_formed(&self) -> bool {
         let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
-        finite(self.hessian.as_slice())
+        self.hessian.is_finite()
             && finite(self.gradient.as_slice())
-            && finite(self.equality.as_slice())
+            && self.equality.is_finite()
             && finite(self.equality_values.as_slice())
-            && finite(self.inequality.as_slice())
+            && self.inequality.is_finite()
             && finite(self.inequality_values.as_slice())
             && self.cones.iter().all(|cone| finite(cone.rows.as_slice()) && finite(cone.values.as_slice()))
             && self.lower.iter().zip(self.upper.iter()).all(|(lower, upper)| lower <= upper)
@@ -132,89 +133,183 @@ impl QuadraticProgram {
 /// # Errors
 /// Every [`QuadraticFailure`]; none of them is a proof that the program has no solution.
 pub fn solve_interior(program: &QuadraticProgram, cancel: &CancelFlag) -> Result<QuadraticSolution, QuadraticFailure> {
-    if !program.is_well_formed() {
-        return Err(QuadraticFailure::NotFinite);
-    }
-    let variables = program.gradient.len();
-    let equalities = program.equality_values.len();
-    let inequalities = program.inequality_values.len();
-    let bounded = |bounds: &DVector<f64>| -> Vec<usize> { (0..variables).filter(|&j| bounds[j].is_finite()).collect() };
-    let (below, above) = (bounded(&program.lower), bounded(&program.upper));
+    InteriorSolver::default().solve(program, cancel)
+}
 
-    // Rows in the solver's form A d + s = b: equalities, inequalities, lower bounds, upper bounds, cones.
-    let mut right = Vec::with_capacity(equalities + inequalities + below.len() + above.len());
-    right.extend(program.equality_values.iter().map(|value| -value));
-    right.extend(program.inequality_values.iter());
-    right.extend(below.iter().map(|&j| -program.lower[j]));
-    right.extend(above.iter().map(|&j| program.upper[j]));
-    let mut cones =
-        vec![SupportedConeT::ZeroConeT(equalities), SupportedConeT::NonnegativeConeT(right.len() - equalities)];
-    let cones_start = right.len();
-    for cone in &program.cones {
-        right.extend(cone.values.iter());
-        cones.push(SupportedConeT::SecondOrderConeT(cone.values.len()));
-    }
-    let rows = constraint_rows(program, &below, &above);
+/// The interior-point method, which keeps its order of elimination and its memory as long as programs have the same
+/// pattern: their data are replaced in place.
+#[derive(Default)]
+pub struct InteriorSolver {
+    held: Option<Held>,
+    /// Programs whose data were put in place of another's.
+    #[cfg(test)]
+    pub updates: usize,
+}
 
-    let mut solver = DefaultSolver::new(
-        &upper_triangle(&program.hessian),
-        program.gradient.as_slice(),
-        &rows,
-        &right,
-        &cones,
-        interior_settings(),
-    )
-    .map_err(|_| QuadraticFailure::Inaccurate)?;
-    let flag = cancel.clone();
-    solver.set_termination_callback(move |_| flag.is_cancelled());
-    solver.solve();
+/// A solver and the shape of the data it was made for.
+struct Held {
+    solver: DefaultSolver<f64>,
+    shape: Shape,
+}
 
-    match solver.solution.status {
-        SolverStatus::Solved | SolverStatus::AlmostSolved => {}
-        SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
-            return Err(QuadraticFailure::SuspectedInfeasible);
+/// What has to agree for data to be replaced: the rows' kinds and the patterns of both matrices.
+#[derive(PartialEq)]
+struct Shape {
+    cones: Vec<SupportedConeT<f64>>,
+    hessian: (Vec<usize>, Vec<usize>),
+    rows: (Vec<usize>, Vec<usize>),
+}
+
+impl InteriorSolver {
+    /// Solves a program.
+    ///
+    /// # Errors
+    /// Every [`QuadraticFailure`]; none of them is a proof that the program has no solution.
+    pub fn solve(
+        &mut self,
+        program: &QuadraticProgram,
+        cancel: &CancelFlag,
+    ) -> Result<QuadraticSolution, QuadraticFailure> {
+        if !program.is_well_formed() {
+            return Err(QuadraticFailure::NotFinite);
         }
-        SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => {
-            return Err(QuadraticFailure::SuspectedUnbounded);
+        let data = Data::new(program);
+        let gradient = program.gradient.as_slice().to_vec();
+        let shape = Shape {
+            cones: data.cones.clone(),
+            hessian: (data.hessian.colptr.clone(), data.hessian.rowval.clone()),
+            rows: (data.rows.colptr.clone(), data.rows.rowval.clone()),
+        };
+        let updated = self.held.as_mut().is_some_and(|held| {
+            held.shape == shape
+                && held.solver.update_data(&data.hessian.nzval, &gradient, &data.rows.nzval, &data.right).is_ok()
+        });
+        #[cfg(test)]
+        {
+            self.updates += usize::from(updated);
         }
-        SolverStatus::CallbackTerminated => return Err(QuadraticFailure::Cancelled),
-        SolverStatus::Unsolved
-        | SolverStatus::MaxIterations
-        | SolverStatus::MaxTime
-        | SolverStatus::NumericalError
-        | SolverStatus::InsufficientProgress => return Err(QuadraticFailure::Inaccurate),
+        if !updated {
+            self.held = None;
+            let made =
+                DefaultSolver::new(&data.hessian, &gradient, &data.rows, &data.right, &data.cones, interior_settings());
+            let mut solver = made.map_err(|_| QuadraticFailure::Inaccurate)?;
+            let flag = cancel.clone();
+            solver.set_termination_callback(move |_| flag.is_cancelled());
+            self.held = Some(Held { solver, shape });
+        }
+        let Some(held) = &mut self.held else { return Err(QuadraticFailure::Inaccurate) };
+        held.solver.solve();
+        data.read(program, &held.solver)
     }
-    let (x, z) = (&solver.solution.x, &solver.solution.z);
-    if x.iter().chain(z).any(|value| !value.is_finite()) {
-        return Err(QuadraticFailure::Inaccurate);
+}
+
+/// A program in the solver's form, `A d + s = b`: equalities, inequalities, lower bounds, upper bounds, cones.
+struct Data {
+    hessian: CscMatrix<f64>,
+    rows: CscMatrix<f64>,
+    right: Vec<f64>,
+    cones: Vec<SupportedConeT<f64>>,
+    /// Variables with bounds.
+    below: Vec<usize>,
+    above: Vec<usize>,
+    /// First row in a cone.
+    cones_start: usize,
+}
+
+impl Data {
+    fn new(program: &QuadraticProgram) -> Self {
+        let variables = program.gradient.len();
+        let bounded =
+            |bounds: &DVector<f64>| -> Vec<usize> { (0..variables).filter(|&j| bounds[j].is_finite()).collect() };
+        let (below, above) = (bounded(&program.lower), bounded(&program.upper));
+        let equalities = program.equality_values.len();
+        let mut right: Vec<f64> = program.equality_values.iter().map(|value| -value).collect();
+        right.extend(program.inequality_values.iter());
+        right.extend(below.iter().map(|&j| -program.lower[j]));
+        right.extend(above.iter().map(|&j| program.upper[j]));
+        let mut cones =
+            vec![SupportedConeT::ZeroConeT(equalities), SupportedConeT::NonnegativeConeT(right.len() - equalities)];
+        let cones_start = right.len();
+        for cone in &program.cones {
+            right.extend(cone.values.iter());
+            cones.push(SupportedConeT::SecondOrderConeT(cone.values.len()));
+        }
+        let upper = program.hessian.entries().filter(|(row, column, _)| row <= column);
+        let hessian = compressed(variables, variables, upper);
+        let inequalities_end = equalities + program.inequality_values.len();
+        let entries = program
+            .equality
+            .entries()
+            .chain(program.inequality.entries().map(|(i, j, value)| (equalities + i, j, -value)))
+            .chain(below.iter().enumerate().map(|(i, &j)| (inequalities_end + i, j, -1.0)))
+            .chain(above.iter().enumerate().map(|(i, &j)| (inequalities_end + below.len() + i, j, 1.0)));
+        let mut first = cones_start;
+        let of_cones = program.cones.iter().flat_map(|cone| {
+            let start = first;
+            first += cone.values.len();
+            let places = (0..variables).flat_map(move |j| (0..cone.values.len()).map(move |i| (i, j)));
+            places.filter(move |&place| cone.rows[place] != 0.0).map(move |(i, j)| (start + i, j, -cone.rows[(i, j)]))
+        });
+        let rows = compressed(right.len(), variables, entries.chain(of_cones));
+        Self { hessian, rows, right, cones, below, above, cones_start }
     }
-    let mut lower_multipliers = DVector::zeros(variables);
-    let mut upper_multipliers = DVector::zeros(variables);
-    let bounds_start = equalities + inequalities;
-    for (row, &j) in below.iter().enumerate() {
-        lower_multipliers[j] = z[bounds_start + row].max(0.0);
+
+    /// The solution, where there is one.
+    fn read(
+        &self,
+        program: &QuadraticProgram,
+        solver: &DefaultSolver<f64>,
+    ) -> Result<QuadraticSolution, QuadraticFailure> {
+        match solver.solution.status {
+            SolverStatus::Solved | SolverStatus::AlmostSolved => {}
+            SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
+                return Err(QuadraticFailure::SuspectedInfeasible);
+            }
+            SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => {
+                return Err(QuadraticFailure::SuspectedUnbounded);
+            }
+            SolverStatus::CallbackTerminated => return Err(QuadraticFailure::Cancelled),
+            SolverStatus::Unsolved
+            | SolverStatus::MaxIterations
+            | SolverStatus::MaxTime
+            | SolverStatus::NumericalError
+            | SolverStatus::InsufficientProgress => return Err(QuadraticFailure::Inaccurate),
+        }
+        let (x, z) = (&solver.solution.x, &solver.solution.z);
+        if x.iter().chain(z).any(|value| !value.is_finite()) {
+            return Err(QuadraticFailure::Inaccurate);
+        }
+        let (variables, equalities) = (program.gradient.len(), program.equality_values.len());
+        let inequalities = program.inequality_values.len();
+        let (below, above) = (&self.below, &self.above);
+        let mut lower_multipliers = DVector::zeros(variables);
+        let mut upper_multipliers = DVector::zeros(variables);
+        let bounds_start = equalities + inequalities;
+        for (row, &j) in below.iter().enumerate() {
+            lower_multipliers[j] = z[bounds_start + row].max(0.0);
+        }
+        for (row, &j) in above.iter().enumerate() {
+            upper_multipliers[j] = z[bounds_start + below.len() + row].max(0.0);
+        }
+        let mut cone_start = self.cones_start;
+        let cone_multipliers = program.cones.iter().map(|cone| {
+            let place = cone_start..cone_start + cone.values.len();
+            cone_start = place.end;
+            super::cone::projection(&z[place])
+        });
+        let cone_multipliers = cone_multipliers.collect();
+        Ok(QuadraticSolution {
+            step: DVector::from_column_slice(x),
+            equality_multipliers: DVector::from_iterator(equalities, z[..equalities].iter().map(|value| -value)),
+            inequality_multipliers: DVector::from_iterator(
+                inequalities,
+                z[equalities..bounds_start].iter().map(|value| value.max(0.0)),
+            ),
+            lower_multipliers,
+            upper_multipliers,
+            cone_multipliers,
+        })
     }
-    for (row, &j) in above.iter().enumerate() {
-        upper_multipliers[j] = z[bounds_start + below.len() + row].max(0.0);
-    }
-    let mut cone_start = cones_start;
-    let cone_multipliers = program.cones.iter().map(|cone| {
-        let place = cone_start..cone_start + cone.values.len();
-        cone_start = place.end;
-        super::cone::projection(&z[place])
-    });
-    let cone_multipliers = cone_multipliers.collect();
-    Ok(QuadraticSolution {
-        step: DVector::from_column_slice(x),
-        equality_multipliers: DVector::from_iterator(equalities, z[..equalities].iter().map(|value| -value)),
-        inequality_multipliers: DVector::from_iterator(
-            inequalities,
-            z[equalities..bounds_start].iter().map(|value| value.max(0.0)),
-        ),
-        lower_multipliers,
-        upper_multipliers,
-        cone_multipliers,
-    })
 }
 
 /// Presolve is off since it would drop rows with an infinite right-hand side, which never arise here, at a cost.
@@ -235,75 +330,16 @@ fn interior_settings() -> DefaultSettings<f64> {
     }
 }
 
-fn upper_triangle(matrix: &DMatrix<f64>) -> CscMatrix<f64> {
-    let mut columns = Columns::new(matrix.ncols());
-    for j in 0..matrix.ncols() {
-        for i in 0..=j {
-            columns.push(i, matrix[(i, j)]);
-        }
-        columns.close();
+/// A compressed-column matrix; entries have to come row by row, each place once.
+fn compressed(rows: usize, columns: usize, entries: impl Iterator<Item = (usize, usize, f64)>) -> CscMatrix<f64> {
+    let mut by_column: Vec<Vec<(usize, f64)>> = vec![Vec::new(); columns];
+    entries.for_each(|(row, column, value)| by_column[column].push((row, value)));
+    let mut starts = vec![0];
+    let (mut places, mut values) = (Vec::new(), Vec::new());
+    for column in by_column {
+        places.extend(column.iter().map(|(row, _)| *row));
+        values.extend(column.iter().map(|(_, value)| *value));
+        starts.push(places.len());
     }
-    columns.into_matrix(matrix.nrows())
-}
-
-fn constraint_rows(program: &QuadraticProgram, below: &[usize], above: &[usize]) -> CscMatrix<f64> {
-    let (equalities, inequalities) = (program.equality.nrows(), program.inequality.nrows());
-    let mut columns = Columns::new(program.gradient.len());
-    let (mut next_below, mut next_above) = (0, 0);
-    for j in 0..program.gradient.len() {
-        for i in 0..equalities {
-            columns.push(i, program.equality[(i, j)]);
-        }
-        for i in 0..inequalities {
-            columns.push(equalities + i, -program.inequality[(i, j)]);
-        }
-        if below.get(next_below) == Some(&j) {
-            columns.push(equalities + inequalities + next_below, -1.0);
-            next_below += 1;
-        }
-        if above.get(next_above) == Some(&j) {
-            columns.push(equalities + inequalities + below.len() + next_above, 1.0);
-            next_above += 1;
-        }
-        let mut row = equalities + inequalities + below.len() + above.len();
-        for cone in &program.cones {
-            for value in &cone.rows.column(j) {
-                columns.push(row, -value);
-                row += 1;
-            }
-        }
-        columns.close();
-    }
-    let in_cones: usize = program.cones.iter().map(|cone| cone.values.len()).sum();
-    columns.into_matrix(equalities + inequalities + below.len() + above.len() + in_cones)
-}
-
-/// A compressed-column matrix under construction; exact zeros are left out.
-struct Columns {
-    starts: Vec<usize>,
-    rows: Vec<usize>,
-    values: Vec<f64>,
-}
-
-impl Columns {
-    fn new(columns: usize) -> Self {
-        let mut starts = Vec::with_capacity(columns + 1);
-        starts.push(0);
-        Self { starts, rows: Vec::new(), values: Vec::new() }
-    }
-
-    fn push(&mut self, row: usize, value: f64) {
-        if value != 0.0 {
-            self.rows.push(row);
-            self.values.push(value);
-        }
-    }
-
-    fn close(&mut self) {
-        self.starts.push(self.rows.len());
-    }
-
-    fn into_matrix(self, rows: usize) -> CscMatrix<f64> {
-        CscMatrix::new(rows, self.starts.len() - 1, self.starts, self.rows, self.values)
-    }
+    CscMatrix::new(rows, columns, starts, places, values)
 }

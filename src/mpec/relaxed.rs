@@ -18,13 +18,14 @@
 //! complementarity constraints*, SIAM J. Optim. 11 (2001), doi:10.1137/S1052623499361233. With multipliers `λ_a, λ_b, π`
 //! of the three rows of a product, the pair's own multipliers are `ν_a = λ_a - π b` and `ν_b = λ_b - π a`.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use super::cone;
 use super::cone_rows::{ConeRow, ConeTreatment, Member};
 use super::evaluation::{ConeMembers, Evaluation};
 use super::pattern::{PairTreatment, Pattern};
 use super::quadratic::{ConeRows, QuadraticProgram, QuadraticSolution};
+use super::sparse_rows::SparseRows;
 
 /// What a row of the smooth program belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -121,15 +122,15 @@ impl Rows {
         at: &Evaluation,
         x: &DVector<f64>,
         bounds: &(DVector<f64>, DVector<f64>),
-        hessian: DMatrix<f64>,
+        hessian: SparseRows,
     ) -> QuadraticProgram {
         let n = x.len();
         let mut program = QuadraticProgram {
             hessian,
             gradient: at.gradient.clone(),
-            equality: DMatrix::zeros(self.equality.len(), n),
+            equality: SparseRows::zeros(self.equality.len(), n),
             equality_values: DVector::zeros(self.equality.len()),
-            inequality: DMatrix::zeros(self.inequality.len(), n),
+            inequality: SparseRows::zeros(self.inequality.len(), n),
             inequality_values: DVector::zeros(self.inequality.len()),
             lower: &bounds.0 - x,
             upper: &bounds.1 - x,
@@ -147,24 +148,25 @@ impl Rows {
         program
     }
 
-    fn put_gradient(&self, at: &Evaluation, row: Row, into: &mut DMatrix<f64>, place: usize) {
+    fn put_gradient(&self, at: &Evaluation, row: Row, into: &mut SparseRows, place: usize) {
         if let Row::Cone(i, row) = row {
             let (by_first, by_second) = ConeTreatment::derivatives(&at.cones, i, row);
             let range = at.cones.range(i);
             let gradient = at.cones.first_jacobian.rows(range.start, range.len()).tr_mul(&by_first)
                 + at.cones.second_jacobian.rows(range.start, range.len()).tr_mul(&by_second);
-            into.set_row(place, &gradient.transpose());
+            into.set_row(place, gradient.iter().copied().enumerate().filter(|(_, value)| *value != 0.0));
             return;
         }
-        for j in 0..into.ncols() {
-            into[(place, j)] = match row {
-                Row::Equality(i) => at.equality_jacobian[(i, j)],
-                Row::Inequality(i) => at.inequality_jacobian[(i, j)],
-                Row::First(i) => at.first_jacobian[(i, j)],
-                Row::Second(i) => at.second_jacobian[(i, j)],
-                Row::Product(i) => -at.second[i] * at.first_jacobian[(i, j)] - at.first[i] * at.second_jacobian[(i, j)],
-                Row::Cone(..) => 0.0,
-            };
+        match row {
+            Row::Equality(i) => into.set_row(place, at.equality_jacobian.row(i).iter().copied()),
+            Row::Inequality(i) => into.set_row(place, at.inequality_jacobian.row(i).iter().copied()),
+            Row::First(i) => into.set_row(place, at.first_jacobian.row(i).iter().copied()),
+            Row::Second(i) => into.set_row(place, at.second_jacobian.row(i).iter().copied()),
+            Row::Product(i) => {
+                into.add_to_row(place, -at.second[i], at.first_jacobian.row(i));
+                into.add_to_row(place, -at.first[i], at.second_jacobian.row(i));
+            }
+            Row::Cone(..) => {}
         }
     }
 
@@ -278,10 +280,10 @@ fn cone_rows(cones: &ConeMembers, pair: usize, member: Member) -> ConeRows {
 }
 
 /// Column and value of a row's only entry.
-fn only_entry(matrix: &DMatrix<f64>, row: usize) -> Option<(usize, f64)> {
-    let mut entries = (0..matrix.ncols()).filter(|&j| matrix[(row, j)] != 0.0);
+fn only_entry(matrix: &SparseRows, row: usize) -> Option<(usize, f64)> {
+    let mut entries = matrix.row(row).iter().filter(|(_, value)| *value != 0.0);
     match (entries.next(), entries.next()) {
-        (Some(j), None) => Some((j, matrix[(row, j)])),
+        (Some(&entry), None) => Some(entry),
         _ => None,
     }
 }

@@ -6,6 +6,7 @@
 //! Source: M. J. D. Powell, *A fast algorithm for nonlinearly constrained optimization calculations*, Lecture Notes in
 //! Mathematics 630 (1978), doi:10.1007/BFb0067703.
 
+use super::sparse_rows::SparseRows;
 use nalgebra::{DMatrix, DVector};
 
 /// Smallest curvature, relative to the identity, that an update may leave.
@@ -43,7 +44,7 @@ impl Secant {
         true
     }
 
-    pub fn put_into(&self, hessian: &mut DMatrix<f64>) {
+    pub fn put_into(&self, hessian: &mut SparseRows) {
         if !self.idle {
             hessian.copy_from(&self.matrix);
         }

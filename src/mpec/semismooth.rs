@@ -153,11 +153,11 @@ fn jacobian(at: &Evaluation, x: &DVector<f64>, closing: Option<Closing<'_>>) -> 
     let (equalities, pairs, in_cones) = (at.equality.len(), at.first.len(), at.cones.first.len());
     let rows = equalities + pairs + in_cones + usize::from(closing.is_some());
     let mut matrix = DMatrix::zeros(rows, variables);
-    matrix.rows_mut(0, equalities).copy_from(&at.equality_jacobian);
+    put_rows(&mut matrix, 0, at.equality_jacobian.entries());
     for pair in 0..pairs {
         let smaller =
             if at.first[pair] <= at.second[pair] { at.first_jacobian.row(pair) } else { at.second_jacobian.row(pair) };
-        matrix.row_mut(equalities + pair).copy_from(&smaller);
+        put_rows(&mut matrix, equalities + pair, smaller.iter().map(|&(column, value)| (0, column, value)));
     }
     for pair in 0..at.cones.count() {
         let range = at.cones.range(pair);
@@ -173,6 +173,10 @@ fn jacobian(at: &Evaluation, x: &DVector<f64>, closing: Option<Closing<'_>>) -> 
         matrix.set_row(rows - 1, &closing(x).1.transpose());
     }
     matrix
+}
+
+fn put_rows(matrix: &mut DMatrix<f64>, first: usize, entries: impl Iterator<Item = (usize, usize, f64)>) {
+    entries.for_each(|(row, column, value)| matrix[(first + row, column)] = value);
 }
 
 /// `-J⁻¹ F`; the least-squares solution of least norm where `J` is singular: a contact that is apart leaves the bound on

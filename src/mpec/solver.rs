@@ -55,6 +55,40 @@ pub fn solve<P: Problem + ?Sized>(
     Ok(run.finish(start, stopped))
 }
 
+/// Follows one branch from `start` to its own optimum and looks at no other: the branch in which the given member of each
+/// pair is zero (of the pairs without such an entry, and of cone pairs, the member that is smaller at the start).
+///
+/// Where nothing holds the branch up on the way, its solution is the problem's: [`Status::PatternSettled`] or
+/// [`Status::Solved`], of kind [`StationarityKind::OneBranch`] where a pair is zero to rounding and another branch might
+/// lead further. [`Status::Feasible`] where the branch ends before, at a pair that has to change.
+///
+/// # Errors
+/// [`InputError`] for a start or bounds that do not fit the problem, or settings out of range.
+pub fn follow_branch<P: Problem + ?Sized>(
+    problem: &P,
+    start: &DVector<f64>,
+    zero_members: &[PairActivity],
+    settings: &Settings,
+    cancel: &CancelFlag,
+) -> Result<Solution, InputError> {
+    let bounds = problem.bounds();
+    check_input(problem, start, &bounds, settings)?;
+    let mut run =
+        Run { problem, bounds, settings, cancel, steps: StepSolver::default(), best: None, seen: Ends::default() };
+    run.steps.is_elastic = false;
+    let mut at = Evaluation::new(problem);
+    let stopped = match at.update_values(problem, start) {
+        Err(quantity) => Some(Status::NotFinite(quantity)),
+        Ok(()) => {
+            let pattern = branch::nearest_pattern(&at).with_zeros(zero_members);
+            let (steps, bounds) = (&mut run.steps, &run.bounds);
+            let candidate = branch::follow(problem, bounds, start, &pattern, settings, steps, cancel);
+            run.accept(candidate).and_then(Over::reason)
+        }
+    };
+    Ok(run.finish(start, stopped))
+}
+
 /// Ends that matter for the status when no point is feasible.
 #[derive(Debug, Clone, Copy, Default)]
 struct Ends {
@@ -177,6 +211,11 @@ impl<P: Problem + ?Sized> Run<'_, P> {
     fn search_from(&mut self, x: &DVector<f64>, pattern: Pattern) -> Option<Over> {
         let candidate =
             branch::descend(self.problem, &self.bounds, x, pattern, self.settings, &mut self.steps, self.cancel);
+        self.accept(candidate)
+    }
+
+    /// Keeps a point that is better than the last; an end where it is final or the solve has to stop.
+    fn accept(&mut self, candidate: Candidate) -> Option<Over> {
         let over = match candidate.end {
             SqpEnd::Cancelled => Some(Over::Stopped(Status::Cancelled)),
             SqpEnd::Infeasible => {

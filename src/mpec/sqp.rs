@@ -15,7 +15,7 @@
 //! programs with equilibrium constraints*, SIAM J. Optim. 17 (2006), doi:10.1137/S1052623402407382; J. Nocedal and
 //! S. J. Wright, *Numerical Optimization*, 2nd ed. (2006), chapter 18 (merit function, penalty rule, correction).
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use super::elastic::{Step, StepSolver};
 use super::evaluation::{Evaluation, Quantity};
@@ -23,6 +23,7 @@ use super::problem::Problem;
 use super::quadratic::{QuadraticFailure, QuadraticProgram};
 use super::relaxed::{Multipliers, Rows};
 use super::secant::Secant;
+use super::sparse_rows::SparseRows;
 use crate::cancel::CancelFlag;
 
 /// Part of the predicted decrease that a step has to reach.
@@ -124,7 +125,8 @@ impl<P: Problem + ?Sized> Sequence<'_, P> {
             Ok(program) => program,
             Err(quantity) => return SqpEnd::NotFinite(quantity),
         };
-        for _ in 0..settings.iteration_limit {
+        steps.head_for(&program, &self.x);
+        for iteration in 0..settings.iteration_limit {
             steps.counts.sqp_iterations += 1;
             let step = match steps.solve(&program, self.cancel) {
                 Ok(step) => step,
@@ -169,7 +171,7 @@ impl<P: Problem + ?Sized> Sequence<'_, P> {
                 return SqpEnd::Unbounded;
             }
             let left = self.rows.violation(&self.at);
-            let quiet = left <= settings.tolerance.sqrt() || left <= 0.1 * violation;
+            let quiet = left <= settings.tolerance.sqrt() || iteration > 0 && left <= 0.1 * violation;
             if settings.stop_when_settled && step.same_working_set && length == 1.0 && quiet {
                 return SqpEnd::Settled;
             }
@@ -198,15 +200,16 @@ impl<P: Problem + ?Sized> Sequence<'_, P> {
         self.at.update_derivatives(self.problem, &self.x)?;
         let n = self.x.len();
         let hessian = match self.problem.quadratic_model(&self.x) {
-            Some(model) => {
-                if model.shape() != (n, n) || model.iter().any(|value| !value.is_finite()) {
+            Some(mut model) => {
+                if (model.nrows(), model.ncols()) != (n, n) || !model.is_finite() {
                     return Err(Quantity::QuadraticModel);
                 }
                 secant.set_idle();
-                let ridge = RIDGE * if n == 0 { 1.0 } else { model.amax().max(f64::MIN_POSITIVE) };
-                model + DMatrix::identity(n, n) * ridge
+                let ridge = RIDGE * model.amax().max(f64::MIN_POSITIVE);
+                (0..n).for_each(|j| model[(j, j)] += ridge);
+                model
             }
-            None => DMatrix::identity(n, n),
+            None => SparseRows::identity(n),
         };
         Ok(self.rows.linearise(&self.at, &self.x, self.bounds, hessian))
     }

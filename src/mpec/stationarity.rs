@@ -21,7 +21,7 @@
 //! Source: H. Scheel and S. Scholtes, *Mathematical programs with complementarity constraints: stationarity, optimality,
 //! and sensitivity*, Math. Oper. Res. 25 (2000), doi:10.1287/moor.25.1.1.15213.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use super::cone::ConeActivity;
 use super::cone_rows::ConeTreatment;
@@ -33,6 +33,7 @@ use super::quadratic::{QuadraticFailure, QuadraticProgram};
 use super::relaxed::{Multipliers, Rows};
 use super::result::StationarityKind;
 use super::settings::Settings;
+use super::sparse_rows::SparseRows;
 use crate::cancel::CancelFlag;
 
 /// Length of a projected gradient that counts as zero, relative to `1 + ‖∇f‖∞`.
@@ -111,7 +112,7 @@ impl Judge<'_> {
         let sizes: Vec<usize> = self.at.cones.pairs().map(|(a, _)| a.len()).collect();
         let rows = Rows::new(self.at.equality.len(), self.at.inequality.len(), &sizes, treatments);
         let n = self.x.len();
-        let program: QuadraticProgram = rows.linearise(self.at, self.x, self.bounds, DMatrix::identity(n, n));
+        let program: QuadraticProgram = rows.linearise(self.at, self.x, self.bounds, SparseRows::identity(n));
         steps.forget();
         match steps.solve(&program, self.cancel) {
             Ok(step) if step.remaining_violation == 0.0 => {

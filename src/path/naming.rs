@@ -1,14 +1,17 @@
 //! Where the MPEC names the mode: every increment of `method: "mpec"`, and the direction taken where a mode ends.
 
+use super::advance::Reached;
 use super::corner::agree;
 use super::decide::Choice;
-use super::program::{IncrementProgram, Named};
+use super::loading::Loading;
+use super::program::{Counts, Foreseen, IncrementProgram, Named};
 use super::standing::ZERO;
 use super::state::{Rate, State};
 use super::tracer::Path;
 use super::watch;
 use crate::contact::Mode;
 use crate::mpec::Problem;
+use nalgebra::DVector;
 
 /// Arc length at which a direction is first put to the program, as a fraction of the path's next step.
 const FIRST_TRIAL: f64 = 0.25;
@@ -16,24 +19,59 @@ const FIRST_TRIAL: f64 = 0.25;
 const WITHIN: f64 = 0.5;
 /// Arc length below which changes are not told apart by the program, whose products end at a relaxation of 1e-8.
 const RESOLVED: f64 = 1e-8;
-/// How often that arc length is shortened until the program names the direction's own mode.
-const TRIALS: usize = 5;
+/// How often the whole program is asked, for shorter and shorter increments.
+const TRIALS: usize = 3;
+/// By how much the arc length is shortened where nothing says how far the mode holds, and at most.
+const SHORTER: f64 = 0.1;
+const SHORTEST: f64 = 1e-3;
+/// Arc length below which a reaction that has just left a boundary may still be there within the program's tolerance.
+const NEAR: f64 = 1e-5;
 
 impl Path<'_> {
-    /// Whether the program, started along the present direction, ends in the present mode.
+    /// Whether the program, started along the present direction, ends in the present mode; up to an event, on the way there.
+    pub(super) fn program_keeps_mode(&mut self, rate: &Rate, reached: &Reached, step: f64) -> bool {
+        let way = if reached.event.is_some() { WITHIN * reached.step } else { step };
+        // So near to the event the program tells nothing apart.
+        way < RESOLVED || {
+            let modes = self.at.here.modes.clone();
+            self.is_named(rate, &modes, way, true)
+        }
+    }
+
+    /// Whether the program, started along a direction, ends in the direction's own mode.
     ///
     /// Its increment has about the arc length asked for, not exactly; where it names another mode, it may have gone past
-    /// the end of this one, and is asked again for shorter increments.
-    pub(super) fn program_keeps_mode(&mut self, rate: &Rate, step: f64) -> bool {
-        let modes = self.at.here.modes.clone();
+    /// the end of this one, and is asked again for shorter increments. First the branch of the direction's mode alone is
+    /// solved: where it holds, it is the program's solution, and where it ends, it says how far it goes. The whole program
+    /// has the word where that does not settle it; `untold` is the answer where no program can tell.
+    fn is_named(&mut self, rate: &Rate, modes: &[Mode], step: f64, untold: bool) -> bool {
         let state = self.at.here.state.clone();
+        if self.scene.structure.dimension == 3 {
+            // A cone may bind a branch that holds.
+            return self.is_named_by_whole(&state, rate, modes, step);
+        }
+        let mut tried = step;
+        while tried >= RESOLVED {
+            match self.foresee(&state, rate, modes, tried) {
+                Foreseen::Named(named) if agree(self.loading(), &named.modes, modes) => return true,
+                Foreseen::EndsAfter(part) => tried *= WITHIN * part.clamp(SHORTEST, 1.0),
+                Foreseen::Named(_) | Foreseen::Unclear => tried *= SHORTER,
+                Foreseen::Untold if tried <= NEAR => return untold,
+                Foreseen::Untold => return self.is_named_by_whole(&state, rate, modes, tried),
+            }
+        }
+        self.is_named_by_whole(&state, rate, modes, RESOLVED.min(step))
+    }
+
+    /// The same by the whole program, all branches of it.
+    fn is_named_by_whole(&mut self, state: &State, rate: &Rate, modes: &[Mode], step: f64) -> bool {
         let mut tried = step;
         for _ in 0..TRIALS {
-            let named = self.name(&state, rate, &modes, tried);
-            if named.is_some_and(|named| agree(self.loading(), &named.modes, &modes)) {
+            let named = self.name(state, rate, modes, tried);
+            if named.is_some_and(|named| agree(self.loading(), &named.modes, modes)) {
                 return true;
             }
-            tried *= 0.3;
+            tried *= SHORTER;
         }
         false
     }
@@ -54,25 +92,41 @@ impl Path<'_> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    fn name(&mut self, base: &State, expected: &Rate, modes: &[Mode], step: f64) -> Option<Named> {
-        let loading = self.loading();
+    /// The increment's program and its start; `None` where no contact can be reached: there is nothing to decide.
+    fn program<'a>(
+        loading: Loading<'a>,
+        force_scale: f64,
+        base: &'a State,
+        expected: &'a Rate,
+        step: f64,
+    ) -> Option<(IncrementProgram<'a>, DVector<f64>)> {
         let ahead = base.advanced(expected, step);
         let reactions = ahead.reactions.iter().fold(0.0_f64, |largest, reaction| largest.max(reaction.size()));
-        let force = self.at.totals.force_scale.max(ahead.load.abs()).max(reactions).max(f64::MIN_POSITIVE);
-        let mut program = IncrementProgram::new(loading, base, expected, step, force);
-        if program.pairs() == 0 {
-            // No contact can be reached: there is nothing to decide.
-            return Some(Named {
-                modes: modes.to_vec(),
-                #[cfg(test)]
-                end: None,
-            });
-        }
+        let force = force_scale.max(ahead.load.abs()).max(reactions).max(f64::MIN_POSITIVE);
+        let program = IncrementProgram::new(loading, base, expected, step, force);
         let start = program.variables_at(expected);
+        (program.pairs() > 0).then_some((program, start))
+    }
+
+    fn name(&mut self, base: &State, expected: &Rate, modes: &[Mode], step: f64) -> Option<Named> {
+        let program = Self::program(self.loading(), self.at.totals.force_scale, base, expected, step);
+        let Some((mut program, start)) = program else { return Some(Named::of(modes)) };
         let (named, counts) = program.name(&start, modes, &self.cancel);
+        self.count(counts);
+        named
+    }
+
+    fn foresee(&mut self, base: &State, expected: &Rate, modes: &[Mode], step: f64) -> Foreseen {
+        let program = Self::program(self.loading(), self.at.totals.force_scale, base, expected, step);
+        let Some((mut program, start)) = program else { return Foreseen::Named(Named::of(modes)) };
+        let (foreseen, counts) = program.foresee(&start, modes, &self.cancel);
+        self.count(counts);
+        foreseen
+    }
+
+    fn count(&mut self, counts: Counts) {
         self.at.totals.work.qp_solves += counts.qp_solves;
         self.at.totals.work.mpec_solves += counts.mpec_solves;
-        named
     }
 
     /// Whether the program confirms a direction at the present point: started along it, it ends in the direction's own
@@ -82,18 +136,7 @@ impl Path<'_> {
     /// against its past (a contact closes, the load turns), that term would hold the increment back at zero.
     pub(super) fn is_confirmed_by_program(&mut self, choice: &Choice) -> bool {
         let within = WITHIN * self.way_to_next_change(&choice.modes, &choice.rate);
-        if within < RESOLVED {
-            return false;
-        }
-        let state = self.at.here.state.clone();
-        let mut step = (FIRST_TRIAL * self.at.step).min(within);
-        for _ in 0..TRIALS {
-            let named = self.name(&state, &choice.rate, &choice.modes, step);
-            if named.is_some_and(|named| agree(self.loading(), &named.modes, &choice.modes)) {
-                return true;
-            }
-            step *= 0.1;
-        }
-        false
+        within >= RESOLVED
+            && self.is_named(&choice.rate, &choice.modes, (FIRST_TRIAL * self.at.step).min(within), false)
     }
 }

@@ -200,10 +200,8 @@ impl Path<'_> {
                     (accepted.crossing, accepted.signature, accepted.returned) = (crossing, signature, returned);
                     let factor = self.next_step_factor(&rate, &accepted, step);
                     if factor > REJECTED || step * factor < least {
-                        // Where the mode ends inside the step, the program names the next one, from there.
-                        accepted.mode_named = self
-                            .is_named_by_program()
-                            .then(|| self.program_keeps_mode(&rate, step) || accepted.reached.event.is_some());
+                        accepted.mode_named =
+                            self.is_named_by_program().then(|| self.program_keeps_mode(&rate, &accepted.reached, step));
                         if jump != Some(step) {
                             self.at.step = (step * factor).clamp(least, most);
                         }

@@ -8,10 +8,12 @@
 //! * [`held`]: unknowns of a node that border rows hold (closed contacts) are eliminated where they are.
 //! * [`factorisation`]: block elimination with the dense Schur complement of what remains of the borders, refined on the
 //!   whole system.
+//! * [`general`]: LU of any sparse matrix.
 
 pub mod bordered;
 pub mod definite;
 pub mod factorisation;
+pub mod general;
 mod held;
 mod lu;
 pub mod pattern;

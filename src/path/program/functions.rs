@@ -5,7 +5,7 @@ use super::IncrementProgram;
 use super::frame;
 use crate::contact::Frame;
 use crate::contact::vector::{Vector, add, dot, scaled};
-use crate::mpec::Problem;
+use crate::mpec::{Problem, SparseRows};
 use nalgebra::{DMatrix, DVector};
 
 impl IncrementProgram<'_> {
@@ -29,6 +29,13 @@ impl IncrementProgram<'_> {
         let terms =
             if entry.tangents == 2 { [Some((entry.slip(tangent), 1.0)), None] } else { entry.parts().map(Some) };
         terms.into_iter().flatten()
+    }
+}
+
+/// Writes an entry, unless it is zero.
+fn put(rows: &mut SparseRows, place: (usize, usize), value: f64) {
+    if value != 0.0 {
+        rows[place] = value;
     }
 }
 
@@ -128,7 +135,7 @@ impl Problem for IncrementProgram<'_> {
         }
     }
 
-    fn equality_jacobian(&self, x: &DVector<f64>, jacobian: &mut DMatrix<f64>) {
+    fn equality_jacobian(&self, x: &DVector<f64>, jacobian: &mut SparseRows) {
         let structure = self.loading.structure;
         let state = self.state(x);
         let unknowns = structure.unknowns();
@@ -141,7 +148,10 @@ impl Problem for IncrementProgram<'_> {
             }
         });
         for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
-            jacobian[(unknown, unknowns)] -= self.loading.pattern.forces[*freedom] * scale;
+            let force = self.loading.pattern.forces[*freedom];
+            if force != 0.0 {
+                jacobian[(unknown, unknowns)] -= force * scale;
+            }
         }
         let mut row = unknowns;
         for entry in &self.reach {
@@ -149,14 +159,14 @@ impl Problem for IncrementProgram<'_> {
             let tangents = entry.tangents_at(&frame);
             let driven = frame::components(&entry.frame, &self.driven(entry));
             for (unknown, k) in self.node_of(entry) {
-                jacobian[(unknown, entry.normal())] = -frame.normal[k];
+                put(jacobian, (unknown, entry.normal()), -frame.normal[k]);
                 for t in 0..entry.tangents {
-                    jacobian[(unknown, entry.tangential(t))] = -tangents[t][k];
-                    jacobian[(row + t, unknown)] = entry.frame.tangents[t][k];
+                    put(jacobian, (unknown, entry.tangential(t)), -tangents[t][k]);
+                    put(jacobian, (row + t, unknown), entry.frame.tangents[t][k]);
                 }
             }
             for (t, driven) in driven.into_iter().enumerate().take(entry.tangents) {
-                jacobian[(row, unknowns)] = driven;
+                put(jacobian, (row, unknowns), driven);
                 for (variable, factor) in self.slip_terms(entry, t) {
                     jacobian[(row, variable)] = -factor;
                 }
@@ -186,16 +196,16 @@ impl Problem for IncrementProgram<'_> {
         }
     }
 
-    fn pair_jacobians(&self, x: &DVector<f64>, first: &mut DMatrix<f64>, second: &mut DMatrix<f64>) {
+    fn pair_jacobians(&self, x: &DVector<f64>, first: &mut SparseRows, second: &mut SparseRows) {
         let state = self.state(x);
         let load = self.loading.structure.unknowns();
         let mut pair = 0;
         for entry in &self.reach {
             let normal = self.loading.frame(entry.contact, &state).normal;
             for (unknown, k) in self.node_of(entry) {
-                first[(pair, unknown)] = normal[k];
+                put(first, (pair, unknown), normal[k]);
             }
-            first[(pair, load)] = dot(&self.driven(entry), &normal);
+            put(first, (pair, load), dot(&self.driven(entry), &normal));
             second[(pair, entry.normal())] = 1.0;
             pair += 1;
             if entry.tangents == 1 {
@@ -229,8 +239,8 @@ impl Problem for IncrementProgram<'_> {
         }
     }
 
-    fn quadratic_model(&self, _x: &DVector<f64>) -> Option<DMatrix<f64>> {
-        let mut model = DMatrix::zeros(self.variables, self.variables);
+    fn quadratic_model(&self, _x: &DVector<f64>) -> Option<SparseRows> {
+        let mut model = SparseRows::zeros(self.variables, self.variables);
         for unknown in 0..=self.loading.structure.unknowns() {
             model[(unknown, unknown)] = self.arc_weight;
         }
@@ -240,7 +250,7 @@ impl Problem for IncrementProgram<'_> {
 
 impl IncrementProgram<'_> {
     /// On a curved obstacle the reaction turns with the node's place.
-    fn add_turn_of_reaction(&self, entry: &InReach, frame: &Frame, x: &DVector<f64>, jacobian: &mut DMatrix<f64>) {
+    fn add_turn_of_reaction(&self, entry: &InReach, frame: &Frame, x: &DVector<f64>, jacobian: &mut SparseRows) {
         let tangents = entry.tangents_at(frame);
         let turn = |motion: &Vector| {
             let of_normal = scaled(&frame.normal_change(motion), x[entry.normal()] * self.step);

@@ -37,7 +37,7 @@ use super::track::Start;
 use crate::cancel::CancelFlag;
 use crate::contact::vector::{Vector, dot, scaled};
 use crate::contact::{Frame, Mode};
-use crate::mpec::{self, Finish, Settings};
+use crate::mpec::{self, Finish, PairActivity, Settings, StationarityKind};
 use frame::Components;
 use nalgebra::DVector;
 
@@ -123,6 +123,30 @@ pub struct Named {
     /// round-off. `None` where the semismooth method did not get there.
     #[cfg(test)]
     pub end: Option<State>,
+}
+
+impl Named {
+    /// Modes that there is nothing to decide about.
+    pub fn of(modes: &[Mode]) -> Self {
+        Self {
+            modes: modes.to_vec(),
+            #[cfg(test)]
+            end: None,
+        }
+    }
+}
+
+/// What the modes of a start lead to.
+#[derive(Debug, Clone)]
+pub enum Foreseen {
+    /// A solution, with contacts that are not about to change.
+    Named(Named),
+    /// Some contact changes after this part of the arc length.
+    EndsAfter(f64),
+    /// They hold, but a contact is so near to a change all along that another mode may be better.
+    Untold,
+    /// No solution was found.
+    Unclear,
 }
 
 /// Work of the programs solved.
@@ -257,6 +281,25 @@ impl<'a> IncrementProgram<'a> {
     ///
     /// `present` decides where a pair is biactive.
     pub fn name(&mut self, start: &DVector<f64>, present: &[Mode], cancel: &CancelFlag) -> (Option<Named>, Counts) {
+        match self.solve(start, present, None, cancel) {
+            (Foreseen::Named(named), counts) => (Some(named), counts),
+            (Foreseen::EndsAfter(_) | Foreseen::Untold | Foreseen::Unclear, counts) => (None, counts),
+        }
+    }
+
+    /// The same in the branch of the modes `present` alone: whether they hold for an increment of this length.
+    pub fn foresee(&mut self, start: &DVector<f64>, present: &[Mode], cancel: &CancelFlag) -> (Foreseen, Counts) {
+        let members = self.zero_members(present, start);
+        self.solve(start, present, Some(&members), cancel)
+    }
+
+    fn solve(
+        &mut self,
+        start: &DVector<f64>,
+        present: &[Mode],
+        branch: Option<&[PairActivity]>,
+        cancel: &CancelFlag,
+    ) -> (Foreseen, Counts) {
         // The start is a predictor in a mode that is likely right: where no solution lies near it, a shorter increment
         // helps more than a longer search.
         let warm = Settings::warm();
@@ -271,22 +314,54 @@ impl<'a> IncrementProgram<'a> {
         let mut counts = Counts::default();
         let mut start = start.clone();
         for _ in 0..MOST_ADAPTATIONS {
-            let Ok(solution) = mpec::solve(self, &start, &settings, cancel) else { return (None, counts) };
+            let solution = match branch {
+                None => mpec::solve(self, &start, &settings, cancel),
+                Some(members) => mpec::follow_branch(self, &start, members, &settings, cancel),
+            };
+            let Ok(solution) = solution else { break };
             counts.qp_solves += solution.counts.qp_solves as u64;
             counts.mpec_solves += 1;
-            let usable =
-                matches!(solution.status, mpec::Status::Solved | mpec::Status::PatternSettled | mpec::Status::Feasible);
-            if !usable {
-                return (None, counts);
-            }
             let size = solution.x.rows(0, self.loading.structure.unknowns() + 1).norm();
+            match solution.status {
+                mpec::Status::Feasible if branch.is_some() => return (Foreseen::EndsAfter(size), counts),
+                mpec::Status::Solved if solution.stationarity == StationarityKind::OneBranch && branch.is_some() => {
+                    return (Foreseen::Untold, counts);
+                }
+                mpec::Status::Solved | mpec::Status::PatternSettled | mpec::Status::Feasible => {}
+                _ => break,
+            }
             if (0.5..=2.0).contains(&size) {
-                return (Some(self.end(solution, present, cancel)), counts);
+                return (Foreseen::Named(self.end(solution, present, cancel)), counts);
             }
             self.arc_weight *= size.clamp(0.02, 50.0);
             start = solution.x;
         }
-        (None, counts)
+        (Foreseen::Unclear, counts)
+    }
+
+    /// The members of the pairs that are zero in given modes.
+    fn zero_members(&self, modes: &[Mode], x: &DVector<f64>) -> Vec<PairActivity> {
+        let zero = |first: bool| if first { PairActivity::FirstZero } else { PairActivity::SecondZero };
+        let mut members = Vec::new();
+        for entry in &self.reach {
+            let mode = modes[entry.contact];
+            members.push(zero(mode.is_active()));
+            if entry.tangents != 1 {
+                continue;
+            }
+            let [(forward, _), (backward, _)] = entry.parts();
+            // Where the contact is free, there is no force either way; one part of the slip is left to take what it is.
+            let sliding = match mode {
+                Mode::Stick => [false, false],
+                Mode::Slip { direction } => {
+                    let is_forward = dot(&entry.frame.tangents[0], &direction) > 0.0;
+                    [is_forward, !is_forward]
+                }
+                Mode::Free => [x[forward] >= x[backward], x[forward] < x[backward]],
+            };
+            members.extend(sliding.map(zero));
+        }
+        members
     }
 
     /// What the rounding of displacements leaves of equilibrium: next to stiff elements no program can do better.

@@ -1,7 +1,7 @@
 //! The increment's optimality conditions.
 
 use super::*;
-use crate::mpec::Problem;
+use crate::mpec::{Problem, SparseRows};
 use crate::path::scene::Scene;
 use nalgebra::DMatrix;
 
@@ -34,14 +34,15 @@ fn kkt_holds(name: &str, forward: impl Fn(&Scene) -> Rate) {
     let moved = x.rows(0, scene.structure.unknowns() + 1).norm();
     assert!(moved > 0.05, "{name}: the step must not be zero, {moved}");
     // Gradients of all active constraints, one a column.
-    let mut equalities = DMatrix::zeros(program.equalities(), program.variables());
+    let mut equalities = SparseRows::zeros(program.equalities(), program.variables());
     program.equality_jacobian(x, &mut equalities);
-    let mut columns: Vec<DVector<f64>> = equalities.row_iter().map(|row| row.transpose()).collect();
+    let mut columns: Vec<DVector<f64>> = equalities.to_dense().row_iter().map(|row| row.transpose()).collect();
     let (mut first, mut second) = (DVector::zeros(program.pairs()), DVector::zeros(program.pairs()));
     program.pair_values(x, &mut first, &mut second);
-    let mut first_rows = DMatrix::zeros(program.pairs(), program.variables());
+    let mut first_rows = SparseRows::zeros(program.pairs(), program.variables());
     let mut second_rows = first_rows.clone();
     program.pair_jacobians(x, &mut first_rows, &mut second_rows);
+    let (first_rows, second_rows) = (first_rows.to_dense(), second_rows.to_dense());
     for pair in 0..program.pairs() {
         if first[pair].abs() < 1e-6 {
             columns.push(first_rows.row(pair).transpose());

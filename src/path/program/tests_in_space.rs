@@ -4,7 +4,7 @@ use super::*;
 use crate::contact::obstacle::Obstacle;
 use crate::contact::{Contact, Reaction, Sliding, tangents_in_space};
 use crate::model::request::Strain;
-use crate::mpec::Problem;
+use crate::mpec::{Problem, SparseRows};
 use crate::path::loading::LoadPattern;
 use crate::path::state::dot;
 use crate::structure::Structure;
@@ -345,13 +345,14 @@ fn derivatives_are_those_of_differences() {
     let mut gradient = DVector::zeros(n);
     program.objective_gradient(&x, &mut gradient);
     exact.set_row(0, &gradient.transpose());
-    let (mut h, mut a, mut b) = (DMatrix::zeros(equalities, n), DMatrix::zeros(pairs, n), DMatrix::zeros(pairs, n));
+    let (mut h, mut a, mut b) =
+        (SparseRows::zeros(equalities, n), SparseRows::zeros(pairs, n), SparseRows::zeros(pairs, n));
     program.equality_jacobian(&x, &mut h);
     program.pair_jacobians(&x, &mut a, &mut b);
     let (mut first, mut second) = (DMatrix::zeros(in_cones, n), DMatrix::zeros(in_cones, n));
     program.cone_jacobians(&x, &mut first, &mut second);
     let mut row = 1;
-    for part in [h, a, b, first, second] {
+    for part in [h.to_dense(), a.to_dense(), b.to_dense(), first, second] {
         exact.rows_mut(row, part.nrows()).copy_from(&part);
         row += part.nrows();
     }
@@ -384,12 +385,12 @@ fn karush_kuhn_tucker_conditions_of_the_increment_in_space() {
     let moved = x.rows(0, 4).norm();
     assert!(moved > 0.05, "the step must not be zero, {moved}");
     let n = program.variables();
-    let mut equalities = DMatrix::zeros(program.equalities(), n);
+    let mut equalities = SparseRows::zeros(program.equalities(), n);
     program.equality_jacobian(x, &mut equalities);
-    let mut columns: Vec<DVector<f64>> = equalities.row_iter().map(|row| row.transpose()).collect();
-    let (mut gap, mut reaction) = (DMatrix::zeros(1, n), DMatrix::zeros(1, n));
+    let mut columns: Vec<DVector<f64>> = equalities.to_dense().row_iter().map(|row| row.transpose()).collect();
+    let (mut gap, mut reaction) = (SparseRows::zeros(1, n), SparseRows::zeros(1, n));
     program.pair_jacobians(x, &mut gap, &mut reaction);
-    columns.push(gap.row(0).transpose());
+    columns.push(gap.to_dense().row(0).transpose());
     assert_eq!(solution.cone_activity, [mpec::ConeActivity::BothOnBoundary]);
     // The complementarity of a pair on the boundary: its natural map's derivative, independent of the solver's rows.
     let (mut a, mut b) = (DVector::zeros(3), DVector::zeros(3));

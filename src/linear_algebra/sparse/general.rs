@@ -1,0 +1,66 @@
+//! Sparse LU factorisation of any square matrix, by its entries.
+
+use faer::MatMut;
+use faer::linalg::solvers::SolveCore;
+use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
+use faer::sparse::{SparseColMat, Triplet};
+
+/// `D⁻¹ A = L U` with permutations, `D` the sizes of the rows.
+pub struct GeneralLu {
+    lu: Lu<usize, f64>,
+    scales: Vec<f64>,
+    symbolic: SymbolicLu<usize>,
+    columns: Vec<usize>,
+    rows: Vec<usize>,
+}
+
+impl GeneralLu {
+    /// Entries at the same place add up. What depends on the pattern alone is taken over from `before` where that has the
+    /// same. `None` where it fails; a singular matrix may pass, and shows in the residual.
+    pub fn new(size: usize, mut entries: Vec<Triplet<usize, usize, f64>>, before: Option<&Self>) -> Option<Self> {
+        let mut scales = vec![0.0_f64; size];
+        entries.iter().for_each(|entry| scales[entry.row] = scales[entry.row].max(entry.val.abs()));
+        if !scales.iter().all(|scale| *scale > 0.0 && scale.is_finite()) {
+            return None;
+        }
+        entries.iter_mut().for_each(|entry| entry.val /= scales[entry.row]);
+        let matrix = SparseColMat::try_new_from_triplets(size, size, &entries).ok()?;
+        let (columns, rows) = (matrix.symbolic().col_ptr(), matrix.symbolic().row_idx());
+        let symbolic = match before.filter(|before| before.columns == columns && before.rows == rows) {
+            Some(before) => before.symbolic.clone(),
+            None => SymbolicLu::try_new(matrix.symbolic()).ok()?,
+        };
+        let lu = Lu::try_new_with_symbolic(symbolic.clone(), matrix.as_ref()).ok()?;
+        let (columns, rows) = (columns.to_vec(), rows.to_vec());
+        Some(Self { lu, scales, symbolic, columns, rows })
+    }
+
+    /// Overwrites a right-hand side by the solution; `false` where that is not finite.
+    pub fn solve(&self, values: &mut [f64]) -> bool {
+        values.iter_mut().zip(&self.scales).for_each(|(value, scale)| *value /= scale);
+        let size = values.len();
+        self.lu.solve_in_place_with_conj(faer::Conj::No, MatMut::from_column_major_slice_mut(values, size, 1));
+        values.iter().all(|value| value.is_finite())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pattern_serves_twice() {
+        let entries = |shift: f64| {
+            [(0, 0, 2.0 + shift), (0, 2, -1.0), (1, 0, 300.0), (1, 1, 1e3 - shift), (2, 1, 0.5), (2, 2, 4.0)]
+                .map(|(row, column, value)| Triplet::new(row, column, value))
+                .to_vec()
+        };
+        let first = GeneralLu::new(3, entries(0.0), None).expect("regular");
+        let second = GeneralLu::new(3, entries(0.25), Some(&first)).expect("regular");
+        let x = [1.0, -2.0, 3.0];
+        let mut product = [0.0; 3];
+        entries(0.25).iter().for_each(|entry| product[entry.row] += entry.val * x[entry.col]);
+        assert!(second.solve(&mut product));
+        assert!(product.iter().zip(x).all(|(found, x)| (found - x).abs() < 1e-13), "{product:?}");
+    }
+}
