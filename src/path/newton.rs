@@ -73,6 +73,9 @@ const ROUND_OFF: f64 = 1e-15;
 const SMALL: f64 = 1e-6;
 /// Error down to which a correction that does not make it smaller calls for the matrix at the iterate itself.
 const REUSED_TO: f64 = 1e-13;
+/// Smallest pivot over the largest of a factorisation that may serve on: what is left over says little of the state where
+/// it is smaller.
+const REGULAR: f64 = 1e-4;
 /// Multiple of the bound on rounding within which what is left over counts as rounding.
 const ROOM: f64 = 8.0;
 /// Rows with forces below this part of the force scale are judged by their own.
@@ -133,8 +136,9 @@ impl ModeSystem<'_> {
                 best = Some((error, iterate.clone(), figures));
             }
             let least = best.as_ref().map_or(f64::INFINITY, |(least, ..)| *least);
-            let serves = error <= SMALL && (improved || least <= REUSED_TO) && !row_by_row;
-            let was_reused = std::mem::replace(&mut reused, serves && last_factorisation.is_some());
+            let is_regular = last_factorisation.as_ref().is_some_and(|last| last.pivot_ratio() >= REGULAR);
+            let serves = error <= SMALL && (improved || least <= REUSED_TO) && !row_by_row && is_regular;
+            let was_reused = std::mem::replace(&mut reused, serves);
             let stalled = !improved && (!was_reused || least <= REUSED_TO);
             let settled = least <= ROUND_OFF || (stalled && (row_by_row || least <= ACCEPTED_RESIDUAL));
             if settled && iterations > 0 {

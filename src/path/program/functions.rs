@@ -160,9 +160,9 @@ impl Problem for IncrementProgram<'_> {
             let driven = frame::components(&entry.frame, &self.driven(entry));
             for (unknown, k) in self.node_of(entry) {
                 put(jacobian, (unknown, entry.normal()), -frame.normal[k]);
-                for t in 0..entry.tangents {
-                    put(jacobian, (unknown, entry.tangential(t)), -tangents[t][k]);
-                    put(jacobian, (row + t, unknown), entry.frame.tangents[t][k]);
+                for (t, (here, held)) in tangents.iter().zip(&entry.frame.tangents).enumerate().take(entry.tangents) {
+                    put(jacobian, (unknown, entry.tangential(t)), -here[k]);
+                    put(jacobian, (row + t, unknown), held[k]);
                 }
             }
             for (t, driven) in driven.into_iter().enumerate().take(entry.tangents) {
