@@ -71,8 +71,6 @@ pub(super) const NO_FORCE: f64 = 1e-20;
 const ROUND_OFF: f64 = 1e-15;
 /// Error below which Newton's method is as good as converged.
 const SMALL: f64 = 1e-6;
-/// Error down to which a correction that does not make it smaller calls for the matrix at the iterate itself.
-const REUSED_TO: f64 = 1e-13;
 /// Smallest pivot over the largest of a factorisation that may serve on: what is left over says little of the state where
 /// it is smaller.
 const REGULAR: f64 = 1e-4;
@@ -137,9 +135,9 @@ impl ModeSystem<'_> {
             }
             let least = best.as_ref().map_or(f64::INFINITY, |(least, ..)| *least);
             let is_regular = last_factorisation.as_ref().is_some_and(|last| last.pivot_ratio() >= REGULAR);
-            let serves = error <= SMALL && (improved || least <= REUSED_TO) && !row_by_row && is_regular;
+            let serves = error <= SMALL && improved && !row_by_row && is_regular;
             let was_reused = std::mem::replace(&mut reused, serves);
-            let stalled = !improved && (!was_reused || least <= REUSED_TO);
+            let stalled = !improved && !was_reused;
             let settled = least <= ROUND_OFF || (stalled && (row_by_row || least <= ACCEPTED_RESIDUAL));
             if settled && iterations > 0 {
                 let done = row_by_row || iterations == MOST_ITERATIONS;
