@@ -137,8 +137,11 @@ impl ModeSystem<'_> {
             let is_regular = last_factorisation.as_ref().is_some_and(|last| last.pivot_ratio() >= REGULAR);
             let serves = error <= SMALL && improved && !row_by_row && is_regular;
             let was_reused = std::mem::replace(&mut reused, serves);
-            let stalled = !improved && !was_reused;
-            let settled = least <= ROUND_OFF || (stalled && (row_by_row || least <= ACCEPTED_RESIDUAL));
+            // It goes on as far as rounding lets it: a fresh one would have gone beyond the bar at once.
+            let stalled = !improved && (!was_reused || least <= ROUND_OFF);
+            let settled = (least <= ROUND_OFF && !was_reused)
+                || error == 0.0
+                || (stalled && (row_by_row || least <= ACCEPTED_RESIDUAL));
             if settled && iterations > 0 {
                 let done = row_by_row || iterations == MOST_ITERATIONS;
                 if done || self.residual_of_rows(&iterate.state, &values, scale) <= ACCEPTED_RESIDUAL {
