@@ -35,7 +35,7 @@ pub struct SymmetricFactor {
 }
 
 /// Pivots below this are raised, entries of the row being about 1.
-pub(super) const SMALL: f64 = 1e-6;
+pub(super) const SMALL: f64 = 1e-4;
 /// Pivots below this are taken as this on the way, so that the rest can be seen.
 const ZERO: f64 = 1e-15;
 /// Raises beyond which there is something else wrong.
