@@ -24,7 +24,6 @@ mod tests;
 mod unsymmetric;
 
 pub use bordered::Bordered;
-pub use definite::is_positive_definite;
 pub use factorisation::{SparseFactorisation, held_inertia};
 pub use held::{Holding, Places};
 pub use pattern::Pattern;

@@ -1,0 +1,85 @@
+//! Directions where many contacts can change, without a matrix of them.
+//!
+//! Let `w >= 0` be the speeds of the nodes on their cones, along the directions `d` in which they may slip, and
+//! `y = μ ṙ_n + d·ṙ_t >= 0` what their forces leave of the cones, `w y = 0`; let `v` be the velocities of the nodes that
+//! touch without reaction, and `x` those of what is free. The rates obey
+//!
+//! ```text
+//! A (x, w, v) - q ṡ = (0, y, ṙ),      A = Rᵀ K C,      columns C of a node on its cone: d,      rows R: d + μ n
+//! ```
+//!
+//! in the plane. [`proof`] tells where a sparse Cholesky factorisation shows that each load rate has one solution at the
+//! most; [`pivoting`] finds it: solve in a mode, change every contact that violates it, and again. Time and memory go with
+//! the structure.
+//!
+//! Where contacts are too many for the condensed matrix and there is no such proof, what pivoting finds is listed, and the
+//! modes not examined are counted.
+
+mod equations;
+mod pivoting;
+mod proof;
+#[cfg(test)]
+mod tests;
+
+use super::directions::{Candidate, Found};
+use super::loading::Loading;
+use super::rates::Effort;
+use super::standing::Standing;
+use super::state::{Rate, State};
+use equations::Equations;
+
+/// Contacts that can change up to which the search of every combination is as quick: where all are on their cones, and
+/// where some touch, each of which has four ways to go on.
+const FEW: usize = 16;
+const FEW_TOUCHING: usize = 3;
+/// Numbers of the condensed equations (contacts that can change times what each moves) that are too many.
+const MOST_CONDENSED: usize = 25_000_000;
+
+/// Lists the directions; `false` where there is no proof that they are all and the contacts are few enough for a search.
+pub(super) fn directions(
+    loading: Loading<'_>,
+    state: &State,
+    standings: &[Standing],
+    incoming: Option<&Rate>,
+    effort: Effort<'_>,
+    found: &mut Found,
+) -> bool {
+    if !effort.certify || are_few(standings) {
+        return false;
+    }
+    let Some(equations) = Equations::new(loading, state, standings) else { return false };
+    let columns = equations.changing.len() * loading.structure.dimension;
+    let is_huge = columns * (loading.structure.freedoms() + 4 * loading.contacts.len()) > MOST_CONDENSED;
+    let proof = equations.proof();
+    if proof.is_none() && !is_huge {
+        return false;
+    }
+    let of_signs = [1.0, -1.0].map(|sign| equations.solve(sign, incoming));
+    let complete = proof.is_some_and(|proof| {
+        let is_settled = |(candidate, sign): (&Option<Candidate>, f64)| match candidate {
+            Some(candidate) => equations.is_only(candidate, &proof),
+            None => equations.has_none(sign, &proof),
+        };
+        let complete = of_signs.iter().zip([1.0, -1.0]).all(is_settled);
+        if complete {
+            equations.add_free_motions(&proof, found);
+        }
+        complete
+    });
+    if !complete && !is_huge {
+        return false;
+    }
+    found.candidates.extend(of_signs.into_iter().flatten());
+    if !complete {
+        let modes = |ways: u64, count: usize| ways.saturating_pow(u32::try_from(count).unwrap_or(u32::MAX));
+        let touching = equations.changing.iter().filter(|one| one.direction.is_none()).count();
+        found.unexplored = modes(2, equations.changing.len() - touching).saturating_mul(modes(4, touching));
+    }
+    true
+}
+
+fn are_few(standings: &[Standing]) -> bool {
+    let touching = standings.iter().filter(|standing| matches!(standing, Standing::Touching)).count();
+    let changing = standings.iter().filter(|standing| !matches!(standing, Standing::Settled(_))).count();
+    changing <= FEW && touching <= FEW_TOUCHING
+}
