@@ -73,6 +73,8 @@ enum Stretch {
 
 /// Smallest pivot over the largest below which digits are worth the larger system that saves them.
 const SPREAD: f64 = 1e-4;
+/// The same where small pivots were raised and came back as borders: what is left of them is little more than this.
+const SPREAD_AT_LEAST: f64 = 1e-5;
 /// Unknowns up to which they are saved so.
 const MOST_APART: usize = 200;
 
@@ -365,7 +367,9 @@ impl<'a> ModeSystem<'a> {
         let unknowns = structure.unknowns();
         let plain = match self.factorise_as_it_is(iterate, kind, &put_last) {
             Some(SystemFactorisation::Dense(plain)) if plain.pivot_ratio() < SPREAD => plain,
-            Some(SystemFactorisation::Sparse(sparse)) if sparse.spread() < SPREAD && unknowns <= MOST_APART => {
+            Some(SystemFactorisation::Sparse(sparse))
+                if sparse.spread() < SPREAD_AT_LEAST && unknowns <= MOST_APART =>
+            {
                 self.factorise_dense(iterate, kind, &put_last)?
             }
             Some(other) => return Some(other),

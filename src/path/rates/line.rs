@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 /// Inequalities (of rates of unit arc length) that hold within this are weak.
 pub const WEAK: f64 = 1e-9;
 /// What is below this may change its sign within the small steps by which weak rays are tried.
-const IN_DOUBT: f64 = 1e-7;
+pub const IN_DOUBT: f64 = 1e-7;
 /// Rounding of a sum against the sum of its terms' sizes.
 const ROUNDING: f64 = 1e-14;
 /// Relative pivot that decides the rank of a combination's equations.

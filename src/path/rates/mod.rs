@@ -46,6 +46,7 @@ pub(super) use tests::every_combination;
 
 pub use branch::{Effort, Ray, explore};
 pub use certificate::{Pairs, is_definite};
+pub use line::IN_DOUBT;
 pub use near::near;
 pub use parametric::all_solutions;
 pub use problem::{Choice, Entity, RateProblem, Signed, Touching};

@@ -5,7 +5,7 @@ use crate::contact::{Frame, Mode};
 use crate::linear_algebra::sparse::definite::Triangle;
 use crate::path::loading::Loading;
 use crate::path::standing::Standing;
-use crate::path::state::State;
+use crate::path::state::{Rate, State};
 use smallvec::SmallVec;
 
 /// A contact that can change.
@@ -154,11 +154,32 @@ impl<'a> Equations<'a> {
         self.parts.iter().map(velocity).collect()
     }
 
-    /// The power of the loads, at a load rate of 1, on the tests of the rows.
-    pub fn power(&self, rows: &[f64]) -> f64 {
-        let test =
-            |parts: &SmallVec<[Part; 2]>| -> f64 { parts.iter().map(|part| part.test * rows[part.column]).sum() };
-        self.parts.iter().zip(&self.loading.pattern.forces).map(|(parts, force)| test(parts) * force).sum()
+    /// Velocities of the columns from those of all degrees of freedom.
+    pub fn columns_of(&self, rate: &Rate) -> Vec<f64> {
+        let mut columns = vec![0.0; self.size];
+        for (parts, velocity) in self.parts.iter().zip(&rate.displacement) {
+            // The motions of one node are orthonormal.
+            parts.iter().for_each(|part| columns[part.column] += part.motion * velocity);
+        }
+        columns
+    }
+
+    /// `q`: the load on the rows.
+    pub fn load(&self) -> Vec<f64> {
+        let mut load = vec![0.0; self.size];
+        for (parts, force) in self.parts.iter().zip(&self.loading.pattern.forces) {
+            parts.iter().for_each(|part| load[part.column] += part.test * force);
+        }
+        load
+    }
+
+    pub fn largest_load(&self) -> f64 {
+        self.loading.pattern.forces.iter().fold(0.0, |largest, force| largest.max(force.abs()))
+    }
+
+    /// The power of the load on velocities of the columns.
+    pub fn power(&self, columns: &[f64]) -> f64 {
+        self.load().iter().zip(columns).map(|(load, velocity)| load * velocity).sum()
     }
 
     /// The mode in which a contact that touches, or is on its cone, goes at some velocity without any force.

@@ -21,12 +21,13 @@ mod proof;
 #[cfg(test)]
 mod tests;
 
-use super::directions::{Candidate, Found};
+use super::directions::Found;
 use super::loading::Loading;
 use super::rates::Effort;
 use super::standing::Standing;
 use super::state::{Rate, State};
 use equations::Equations;
+use proof::Control;
 
 /// Contacts that can change up to which the search of every combination is as quick: where all are on their cones, and
 /// where some touch, each of which has four ways to go on.
@@ -50,26 +51,31 @@ pub(super) fn directions(
     let Some(equations) = Equations::new(loading, state, standings) else { return false };
     let columns = equations.changing.len() * loading.structure.dimension;
     let is_huge = columns * (loading.structure.freedoms() + 4 * loading.contacts.len()) > MOST_CONDENSED;
-    let proof = equations.proof();
+    let proof = equations.proof(incoming);
     if proof.is_none() && !is_huge {
         return false;
     }
-    let of_signs = [1.0, -1.0].map(|sign| equations.solve(sign, incoming));
-    let complete = proof.is_some_and(|proof| {
-        let is_settled = |(candidate, sign): (&Option<Candidate>, f64)| match candidate {
-            Some(candidate) => equations.is_only(candidate, &proof),
-            None => equations.has_none(sign, &proof),
-        };
-        let complete = of_signs.iter().zip([1.0, -1.0]).all(is_settled);
-        if complete {
-            equations.add_free_motions(&proof, found);
+    let mut candidates = Vec::new();
+    let mut complete = proof.is_some();
+    for sign in [1.0, -1.0] {
+        if proof.as_ref().is_some_and(|proof| equations.has_none(sign, proof)) {
+            continue;
         }
-        complete
-    });
+        let control = proof.as_ref().map_or(Control::Load, |proof| proof.control);
+        let candidate = equations.solve(control, sign, incoming);
+        complete &= proof.as_ref().zip(candidate.as_ref()).is_some_and(|(proof, one)| equations.is_only(one, proof));
+        candidates.extend(candidate);
+    }
     if !complete && !is_huge {
         return false;
     }
-    found.candidates.extend(of_signs.into_iter().flatten());
+    if let Some(proof) = proof.filter(|_| complete) {
+        equations.add_free_motions(&proof, found);
+        if proof.control == Control::Power {
+            candidates.extend(equations.at_rest());
+        }
+    }
+    found.candidates.extend(candidates);
     if !complete {
         let modes = |ways: u64, count: usize| ways.saturating_pow(u32::try_from(count).unwrap_or(u32::MAX));
         let touching = equations.changing.iter().filter(|one| one.direction.is_none()).count();

@@ -1,51 +1,108 @@
-//! The direction with one sign of the load rate, by block pivoting (M. M. Kostreva, Optimization 9 (1978) 13).
+//! The direction with one sign of the load rate, or of the load's power, by block pivoting (M. M. Kostreva, Optimization 9 (1978) 13).
 
 use super::equations::{Changing, Equations};
+use super::proof::Control;
 use crate::contact::Mode;
 use crate::contact::vector::{Vector, dot, scaled};
 use crate::linear_algebra::Sink;
 use crate::path::corner::whole_rates;
 use crate::path::directions::{Alternative, Candidate, WEAK};
 use crate::path::mode_system::{Kind, ModeSystem};
+use crate::path::rates::IN_DOUBT;
 use crate::path::state::Rate;
 
 /// Rounds of block pivoting.
 const MOST_ROUNDS: usize = 32;
 
+/// A contact whose mode only a finite step can tell.
+pub(super) struct Doubt {
+    contact: usize,
+    /// What must not be negative is zero at first order, not only nearly so.
+    weak: bool,
+}
+
 impl Equations<'_> {
-    /// A direction with this sign of the load rate, by block pivoting.
-    pub fn solve(&self, sign: f64, incoming: Option<&Rate>) -> Option<Candidate> {
+    /// A direction with this sign of what controls it, by block pivoting.
+    pub fn solve(&self, control: Control, sign: f64, incoming: Option<&Rate>) -> Option<Candidate> {
         let mut modes = self.held.clone();
-        if incoming.is_some_and(|rate| rate.load * sign > 0.0) {
+        if incoming.is_some_and(|rate| self.value_of(control, rate) * sign > 0.0) {
             for one in &self.changing {
                 modes[one.contact] = one.direction.map_or(modes[one.contact], |direction| Mode::Slip { direction });
             }
         }
         for _ in 0..MOST_ROUNDS {
-            let system = ModeSystem::new(self.loading, &modes, self.state);
-            let iterate = system.iterate(self.state.clone());
-            let by_load = |matrix: &mut dyn Sink| matrix.add(system.size() - 1, self.loading.structure.unknowns(), 1.0);
-            let mut rate = system.tangent_by(&system.factorise(&iterate, Kind::Rates, by_load)?, &iterate)?;
-            rate.scale(sign * rate.load.signum());
-            let force = WEAK * rate.largest_reaction().max(f64::MIN_POSITIVE);
-            let (mut next, mut weak) = (modes.clone(), Vec::new());
-            let mut changed = false;
-            for one in &self.changing {
-                let mode = modes[one.contact];
-                let (margin, tolerance, other) = self.margin(one, mode, &rate, force);
-                if margin < -tolerance {
-                    next[one.contact] = other;
-                    changed = true;
-                } else if margin <= tolerance {
-                    weak.push(one.contact);
-                }
+            let mut rate = match (control, incoming) {
+                (Control::Power, Some(incoming)) => self.line(&modes, Some(incoming)),
+                _ => None,
             }
-            if !changed {
-                return Some(self.candidate(rate, modes, weak));
+            .or_else(|| self.line(&modes, None))?;
+            let value = self.value_of(control, &rate);
+            if value.abs() <= WEAK * self.largest_load() * rate.size() && control == Control::Power {
+                return None;
             }
-            modes = next;
+            rate.scale(sign * value.signum());
+            let (next, doubts) = self.violations(&modes, &rate);
+            match next {
+                None => return Some(self.candidate(rate, modes, doubts)),
+                Some(next) => modes = next,
+            }
         }
         None
+    }
+
+    /// The directions along which nothing moves and the load alone changes.
+    pub fn at_rest(&self) -> Vec<Candidate> {
+        let zero = WEAK * self.largest_load();
+        let load = self.load();
+        let mut is_cone = vec![false; self.size];
+        self.changing.iter().filter(|one| one.direction.is_some()).for_each(|one| is_cone[one.column] = true);
+        let rests = |sign: f64| {
+            let stays = |(load, is_cone): (&f64, &bool)| load.abs() <= zero || (*is_cone && load * sign < 0.0);
+            if !load.iter().zip(&is_cone).all(stays) {
+                return None;
+            }
+            let mut rate = self.line(&self.held, None)?;
+            rate.scale(sign * rate.load.signum());
+            match self.violations(&self.held, &rate) {
+                (None, doubts) => Some(self.candidate(rate, self.held.clone(), doubts)),
+                (Some(_), _) => None,
+            }
+        };
+        [1.0, -1.0].into_iter().filter_map(rests).collect()
+    }
+
+    fn value_of(&self, control: Control, rate: &Rate) -> f64 {
+        match control {
+            Control::Load => rate.load,
+            Control::Power => self.power(&self.columns_of(rate)),
+        }
+    }
+
+    /// The direction, of either sign, that a mode leaves, the equations bordered by another or by the load rate.
+    fn line(&self, modes: &[Mode], border: Option<&Rate>) -> Option<Rate> {
+        let system = ModeSystem::new(self.loading, modes, self.state);
+        let iterate = system.iterate(self.state.clone());
+        let by_load = |matrix: &mut dyn Sink| matrix.add(system.size() - 1, self.loading.structure.unknowns(), 1.0);
+        let factorisation = match border {
+            Some(border) => system.bordered(&iterate, border)?,
+            None => system.factorise(&iterate, Kind::Rates, by_load)?,
+        };
+        system.tangent_by(&factorisation, &iterate)
+    }
+
+    /// The modes to try next, if something is negative that must not be; the contacts at which it is zero, or nearly so.
+    fn violations(&self, modes: &[Mode], rate: &Rate) -> (Option<Vec<Mode>>, Vec<Doubt>) {
+        let force = WEAK * rate.largest_reaction().max(f64::MIN_POSITIVE);
+        let (mut next, mut doubts) = (None, Vec::new());
+        for one in &self.changing {
+            let (margin, tolerance, other) = self.margin(one, modes[one.contact], rate, force);
+            if margin < -tolerance {
+                next.get_or_insert_with(|| modes.to_vec())[one.contact] = other;
+            } else if margin <= IN_DOUBT / WEAK * tolerance {
+                doubts.push(Doubt { contact: one.contact, weak: margin <= tolerance });
+            }
+        }
+        (next, doubts)
     }
 
     fn speed(&self, one: &Changing, direction: &Vector, rate: &Rate) -> f64 {
@@ -90,16 +147,20 @@ impl Equations<'_> {
         (margin, tolerance, other)
     }
 
-    /// `weak`: the contacts that might as well be in the other mode, at first order; where they can stick they do.
-    pub fn candidate(&self, rate: Rate, mut modes: Vec<Mode>, weak: Vec<usize>) -> Candidate {
-        let mut in_doubt = weak.iter().peekable();
+    /// With the contacts that might as well be in the other mode, at first order or nearly so; where they can stick they
+    /// do.
+    pub fn candidate(&self, rate: Rate, mut modes: Vec<Mode>, doubts: Vec<Doubt>) -> Candidate {
+        let weak = doubts.iter().any(|doubt| doubt.weak);
+        let mut doubts = doubts.iter().peekable();
         let mut alternatives: Vec<Vec<Alternative>> = Vec::with_capacity(self.changing.len());
         for one in &self.changing {
             let mode = modes[one.contact];
-            let is_weak = in_doubt.next_if_eq(&&one.contact).is_some();
-            alternatives.push(match (is_weak, one.direction) {
-                (true, Some(direction)) => {
-                    modes[one.contact] = Mode::Stick;
+            let doubt = doubts.next_if(|doubt| doubt.contact == one.contact);
+            alternatives.push(match (doubt, one.direction) {
+                (Some(doubt), Some(direction)) => {
+                    if doubt.weak {
+                        modes[one.contact] = Mode::Stick;
+                    }
                     vec![vec![(one.contact, Mode::Stick)], vec![(one.contact, Mode::Slip { direction })]]
                 }
                 _ => vec![vec![(one.contact, mode)]],
@@ -112,6 +173,6 @@ impl Equations<'_> {
         });
         let dissipation = dissipation.sum();
         let forces = whole_rates(self.loading, self.state, &rate);
-        Candidate { rate, forces, modes, alternatives, weak: !weak.is_empty(), dissipation }
+        Candidate { rate, forces, modes, alternatives, weak, dissipation }
     }
 }

@@ -18,6 +18,13 @@
 //! vanish along them. Then `Δ` consists of these, and a solution is the only one if inequalities that are strict there hold
 //! it from each. With `z_n >= μ |z_t|` at all that touch and `z_w >= 0`, the reactions' power on `z` is not negative, so
 //! `z·q ṡ <= 0`: the other sign has none. With `ṡ = 0` there are those motions alone.
+//!
+//! Past a limit point `A` is not definite. Of two solutions with one power `q·Δ` of the load instead of one `ṡ`, the
+//! difference obeys the same with `q·Δ = 0`: where the symmetric part is definite across `q`, there is one solution at the
+//! most for each power, and where all are on their cones it exists if any motion with that power is open (a strongly
+//! monotone variational inequality; the load rate is the multiplier of the power). Without power nothing moves: the load
+//! alone changes. Definiteness across `q` follows from that of the rest beside one column `f` of fast motion: the Schur
+//! complement on `f` and the border `q` then has a negative determinant.
 
 use super::equations::{Changing, Equations};
 use crate::contact::{Mode, Reaction};
@@ -27,19 +34,44 @@ use crate::path::state::Rate;
 
 /// What of its diagonal a matrix can lose and still count as definite.
 const MARGIN: f64 = 1e-12;
+/// What of its terms a determinant has to be for its sign to count.
+const CLEAR: f64 = 1e-9;
 /// The largest `|η|`.
 const MOST_WEIGHT: f64 = 0.999;
 
-/// Motions, one entry a column of `A`, that nothing resists; none where the matrix is definite.
+/// What tells one solution from another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Control {
+    /// The sign of the load rate.
+    Load,
+    /// The sign of the load's power.
+    Power,
+}
+
+/// Each sign of the control has one solution at the most, but for motions, one entry a column of `A`, that nothing
+/// resists.
 pub(super) struct Proof {
+    pub control: Control,
     /// Of largest entry about 1.
     null: Option<Vec<f64>>,
     /// Columns that nothing acts on.
     loose: Vec<usize>,
 }
 
+/// The column of the largest entry.
+fn fastest(motion: &[f64]) -> Option<usize> {
+    (0..motion.len()).max_by(|a, b| motion[*a].abs().total_cmp(&motion[*b].abs()))
+}
+
+/// Takes a column and its row out; they keep their place, apart from the others.
+fn hold(lower: &mut Triangle, held: usize) {
+    lower.retain(|(row, column, _)| *row != held && *column != held);
+    lower.push((held, held, 1.0));
+}
+
 impl Equations<'_> {
-    pub fn proof(&self) -> Option<Proof> {
+    /// `incoming` names the motion that the structure may resist least.
+    pub fn proof(&self, incoming: Option<&Rate>) -> Option<Proof> {
         let mut lower = self.symmetric_part();
         let mut is_loose = vec![true; self.size];
         for (row, column, value) in &lower {
@@ -50,7 +82,14 @@ impl Equations<'_> {
         let loose: Vec<usize> = (0..self.size).filter(|column| is_loose[*column]).collect();
         lower.extend(loose.iter().map(|column| (*column, *column, 1.0)));
         let definite = Definite::new(self.size, &lower, -MARGIN);
-        let null = if definite.is_some() { None } else { Some(self.null(&Definite::new(self.size, &lower, MARGIN)?)?) };
+        let null = match definite {
+            Some(_) => None,
+            None => match Definite::new(self.size, &lower, MARGIN).and_then(|shifted| self.null(&shifted)) {
+                Some(null) => Some(null),
+                None if loose.is_empty() => return self.proof_by_power(lower, incoming?),
+                None => return None,
+            },
+        };
         let is_rough = |one: &Changing| one.direction.is_none() && self.loading.contacts[one.contact].friction > 0.0;
         if self.changing.iter().any(is_rough) {
             let inverse = match definite {
@@ -59,15 +98,47 @@ impl Equations<'_> {
             };
             self.take_touching(&inverse, null.as_deref(), &mut lower)?;
         } else if null.is_none() {
-            return Some(Proof { null, loose });
+            return Some(Proof { control: Control::Load, null, loose });
         }
         if let Some(null) = &null {
             // Definite across the motion: held where it is fastest.
-            let fastest = (0..self.size).max_by(|a, b| null[*a].abs().total_cmp(&null[*b].abs()))?;
-            lower.retain(|(row, column, _)| *row != fastest && *column != fastest);
-            lower.push((fastest, fastest, 1.0));
+            hold(&mut lower, fastest(null)?);
         }
-        Definite::new(self.size, &lower, -MARGIN).map(|_| Proof { null, loose })
+        Definite::new(self.size, &lower, -MARGIN).map(|_| Proof { control: Control::Load, null, loose })
+    }
+
+    /// That the symmetric part is definite across the load.
+    fn proof_by_power(&self, lower: Triangle, incoming: &Rate) -> Option<Proof> {
+        let is_smooth = |one: &Changing| one.direction.is_some() || self.loading.contacts[one.contact].friction == 0.0;
+        if self.loading.pattern.moves_boundary() || !self.changing.iter().all(is_smooth) {
+            return None;
+        }
+        let fast = fastest(&self.columns_of(incoming))?;
+        let (mut own, mut column) = (0.0, vec![0.0; self.size]);
+        for (row, other, value) in &lower {
+            match (*row == fast, *other == fast) {
+                (true, true) => own += value,
+                (true, false) => column[*other] += value,
+                (false, true) => column[*row] += value,
+                (false, false) => {}
+            }
+        }
+        let mut rest = lower;
+        hold(&mut rest, fast);
+        let rest = Definite::new(self.size, &rest, -MARGIN)?;
+        let mut load = self.load();
+        let at_fast = std::mem::replace(&mut load[fast], 0.0);
+        let (mut by_column, mut by_load) = (column.clone(), load.clone());
+        rest.solve(&mut by_column);
+        rest.solve(&mut by_load);
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let stiffness = [own, product(&column, &by_column)];
+        let softness = product(&load, &by_load);
+        let coupling = [at_fast, product(&column, &by_load)];
+        // -det, and the sizes of its terms.
+        let value = (coupling[0] - coupling[1]).powi(2) + (stiffness[0] - stiffness[1]) * softness;
+        let size = (coupling[0].abs() + coupling[1].abs()).powi(2) + (own.abs() + stiffness[1].abs()) * softness;
+        (value > CLEAR * size).then_some(Proof { control: Control::Power, null: None, loose: Vec::new() })
     }
 
     /// The motion that nothing resists.
@@ -193,20 +264,27 @@ impl Equations<'_> {
         proof.null.iter().all(is_held) && proof.loose.iter().all(is_fast)
     }
 
-    /// Whether no solution has this sign of the load rate.
+    /// Whether no solution has this sign of the control.
     pub fn has_none(&self, sign: f64, proof: &Proof) -> bool {
+        if proof.control == Control::Power {
+            let mut one_sided = vec![false; self.size];
+            for one in &self.changing {
+                one_sided[if one.direction.is_some() { one.column } else { one.column + 1 }] = true;
+            }
+            let zero = WEAK * self.largest_load();
+            let has_power =
+                |(load, one_sided): (&f64, &bool)| if *one_sided { load * sign > zero } else { load.abs() > zero };
+            return !self.load().iter().zip(&one_sided).any(has_power);
+        }
         if self.loading.pattern.moves_boundary() {
             return false;
         }
-        let force = self.loading.pattern.forces.iter().fold(0.0_f64, |force, value| force.max(value.abs()));
-        let mut unit = vec![0.0; self.size];
+        let force = self.largest_load();
+        let load = self.load();
         let lifts = self.changing.iter().filter(|one| one.direction.is_none()).map(|one| one.column + 1);
-        let mut is_pulled = lifts.filter(|column| proof.loose.binary_search(column).is_ok()).any(|column| {
-            unit[column] = 1.0;
-            let power = self.power(&unit);
-            unit[column] = 0.0;
-            power * sign > WEAK * force
-        });
+        let mut is_pulled = lifts
+            .filter(|column| proof.loose.binary_search(column).is_ok())
+            .any(|column| load[column] * sign > WEAK * force);
         for sense in [1.0, -1.0] {
             is_pulled |= proof.null.as_ref().is_some_and(|null| {
                 let opens = |one: &Changing| match one.direction {
