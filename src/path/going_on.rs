@@ -10,8 +10,9 @@
 //! with the motions `T` and the tests `W = T + μ n`; `a_b` is how fast the tractions leave the cone. Where the symmetric part
 //! of `A` is positive definite, so is that of the matrix of the slips alone (`b` with the `x` that it makes), which is then
 //! a P-matrix: each sign of the load rate has one ray (see `rates::certificate`). One is the way on. The other, as a rule,
-//! is all contacts stuck, which its own equations confirm. Where it is not definite the slips are few as a rule, and their
-//! matrix is formed (see `rates::parametric`).
+//! is all contacts stuck, which its own equations confirm. Where it is not definite it may be so across the load, and each
+//! sign of the load's power has one ray (see `sole::proof`); or the slips are few, and their matrix is formed (see
+//! `rates::parametric`).
 //!
 //! `None` is returned where anything is not so, or by less than a wide margin: then `directions` looks everywhere.
 
@@ -23,9 +24,8 @@ use super::standing::Standing;
 use super::state::{Rate, State};
 use crate::contact::vector::{Vector, add, dot};
 use crate::contact::{Frame, Mode, Reaction};
-use crate::linear_algebra::Factorisation;
-use crate::linear_algebra::sparse::symmetric::SymmetricFactor;
 use crate::linear_algebra::sparse::{Bordered, SparseFactorisation};
+use crate::linear_algebra::{Factorisation, Sink};
 use nalgebra::{DMatrix, DVector};
 
 /// What is not zero by this much (rates of unit arc length; forces against the largest of them) leaves no doubt.
@@ -33,7 +33,7 @@ const MARGIN: f64 = 1e-7;
 /// Eigenvalues up to this, relative, count as zero.
 const DEFINITE: f64 = 1e-9;
 /// Unknowns up to which matrices are dense: their entries are few, and only the profile is factorised.
-const MOST_DENSE: usize = 200;
+const MOST_DENSE: usize = 40;
 /// Load rates below this may be zero.
 const RESTING: f64 = 1e-8;
 
@@ -271,27 +271,25 @@ impl<'a> Reduced<'a> {
         (0..self.is_slip.len()).filter(|unknown| self.is_slip[*unknown] == slips).collect()
     }
 
-    /// The same with sparse matrices: only where the whole is definite.
+    /// The same with sparse matrices: where the whole is definite, or is so across the load (see `sole`).
     fn stuck_among_many(&self, incoming: &Rate) -> Option<Rate> {
         let structure = self.loading.structure;
         let layout = structure.layout()?;
         let pattern = &layout.pattern;
+        let size = pattern.size();
         let place_of: Vec<usize> =
             self.freedom_of.iter().map(|freedom| structure.unknown_of[*freedom]).collect::<Option<_>>()?;
-        if incoming.load.abs() <= RESTING {
-            return None;
-        }
-        let (mut values, mut load) = (vec![0.0; pattern.entries()], DVector::zeros(pattern.size()));
         // The equations of the other unknowns alone.
         let mut held = Bordered::new(pattern.clone(), 0);
+        let (mut symmetric, mut load) = (Bordered::new(pattern.clone(), 1), DVector::zeros(size));
         let mut is_outside = false;
         self.each_entry(&mut |row, column, value| match column {
             Some(column) => {
                 let (own, transposed) = (place_of[row], place_of[column]);
                 match (pattern.place(own, transposed), pattern.place(transposed, own)) {
                     (Some(place), Some(mirror)) => {
-                        values[place] += 0.5 * value;
-                        values[mirror] += 0.5 * value;
+                        symmetric.add_at(place, 0.5 * value);
+                        symmetric.add_at(mirror, 0.5 * value);
                         if !self.is_slip[row] && !self.is_slip[column] {
                             held.add_at(place, value);
                         }
@@ -299,35 +297,72 @@ impl<'a> Reduced<'a> {
                     _ => is_outside = true,
                 }
             }
-            None if !self.is_slip[row] => load[place_of[row]] -= value,
-            None => {}
+            None => load[place_of[row]] -= value,
         });
-        let (mut is_used, mut is_other) = (vec![false; pattern.size()], vec![false; pattern.size()]);
-        for (place, is_slip) in place_of.iter().zip(&self.is_slip) {
-            (is_used[*place], is_other[*place]) = (true, !is_slip);
+        let (mut is_used, mut is_slip) = (vec![false; size], vec![false; size]);
+        for (place, slips) in place_of.iter().zip(&self.is_slip) {
+            (is_used[*place], is_slip[*place]) = (true, *slips);
         }
-        for unknown in 0..pattern.size() {
+        for unknown in 0..size {
             let place = pattern.place(unknown, unknown)?;
             if !is_used[unknown] {
-                values[place] = 1.0;
+                symmetric.add_at(place, 1.0);
             }
-            if !is_other[unknown] {
+            if !is_used[unknown] || is_slip[unknown] {
                 held.add_at(place, 1.0);
             }
         }
         if is_outside {
             return None;
         }
-        let inertia = SymmetricFactor::new(pattern.clone(), &values).ok()?.inertia(DEFINITE)?;
-        if inertia.negative + inertia.zero > 0 {
-            return None;
-        }
+        let inertia = symmetric.inertia(DEFINITE)?;
+        let by_power = match (inertia.negative, inertia.zero) {
+            (0, 0) if incoming.load.abs() > RESTING => false,
+            (1, 0) => {
+                for (unknown, load) in load.iter().enumerate() {
+                    symmetric.add(unknown, size, *load);
+                    symmetric.add(size, unknown, *load);
+                }
+                // One negative eigenvalue of the whole, not two.
+                let bordered = SparseFactorisation::new(symmetric, &[])?;
+                if bordered.determinant_sign() > 0.0 || bordered.pivot_ratio() <= DEFINITE {
+                    return None;
+                }
+                true
+            }
+            _ => return None,
+        };
         let others = self.unknowns(false);
-        if !others.is_empty() && !SparseFactorisation::new(held, &[])?.solve(&mut load) {
+        let mut values = DVector::from_fn(size, |unknown, _| if is_slip[unknown] { 0.0 } else { load[unknown] });
+        if !others.is_empty() && !SparseFactorisation::new(held, &[])?.solve(&mut values) {
             return None;
         }
-        let response = DVector::from_iterator(others.len(), others.iter().map(|other| load[place_of[*other]]));
-        self.stuck_rate(&others, &response, -incoming.load.signum())
+        let response = DVector::from_iterator(others.len(), others.iter().map(|other| values[place_of[*other]]));
+        if !by_power {
+            return self.stuck_rate(&others, &response, -incoming.load.signum());
+        }
+        // One direction for each sign of the power; the load alone changes where no other motion has any.
+        let power = |motion: &dyn Fn(usize) -> f64, slips: bool| -> f64 {
+            let unknowns = (0..self.is_slip.len()).filter(|unknown| slips || !self.is_slip[*unknown]);
+            unknowns.map(|unknown| load[place_of[unknown]] * motion(unknown)).sum()
+        };
+        let mut columns = vec![0.0; self.is_slip.len()];
+        for (freedom, velocity) in incoming.displacement.iter().enumerate() {
+            self.parts_of(freedom).iter().for_each(|part| columns[part.unknown] += part.motion * velocity);
+        }
+        let largest = load.amax();
+        let own = power(&|unknown| columns[unknown], true);
+        if own.abs() <= MARGIN * largest {
+            return None;
+        }
+        if others.iter().all(|other| load[place_of[*other]] == 0.0) {
+            return [1.0, -1.0].into_iter().find_map(|sign| self.stuck_rate(&others, &response, sign));
+        }
+        let of_stuck = power(&|unknown| values[place_of[unknown]], false);
+        if of_stuck.abs() <= MARGIN * largest * response.norm() {
+            return None;
+        }
+        self.stuck_rate(&others, &response, -own.signum() * of_stuck.signum())
     }
 
     /// The rate at which nothing slips, of unit arc length; `None` where some contact would not stay within its cone by a

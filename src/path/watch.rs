@@ -11,7 +11,6 @@ use super::corner;
 use super::loading::Loading;
 use super::pocket::Pocket;
 use super::scene::End;
-use super::standing::none_from_cone;
 use super::state::{Rate, State};
 use super::track::direction_of;
 use crate::contact::vector::{Vector, add, dot, scaled};
@@ -179,10 +178,7 @@ impl Watch {
     /// The value at a state that is zero as far as a relative tolerance tells.
     pub fn zero_within(self, loading: Loading<'_>, state: &State, tolerance: f64, force_scale: f64) -> f64 {
         match self {
-            Self::Cone { contact, .. } => {
-                let bound = loading.contacts[contact].friction * state.reactions[contact].normal;
-                none_from_cone(bound, tolerance, loading.force_scale_at(contact, state, force_scale))
-            }
+            Self::Cone { contact, .. } => loading.none_from_cone(contact, state, tolerance, force_scale),
             _ => tolerance * self.scale(loading, state, force_scale),
         }
     }

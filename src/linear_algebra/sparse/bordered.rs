@@ -3,7 +3,7 @@
 use super::Entries;
 use super::pattern::Pattern;
 use super::symmetric::SymmetricFactor;
-use crate::linear_algebra::Sink;
+use crate::linear_algebra::{Inertia, Sink};
 use nalgebra::DVector;
 use std::sync::Arc;
 
@@ -82,6 +82,11 @@ impl Bordered {
     /// factorised.
     pub fn null_vectors(&self, tolerance: f64) -> Option<Vec<DVector<f64>>> {
         SymmetricFactor::new(self.pattern.clone(), &self.values).ok()?.null_vectors(tolerance)
+    }
+
+    /// Numbers of eigenvalues of `K` alone, symmetric, by sign.
+    pub fn inertia(&self, tolerance: f64) -> Option<Inertia> {
+        SymmetricFactor::new(self.pattern.clone(), &self.values).ok()?.inertia(tolerance)
     }
 
     pub(super) fn is_finite(&self) -> bool {
