@@ -53,7 +53,7 @@ impl<'a> Condensed<'a> {
             for (_, direction) in &entry.velocities {
                 let mut values = DVector::zeros(system.size());
                 // A smooth contact holds along its normal alone.
-                let held = if held.is_empty() { std::slice::from_ref(&frame.normal) } else { &held[..] };
+                let held = if held.is_empty() { std::slice::from_ref(&frame.normal) } else { held };
                 held.iter().enumerate().for_each(|(k, one)| values[row + k] = dot(one, direction));
                 if !factorisation.solve(&mut values) {
                     return None;

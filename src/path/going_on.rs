@@ -24,7 +24,7 @@ use super::standing::Standing;
 use super::state::{Rate, State};
 use crate::contact::vector::{Vector, add, dot};
 use crate::contact::{Frame, Mode, Reaction};
-use crate::linear_algebra::sparse::{Bordered, SparseFactorisation};
+use crate::linear_algebra::sparse::{Bordered, Holdings, SparseFactorisation};
 use crate::linear_algebra::{Factorisation, Sink};
 use nalgebra::{DMatrix, DVector};
 
@@ -324,7 +324,7 @@ impl<'a> Reduced<'a> {
                     symmetric.add(size, unknown, *load);
                 }
                 // One negative eigenvalue of the whole, not two.
-                let bordered = SparseFactorisation::new(symmetric, &[])?;
+                let bordered = SparseFactorisation::new(symmetric, &Holdings::default())?;
                 if bordered.determinant_sign() > 0.0 || bordered.pivot_ratio() <= DEFINITE {
                     return None;
                 }
@@ -334,7 +334,7 @@ impl<'a> Reduced<'a> {
         };
         let others = self.unknowns(false);
         let mut values = DVector::from_fn(size, |unknown, _| if is_slip[unknown] { 0.0 } else { load[unknown] });
-        if !others.is_empty() && !SparseFactorisation::new(held, &[])?.solve(&mut values) {
+        if !others.is_empty() && !SparseFactorisation::new(held, &Holdings::default())?.solve(&mut values) {
             return None;
         }
         let response = DVector::from_iterator(others.len(), others.iter().map(|other| values[place_of[*other]]));

@@ -21,7 +21,7 @@ use super::state::{Rate, State};
 use super::track::{self, Start, Turn};
 use crate::contact::vector::{Vector, add, cross, dot, scaled, size};
 use crate::contact::{Frame, Mode, Reaction};
-use crate::linear_algebra::sparse::{Bordered, Holding, SparseFactorisation};
+use crate::linear_algebra::sparse::{Bordered, Holding, Holdings, SparseFactorisation};
 use crate::linear_algebra::{Factorisation, Sink, Stiffener, SystemFactorisation};
 use crate::structure::Stretching;
 use nalgebra::{DMatrix, DVector};
@@ -102,7 +102,9 @@ pub struct ModeSystem<'a> {
     first_of: Vec<usize>,
     pub(super) size: usize,
     /// Made when first needed.
-    holdings: OnceCell<Vec<Holding>>,
+    holdings: OnceCell<Holdings>,
+    /// Of each contact, see [`Self::held_directions`]; made when first needed.
+    held: OnceCell<Vec<Directions>>,
 }
 
 impl<'a> ModeSystem<'a> {
@@ -146,7 +148,7 @@ impl<'a> ModeSystem<'a> {
             };
             roles.push(role);
         }
-        Self { loading, anchor, roles, modes, first_of, size: next, holdings: OnceCell::new() }
+        Self { loading, anchor, roles, modes, first_of, size: next, holdings: OnceCell::new(), held: OnceCell::new() }
     }
 
     /// Number of unknowns.
@@ -324,13 +326,13 @@ impl<'a> ModeSystem<'a> {
     }
 
     /// What the closed contacts hold at each node, in the order of the nodes.
-    pub(super) fn holdings(&self) -> &[Holding] {
+    pub(super) fn holdings(&self) -> &Holdings {
         self.holdings.get_or_init(|| {
             let closed = |contact: &usize| !matches!(self.roles[*contact], Role::Free | Role::HeldBy);
             let mut contacts: Vec<usize> = (0..self.roles.len()).filter(closed).collect();
             contacts.sort_by_key(|contact| self.loading.contacts[*contact].node);
             let same_node = |a: &usize, b: &usize| self.loading.contacts[*a].node == self.loading.contacts[*b].node;
-            contacts.chunk_by(same_node).map(|contacts| self.holding(contacts)).collect()
+            Holdings::new(contacts.chunk_by(same_node).map(|contacts| self.holding(contacts)).collect())
         })
     }
 
@@ -460,7 +462,11 @@ impl<'a> ModeSystem<'a> {
 
     /// Orthonormal directions in which a sticking contact holds its node, along which it has a force: the normal and the
     /// tangents with friction; where it holds the node together with others, all in which the node is free.
-    pub(super) fn held_directions(&self, contact: usize) -> Directions {
+    pub(super) fn held_directions(&self, contact: usize) -> &[Vector] {
+        &self.held.get_or_init(|| (0..self.roles.len()).map(|contact| self.directions_held(contact)).collect())[contact]
+    }
+
+    fn directions_held(&self, contact: usize) -> Directions {
         let data = &self.loading.contacts[contact];
         let in_frame = |tangents: usize| {
             let frame = self.loading.frame(contact, self.anchor);
@@ -726,7 +732,9 @@ impl<'a> ModeSystem<'a> {
         let correction = self.rate_at(iterate, values, Kind::Increment);
         let mut state = iterate.state.advanced(&correction, -1.0);
         let mut directions = iterate.directions.clone();
-        self.place_exactly(&mut state);
+        if self.has_tracks() {
+            self.place_exactly(&mut state);
+        }
         for (contact, role) in self.roles.iter().enumerate() {
             if let Role::Plane { .. } = role {
                 let frame = self.loading.frame(contact, &state);

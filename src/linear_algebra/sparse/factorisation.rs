@@ -8,7 +8,7 @@
 
 use super::Entries;
 use super::bordered::Bordered;
-use super::held::{Elimination, Friction, Holding};
+use super::held::{Elimination, Friction, Holdings};
 use super::lu::WholeLu;
 use super::reduced::{Factor, Reduced};
 use super::symmetric::SymmetricFactor;
@@ -43,12 +43,12 @@ const MOST_BORDERS: usize = 400;
 
 impl SparseFactorisation {
     /// Factorises; `None` when the matrix is singular to working precision or holds a number that is not finite.
-    pub fn new(matrix: Bordered, holdings: &[Holding]) -> Option<Self> {
+    pub fn new(matrix: Bordered, holdings: &Holdings) -> Option<Self> {
         let friction = friction_of(&matrix, holdings);
         Self::with(matrix, holdings, friction)
     }
 
-    pub(super) fn with(matrix: Bordered, holdings: &[Holding], friction: Friction) -> Option<Self> {
+    pub(super) fn with(matrix: Bordered, holdings: &Holdings, friction: Friction) -> Option<Self> {
         if matrix.is_outside || !matrix.is_finite() {
             return None;
         }
@@ -172,7 +172,7 @@ enum Row {
 }
 
 impl Blocks {
-    fn new(matrix: &Bordered, holdings: &[Holding], friction: Friction) -> Option<Self> {
+    fn new(matrix: &Bordered, holdings: &Holdings, friction: Friction) -> Option<Self> {
         let (unknowns, given) = (matrix.pattern.size(), matrix.lower.len());
         let symmetric = (friction == Friction::Bordered).then(|| symmetrised(matrix));
         let matrix = symmetric.as_ref().unwrap_or(matrix);
@@ -183,7 +183,7 @@ impl Blocks {
         let mut equilibrium: Vec<Option<Option<usize>>> = vec![None; borders];
         let mut shifts = vec![Entries::new(); borders];
         let mut stiffness_of = vec![None; unknowns];
-        for node in &elimination.nodes {
+        for node in elimination.nodes() {
             sign *= node.sign;
             for (index, (row, column)) in node.rows().iter().zip(node.columns()).enumerate() {
                 equilibrium[*row] = Some(node.keeps.then_some(node.held()[index]));
@@ -273,7 +273,7 @@ impl Blocks {
         self.elimination.rotate(&mut force, false);
         self.elimination.fold(&mut force);
         let mut held = vec![0.0; self.unknowns];
-        for node in &self.elimination.nodes {
+        for node in self.elimination.nodes() {
             let motion = node.constraint * gathered(node.rows(), lower);
             for (index, (unknown, motion)) in node.held().iter().zip(motion.iter()).enumerate() {
                 held[*unknown] = *motion;
@@ -291,7 +291,7 @@ impl Blocks {
         };
         let mut weights: Vec<f64> = self.kept_rows.iter().map(right).collect();
         let mut motion = force.clone();
-        self.elimination.nodes.iter().flat_map(|node| node.held()).for_each(|unknown| motion[*unknown] = 0.0);
+        self.elimination.nodes().iter().flat_map(|node| node.held()).for_each(|unknown| motion[*unknown] = 0.0);
         if !self.reduced.solve(&mut motion, &mut weights) {
             return false;
         }
@@ -303,14 +303,14 @@ impl Blocks {
             shift.iter().for_each(|(unknown, motion)| held[*unknown] += weight * motion);
             part.iter().for_each(|(unknown, value)| force[*unknown] -= weight * value);
         }
-        for node in &self.elimination.nodes {
+        for node in self.elimination.nodes() {
             for (index, unknown) in node.held().iter().enumerate() {
                 // `motion` is zero at held unknowns: their part is in `force`.
                 let equilibrium = self.elimination.equilibrium(node, index);
                 force[*unknown] -= equilibrium.iter().map(|(row, value)| value * motion[*row]).sum::<f64>();
             }
         }
-        for node in &self.elimination.nodes {
+        for node in self.elimination.nodes() {
             if !node.keeps {
                 let reactions = node.reaction * gathered(node.held(), &force);
                 node.columns().iter().zip(reactions.iter()).for_each(|(column, value)| borders[*column] = *value);
@@ -337,7 +337,7 @@ const LITTLE: u64 = 1_000_000;
 const SLOWER: u64 = 4;
 
 /// What is cheaper: borders for what is not symmetric, a solve each, or a factorisation without symmetry.
-fn friction_of(matrix: &Bordered, holdings: &[Holding]) -> Friction {
+fn friction_of(matrix: &Bordered, holdings: &Holdings) -> Friction {
     let pattern = &matrix.pattern;
     let entries = pattern.factor_entries() as u64;
     let rubs = |(row, column): &(&usize, &usize)| {
@@ -389,15 +389,15 @@ fn symmetrised(matrix: &Bordered) -> Bordered {
 
 /// Numbers of eigenvalues by sign of `Zᵀ K Z`, `Z` the motions that the holdings allow. `None` where the count is not
 /// possible: `K` is not symmetric, or a holding could not be eliminated.
-pub fn held_inertia(matrix: &Bordered, holdings: &[Holding], tolerance: f64) -> Option<Inertia> {
+pub fn held_inertia(matrix: &Bordered, holdings: &Holdings, tolerance: f64) -> Option<Inertia> {
     if matrix.is_outside || symmetrised(matrix).lower.len() != matrix.lower.len() {
         return None;
     }
     let (elimination, values) = Elimination::new(matrix, holdings, Friction::Bordered);
-    if elimination.nodes.len() != holdings.len() {
+    if elimination.nodes().len() != holdings.iter().len() {
         return None;
     }
-    let held: usize = elimination.nodes.iter().map(|node| node.held().len()).sum();
+    let held: usize = elimination.nodes().iter().map(|node| node.held().len()).sum();
     let mut inertia = SymmetricFactor::new(matrix.pattern.clone(), &values).ok()?.inertia(tolerance)?;
     inertia.positive = inertia.positive.checked_sub(held)?;
     Some(inertia)

@@ -16,7 +16,9 @@ use super::Entries;
 use super::bordered::Bordered;
 use nalgebra::{Matrix3, Vector3};
 use smallvec::SmallVec;
+use std::cell::RefCell;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Border rows that hold unknowns of one node, and the border columns with its reactions, one for each row.
 #[derive(Debug, Clone)]
@@ -34,6 +36,33 @@ impl Holding {
     /// Of a node that nothing holds yet.
     pub fn new(unknowns: impl IntoIterator<Item = usize>) -> Self {
         Self { unknowns: unknowns.into_iter().collect(), rows: Places::new(), columns: Places::new() }
+    }
+}
+
+/// All holdings of a matrix. Whoever factorises several with one set keeps it: as long as the entries of its border rows
+/// and columns are the same, so are the nodes.
+#[derive(Default)]
+pub struct Holdings {
+    list: Vec<Holding>,
+    last: RefCell<Option<Arc<Nodes>>>,
+}
+
+impl Holdings {
+    pub fn new(list: Vec<Holding>) -> Self {
+        Self { list, last: RefCell::default() }
+    }
+
+    pub fn iter(&self) -> std::slice::Iter<'_, Holding> {
+        self.list.iter()
+    }
+
+    fn nodes(&self, matrix: &Bordered, friction: Friction) -> Arc<Nodes> {
+        let known = self.last.borrow().as_ref().filter(|nodes| nodes.fit(matrix, &self.list, friction)).cloned();
+        known.unwrap_or_else(|| {
+            let nodes = Arc::new(Nodes::new(matrix, &self.list, friction));
+            *self.last.borrow_mut() = Some(Arc::clone(&nodes));
+            nodes
+        })
     }
 }
 
@@ -69,18 +98,29 @@ pub(super) struct HeldNode {
     /// Sign of the part of the determinant that is eliminated, its place apart.
     pub sign: f64,
     /// `d`: for each row, other borders and values.
-    pub couplings: [Entries; 3],
-    /// Where the elimination has its columns `H` of the matrix.
-    columns_at: [Range<usize>; 3],
-    /// Where the elimination has its rows `H` of the matrix.
-    rows_at: [Range<usize>; 3],
+    pub couplings: [Vec<(usize, f64)>; 3],
+    /// Its place among the others.
+    place: usize,
 }
 
-/// All of them.
-pub(super) struct Elimination {
-    pub nodes: Vec<HeldNode>,
+/// All of them, for some entries of the borders.
+struct Nodes {
+    nodes: Vec<HeldNode>,
     /// Node and place in it of each unknown.
     place_of: Vec<Option<(u32, u32)>>,
+    friction: Friction,
+    /// Border columns that enter border rows.
+    enters: Vec<bool>,
+    /// Entries of the rows and columns of the holdings, one after the other.
+    borders: Vec<(usize, f64)>,
+}
+
+/// What is left of a matrix, and what was taken.
+pub(super) struct Elimination {
+    nodes: Arc<Nodes>,
+    /// Of each node, where its columns and its rows `H` of the matrix begin and end.
+    columns_at: Vec<[Range<usize>; 3]>,
+    rows_at: Vec<[Range<usize>; 3]>,
     /// Entries of all rows and columns `H`.
     entries: Vec<(usize, f64)>,
 }
@@ -90,19 +130,13 @@ const NOTHING: f64 = 1e-14;
 /// A node whose held directions are nearer than this to each other is left to the borders.
 const DEPENDENT: f64 = 1e-6;
 
-impl Elimination {
-    /// Eliminates; with the matrix that is left. A holding that cannot be eliminated so stays in the borders.
-    pub fn new(matrix: &Bordered, holdings: &[Holding], friction: Friction) -> (Self, Vec<f64>) {
+impl Nodes {
+    fn new(matrix: &Bordered, holdings: &[Holding], friction: Friction) -> Self {
         let n = matrix.pattern.size();
         let mut is_reaction = vec![false; matrix.lower.len()];
         holdings.iter().flat_map(|holding| &holding.columns).for_each(|column| is_reaction[*column] = true);
         // Reactions that enter border equations stay.
-        let mut enters = vec![false; matrix.lower.len()];
-        for (column, _) in matrix.lower.iter().flatten() {
-            if *column >= n {
-                enters[*column - n] = true;
-            }
-        }
+        let enters = enters(matrix);
         let mut place_of = vec![None; n];
         let mut nodes: Vec<HeldNode> = Vec::with_capacity(holdings.len());
         for holding in holdings {
@@ -110,36 +144,80 @@ impl Elimination {
             if !free || holding.columns.iter().any(|column| enters[*column]) {
                 continue;
             }
-            let Some(node) = HeldNode::new(matrix, holding, &is_reaction, friction) else { continue };
+            let Some(mut node) = HeldNode::new(matrix, holding, &is_reaction, friction) else { continue };
             for (local, unknown) in node.unknowns().iter().enumerate() {
                 place_of[*unknown] = Some((nodes.len() as u32, local as u32));
             }
+            node.place = nodes.len();
             nodes.push(node);
         }
+        let borders = borders(matrix, holdings).collect();
+        Self { nodes, place_of, friction, enters, borders }
+    }
+
+    /// Whether they are those of a matrix, too.
+    fn fit(&self, matrix: &Bordered, holdings: &[Holding], friction: Friction) -> bool {
+        self.friction == friction
+            && self.place_of.len() == matrix.pattern.size()
+            && self.enters == enters(matrix)
+            && borders(matrix, holdings).eq(self.borders.iter().copied())
+    }
+}
+
+/// Which border columns have entries in border rows.
+fn enters(matrix: &Bordered) -> Vec<bool> {
+    let n = matrix.pattern.size();
+    let mut enters = vec![false; matrix.lower.len()];
+    for (column, _) in matrix.lower.iter().flatten() {
+        if *column >= n {
+            enters[*column - n] = true;
+        }
+    }
+    enters
+}
+
+/// The entries of the rows and columns of holdings, each row and column closed by its length.
+fn borders<'a>(matrix: &'a Bordered, holdings: &'a [Holding]) -> impl Iterator<Item = (usize, f64)> + 'a {
+    let closed = |entries: &'a Entries| entries.iter().copied().chain(std::iter::once((entries.len(), 0.0)));
+    holdings.iter().flat_map(move |holding| {
+        let rows = holding.rows.iter().flat_map(move |row| closed(&matrix.lower[*row]));
+        rows.chain(holding.columns.iter().flat_map(move |column| closed(&matrix.right[*column])))
+    })
+}
+
+impl Elimination {
+    /// Eliminates; with the matrix that is left. A holding that cannot be eliminated so stays in the borders.
+    pub fn new(matrix: &Bordered, holdings: &Holdings, friction: Friction) -> (Self, Vec<f64>) {
+        let all = holdings.nodes(matrix, friction);
+        let nodes = &all.nodes;
         let mut values = matrix.values.clone();
         let mut entries = Vec::with_capacity(4 * nodes.iter().map(|node| node.count * node.held).sum::<usize>());
         nodes.iter().for_each(|node| node.rotate_matrix(matrix, &mut values));
         // All rows and columns are taken before any is cleared: those of neighbours have entries in each other's.
-        nodes.iter_mut().for_each(|node| node.take_rows(matrix, &values, &mut entries));
+        let rows_at = nodes.iter().map(|node| node.take_rows(matrix, &values, &mut entries)).collect();
         nodes.iter().for_each(|node| node.fold(matrix, &mut values));
-        nodes.iter_mut().for_each(|node| node.take_columns(matrix, &values, &mut entries));
+        let columns_at = nodes.iter().map(|node| node.take_columns(matrix, &values, &mut entries)).collect();
         nodes.iter().for_each(|node| node.clear(matrix, &mut values));
-        (Self { nodes, place_of, entries }, values)
+        (Self { nodes: all, columns_at, rows_at, entries }, values)
+    }
+
+    pub fn nodes(&self) -> &[HeldNode] {
+        &self.nodes.nodes
     }
 
     /// A column `H` of a node.
     pub fn stiffness(&self, node: &HeldNode, index: usize) -> &[(usize, f64)] {
-        &self.entries[node.columns_at[index].clone()]
+        &self.entries[self.columns_at[node.place][index].clone()]
     }
 
     /// A row `H` of a node.
     pub fn equilibrium(&self, node: &HeldNode, index: usize) -> &[(usize, f64)] {
-        &self.entries[node.rows_at[index].clone()]
+        &self.entries[self.rows_at[node.place][index].clone()]
     }
 
     /// Whether an unknown of the rotated system is held.
     pub fn is_held(&self, unknown: usize) -> bool {
-        self.place_of[unknown].is_some_and(|(node, local)| (local as usize) < self.nodes[node as usize].held)
+        self.nodes.place_of[unknown].is_some_and(|(node, local)| (local as usize) < self.nodes()[node as usize].held)
     }
 
     /// Entries of a row or a column over the rotated unknowns: those that are not held, and those that are.
@@ -147,14 +225,14 @@ impl Elimination {
         let (mut free, mut held) = (Entries::with_capacity(entries.len()), Entries::new());
         let mut at_nodes: SmallVec<[(u32, u32, f64); 8]> = SmallVec::new();
         for (unknown, value) in entries {
-            match self.place_of[*unknown] {
+            match self.nodes.place_of[*unknown] {
                 None => free.push((*unknown, *value)),
                 Some((node, local)) => at_nodes.push((node, local, *value)),
             }
         }
         at_nodes.sort_by_key(|(node, local, _)| (*node, *local));
         for group in at_nodes.chunk_by(|a, b| a.0 == b.0) {
-            let node = &self.nodes[group[0].0 as usize];
+            let node = &self.nodes()[group[0].0 as usize];
             for (place, unknown) in node.unknowns().iter().enumerate() {
                 let part = |(_, local, value): &(u32, u32, f64)| node.rotation[(*local as usize, place)] * value;
                 let value: f64 = group.iter().map(part).sum();
@@ -175,8 +253,8 @@ impl Elimination {
     pub fn folded(&self, held: &[(usize, f64)]) -> Entries {
         let mut free = Entries::new();
         for (unknown, value) in held {
-            let Some((node, local)) = self.place_of[*unknown] else { continue };
-            let node = &self.nodes[node as usize];
+            let Some((node, local)) = self.nodes.place_of[*unknown] else { continue };
+            let node = &self.nodes()[node as usize];
             if let Some(friction) = &node.friction {
                 for other in node.held..node.count {
                     free.push((node.unknowns[other], -friction[(other, local as usize)] * value));
@@ -188,7 +266,7 @@ impl Elimination {
 
     /// `Qᵀ x` or `Q x` at every node.
     pub fn rotate(&self, x: &mut [f64], back: bool) {
-        for node in self.nodes.iter().filter(|node| node.turns) {
+        for node in self.nodes().iter().filter(|node| node.turns) {
             let here = node.gather(x);
             let turned = if back { node.rotation * here } else { node.rotation.tr_mul(&here) };
             node.unknowns().iter().zip(turned.iter()).for_each(|(unknown, value)| x[*unknown] = *value);
@@ -197,7 +275,7 @@ impl Elimination {
 
     /// Folds a right-hand side that was rotated.
     pub fn fold(&self, x: &mut [f64]) {
-        for node in &self.nodes {
+        for node in self.nodes() {
             if let Some(friction) = &node.friction {
                 let here = node.gather(x);
                 for other in node.held..node.count {
@@ -219,7 +297,7 @@ impl HeldNode {
         let unknowns = held_first(matrix, holding);
         let local = |unknown: usize| unknowns.iter().position(|own| *own == unknown);
         let (mut rows, mut columns) = (Matrix3::zeros(), Matrix3::zeros());
-        let mut couplings = [const { Entries::new_const() }; 3];
+        let mut couplings = [const { Vec::new() }; 3];
         for (index, row) in holding.rows.iter().enumerate() {
             for (column, value) in &matrix.lower[*row] {
                 if *column < n {
@@ -268,8 +346,7 @@ impl HeldNode {
             keeps,
             sign,
             couplings,
-            columns_at: [const { 0..0 }; 3],
-            rows_at: [const { 0..0 }; 3],
+            place: 0,
         })
     }
 
@@ -328,14 +405,16 @@ impl HeldNode {
         }
     }
 
-    fn take_rows(&mut self, matrix: &Bordered, values: &[f64], taken: &mut Vec<(usize, f64)>) {
+    fn take_rows(&self, matrix: &Bordered, values: &[f64], taken: &mut Vec<(usize, f64)>) -> [Range<usize>; 3] {
         let pattern = &matrix.pattern;
-        for (range, row) in self.rows_at.iter_mut().zip(&self.unknowns[..self.held]) {
+        let mut rows_at = [const { 0..0 }; 3];
+        for (range, row) in rows_at.iter_mut().zip(self.held()) {
             let entry = |place: usize| (pattern.rows[place], values[pattern.mirrors[place]]);
             let start = taken.len();
             taken.extend(pattern.column(*row).map(entry).filter(|(_, value)| *value != 0.0));
             *range = start..taken.len();
         }
+        rows_at
     }
 
     /// Rows `T` less `F R⁻¹` times rows `H`.
@@ -349,14 +428,16 @@ impl HeldNode {
         });
     }
 
-    fn take_columns(&mut self, matrix: &Bordered, values: &[f64], taken: &mut Vec<(usize, f64)>) {
+    fn take_columns(&self, matrix: &Bordered, values: &[f64], taken: &mut Vec<(usize, f64)>) -> [Range<usize>; 3] {
         let pattern = &matrix.pattern;
-        for (range, column) in self.columns_at.iter_mut().zip(&self.unknowns[..self.held]) {
+        let mut columns_at = [const { 0..0 }; 3];
+        for (range, column) in columns_at.iter_mut().zip(self.held()) {
             let entry = |place: usize| (pattern.rows[place], values[place]);
             let start = taken.len();
             taken.extend(pattern.column(*column).map(entry).filter(|(_, value)| *value != 0.0));
             *range = start..taken.len();
         }
+        columns_at
     }
 
     /// Leaves a one on the diagonal in the held rows and columns.

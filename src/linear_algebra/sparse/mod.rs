@@ -25,7 +25,7 @@ mod unsymmetric;
 
 pub use bordered::Bordered;
 pub use factorisation::{SparseFactorisation, held_inertia};
-pub use held::{Holding, Places};
+pub use held::{Holding, Holdings, Places};
 pub use pattern::Pattern;
 
 use smallvec::SmallVec;

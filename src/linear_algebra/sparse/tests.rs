@@ -41,7 +41,7 @@ struct Kind {
 struct System {
     sparse: Bordered,
     dense: DMatrix<f64>,
-    holdings: Vec<Holding>,
+    holdings: Holdings,
 }
 
 fn system(random: &mut Random, dimension: usize, nodes: usize, kind: Kind) -> System {
@@ -135,7 +135,7 @@ fn system(random: &mut Random, dimension: usize, nodes: usize, kind: Kind) -> Sy
         put(row, next, random.next());
     }
     (0..=n).for_each(|column| put(n + borders - 1, column, random.next()));
-    System { sparse, dense, holdings }
+    System { sparse, dense, holdings: Holdings::new(holdings) }
 }
 
 fn kinds() -> Vec<Kind> {
@@ -166,8 +166,8 @@ fn solutions_and_signs_are_those_of_the_dense_one() {
                 if known.pivot_ratio() < 1e-5 {
                     continue;
                 }
-                let ways = [Friction::Bordered, Friction::Folded];
-                for (holdings, friction) in ways.iter().flat_map(|way| [(&holdings[..], *way), (&[], *way)]) {
+                let (ways, none) = ([Friction::Bordered, Friction::Folded], Holdings::default());
+                for (holdings, friction) in ways.iter().flat_map(|way| [(&holdings, *way), (&none, *way)]) {
                     let found = SparseFactorisation::with(sparse.clone(), holdings, friction).expect("regular");
                     assert_eq!(found.determinant_sign(), known.determinant_sign(), "{dimension} {nodes}");
                     let ratio = found.pivot_ratio();
@@ -218,7 +218,7 @@ fn zero_eigenvalues_are_raised_and_counted() {
             sparse.add(i, j, first[i] * first[j] - second[i] * second[j]);
         }
     }
-    let found = held_inertia(&sparse, &[], 1e-13).unwrap();
+    let found = held_inertia(&sparse, &Holdings::default(), 1e-13).unwrap();
     assert_eq!((found.negative, found.zero, found.positive), (1, 4, 1));
     let factor = SymmetricFactor::new(sparse.pattern.clone(), &sparse.values).unwrap();
     let vectors = factor.null_vectors(1e-10).unwrap();
@@ -227,6 +227,38 @@ fn zero_eigenvalues_are_raised_and_counted() {
         let along = |row: &[f64; 6]| row.iter().zip(vector.iter()).map(|(a, b)| a * b).sum::<f64>().abs();
         assert!(along(&first) < 1e-13 && along(&second) < 1e-13);
     }
+}
+
+/// One set of holdings for several matrices, with borders alike and not: each solution is that of a set of its own.
+#[test]
+fn nodes_serve_on_only_while_borders_are_the_same() {
+    let mut random = Random(11);
+    let mut compared = 0;
+    for kind in kinds() {
+        let System { mut sparse, holdings, .. } = system(&mut random, 2, 12, kind);
+        for friction in [Friction::Bordered, Friction::Folded] {
+            for change in 0..4 {
+                match change {
+                    1 => sparse.values.iter_mut().for_each(|value| *value *= 1.5),
+                    2 => {
+                        for row in holdings.iter().flat_map(|holding| holding.rows.iter()) {
+                            sparse.lower[*row].iter_mut().for_each(|(_, value)| *value *= 1.25);
+                        }
+                    }
+                    _ => {}
+                }
+                let alone = Holdings::new(holdings.iter().cloned().collect());
+                let solve = |holdings: &Holdings| {
+                    let found = SparseFactorisation::with(sparse.clone(), holdings, friction)?;
+                    let mut right = DVector::from_fn(sparse.size(), |row, _| 1.0 + (row % 5) as f64);
+                    found.solve(&mut right).then_some(right)
+                };
+                assert_eq!(solve(&holdings), solve(&alone), "{friction:?} {change}");
+                compared += usize::from(solve(&alone).is_some());
+            }
+        }
+    }
+    assert!(compared > 20, "{compared}");
 }
 
 #[test]
@@ -247,14 +279,15 @@ fn singular_systems_are_refused() {
                 twin.extend(column.iter().filter(|(row, _)| *row == 0).map(|(_, value)| (n + border, *value)));
             }
             sparse.lower[last] = twin;
+            let none = Holdings::default();
             for (holdings, friction) in
-                [Friction::Bordered, Friction::Folded].iter().flat_map(|way| [(&holdings[..], *way), (&[], *way)])
+                [Friction::Bordered, Friction::Folded].iter().flat_map(|way| [(&holdings, *way), (&none, *way)])
             {
                 let found = SparseFactorisation::with(sparse.clone(), holdings, friction);
                 assert!(
                     found.is_none(),
                     "{friction:?} {} {nodes} {:?}",
-                    holdings.len(),
+                    holdings.iter().len(),
                     found.map(|found| found.pivot_ratio())
                 );
                 refused += 1;
@@ -264,7 +297,7 @@ fn singular_systems_are_refused() {
     assert_eq!(refused, 8 * kinds().len());
     let mut wrong = system(&mut random, 2, 4, Kind::default()).sparse;
     wrong.add(0, 0, f64::NAN);
-    assert!(SparseFactorisation::new(wrong, &[]).is_none());
+    assert!(SparseFactorisation::new(wrong, &Holdings::default()).is_none());
 }
 
 /// LU of the whole gives the same as block elimination.
