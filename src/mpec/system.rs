@@ -10,7 +10,7 @@ const MOST_DENSE: usize = 40;
 /// A factorised square matrix.
 pub enum Factors {
     Dense(Box<LU<f64, Dyn, Dyn>>),
-    Sparse(Box<GeneralLu>, Vec<Triplet<usize, usize, f64>>),
+    Sparse(Box<GeneralLu>),
 }
 
 impl Factors {
@@ -24,11 +24,10 @@ impl Factors {
         }
         let entries: Vec<_> = entries.iter().map(|&(row, column, value)| Triplet::new(row, column, value)).collect();
         let before = match before {
-            Some(Self::Sparse(before, _)) => Some(before.as_ref()),
+            Some(Self::Sparse(before)) => Some(before.as_ref()),
             Some(Self::Dense(_)) | None => None,
         };
-        let lu = GeneralLu::new(size, entries.clone(), before)?;
-        Some(Self::Sparse(Box::new(lu), entries))
+        Some(Self::Sparse(Box::new(GeneralLu::new(size, entries, before)?)))
     }
 
     /// The solution for a right-hand side; `None` where there is none or it is not finite.
@@ -39,12 +38,12 @@ impl Factors {
         }
         let solved = match self {
             Self::Dense(lu) => lu.solve_mut(&mut values) && values.iter().all(|value| value.is_finite()),
-            Self::Sparse(lu, _) => lu.solve(values.as_mut_slice()),
+            Self::Sparse(lu) => lu.solve(values.as_mut_slice()),
         };
         solved.then_some(values)
     }
 
-    /// The same for the transpose of the matrix, which is factorised anew where it is sparse.
+    /// The same for the transpose of the matrix.
     pub fn solve_transposed(&self, right: &DVector<f64>) -> Option<DVector<f64>> {
         let mut values = right.clone();
         if values.is_empty() {
@@ -57,10 +56,7 @@ impl Factors {
                 lu.p().inv_permute_rows(&mut values);
                 solved && values.iter().all(|value| value.is_finite())
             }
-            Self::Sparse(_, entries) => {
-                let transposed = entries.iter().map(|entry| Triplet::new(entry.col, entry.row, entry.val)).collect();
-                GeneralLu::new(values.len(), transposed, None)?.solve(values.as_mut_slice())
-            }
+            Self::Sparse(lu) => lu.solve_transposed(values.as_mut_slice()),
         };
         solved.then_some(values)
     }

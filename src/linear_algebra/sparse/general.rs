@@ -42,6 +42,15 @@ impl GeneralLu {
         self.lu.solve_in_place_with_conj(faer::Conj::No, MatMut::from_column_major_slice_mut(values, size, 1));
         values.iter().all(|value| value.is_finite())
     }
+
+    /// The same for the transpose of the matrix.
+    pub fn solve_transposed(&self, values: &mut [f64]) -> bool {
+        let size = values.len();
+        self.lu
+            .solve_transpose_in_place_with_conj(faer::Conj::No, MatMut::from_column_major_slice_mut(values, size, 1));
+        values.iter_mut().zip(&self.scales).for_each(|(value, scale)| *value /= scale);
+        values.iter().all(|value| value.is_finite())
+    }
 }
 
 #[cfg(test)]
@@ -62,5 +71,34 @@ mod tests {
         entries(0.25).iter().for_each(|entry| product[entry.row] += entry.val * x[entry.col]);
         assert!(second.solve(&mut product));
         assert!(product.iter().zip(x).all(|(found, x)| (found - x).abs() < 1e-13), "{product:?}");
+    }
+
+    /// Small patterns and filled ones, which are factorised by blocks.
+    #[test]
+    fn the_transpose_is_solved_with_the_same_factors() {
+        for (size, step) in [(4, 2), (40, 7), (150, 1)] {
+            let entries = |transposed: bool| -> Vec<Triplet<usize, usize, f64>> {
+                let all = (0..size).flat_map(|row| (0..size).step_by(step).map(move |k| (row, (row + k) % size)));
+                let value = |row: usize, column: usize| ((3 * row + 5 * column) % 11) as f64 - 4.5;
+                all.map(|(row, column)| {
+                    let (row, column) = if row % 2 == 0 { (size - 1 - row, column) } else { (row, column) };
+                    let at = if transposed { (column, row) } else { (row, column) };
+                    let shift = if (row + column) % size == 1 { 60.0 * size as f64 } else { 0.0 };
+                    Triplet::new(at.0, at.1, value(row, column) + shift)
+                })
+                .chain((0..size).map(|row| {
+                    let column = (size + 1 - row) % size;
+                    let at = if transposed { (column, row) } else { (row, column) };
+                    Triplet::new(at.0, at.1, 100.0 * size as f64)
+                }))
+                .collect()
+            };
+            let right: Vec<f64> = (0..size).map(|row| 1.0 + (row % 3) as f64).collect();
+            let (mut found, mut expected) = (right.clone(), right);
+            assert!(GeneralLu::new(size, entries(false), None).expect("regular").solve_transposed(&mut found));
+            assert!(GeneralLu::new(size, entries(true), None).expect("regular").solve(&mut expected));
+            let error = found.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(error < 1e-12 * expected.iter().fold(0.0_f64, |m, v| m.max(v.abs())), "{size}: {error}");
+        }
     }
 }
