@@ -42,7 +42,7 @@ mod sweeps;
 mod tests;
 
 #[cfg(test)]
-pub(super) use tests::every_combination;
+pub(super) use tests::{Random, every_combination};
 
 pub use branch::{Effort, Ray, explore};
 pub use certificate::{Pairs, is_definite};

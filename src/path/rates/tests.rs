@@ -59,10 +59,10 @@ pub(in crate::path) fn every_combination(problem: &RateProblem) -> Findings {
 }
 
 /// xorshift64*: the same problems on every machine.
-pub(super) struct Random(u64);
+pub struct Random(u64);
 
 impl Random {
-    pub(super) fn new(seed: u64) -> Self {
+    pub fn new(seed: u64) -> Self {
         Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1)
     }
 
@@ -74,7 +74,7 @@ impl Random {
     }
 
     /// Between -1 and 1.
-    pub(super) fn value(&mut self) -> f64 {
+    pub fn value(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 

@@ -11,8 +11,10 @@ use crate::path::mode_system::{Kind, ModeSystem};
 use crate::path::rates::IN_DOUBT;
 use crate::path::state::Rate;
 
-/// Rounds of block pivoting.
-const MOST_ROUNDS: usize = 32;
+/// Rounds of block pivoting in which every contact changes that is violated, and rounds after them in which only the last
+/// one does (K. G. Murty's method, finite where there is one solution for each right-hand side).
+const ROUNDS: usize = 16;
+const ROUNDS_ONE_BY_ONE: usize = 48;
 
 /// A contact whose mode only a finite step can tell.
 pub(super) struct Doubt {
@@ -30,7 +32,7 @@ impl Equations<'_> {
                 modes[one.contact] = one.direction.map_or(modes[one.contact], |direction| Mode::Slip { direction });
             }
         }
-        for _ in 0..MOST_ROUNDS {
+        for round in 0..ROUNDS + ROUNDS_ONE_BY_ONE {
             let mut rate = match (control, incoming) {
                 (Control::Power, Some(incoming)) => self.line(&modes, Some(incoming)),
                 _ => None,
@@ -44,7 +46,11 @@ impl Equations<'_> {
             let (next, doubts) = self.violations(&modes, &rate);
             match next {
                 None => return Some(self.candidate(rate, modes, doubts)),
-                Some(next) => modes = next,
+                Some(next) if round < ROUNDS => modes = next,
+                Some(next) => {
+                    let last = (0..modes.len()).rev().find(|contact| next[*contact] != modes[*contact])?;
+                    modes[last] = next[last];
+                }
             }
         }
         None
