@@ -60,7 +60,8 @@ impl Path<'_> {
                 Foreseen::Untold => return self.is_named_by_whole(&state, rate, modes, tried),
             }
         }
-        self.is_named_by_whole(&state, rate, modes, RESOLVED.min(step))
+        // So near to where contacts change the whole program tells no more than its branch.
+        if step <= NEAR { untold } else { self.is_named_by_whole(&state, rate, modes, RESOLVED) }
     }
 
     /// The same by the whole program, all branches of it.
