@@ -315,7 +315,9 @@ fn along_rays(
             if determinant.abs() <= FLAT {
                 continue;
             }
-            let (x, y) = (turn(force, b) / determinant, turn(a, force) / determinant);
+            // However close the rays are, the parts make up the force: the one takes what the other leaves.
+            let y = turn(a, force) / determinant;
+            let x = dot(a, &add(force, -y, b));
             let round_off = -FLAT * dot(force, force).sqrt();
             if x < round_off || y < round_off {
                 continue;
