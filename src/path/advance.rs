@@ -2,9 +2,9 @@
 
 use super::drift::Pointed;
 use super::loading::Loading;
+use super::locate::Stretch;
 use super::mode_system::ModeSystem;
 use super::newton::{Corrected, Failure, Place, Tangent};
-use super::root::find_root;
 use super::scene::End;
 use super::state::{Rate, State};
 use super::watch::{self, Watch};
@@ -41,6 +41,16 @@ pub struct Reached {
     pub determinant: Option<f64>,
 }
 
+/// A step that is tried, and what is watched along it.
+pub(super) struct Attempt {
+    /// The farthest point, where some quantities may be negative.
+    pub reached: Reached,
+    pub watches: Vec<Watch>,
+    /// Those that are.
+    pub passed: Vec<Watch>,
+    pub stretch: Stretch,
+}
+
 /// Work done, whether it led to a point or not.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Work {
@@ -75,11 +85,11 @@ const MOST_PASSES: u64 = 12;
 /// Change of their angles (radians) from which they have settled.
 const SETTLED: f64 = 1e-10;
 /// How far a watched quantity may be negative before it counts as passed.
-const PASSED: f64 = 1e-13;
+pub(super) const PASSED: f64 = 1e-13;
 /// A bound of the stage (dimensionless) within this is reached.
 pub const AT_END: f64 = 1e-12;
 /// Two quantities that are zero within this are zero together.
-const COINCIDING: f64 = 1e-10;
+pub(super) const COINCIDING: f64 = 1e-10;
 
 impl Start<'_> {
     /// The point at an arc length, with its direction.
@@ -95,16 +105,28 @@ impl Start<'_> {
         self.settle(system, guess, Place::ArcLength { from: self.state, step }, work)
     }
 
-    fn settle(
+    pub(super) fn settle(
         &self,
-        mut system: ModeSystem<'_>,
+        system: ModeSystem<'_>,
         guess: State,
         place: Place<'_>,
         work: &mut Work,
     ) -> Result<Reached, Refused> {
-        let mut corrected = system.correct(guess, place, self.force_scale).map_err(Refused::Newton)?;
+        let corrected = system.correct(guess, place, self.force_scale).map_err(Refused::Newton)?;
         work.newton_iterations += corrected.iterations;
-        work.factorisations += corrected.factorisations + 1;
+        work.factorisations += corrected.factorisations;
+        self.directed(system, corrected, place, work)
+    }
+
+    /// A converged point with the path's direction there.
+    pub(super) fn directed(
+        &self,
+        mut system: ModeSystem<'_>,
+        mut corrected: Corrected,
+        place: Place<'_>,
+        work: &mut Work,
+    ) -> Result<Reached, Refused> {
+        work.factorisations += 1;
         let singular = Refused::Newton(Failure::Singular);
         let mut tangent = system.tangent_and_error(&corrected, self.rate).ok_or(singular)?;
         if system.has_tracks() {
@@ -157,6 +179,12 @@ impl Start<'_> {
     ///
     /// `ends` are those of the stage; `load_sign` is the sign of the load rate along the path just now.
     pub fn advance(&self, step: f64, ends: &[End], load_sign: f64, work: &mut Work) -> Result<Reached, Refused> {
+        let tried = self.attempt(step, ends, load_sign, work)?;
+        self.stop_at_event(tried, ends, work)
+    }
+
+    /// A step of an arc length, with what it passes.
+    pub(super) fn attempt(&self, step: f64, ends: &[End], load_sign: f64, work: &mut Work) -> Result<Attempt, Refused> {
         let mut reached = self.reach(step, work)?;
         let turn = self.rate.product(&reached.rate).clamp(-1.0, 1.0).acos();
         if turn > MOST_TURN {
@@ -168,13 +196,22 @@ impl Start<'_> {
         }
         watches.extend(ends.iter().map(|end| Watch::End(*end)));
         let mut passed = self.passed(&watches, &reached);
+        let mut stretch = Stretch::new(self, &reached);
         if passed.is_empty() {
-            passed = self.dips(&watches, &mut reached, step, work)?;
+            passed = self.dips(&watches, &mut reached, &mut stretch, work)?;
         }
+        Ok(Attempt { reached, watches, passed, stretch })
+    }
+
+    /// Ends a step at the first event in it.
+    pub(super) fn stop_at_event(&self, tried: Attempt, ends: &[End], work: &mut Work) -> Result<Reached, Refused> {
+        let Attempt { mut reached, watches, mut passed, mut stretch } = tried;
+        // How hard the step is shows in its first solve.
+        let hardness = reached.corrected.iterations_to_small;
         // Each round finds the first zero of one quantity; whatever else is negative there came before it.
         let mut event = None;
-        while let Some(&watch) = self.earliest(&passed, &reached) {
-            reached = self.locate(watch, &reached, work)?;
+        while let Some(&watch) = self.earliest(&passed, &stretch, |watch| self.zero(watch, &reached)) {
+            reached = self.locate(watch, &mut stretch, self.zero(watch, &reached), work)?;
             event = Some(watch);
             passed = self.passed(&watches, &reached);
             passed.retain(|other| *other != watch);
@@ -195,6 +232,7 @@ impl Start<'_> {
             reached = self.hold_exactly(end, reached, work)?;
         }
         reached.event = event;
+        reached.corrected.iterations_to_small = hardness;
         reached.drift = self.drift_at(&reached, work);
         reached.error_estimate += reached.drift.as_ref().map_or(0.0, Rate::size);
         Ok(reached)
@@ -256,9 +294,10 @@ impl Start<'_> {
         &self,
         watches: &[Watch],
         reached: &mut Reached,
-        step: f64,
+        stretch: &mut Stretch,
         work: &mut Work,
     ) -> Result<Vec<Watch>, Refused> {
+        let step = reached.step;
         for watch in watches {
             let end = (&reached.corrected.state, &reached.rate);
             let start = (self.state, self.rate);
@@ -267,7 +306,7 @@ impl Start<'_> {
             }
             let zero = self.zero(*watch, reached);
             let Some(place) = watch.dip(self.loading, self.modes, start, end, step, zero) else { continue };
-            let inside = self.reach(place, work)?;
+            let inside = stretch.reach(self, place, work)?;
             let passed = self.passed(watches, &inside);
             if !passed.is_empty() {
                 *reached = inside;
@@ -277,53 +316,10 @@ impl Start<'_> {
         Ok(Vec::new())
     }
 
-    /// The quantity whose straight line falls to zero first.
-    fn earliest<'w>(&self, passed: &'w [Watch], reached: &Reached) -> Option<&'w Watch> {
-        let estimate = |watch: &Watch| {
-            let first = self.value(*watch, self.state, self.rate).max(0.0);
-            let last = self.value(*watch, &reached.corrected.state, &reached.rate);
-            first / (first - last)
-        };
-        passed.iter().min_by(|a, b| estimate(a).total_cmp(&estimate(b)))
-    }
-
-    /// The point between the start and a point where a quantity has become negative at which it is zero.
-    fn locate(&self, watch: Watch, beyond: &Reached, work: &mut Work) -> Result<Reached, Refused> {
-        let zero = self.zero(watch, beyond);
-        let last = (beyond.step, self.value(watch, &beyond.corrected.state, &beyond.rate));
-        let mut first = (0.0, self.value(watch, self.state, self.rate));
-        // A contact that has just changed starts at zero: begin a little further on.
-        let mut fraction = 1e-3;
-        while first.1 <= zero {
-            if fraction < 1e-9 {
-                return Err(Refused::AtStart(watch));
-            }
-            let place = fraction * beyond.step;
-            let near = self.reach(place, work)?;
-            first = (place, self.value(watch, &near.corrected.state, &near.rate));
-            fraction *= 1e-3;
-        }
-        let mut failure = None;
-        let evaluate = |place: f64| match self.reach(place, work) {
-            Ok(near) => Some(self.value(watch, &near.corrected.state, &near.rate)),
-            Err(refused) => {
-                failure = Some(refused);
-                None
-            }
-        };
-        let place = find_root(evaluate, first, last, 1e-3 * zero);
-        match place {
-            Some(place) => self.reach(place, work),
-            None => Err(failure.unwrap_or(Refused::Newton(Failure::NotConverged))),
-        }
-    }
-
     /// Solves once more with the end of the stage as an equation, so that a load of 1 is exactly 1.
     fn hold_exactly(&self, end: End, reached: Reached, work: &mut Work) -> Result<Reached, Refused> {
-        let place = match end {
-            End::Load { bound, .. } => Place::Load(bound),
-            End::Displacement { freedom, bound, .. } => Place::Displacement { freedom, value: bound },
-            End::LimitPoints(_) | End::ContactChanges(_) | End::Increments(_) => return Ok(reached),
+        let Some(place) = end.place().filter(|_| !end.is_met_exactly(&reached.corrected.state)) else {
+            return Ok(reached);
         };
         let system = ModeSystem::new(self.loading, self.modes, self.state);
         let mut exact = self.settle(system, reached.corrected.state, place, work)?;

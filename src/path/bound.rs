@@ -5,7 +5,8 @@
 //! judged by its residual like any other.
 
 use super::advance::{AT_END, Reached, Start, Work};
-use super::critical::{self, Crossing, Located, Placed, WIDTHS, between, placed, unit};
+use super::critical::{self, Crossing, Located, WIDTHS};
+use super::interpolation::{Placed, between, placed, unit};
 use super::mode_system::ModeSystem;
 use super::newton::ACCEPTED_RESIDUAL;
 use super::root::find_root;

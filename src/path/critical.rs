@@ -7,6 +7,7 @@
 
 use super::advance::{Reached, Start, Work};
 use super::folded;
+use super::interpolation::{Placed, between, placed, unit};
 use super::mode_system::ModeSystem;
 use super::newton::ACCEPTED_RESIDUAL;
 use super::root::find_root;
@@ -36,15 +37,6 @@ pub(super) const SINGULAR: f64 = 1e-8;
 /// Eigenvalues that are this small, relative to the largest, where the first crosses are taken to cross with it: closer
 /// than that the branches of one cannot be told from those of the other.
 const TOGETHER: f64 = 1e-10;
-
-/// A point on the path with its place: the distance from the start of the step.
-#[derive(Clone)]
-pub(super) struct Placed {
-    pub place: f64,
-    pub state: State,
-    /// Derivative by `place`.
-    pub rate: Rate,
-}
 
 /// A crossing with the regular points between which it was found.
 pub(super) struct Located {
@@ -172,42 +164,4 @@ fn root_between(left: &Placed, right: &Placed, value: &impl Fn(&State, &Rate) ->
         evaluate(place).filter(|value| *value > 0.0).map(|value| (place, value))
     })?;
     (last < 0.0).then(|| find_root(evaluate, first, (right.place, last), 0.0))?
-}
-
-pub(super) fn placed(start: &Start<'_>, reached: &Reached) -> Placed {
-    let place = reached.corrected.state.distance(start.state);
-    let cosine = start.state.angle_of_chord(&reached.corrected.state, &reached.rate).cos();
-    let mut rate = reached.rate.clone();
-    rate.scale(1.0 / cosine);
-    Placed { place, state: reached.corrected.state.clone(), rate }
-}
-
-pub(super) fn unit(rate: &Rate) -> Rate {
-    let mut rate = rate.clone();
-    let size = rate.size();
-    if size > 0.0 {
-        rate.scale(1.0 / size);
-    }
-    rate
-}
-
-/// The cubic Hermite interpolant and its derivative.
-pub(super) fn between(left: &Placed, right: &Placed, place: f64) -> (State, Rate) {
-    let width = right.place - left.place;
-    if width <= 0.0 {
-        return (left.state.clone(), left.rate.clone());
-    }
-    let x = (place - left.place) / width;
-    let y = 1.0 - x;
-    let chord = left.state.chord(&right.state);
-    let state = left
-        .state
-        .advanced(&chord, x * x * (1.0 + 2.0 * y))
-        .advanced(&left.rate, width * x * y * y)
-        .advanced(&right.rate, -width * x * x * y);
-    let mut rate = chord;
-    rate.scale(6.0 * x * y / width);
-    rate.add(&left.rate, y * (y - 2.0 * x));
-    rate.add(&right.rate, x * (x - 2.0 * y));
-    (state, rate)
 }

@@ -10,7 +10,8 @@
 //! | `contact_law` | how far a state is from the laws of contact and friction |
 //! | `corner`, `pocket`, `carried` | nodes that several obstacles hold at once: in the plane; in space, or guided by supports; between planes that move against each other |
 //! | `track`, `drift` | slip in a plane: its rule of fourth order; the error that is left |
-//! | `watch`, `root`, `advance` | what ends a mode; one step, ended exactly at the first event |
+//! | `watch`, `advance` | what ends a mode; one step, ended exactly at the first event |
+//! | `interpolation`, `locate`, `root` | between points that are reached; where a quantity is zero |
 //! | `singular`, `critical`, `branches` | whether a step passes a smooth bifurcation; where; which directions leave it |
 //! | `bound` | a bound of the stage at or beside a smooth bifurcation |
 //! | `folded` | points of slip in a plane at which the direction is not determined |
@@ -52,7 +53,9 @@ mod follow;
 mod going_on;
 mod history;
 pub mod increment;
+mod interpolation;
 mod loading;
+mod locate;
 mod mode_system;
 mod name_event;
 mod naming;

@@ -9,6 +9,7 @@
 
 use super::corner::Corner;
 use super::loading::LoadPattern;
+use super::newton::Place;
 use super::plan::{LeftOut, Plan};
 use super::state::State;
 use crate::contact::obstacle::Obstacle;
@@ -109,6 +110,24 @@ impl End {
     /// Whether it is a bound of the load or of a displacement, not a count.
     pub fn is_bound(self) -> bool {
         matches!(self, Self::Load { .. } | Self::Displacement { .. })
+    }
+
+    /// The equation of a bound; `None` of a count.
+    pub fn place(self) -> Option<Place<'static>> {
+        match self {
+            Self::Load { bound, .. } => Some(Place::Load(bound)),
+            Self::Displacement { freedom, bound, .. } => Some(Place::Displacement { freedom, value: bound }),
+            Self::LimitPoints(_) | Self::ContactChanges(_) | Self::Increments(_) => None,
+        }
+    }
+
+    /// Whether a state meets a bound without even round-off.
+    pub fn is_met_exactly(self, state: &State) -> bool {
+        match self {
+            Self::Load { bound, .. } => state.load == bound,
+            Self::Displacement { freedom, bound, .. } => state.displacement[freedom] == bound,
+            Self::LimitPoints(_) | Self::ContactChanges(_) | Self::Increments(_) => false,
+        }
     }
 
     /// Puts a state that meets a bound to round-off exactly there.

@@ -36,6 +36,8 @@ const A_POINT: f64 = 1e-6;
 /// A step after which the next would have to be shorter than this fraction of it is taken again, shorter.
 const REJECTED: f64 = 0.55;
 
+/// A step that ends before this fraction of what was tried does not let the next be longer.
+const CUT_SHORT: f64 = 0.5;
 /// Shorter steps that are tried where a change of signs cannot be made out.
 const MOST_UNRESOLVED: u64 = 4;
 
@@ -348,6 +350,8 @@ impl Path<'_> {
         let size = self.at.totals.largest_energy.max(added.external_work.abs()).max(added.strain.abs()).max(floor);
         // The balance of one increment has an error of fifth order in its arc length.
         let by_energy = (IMBALANCE_SOUGHT / (imbalance / size).max(1e-3 * IMBALANCE_SOUGHT)).powf(0.2);
-        quantised(by_turn.min(by_work).min(by_energy).clamp(0.2, 1.8))
+        // A step that an event cut short says little of a longer one in the mode that follows.
+        let most = if done < CUT_SHORT { 1.0 } else { 1.8 };
+        quantised(by_turn.min(by_work).min(by_energy).clamp(0.2, most))
     }
 }

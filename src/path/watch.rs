@@ -163,6 +163,17 @@ impl Watch {
         }
     }
 
+    /// Of a quantity that is a rate, what it is the rate of, since the start; `None` where that is no simple difference.
+    pub fn whole(self, loading: Loading<'_>, modes: &[Mode], start: &State, state: &State) -> Option<f64> {
+        if let Self::Sliding(contact) = self {
+            let contact = &loading.contacts[contact];
+            if contact.sliding == Sliding::Plane || contact.obstacle.is_curved() {
+                return None;
+            }
+        }
+        self.change(loading, modes, start, state)
+    }
+
     /// The size against which the quantity is zero at a state; `force_scale` is the largest force of the path.
     pub fn scale(self, loading: Loading<'_>, state: &State, force_scale: f64) -> f64 {
         match self {

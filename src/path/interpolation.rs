@@ -1,0 +1,121 @@
+//! Between points of a step that are reached already: cubic Hermite interpolants of the states, and polynomials through
+//! values and slopes of one quantity.
+
+use super::advance::{Reached, Start};
+use super::state::{Rate, State};
+
+/// A point on the path with its place: the distance from the start of the step.
+#[derive(Clone)]
+pub(super) struct Placed {
+    pub place: f64,
+    pub state: State,
+    /// Derivative by `place`.
+    pub rate: Rate,
+}
+
+pub(super) fn placed(start: &Start<'_>, reached: &Reached) -> Placed {
+    let place = reached.corrected.state.distance(start.state);
+    let cosine = start.state.angle_of_chord(&reached.corrected.state, &reached.rate).cos();
+    let mut rate = reached.rate.clone();
+    rate.scale(1.0 / cosine);
+    Placed { place, state: reached.corrected.state.clone(), rate }
+}
+
+pub(super) fn unit(rate: &Rate) -> Rate {
+    let mut rate = rate.clone();
+    let size = rate.size();
+    if size > 0.0 {
+        rate.scale(1.0 / size);
+    }
+    rate
+}
+
+/// The cubic Hermite interpolant and its derivative.
+pub(super) fn between(left: &Placed, right: &Placed, place: f64) -> (State, Rate) {
+    let width = right.place - left.place;
+    if width <= 0.0 {
+        return (left.state.clone(), left.rate.clone());
+    }
+    let x = (place - left.place) / width;
+    let y = 1.0 - x;
+    let chord = left.state.chord(&right.state);
+    let state = left
+        .state
+        .advanced(&chord, x * x * (1.0 + 2.0 * y))
+        .advanced(&left.rate, width * x * y * y)
+        .advanced(&right.rate, -width * x * x * y);
+    let mut rate = chord;
+    rate.scale(6.0 * x * y / width);
+    rate.add(&left.rate, y * (y - 2.0 * x));
+    rate.add(&right.rate, x * (x - 2.0 * y));
+    (state, rate)
+}
+
+/// What is known of a quantity at a place.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Knot {
+    pub place: f64,
+    pub value: f64,
+    /// Derivative by the place, where it is known.
+    pub slope: Option<f64>,
+}
+
+/// The polynomial of least degree through knots (Newton's form).
+pub(super) struct Polynomial {
+    places: Vec<f64>,
+    coefficients: Vec<f64>,
+}
+
+impl Polynomial {
+    /// Knots at places that differ.
+    pub fn through(knots: &[Knot]) -> Self {
+        let (mut places, mut differences) = (Vec::new(), Vec::new());
+        let mut slopes = Vec::new();
+        for knot in knots {
+            for _ in 0..1 + usize::from(knot.slope.is_some()) {
+                places.push(knot.place);
+                differences.push(knot.value);
+                slopes.push(knot.slope.unwrap_or(0.0));
+            }
+        }
+        let mut coefficients: Vec<f64> = differences.first().copied().into_iter().collect();
+        for order in 1..places.len() {
+            for index in 0..places.len() - order {
+                let width = places[index + order] - places[index];
+                differences[index] =
+                    if width == 0.0 { slopes[index] } else { (differences[index + 1] - differences[index]) / width };
+            }
+            coefficients.push(differences[0]);
+        }
+        Self { places, coefficients }
+    }
+
+    /// Value and derivative.
+    pub fn at(&self, place: f64) -> (f64, f64) {
+        let (mut value, mut slope) = (0.0, 0.0);
+        for (coefficient, knot) in self.coefficients.iter().zip(&self.places).rev() {
+            slope = slope * (place - knot) + value;
+            value = value * (place - knot) + coefficient;
+        }
+        (value, slope)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Knot, Polynomial};
+
+    #[test]
+    fn a_polynomial_meets_values_and_slopes() {
+        let exact = |x: f64| (x * x * x * x - 2.0 * x + 1.0, 4.0 * x * x * x - 2.0);
+        let knot = |place: f64, sloped: bool| {
+            let (value, slope) = exact(place);
+            Knot { place, value, slope: sloped.then_some(slope) }
+        };
+        let polynomial = Polynomial::through(&[knot(0.5, true), knot(-1.0, false), knot(2.0, true)]);
+        for place in [-1.5, -1.0, 0.0, 0.5, 1.3, 2.0] {
+            let (found, exact) = (polynomial.at(place), exact(place));
+            assert!((found.0 - exact.0).abs() < 1e-12 && (found.1 - exact.1).abs() < 1e-12);
+        }
+    }
+}
