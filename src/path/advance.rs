@@ -9,6 +9,7 @@ use super::scene::End;
 use super::state::{Rate, State};
 use super::watch::{self, Watch};
 use crate::contact::Mode;
+use crate::linear_algebra::SystemFactorisation;
 use serde::{Deserialize, Serialize};
 
 /// Where a step starts.
@@ -94,15 +95,24 @@ pub(super) const COINCIDING: f64 = 1e-10;
 impl Start<'_> {
     /// The point at an arc length, with its direction.
     pub fn reach(&self, step: f64, work: &mut Work) -> Result<Reached, Refused> {
-        let system = ModeSystem::new(self.loading, self.modes, self.state);
-        let guess = self.state.advanced(self.rate, step);
-        self.settle(system, guess, Place::ArcLength { from: self.state, step }, work)
+        self.reach_near(self.state.advanced(self.rate, step), step, work)
     }
 
     /// The point at an arc length, from a guess.
     pub fn reach_near(&self, guess: State, step: f64, work: &mut Work) -> Result<Reached, Refused> {
+        self.reach_by(guess, step, &mut None, work)
+    }
+
+    /// The same with a factorisation of the equations nearby, if there is one; the last one takes its place.
+    pub(super) fn reach_by(
+        &self,
+        guess: State,
+        step: f64,
+        serving: &mut Option<SystemFactorisation>,
+        work: &mut Work,
+    ) -> Result<Reached, Refused> {
         let system = ModeSystem::new(self.loading, self.modes, self.state);
-        self.settle(system, guess, Place::ArcLength { from: self.state, step }, work)
+        self.settle_by(system, guess, Place::ArcLength { from: self.state, step }, serving, work)
     }
 
     pub(super) fn settle(
@@ -112,10 +122,22 @@ impl Start<'_> {
         place: Place<'_>,
         work: &mut Work,
     ) -> Result<Reached, Refused> {
-        let corrected = system.correct(guess, place, self.force_scale).map_err(Refused::Newton)?;
+        self.settle_by(system, guess, place, &mut None, work)
+    }
+
+    fn settle_by(
+        &self,
+        system: ModeSystem<'_>,
+        guess: State,
+        place: Place<'_>,
+        serving: &mut Option<SystemFactorisation>,
+        work: &mut Work,
+    ) -> Result<Reached, Refused> {
+        let corrected =
+            system.correct_from(system.iterate(guess), place, self.force_scale, serving).map_err(Refused::Newton)?;
         work.newton_iterations += corrected.iterations;
         work.factorisations += corrected.factorisations;
-        self.directed(system, corrected, place, work)
+        self.directed(system, corrected, place, serving, work)
     }
 
     /// A converged point with the path's direction there.
@@ -124,26 +146,28 @@ impl Start<'_> {
         mut system: ModeSystem<'_>,
         mut corrected: Corrected,
         place: Place<'_>,
+        serving: &mut Option<SystemFactorisation>,
         work: &mut Work,
     ) -> Result<Reached, Refused> {
-        work.factorisations += 1;
         let singular = Refused::Newton(Failure::Singular);
-        let mut tangent = system.tangent_and_error(&corrected, self.rate).ok_or(singular)?;
+        let mut tangent =
+            system.tangent_and_error(&corrected, self.rate, serving, &mut work.factorisations).ok_or(singular)?;
         if system.has_tracks() {
             // Once more, now that the turn of the slips at the end is known; where directions settle, until they do.
             for pass in 1.. {
                 let settles = system.set_turns(self.rate, &corrected, &tangent);
                 let again = system
-                    .correct_from(system.iterate_of(&corrected), place, self.force_scale)
+                    .correct_from(system.iterate_of(&corrected), place, self.force_scale, &mut None)
                     .map_err(Refused::Newton)?;
                 work.newton_iterations += again.iterations;
-                work.factorisations += again.factorisations + 1;
+                work.factorisations += again.factorisations;
                 // How hard the increment is shows in the first solve.
                 let hardness = corrected.iterations_to_small;
                 let change = system.largest_turn(&again, Some(&corrected));
                 corrected = again;
                 corrected.iterations_to_small = hardness;
-                tangent = system.tangent_and_error(&corrected, self.rate).ok_or(singular)?;
+                let factorisations = &mut work.factorisations;
+                tangent = system.tangent_and_error(&corrected, self.rate, &mut None, factorisations).ok_or(singular)?;
                 if !settles || change <= SETTLED {
                     break;
                 }
@@ -185,7 +209,9 @@ impl Start<'_> {
 
     /// A step of an arc length, with what it passes.
     pub(super) fn attempt(&self, step: f64, ends: &[End], load_sign: f64, work: &mut Work) -> Result<Attempt, Refused> {
-        let mut reached = self.reach(step, work)?;
+        let mut serving = None;
+        let guess = self.state.advanced(self.rate, step);
+        let mut reached = self.reach_by(guess, step, &mut serving, work)?;
         let turn = self.rate.product(&reached.rate).clamp(-1.0, 1.0).acos();
         if turn > MOST_TURN {
             return Err(Refused::Turned(turn));
@@ -196,7 +222,7 @@ impl Start<'_> {
         }
         watches.extend(ends.iter().map(|end| Watch::End(*end)));
         let mut passed = self.passed(&watches, &reached);
-        let mut stretch = Stretch::new(self, &reached);
+        let mut stretch = Stretch::new(self, &reached, serving);
         if passed.is_empty() {
             passed = self.dips(&watches, &mut reached, &mut stretch, work)?;
         }
@@ -247,7 +273,8 @@ impl Start<'_> {
         let end = Pointed { corrected: &reached.corrected, rate: &reached.rate };
         let before = self.drift;
         let drift = if system.has_tracks() {
-            let tangent = system.tangent_and_error(&reached.corrected, self.rate)?;
+            let factorisations = &mut work.factorisations;
+            let tangent = system.tangent_and_error(&reached.corrected, self.rate, &mut None, factorisations)?;
             system.set_turns(self.rate, &reached.corrected, &tangent);
             let middle = self.reach(0.5 * reached.step, work).ok()?;
             system.drift(self.rate, before, Pointed { corrected: &middle.corrected, rate: &middle.rate }, end)

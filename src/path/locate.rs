@@ -13,6 +13,7 @@ use super::root::find_root;
 use super::scene::End;
 use super::state::State;
 use super::watch::Watch;
+use crate::linear_algebra::SystemFactorisation;
 
 /// How far from zero, over its scale, a quantity may be at a point that is taken for its zero.
 const LOCATED: f64 = 1e-16;
@@ -35,12 +36,14 @@ const ROOM: f64 = 4.0;
 pub(super) struct Stretch {
     origin: Placed,
     points: Vec<(Placed, Reached)>,
+    /// The last factorisation: it may serve at points close to its own.
+    serving: Option<SystemFactorisation>,
 }
 
 impl Stretch {
-    pub fn new(start: &Start<'_>, reached: &Reached) -> Self {
+    pub fn new(start: &Start<'_>, reached: &Reached, serving: Option<SystemFactorisation>) -> Self {
         let origin = Placed { place: 0.0, state: start.state.clone(), rate: start.rate.clone() };
-        Self { origin, points: vec![(placed(start, reached), reached.clone())] }
+        Self { origin, points: vec![(placed(start, reached), reached.clone())], serving }
     }
 
     fn placed(&self) -> impl Iterator<Item = &Placed> {
@@ -62,7 +65,8 @@ impl Stretch {
 
     /// The point at a place, kept.
     pub fn reach(&mut self, start: &Start<'_>, place: f64, work: &mut Work) -> Result<Reached, Refused> {
-        let reached = start.reach_near(self.guess(place), place, work).or_else(|_| start.reach(place, work))?;
+        let reached =
+            start.reach_by(self.guess(place), place, &mut self.serving, work).or_else(|_| start.reach(place, work))?;
         self.insert(start, &reached);
         Ok(reached)
     }

@@ -816,12 +816,23 @@ impl<'a> ModeSystem<'a> {
     }
 
     pub(super) fn tangent_by(&self, factorisation: &SystemFactorisation, iterate: &Iterate) -> Option<Rate> {
-        let mut values = DVector::zeros(self.size);
-        values[self.size - 1] = 1.0;
+        let mut values = self.bordering();
         if !factorisation.solve(&mut values) {
             return None;
         }
-        let mut rate = self.rate_at(iterate, &values, Kind::Rates);
+        self.direction_from(iterate, &values)
+    }
+
+    /// The right-hand side whose solution is the path's direction.
+    pub(super) fn bordering(&self) -> DVector<f64> {
+        let mut values = DVector::zeros(self.size);
+        values[self.size - 1] = 1.0;
+        values
+    }
+
+    /// A solution of the rate equations, of unit arc length.
+    pub(super) fn direction_from(&self, iterate: &Iterate, values: &DVector<f64>) -> Option<Rate> {
+        let mut rate = self.rate_at(iterate, values, Kind::Rates);
         let size = rate.size();
         if size <= 0.0 || !size.is_finite() {
             return None;

@@ -7,6 +7,7 @@ use super::state::{Rate, State};
 use super::track;
 use crate::contact::Mode;
 use crate::contact::vector::{Vector, add, dot};
+use crate::linear_algebra::sparse::SparseFactorisation;
 use crate::linear_algebra::{Sink, SystemFactorisation};
 use nalgebra::DVector;
 
@@ -74,6 +75,8 @@ const SMALL: f64 = 1e-6;
 /// Smallest pivot over the largest of a factorisation that may serve on: what is left over says little of the state where
 /// it is smaller.
 const REGULAR: f64 = 1e-4;
+/// Factor by which an error falls with a factorisation from elsewhere, at the least.
+const SERVES_ON: f64 = 0.1;
 /// Multiple of the bound on rounding within which what is left over counts as rounding.
 const ROOM: f64 = 8.0;
 /// Rows with forces below this part of the force scale are judged by their own.
@@ -87,14 +90,16 @@ impl ModeSystem<'_> {
     /// `force_scale` is the largest force met so far on the path; residuals are relative to it or to the present
     /// forces, whichever is larger.
     pub fn correct(&self, guess: State, place: Place<'_>, force_scale: f64) -> Result<Corrected, Failure> {
-        self.correct_from(self.iterate(guess), place, force_scale)
+        self.correct_from(self.iterate(guess), place, force_scale, &mut None)
     }
 
+    /// `serving` is a factorisation of the equations nearby, if there is one, and becomes the last one.
     pub(super) fn correct_from(
         &self,
         guess: Iterate,
         place: Place<'_>,
         force_scale: f64,
+        serving: &mut Option<SystemFactorisation>,
     ) -> Result<Corrected, Failure> {
         let mut iterate = guess;
         self.make_consistent(&mut iterate);
@@ -109,7 +114,7 @@ impl ModeSystem<'_> {
         // Rows are judged by the largest force first, and each by its own once that is done.
         let mut row_by_row = false;
         // Near the solution the last factorisation serves on: what it is off by is as small as the error was.
-        let mut last_factorisation: Option<SystemFactorisation> = None;
+        let mut last_factorisation = serving.take();
         let (mut factorisations, mut reused) = (0, false);
         loop {
             let (largest, forces) = self.residual(&iterate, &mut values, &mut force);
@@ -128,6 +133,7 @@ impl ModeSystem<'_> {
             if error <= SMALL {
                 iterations_to_small.get_or_insert(iterations);
             }
+            let best_before = best.as_ref().map(|(least, ..)| *least);
             let improved = best.as_ref().is_none_or(|(least, ..)| error < 0.5 * least);
             if best.as_ref().is_none_or(|(least, ..)| error <= *least) {
                 let figures = Figures { iterations, residual, left_over: values.clone(), force_scale: forces };
@@ -135,7 +141,9 @@ impl ModeSystem<'_> {
             }
             let least = best.as_ref().map_or(f64::INFINITY, |(least, ..)| *least);
             let is_regular = last_factorisation.as_ref().is_some_and(|last| last.pivot_ratio() >= REGULAR);
-            let serves = error <= SMALL && improved && !row_by_row && is_regular;
+            // One from elsewhere has to do better than what it would save.
+            let falls = factorisations > 0 || best_before.is_none_or(|least| error < SERVES_ON * least);
+            let serves = error <= SMALL && improved && falls && !row_by_row && is_regular;
             let was_reused = std::mem::replace(&mut reused, serves);
             // It goes on as far as rounding lets it: a fresh one would have gone beyond the bar at once.
             let stalled = !improved && (!was_reused || least <= ROUND_OFF);
@@ -192,6 +200,7 @@ impl ModeSystem<'_> {
             return Err(Failure::NotConverged);
         }
         self.share(&mut iterate.state);
+        *serving = last_factorisation.and_then(|last| self.may_serve(last));
         Ok(Corrected {
             modes: self.modes_at(&iterate),
             state: iterate.state,
@@ -242,12 +251,30 @@ impl ModeSystem<'_> {
 
     /// The path's direction at a converged point, and an estimate of the point's error: the size of one more Newton
     /// correction across the path.
-    pub fn tangent_and_error(&self, corrected: &Corrected, towards: &Rate) -> Option<Tangent> {
+    ///
+    /// `serving` is a factorisation of the equations nearby, if there is one. Where it does not
+    /// serve, one of the point itself takes its place, and `factorisations` counts it.
+    pub fn tangent_and_error(
+        &self,
+        corrected: &Corrected,
+        towards: &Rate,
+        serving: &mut Option<SystemFactorisation>,
+        factorisations: &mut u64,
+    ) -> Option<Tangent> {
         let iterate = self.iterate_of(corrected);
-        let factorisation = self.bordered(&iterate, towards)?;
-        let rate = self.tangent_by(&factorisation, &iterate)?;
         let mut values = corrected.left_over.clone();
         values[self.size - 1] = 0.0;
+        if let Some(SystemFactorisation::Sparse(nearby)) = serving
+            && let Some(rate) = self.tangent_nearby(nearby, &iterate, towards)
+            && nearby.solve_once(&mut values)
+        {
+            let error = self.rate_at(&iterate, &values, Kind::Rates).size();
+            let (determinant, stiffness_across) = (Some(nearby.determinant_sign()), vec![None; self.roles.len()]);
+            return Some(Tangent { rate, error, determinant, stiffness_across });
+        }
+        *factorisations += 1;
+        let factorisation = self.bordered(&iterate, towards)?;
+        let rate = self.tangent_by(&factorisation, &iterate)?;
         let error = if factorisation.solve(&mut values) {
             self.rate_at(&iterate, &values, Kind::Rates).size()
         } else {
@@ -265,7 +292,25 @@ impl ModeSystem<'_> {
         }
         let certain = factorisation.pivot_ratio() > UNCERTAIN;
         let determinant = certain.then(|| factorisation.determinant_sign());
+        *serving = self.may_serve(factorisation);
         Some(Tangent { rate, error, determinant, stiffness_across })
+    }
+
+    /// A factorisation that may serve nearby. With slips in planes the directions have equations of their own; dense
+    /// matrices are factorised as fast.
+    fn may_serve(&self, factorisation: SystemFactorisation) -> Option<SystemFactorisation> {
+        let may = matches!(factorisation, SystemFactorisation::Sparse(_)) && !self.has_tracks();
+        may.then_some(factorisation)
+    }
+
+    /// The path's direction by a factorisation of the equations nearby.
+    fn tangent_nearby(&self, nearby: &SparseFactorisation, iterate: &Iterate, towards: &Rate) -> Option<Rate> {
+        if nearby.pivot_ratio() < REGULAR {
+            return None;
+        }
+        let values = nearby.solve_nearby(self.assemble_sparse(iterate, Kind::Rates)?, &self.bordering())?;
+        // On the same side of both borders, so that the determinants have one sign.
+        self.direction_from(iterate, &values).filter(|rate| rate.product(towards) > 0.0)
     }
 
     /// A point as it is, with its residual. Slips in planes have the directions that their tractions oppose.

@@ -17,6 +17,7 @@ use crate::linear_algebra::Inertia;
 use nalgebra::{DMatrix, DVector, Vector3};
 use smallvec::smallvec;
 use std::cell::OnceCell;
+use std::sync::Arc;
 
 /// See the module.
 pub struct SparseFactorisation {
@@ -107,6 +108,20 @@ impl SparseFactorisation {
         }
     }
 
+    /// Solves without refinement; `false` where block elimination gives no result.
+    pub fn solve_once(&self, values: &mut DVector<f64>) -> bool {
+        self.blocks.as_ref().is_some_and(|blocks| blocks.solve(values.as_mut_slice()))
+    }
+
+    /// Whether another matrix has the same unknowns and as many borders.
+    pub(super) fn is_like(&self, matrix: &Bordered) -> bool {
+        Arc::ptr_eq(&self.matrix.pattern, &matrix.pattern) && self.matrix.lower.len() == matrix.lower.len()
+    }
+
+    pub(super) fn last_row(&self) -> Option<&Entries> {
+        self.matrix.lower.last()
+    }
+
     fn refined(&self, right: &DVector<f64>, solve: impl Fn(&mut [f64]) -> bool) -> Option<DVector<f64>> {
         let mut solution = right.clone();
         if !solve(solution.as_mut_slice()) {
@@ -132,7 +147,7 @@ impl SparseFactorisation {
 }
 
 /// The largest residual over the sizes of its terms.
-fn backward_error(rest: &[f64], right: &[f64], sizes: &[f64]) -> f64 {
+pub(super) fn backward_error(rest: &[f64], right: &[f64], sizes: &[f64]) -> f64 {
     let largest = sizes.iter().fold(0.0_f64, |largest, size| largest.max(*size));
     let mut error = 0.0_f64;
     for ((rest, right), size) in rest.iter().zip(right).zip(sizes) {

@@ -8,6 +8,7 @@
 //! * [`held`]: unknowns of a node that border rows hold (closed contacts) are eliminated where they are.
 //! * [`factorisation`]: block elimination with the dense Schur complement of what remains of the borders, refined on the
 //!   whole system.
+//! * `nearby`: solutions with the factorisation of a nearby matrix.
 //! * [`general`]: LU of any sparse matrix.
 
 pub mod bordered;
@@ -16,6 +17,7 @@ pub mod factorisation;
 pub mod general;
 mod held;
 mod lu;
+mod nearby;
 pub mod pattern;
 mod reduced;
 pub mod symmetric;

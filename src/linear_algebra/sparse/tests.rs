@@ -314,3 +314,44 @@ fn the_whole_may_be_factorised() {
         assert!((&solution - &expected).amax() <= 1e-10 * expected.amax());
     }
 }
+
+#[test]
+fn a_nearby_factorisation_gives_the_solution_to_rounding() {
+    let random = &mut Random(41);
+    let kind = Kind { contacts: true, friction: true, moved: true, ..Kind::default() };
+    for _ in 0..10 {
+        let System { sparse, dense, holdings } = system(random, 2, 20, kind);
+        let Some(factorisation) = SparseFactorisation::new(sparse.clone(), &holdings) else { continue };
+        let solved = |change: f64| {
+            let (mut nearby, mut whole) = (sparse.clone(), dense.clone());
+            for unknown in 0..40 {
+                let value = change * (1.0 + unknown as f64 / 40.0);
+                nearby.add(unknown, unknown, value);
+                Sink::add(&mut whole, unknown, unknown, value);
+            }
+            let right = DVector::from_fn(whole.nrows(), |row, _| if row + 1 == whole.nrows() { 1.0 } else { 0.0 });
+            let mut exact = right.clone();
+            assert!(Factorisation::new(whole).unwrap().solve(&mut exact));
+            factorisation.solve_nearby(nearby, &right).map(|found| (found - &exact).amax() / exact.amax())
+        };
+        assert!(solved(1e-7).unwrap() < 1e-10);
+        assert!(solved(10.0).is_none());
+    }
+}
+
+/// The solution has no part where the two matrices have eigenvalues of different sign.
+#[test]
+fn a_matrix_of_another_sign_is_not_nearby() {
+    let pattern = Arc::new(Pattern::new(3, (0..3).map(|unknown| (unknown, unknown))).unwrap());
+    let matrix = |last: f64| {
+        let mut matrix = Bordered::new(pattern.clone(), 1);
+        [1.0, 1.0, last].iter().enumerate().for_each(|(unknown, value)| matrix.add(unknown, unknown, *value));
+        matrix.add(0, 3, -1.0);
+        matrix.add(3, 0, 1.0);
+        matrix
+    };
+    let factorisation = SparseFactorisation::new(matrix(1e-3), &Holdings::default()).unwrap();
+    let right = DVector::from_vec(vec![0.0, 0.0, 0.0, 1.0]);
+    assert!(factorisation.solve_nearby(matrix(1e-3 * (1.0 + 1e-6)), &right).is_some());
+    assert!(factorisation.solve_nearby(matrix(-1e-3), &right).is_none());
+}
