@@ -424,13 +424,13 @@ pub enum Selection {
     Straightest,
 }
 
-/// Which contact changes become points of the path. In this version every change does, however close together they are,
-/// so the two are the same.
+/// Which contact changes become points of the path. Contacts without friction that touch or lift off within one step are
+/// taken together by `auto`, where that is certain to lead to the same state: the increment's event names each of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Events {
-    /// The solver chooses.
+    /// Each that leaves a choice, is counted by a stage, or has friction; others may be taken together.
     #[default]
     Auto,
     /// Every contact change.

@@ -60,6 +60,16 @@ impl Path<'_> {
         }
     }
 
+    /// The end of a step in which contacts have changed together, from the modes `old`: none of them can change here.
+    pub(super) fn joined_changes(&mut self, old: &[Mode], changes: u64, incoming: &Rate) -> Arrival {
+        self.at.here.rate = Some(incoming.clone());
+        self.at.counts.contact_changes += changes;
+        let standings = self.standings(&self.at.here.state);
+        let event = describe_change(self.names(), old, Some(&self.at.here.modes), &standings);
+        let point = Point::plain(PointKind::ContactChange, Some(event));
+        Arrival { point, options: Vec::new(), taken: None, stop: None, stage_ends: false, unconfirmed: false }
+    }
+
     /// Directions at a point where the mode goes on.
     fn look_around(
         &self,

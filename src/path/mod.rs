@@ -12,6 +12,7 @@
 //! | `track`, `drift` | slip in a plane: its rule of fourth order; the error that is left |
 //! | `watch`, `advance` | what ends a mode; one step, ended exactly at the first event |
 //! | `interpolation`, `locate`, `root` | between points that are reached; where a quantity is zero |
+//! | `at_once` | contact changes of one step that are taken together |
 //! | `singular`, `critical`, `branches` | whether a step passes a smooth bifurcation; where; which directions leave it |
 //! | `bound` | a bound of the stage at or beside a smooth bifurcation |
 //! | `folded` | points of slip in a plane at which the direction is not determined |
@@ -31,6 +32,7 @@
 
 mod advance;
 mod arrival;
+mod at_once;
 mod bound;
 mod branches;
 mod carried;

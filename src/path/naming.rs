@@ -77,6 +77,13 @@ impl Path<'_> {
         false
     }
 
+    /// Whether the program, started along the present direction, ends in these modes: contacts change within the step.
+    pub(super) fn program_joins_changes(&mut self, rate: &Rate, step: f64, end: &[Mode]) -> bool {
+        let (state, modes) = (self.at.here.state.clone(), self.at.here.modes.clone());
+        let named = self.name(&state, rate, &modes, step);
+        named.is_some_and(|named| agree(self.loading(), &named.modes, end))
+    }
+
     /// Arc length to the first change of a contact along a direction, to first order: an increment that goes on past it
     /// ends in another mode. Infinite where none is ahead.
     fn way_to_next_change(&self, modes: &[Mode], rate: &Rate) -> f64 {

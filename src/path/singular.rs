@@ -114,6 +114,14 @@ fn count_sparse(loading: Loading<'_>, modes: &[Mode], start: &State, state: &Sta
     Some(Some(inertia.negative))
 }
 
+/// Negative eigenvalues of the tangent reduced to the motions that a mode allows; `None` where they are not counted.
+pub fn negative_eigenvalues(loading: Loading<'_>, modes: &[Mode], start: &State, state: &State) -> Option<usize> {
+    if loading.structure.layout().is_some() {
+        return count_sparse(loading, modes, start, state)?;
+    }
+    Some(inertia(counted_tangent(loading, modes, start, state)?, ZERO_PIVOT)?.negative)
+}
+
 fn reduced_tangent(system: &ModeSystem<'_>, loading: Loading<'_>, state: &State) -> Option<DMatrix<f64>> {
     let unknowns = loading.structure.unknowns();
     let constraints = system.size() - 1 - unknowns;

@@ -8,9 +8,11 @@ use super::corner;
 use super::critical::{self, Crossing, Located};
 use super::decide::{self, Before};
 use super::energy;
+use super::increment::Energy;
 use super::mode_system::ModeSystem;
 use super::pocket::Pocket;
 use super::root::find_root;
+use super::scene::End;
 use super::singular::{self, Change, Signature};
 use super::state::{Rate, State};
 use super::stop::StopReason;
@@ -18,7 +20,7 @@ use super::totals::{Added, NO_ENERGY};
 use super::tracer::Path;
 use super::watch::Watch;
 use crate::contact::{Mode, all_continue};
-use crate::model::request::Method;
+use crate::model::request::{Events, Method};
 
 /// The turn of the path (radians) that a step aims at.
 const TURN_SOUGHT: f64 = 0.08;
@@ -53,6 +55,17 @@ pub(super) struct Accepted {
     pub crossing: Option<Crossing>,
     /// Signs just past the point, in the mode that led there.
     pub signature: Option<Signature>,
+    /// Contact changes within the step that are taken together; 0 where its mode lasted.
+    pub joined: u64,
+}
+
+impl Accepted {
+    /// A step that so many contact changes are taken together in. Nothing slides against friction in it: the work is what
+    /// is stored.
+    fn join(&mut self, changes: u64, before: &Energy) {
+        self.joined = changes;
+        self.added.external_work = self.added.strain - before.strain;
+    }
 }
 
 /// The next smaller of eight values an octave: what the factor is computed from is a difference of nearly equal
@@ -165,7 +178,16 @@ impl Path<'_> {
             };
             let mut work = self.at.totals.work;
             let ends = &self.scene.stages[self.at.stage].ends;
-            let outcome = start.advance(step, ends, self.at.here.load_sign, &mut work);
+            let may_join = jump != Some(step) && self.may_join_changes();
+            let mut joined = None;
+            let tried = start.attempt(step, ends, self.at.here.load_sign, &mut work);
+            let outcome = tried.and_then(|tried| {
+                joined = may_join.then(|| start.join_changes(&tried, &mut work)).flatten();
+                match &joined {
+                    Some(joined) => Ok(joined.reached.clone()),
+                    None => start.stop_at_event(tried, ends, &mut work),
+                }
+            });
             let is_lost = match &outcome {
                 Ok(reached) => matches!(reached.event, Some(Watch::End(_))) && reached.determinant.is_none(),
                 Err(refused) => matches!(refused, Refused::Newton(_)),
@@ -176,6 +198,7 @@ impl Path<'_> {
             let outcome = match (outcome, back, ended) {
                 (Ok(_), Some(back), _) => Ok((back, None, None, true)),
                 (_, _, Some((reached, crossing, signature))) => Ok((reached, crossing, signature, false)),
+                (Ok(reached), None, None) if let Some(joined) = &joined => Ok((reached, None, joined.signature, false)),
                 (Ok(reached), None, None) => {
                     let before = known.or_else(|| Signature::past_start(&start, reached.step, &mut work));
                     known = before;
@@ -200,10 +223,20 @@ impl Path<'_> {
                 Ok((reached, crossing, signature, returned)) => {
                     let mut accepted = self.balance(&rate, reached);
                     (accepted.crossing, accepted.signature, accepted.returned) = (crossing, signature, returned);
-                    let factor = self.next_step_factor(&rate, &accepted, step);
+                    // The kinks of a step with contact changes say nothing of its length.
+                    let mut last = None;
+                    if let Some(joined) = joined.filter(|_| !returned) {
+                        accepted.join(joined.changes, &self.at.totals.energy);
+                        last = Some(joined.unchanged);
+                    }
+                    let turned = rate.product(last.as_ref().unwrap_or(&accepted.reached.rate));
+                    let factor = self.next_step_factor(turned.clamp(-1.0, 1.0).acos(), &accepted, step);
                     if factor > REJECTED || step * factor < least {
-                        accepted.mode_named =
-                            self.is_named_by_program().then(|| self.program_keeps_mode(&rate, &accepted.reached, step));
+                        // Where the mode ends inside the step, the program names the next one, from there.
+                        accepted.mode_named = self.is_named_by_program().then(|| match accepted.joined {
+                            0 => self.program_keeps_mode(&rate, &accepted.reached, step),
+                            _ => self.program_joins_changes(&rate, step, &accepted.reached.corrected.modes),
+                        });
                         if jump != Some(step) {
                             self.at.step = (step * factor).clamp(least, most);
                         }
@@ -256,6 +289,13 @@ impl Path<'_> {
         let structure = &self.scene.structure;
         structure.smallest_stretch(&state.displacement) < A_POINT
             && structure.smallest_stretch(&self.at.here.state.displacement) >= A_POINT
+    }
+
+    /// Whether contact changes may be taken together: not where each is asked for, or counted.
+    fn may_join_changes(&self) -> bool {
+        let analysis = &self.scene.analysis;
+        let counted = self.scene.stages[self.at.stage].ends.iter().any(|end| matches!(end, End::ContactChanges(_)));
+        analysis.events == Events::Auto && !counted
     }
 
     /// Whether the program of each increment is asked to name its mode.
@@ -331,14 +371,14 @@ impl Path<'_> {
         let strain = self.scene.structure.strain_energy(&reached.corrected.state.displacement) - self.initial_strain;
         let (step, force_scale) = (reached.step, reached.corrected.force_scale);
         let added = Added { step, external_work, dissipated, strain, force_scale };
-        Accepted { reached, added, mode_named: None, returned: false, crossing: None, signature: None }
+        Accepted { reached, added, mode_named: None, returned: false, crossing: None, signature: None, joined: 0 }
     }
 
-    /// How the next step should compare with this one: by the path's turn, Newton's work and the energy balance.
-    fn next_step_factor(&self, rate: &Rate, accepted: &Accepted, tried: f64) -> f64 {
+    /// How the next step should compare with this one: by the path's turn (radians), Newton's work and the energy balance.
+    fn next_step_factor(&self, turned: f64, accepted: &Accepted, tried: f64) -> f64 {
         let reached = &accepted.reached;
         let done = (reached.step / tried).clamp(0.1, 1.0);
-        let turn = rate.product(&reached.rate).clamp(-1.0, 1.0).acos() / done;
+        let turn = turned / done;
         let by_turn = TURN_SOUGHT / turn.max(1e-3 * TURN_SOUGHT);
         let by_work = ITERATIONS_SOUGHT / reached.corrected.iterations_to_small.max(1) as f64;
         let added = &accepted.added;

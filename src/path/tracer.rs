@@ -148,13 +148,19 @@ impl<'a> Path<'a> {
         self.at.counts.increments += 1;
         let here = &mut self.at.here;
         let before = std::mem::replace(&mut here.state, reached.corrected.state);
-        let modes = std::mem::replace(&mut here.modes, reached.corrected.modes);
+        let mut modes = std::mem::replace(&mut here.modes, reached.corrected.modes);
         here.drift = reached.drift;
         here.signature = accepted.signature;
         let arriving = Arriving { modes: here.modes.clone(), load_sign: here.load_sign, counts: self.at.counts };
         let at_bound = self.at_bound(&reached.rate);
         let arrived = self.at.here.state.reactions.clone();
-        let mut arrival = self.classify(reached.event, accepted.crossing, &reached.rate);
+        let mut arrival = if accepted.joined > 0 {
+            let arrival = self.joined_changes(&modes, accepted.joined, &reached.rate);
+            modes.clone_from(&self.at.here.modes);
+            arrival
+        } else {
+            self.classify(reached.event, accepted.crossing, &reached.rate)
+        };
         if accepted.returned {
             arrival.stop = Some(StopReason::Cycle);
         }
