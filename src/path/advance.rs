@@ -49,7 +49,8 @@ pub(super) struct Attempt {
     pub watches: Vec<Watch>,
     /// Those that are.
     pub passed: Vec<Watch>,
-    pub stretch: Stretch,
+    /// The points that it is made of, where something is passed.
+    pub stretch: Option<Stretch>,
 }
 
 /// Work done, whether it led to a point or not.
@@ -222,9 +223,9 @@ impl Start<'_> {
         }
         watches.extend(ends.iter().map(|end| Watch::End(*end)));
         let mut passed = self.passed(&watches, &reached);
-        let mut stretch = Stretch::new(self, &reached, serving);
-        if passed.is_empty() {
-            passed = self.dips(&watches, &mut reached, &mut stretch, work)?;
+        let mut stretch = (!passed.is_empty()).then(|| Stretch::new(self, &reached, serving.take()));
+        if stretch.is_none() {
+            (passed, stretch) = self.dips(&watches, &mut reached, serving, work)?;
         }
         Ok(Attempt { reached, watches, passed, stretch })
     }
@@ -236,8 +237,10 @@ impl Start<'_> {
         let hardness = reached.corrected.iterations_to_small;
         // Each round finds the first zero of one quantity; whatever else is negative there came before it.
         let mut event = None;
-        while let Some(&watch) = self.earliest(&passed, &stretch, |watch| self.zero(watch, &reached)) {
-            reached = self.locate(watch, &mut stretch, self.zero(watch, &reached), work)?;
+        while let Some(stretch) = &mut stretch
+            && let Some(&watch) = self.earliest(&passed, stretch, |watch| self.zero(watch, &reached))
+        {
+            reached = self.locate(watch, stretch, self.zero(watch, &reached), work)?;
             event = Some(watch);
             passed = self.passed(&watches, &reached);
             passed.retain(|other| *other != watch);
@@ -316,15 +319,17 @@ impl Start<'_> {
         })
     }
 
-    /// Looks where a quantity may have dipped inside the step; shortens the step to that place if it did.
+    /// Looks where a quantity may have dipped inside the step; shortens the step to that place if it did, and answers what
+    /// is negative there with the points reached.
     fn dips(
         &self,
         watches: &[Watch],
         reached: &mut Reached,
-        stretch: &mut Stretch,
+        mut serving: Option<SystemFactorisation>,
         work: &mut Work,
-    ) -> Result<Vec<Watch>, Refused> {
+    ) -> Result<(Vec<Watch>, Option<Stretch>), Refused> {
         let step = reached.step;
+        let mut stretch = None;
         for watch in watches {
             let end = (&reached.corrected.state, &reached.rate);
             let start = (self.state, self.rate);
@@ -333,14 +338,15 @@ impl Start<'_> {
             }
             let zero = self.zero(*watch, reached);
             let Some(place) = watch.dip(self.loading, self.modes, start, end, step, zero) else { continue };
-            let inside = stretch.reach(self, place, work)?;
+            let points = stretch.get_or_insert_with(|| Stretch::new(self, reached, serving.take()));
+            let inside = points.reach(self, place, work)?;
             let passed = self.passed(watches, &inside);
             if !passed.is_empty() {
                 *reached = inside;
-                return Ok(passed);
+                return Ok((passed, stretch));
             }
         }
-        Ok(Vec::new())
+        Ok((Vec::new(), None))
     }
 
     /// Solves once more with the end of the stage as an equation, so that a load of 1 is exactly 1.
