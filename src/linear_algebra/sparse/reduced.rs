@@ -141,7 +141,8 @@ impl Reduced {
             weights[row] -= entries.iter().map(|(unknown, value)| value * upper[*unknown]).sum::<f64>();
             weights[row] /= self.scales[row];
         }
-        if !self.complement.solve_mut(&mut weights) {
+        // Without borders there is nothing to solve for.
+        if count > 0 && !self.complement.solve_mut(&mut weights) {
             return false;
         }
         match (&self.responses, right) {
