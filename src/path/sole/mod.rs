@@ -51,7 +51,9 @@ pub(super) fn directions(
     let Some(equations) = Equations::new(loading, state, standings) else { return false };
     let columns = equations.changing.len() * loading.structure.dimension;
     let is_huge = columns * (loading.structure.freedoms() + 4 * loading.contacts.len()) > MOST_CONDENSED;
-    let proof = equations.proof(incoming);
+    // The members of a family that no element resists are searched for where contacts are few.
+    let is_few = equations.changing.len() <= FEW;
+    let proof = equations.proof(incoming).filter(|proof| !is_few || proof.free_motions() <= 1);
     if proof.is_none() && !is_huge {
         return false;
     }
@@ -76,6 +78,7 @@ pub(super) fn directions(
         }
     }
     found.candidates.extend(candidates);
+    found.candidates.sort_by_cached_key(|candidate| equations.order(candidate));
     if !complete {
         let modes = |ways: u64, count: usize| ways.saturating_pow(u32::try_from(count).unwrap_or(u32::MAX));
         let touching = equations.changing.iter().filter(|one| one.direction.is_none()).count();

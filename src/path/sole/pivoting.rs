@@ -77,6 +77,17 @@ impl Equations<'_> {
         [1.0, -1.0].into_iter().filter_map(rests).collect()
     }
 
+    /// The order in which a search lists candidates: held where they can be, the first contact counting fastest.
+    pub fn order(&self, candidate: &Candidate) -> Vec<u8> {
+        let rank = |one: &Changing| match (candidate.modes[one.contact], one.direction) {
+            (Mode::Stick, _) => 0,
+            (Mode::Slip { direction }, None) if dot(&direction, &one.frame.tangents[0]) < 0.0 => 2,
+            (Mode::Slip { .. }, _) => 1,
+            (Mode::Free, _) => 3,
+        };
+        self.changing.iter().rev().map(rank).collect()
+    }
+
     fn value_of(&self, control: Control, rate: &Rate) -> f64 {
         match control {
             Control::Load => rate.load,

@@ -69,6 +69,13 @@ fn hold(lower: &mut Triangle, held: usize) {
     lower.push((held, held, 1.0));
 }
 
+impl Proof {
+    /// Dimension of the motions that nothing resists.
+    pub fn free_motions(&self) -> usize {
+        self.loose.len() + usize::from(self.null.is_some())
+    }
+}
+
 impl Equations<'_> {
     /// `incoming` names the motion that the structure may resist least.
     pub fn proof(&self, incoming: Option<&Rate>) -> Option<Proof> {
@@ -302,7 +309,7 @@ impl Equations<'_> {
 
     /// Adds the motions that nothing resists and no contact hinders. Of a family all that are loose is one.
     pub fn add_free_motions(&self, proof: &Proof, found: &mut Found) {
-        if proof.loose.len() + usize::from(proof.null.is_some()) > 1 {
+        if proof.free_motions() > 1 {
             (found.degenerate, found.mechanism) = (true, true);
         }
         let mut motions: Vec<Vec<f64>> = Vec::new();
