@@ -33,6 +33,8 @@ use proof::Control;
 /// where some touch, each of which has four ways to go on.
 const FEW: usize = 16;
 const FEW_TOUCHING: usize = 3;
+/// The same of structures with sparse matrices, where each contact that can change is one more solve.
+const FEW_OF_MANY: usize = 4;
 /// Numbers of the condensed equations (contacts that can change times what each moves) that are too many.
 const MOST_CONDENSED: usize = 25_000_000;
 
@@ -45,7 +47,7 @@ pub(super) fn directions(
     effort: Effort<'_>,
     found: &mut Found,
 ) -> bool {
-    if !effort.certify || are_few(standings) {
+    if !effort.certify || are_few(loading, standings) {
         return false;
     }
     let Some(equations) = Equations::new(loading, state, standings) else { return false };
@@ -87,8 +89,9 @@ pub(super) fn directions(
     true
 }
 
-fn are_few(standings: &[Standing]) -> bool {
+fn are_few(loading: Loading<'_>, standings: &[Standing]) -> bool {
     let touching = standings.iter().filter(|standing| matches!(standing, Standing::Touching)).count();
     let changing = standings.iter().filter(|standing| !matches!(standing, Standing::Settled(_))).count();
-    changing <= FEW && touching <= FEW_TOUCHING
+    let few = if loading.structure.layout().is_some() { FEW_OF_MANY } else { FEW };
+    changing <= few && touching <= FEW_TOUCHING
 }
