@@ -19,6 +19,7 @@ use super::rates::Effort;
 use super::standing::Standing;
 use super::state::{Rate, State, dot};
 use super::stop::StopReason;
+use super::straight;
 use crate::contact::Mode;
 use crate::model::request::Selection;
 use serde::{Deserialize, Serialize};
@@ -94,9 +95,10 @@ pub fn list(
     let mut found = directions(loading, state, standings, incoming, rules.effort);
     let candidates = std::mem::take(&mut found.candidates);
     let mut options = Vec::with_capacity(candidates.len());
+    let holds_exactly = rules.effort.certify && straight::is_linear(loading);
     for candidate in candidates {
         let mechanism = is_mechanism(loading, state, &candidate.rate);
-        let confirmed = if candidate.weak && !mechanism {
+        let confirmed = if candidate.weak && !mechanism && !holds_exactly {
             confirm(loading, state, &candidate, rules.force_scale)
         } else {
             Some((candidate.modes.clone(), 0.0))

@@ -6,6 +6,7 @@
 //! them another direction can be followed.
 
 use super::corner;
+use super::loading::Loading;
 use super::plan::LeftOut;
 use super::scene::{End, Scene};
 use super::tracer::Path;
@@ -47,6 +48,13 @@ pub(super) fn left_out(scene: &Scene) -> Option<LeftOut> {
 fn is_straight(contact: &Contact) -> bool {
     let plane = matches!(contact.obstacle, Obstacle::Plane { .. });
     plane && (contact.friction == 0.0 || contact.sliding != Sliding::Plane)
+}
+
+/// Whether every direction of first order holds exactly over some way: nothing bends it.
+pub(super) fn is_linear(loading: Loading<'_>) -> bool {
+    loading.corners.is_empty()
+        && loading.contacts.iter().all(is_straight)
+        && loading.structure.elements.iter().all(Element::is_linear)
 }
 
 impl Path<'_> {

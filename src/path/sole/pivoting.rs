@@ -126,11 +126,15 @@ impl Equations<'_> {
         dot(direction, &self.loading.relative_rate(one.contact, rate))
     }
 
-    /// Whether what must not be negative in a mode is positive beyond round-off.
-    pub fn is_strict(&self, one: &Changing, mode: Mode, rate: &Rate) -> bool {
+    /// Of each contact that can change, whether what must not be negative in its mode is positive beyond round-off.
+    pub fn strict(&self, candidate: &Candidate) -> Vec<bool> {
+        let rate = &candidate.rate;
         let force = WEAK * rate.largest_reaction().max(f64::MIN_POSITIVE);
-        let (margin, tolerance, _) = self.margin(one, mode, rate, force);
-        margin > tolerance
+        let is_strict = |one: &Changing| {
+            let (margin, tolerance, _) = self.margin(one, candidate.modes[one.contact], rate, force);
+            margin > tolerance
+        };
+        self.changing.iter().map(is_strict).collect()
     }
 
     /// The least of what must not be negative in a mode, what of it is round-off (`force` of a force), and the mode to try

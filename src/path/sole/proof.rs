@@ -237,12 +237,10 @@ impl Equations<'_> {
 
     /// Whether a solution is the only one with its sign of the load rate, and says all that first order can tell.
     pub fn is_only(&self, candidate: &Candidate, proof: &Proof) -> bool {
-        let mut strict = vec![false; self.changing.len()];
-        for (strict, one) in strict.iter_mut().zip(&self.changing) {
-            *strict = self.is_strict(one, candidate.modes[one.contact], &candidate.rate);
-            if !*strict && one.direction.is_none() {
-                return false;
-            }
+        let strict = self.strict(candidate);
+        let is_told = |(one, strict): (&Changing, &bool)| *strict || one.direction.is_some();
+        if !self.changing.iter().zip(&strict).all(is_told) {
+            return false;
         }
         let holds = |(one, strict): (&Changing, &bool), speed: &dyn Fn(usize) -> f64| {
             let moves = |column: usize| speed(column).abs() > WEAK;
