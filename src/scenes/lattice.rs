@@ -21,6 +21,8 @@ pub struct LatticeArch {
     pub depth: f64,
     /// How far the crown is above the floor.
     pub clearance: f64,
+    /// Upper nodes no further than this from where the load is, along the span, bear a part of it.
+    pub spread: f64,
     /// Increments that are asked for.
     pub increments: usize,
 }
@@ -35,7 +37,17 @@ impl LatticeArch {
             panels += 1;
         }
         let layers = layers_of(panels);
-        Self { panels, layers, contacts: 0, friction: 0.3, rise: 0.25, depth, clearance: 0.15, increments: 100 }
+        Self {
+            panels,
+            layers,
+            contacts: 0,
+            friction: 0.3,
+            rise: 0.25,
+            depth,
+            clearance: 0.15,
+            spread: 0.0,
+            increments: 100,
+        }
     }
 
     /// Free displacement components.
@@ -80,7 +92,12 @@ impl LatticeArch {
         let contacts: Vec<Value> = (first..last)
             .map(|post| json!({"node": node(0, post), "obstacle": "floor", "friction": self.friction}))
             .collect();
-        let loaded = node(self.layers, (self.panels * 11).div_ceil(24));
+        let loaded = (self.panels * 11).div_ceil(24);
+        let bears = |post: &usize| *post == loaded || (x(*post) - x(loaded)).abs() <= self.spread;
+        let loaded: Vec<usize> = (1..self.panels).filter(bears).collect();
+        let force = -0.001 / loaded.len() as f64;
+        let forces: serde_json::Map<String, Value> =
+            loaded.into_iter().map(|post| (node(self.layers, post), json!([0, force]))).collect();
         let step = self.rise / 50.0 * (0.2 * self.unknowns() as f64).sqrt();
         serde_json::from_value(json!({
             "model": {
@@ -88,7 +105,7 @@ impl LatticeArch {
                 "obstacles": {"floor": {"kind": "plane", "point": [0, self.rise - self.clearance], "normal": [0, 1]}},
                 "contacts": contacts,
                 "stages": [{
-                    "name": "press", "forces": {loaded: [0, -0.001]}, "until": {"increments": self.increments},
+                    "name": "press", "forces": forces, "until": {"increments": self.increments},
                 }],
             },
             "analysis": {
