@@ -1,6 +1,7 @@
 //! A matrix by the entries of its rows.
 
 use nalgebra::{DMatrix, DVector};
+use smallvec::{SmallVec, smallvec};
 use std::ops::{Index, IndexMut, Mul};
 
 /// A matrix whose rows have few entries, as gradients of a structure's functions have. What has no entry is zero; an
@@ -8,20 +9,23 @@ use std::ops::{Index, IndexMut, Mul};
 #[derive(Debug, Clone, PartialEq)]
 pub struct SparseRows {
     columns: usize,
-    rows: Vec<Vec<(usize, f64)>>,
+    rows: Vec<Row>,
 }
+
+/// Most rows have few entries: they need no memory of their own.
+type Row = SmallVec<[(usize, f64); 6]>;
 
 static ZERO: f64 = 0.0;
 
 impl SparseRows {
     /// No entries.
     pub fn zeros(rows: usize, columns: usize) -> Self {
-        Self { columns, rows: vec![Vec::new(); rows] }
+        Self { columns, rows: vec![Row::new(); rows] }
     }
 
     /// One on the diagonal.
     pub fn identity(size: usize) -> Self {
-        Self { columns: size, rows: (0..size).map(|i| vec![(i, 1.0)]).collect() }
+        Self { columns: size, rows: (0..size).map(|i| smallvec![(i, 1.0)]).collect() }
     }
 
     /// Number of rows.
@@ -36,7 +40,7 @@ impl SparseRows {
 
     /// Takes every entry out.
     pub fn clear(&mut self) {
-        self.rows.iter_mut().for_each(Vec::clear);
+        self.rows.iter_mut().for_each(Row::clear);
     }
 
     /// Entries of a row, `(column, value)`, in the order in which they were first written.
@@ -107,7 +111,7 @@ impl SparseRows {
 impl From<&DMatrix<f64>> for SparseRows {
     fn from(matrix: &DMatrix<f64>) -> Self {
         let entries = |i: usize| {
-            (0..matrix.ncols()).map(|j| (j, matrix[(i, j)])).filter(|(_, value)| *value != 0.0).collect::<Vec<_>>()
+            (0..matrix.ncols()).map(|j| (j, matrix[(i, j)])).filter(|(_, value)| *value != 0.0).collect::<Row>()
         };
         Self { columns: matrix.ncols(), rows: (0..matrix.nrows()).map(entries).collect() }
     }
