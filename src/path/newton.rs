@@ -75,6 +75,8 @@ const SMALL: f64 = 1e-6;
 /// Smallest pivot over the largest of a factorisation that may serve on: what is left over says little of the state where
 /// it is smaller.
 const REGULAR: f64 = 1e-4;
+/// The same where the last correction is this part of that pivot at the most: so little moves it by this part of itself.
+const STILL_FALLS: f64 = 1e-2;
 /// Factor by which an error falls with a factorisation from elsewhere, at the least.
 const SERVES_ON: f64 = 0.1;
 /// Multiple of the bound on rounding within which what is left over counts as rounding.
@@ -140,13 +142,17 @@ impl ModeSystem<'_> {
                 best = Some((error, iterate.clone(), figures));
             }
             let least = best.as_ref().map_or(f64::INFINITY, |(least, ..)| *least);
-            let is_regular = last_factorisation.as_ref().is_some_and(|last| last.pivot_ratio() >= REGULAR);
+            let is_regular = last_factorisation.as_ref().is_some_and(|last| {
+                let pivot_ratio = last.pivot_ratio();
+                pivot_ratio >= REGULAR || correction <= STILL_FALLS * pivot_ratio
+            });
             // One from elsewhere has to do better than what it would save.
             let falls = factorisations > 0 || best_before.is_none_or(|least| error < SERVES_ON * least);
             let serves = error <= SMALL && improved && falls && !row_by_row && is_regular;
             let was_reused = std::mem::replace(&mut reused, serves);
             // It goes on as far as rounding lets it: a fresh one would have gone beyond the bar at once.
-            let stalled = !improved && (!was_reused || least <= ROUND_OFF);
+            let is_still = correction <= f64::EPSILON * (1.0 + iterate.state.load.abs());
+            let stalled = !improved && (!was_reused || least <= ROUND_OFF || is_still);
             let settled = (least <= ROUND_OFF && !was_reused)
                 || error == 0.0
                 || (stalled && (row_by_row || least <= ACCEPTED_RESIDUAL));

@@ -198,6 +198,10 @@ impl Signature {
 
     /// At the start of a step; where the equations are singular there, a little further on.
     pub fn past_start(start: &Start<'_>, step: f64, work: &mut Work) -> Option<Self> {
+        if !start.loading.structure.allows_dense() {
+            // Bifurcation points are not looked for.
+            return None;
+        }
         Self::at(start.loading, start.modes, start.state, start.rate, work).or_else(|| {
             FURTHER_ON.iter().find_map(|part| {
                 let near = start.reach(part * step, work).ok()?;
