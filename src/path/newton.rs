@@ -151,8 +151,7 @@ impl ModeSystem<'_> {
             let serves = error <= SMALL && improved && falls && !row_by_row && is_regular;
             let was_reused = std::mem::replace(&mut reused, serves);
             // It goes on as far as rounding lets it: a fresh one would have gone beyond the bar at once.
-            let is_still = correction <= f64::EPSILON * (1.0 + iterate.state.load.abs());
-            let stalled = !improved && (!was_reused || least <= ROUND_OFF || is_still);
+            let stalled = !improved && (!was_reused || least <= ROUND_OFF);
             let settled = (least <= ROUND_OFF && !was_reused)
                 || error == 0.0
                 || (stalled && (row_by_row || least <= ACCEPTED_RESIDUAL));
