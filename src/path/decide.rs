@@ -95,10 +95,10 @@ pub fn list(
     let mut found = directions(loading, state, standings, incoming, rules.effort);
     let candidates = std::mem::take(&mut found.candidates);
     let mut options = Vec::with_capacity(candidates.len());
-    let holds_exactly = rules.effort.certify && straight::is_linear(loading);
+    let holds_exactly = || rules.effort.certify && straight::is_linear(loading);
     for candidate in candidates {
         let mechanism = is_mechanism(loading, state, &candidate.rate);
-        let confirmed = if candidate.weak && !mechanism && !holds_exactly {
+        let confirmed = if candidate.weak && !mechanism && !holds_exactly() {
             confirm(loading, state, &candidate, rules.force_scale)
         } else {
             Some((candidate.modes.clone(), 0.0))

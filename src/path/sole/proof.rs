@@ -88,21 +88,19 @@ impl Equations<'_> {
         }
         let loose: Vec<usize> = (0..self.size).filter(|column| is_loose[*column]).collect();
         lower.extend(loose.iter().map(|column| (*column, *column, 1.0)));
-        let definite = Definite::new(self.size, &lower, -MARGIN);
-        let null = match definite {
-            Some(_) => None,
-            None => match Definite::new(self.size, &lower, MARGIN).and_then(|shifted| self.null(&shifted)) {
-                Some(null) => Some(null),
-                None if loose.is_empty() => return self.proof_by_power(lower, incoming?),
-                None => return None,
-            },
+        let (inverse, null) = match Definite::new(self.size, &lower, -MARGIN) {
+            Some(definite) => (definite, None),
+            None => {
+                let shifted = Definite::new(self.size, &lower, MARGIN);
+                match shifted.and_then(|shifted| self.null(&shifted).map(|null| (shifted, Some(null)))) {
+                    Some(found) => found,
+                    None if loose.is_empty() => return self.proof_by_power(lower, incoming?),
+                    None => return None,
+                }
+            }
         };
         let is_rough = |one: &Changing| one.direction.is_none() && self.loading.contacts[one.contact].friction > 0.0;
         if self.changing.iter().any(is_rough) {
-            let inverse = match definite {
-                Some(definite) => definite,
-                None => Definite::new(self.size, &lower, MARGIN)?,
-            };
             self.take_touching(&inverse, null.as_deref(), &mut lower)?;
         } else if null.is_none() {
             return Some(Proof { control: Control::Load, null, loose });
@@ -195,8 +193,7 @@ impl Equations<'_> {
             values.fill(0.0);
             entries.iter().for_each(|(column, value)| values[*column] = *value);
             inverse.solve(&mut values);
-            let [tangent, normal] = [entries[0].0, entries[1].0].map(|column| values[column]);
-            [tangent, normal]
+            [entries[0].0, entries[1].0].map(|column| values[column])
         };
         for (one, row) in self.changing.iter().zip(&rows) {
             let friction = self.loading.contacts[one.contact].friction;
@@ -310,14 +307,14 @@ impl Equations<'_> {
         if proof.free_motions() > 1 {
             (found.degenerate, found.mechanism) = (true, true);
         }
-        let mut motions: Vec<Vec<f64>> = Vec::new();
-        motions.extend(proof.null.iter().flat_map(|null| [null.clone(), null.iter().map(|value| -value).collect()]));
+        let mut motions = proof.null.clone().into_iter().collect::<Vec<Vec<f64>>>();
         if !proof.loose.is_empty() {
             let mut together = vec![0.0; self.size];
             proof.loose.iter().for_each(|column| together[*column] = 1.0);
             motions.push(together);
         }
-        for motion in motions {
+        let back = |motion: &Vec<f64>| motion.iter().map(|value| -value).collect();
+        for motion in motions.iter().flat_map(|motion| [motion.clone(), back(motion)]) {
             let is_open =
                 |one: &Changing| motion[if one.direction.is_some() { one.column } else { one.column + 1 }] >= -WEAK;
             if self.changing.iter().all(is_open) {

@@ -11,6 +11,7 @@ use crate::path::standing::Standing;
 use crate::path::state::Rate;
 use crate::path::{Path, Scene};
 use serde_json::{Map, json};
+
 /// A chain of blocks on a floor, joined by springs that press or lift them as they are drawn out.
 fn chain(blocks: usize, coupling: f64) -> Scene {
     let (mut nodes, mut weights) = (Map::new(), Map::new());
