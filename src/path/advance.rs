@@ -1,6 +1,7 @@
 //! One step along the current mode, ended early by the first event.
 
 use super::drift::Pointed;
+use super::interpolation::Placed;
 use super::loading::Loading;
 use super::locate::Stretch;
 use super::mode_system::ModeSystem;
@@ -204,15 +205,25 @@ impl Start<'_> {
     ///
     /// `ends` are those of the stage; `load_sign` is the sign of the load rate along the path just now.
     pub fn advance(&self, step: f64, ends: &[End], load_sign: f64, work: &mut Work) -> Result<Reached, Refused> {
-        let tried = self.attempt(step, ends, load_sign, work)?;
+        let tried = self.attempt(step, None, None, ends, load_sign, work)?;
         self.stop_at_event(tried, ends, work)
     }
 
-    /// A step of an arc length, with what it passes.
-    pub(super) fn attempt(&self, step: f64, ends: &[End], load_sign: f64, work: &mut Work) -> Result<Attempt, Refused> {
-        let mut serving = None;
-        let guess = self.state.advanced(self.rate, step);
-        let mut reached = self.reach_by(guess, step, &mut serving, work)?;
+    /// A step of an arc length, with what it passes. `before` is the point before the start in the same modes, if there is
+    /// one, and `serving` a factorisation of the equations nearby.
+    pub(super) fn attempt(
+        &self,
+        step: f64,
+        before: Option<&Placed>,
+        mut serving: Option<SystemFactorisation>,
+        ends: &[End],
+        load_sign: f64,
+        work: &mut Work,
+    ) -> Result<Attempt, Refused> {
+        let foreseen = before.and_then(|before| before.foresee(self.state, self.rate, step));
+        let foreseen = foreseen.and_then(|guess| self.reach_by(guess, step, &mut serving, work).ok());
+        let straight = || self.reach_by(self.state.advanced(self.rate, step), step, &mut serving, work);
+        let mut reached = foreseen.map_or_else(straight, Ok)?;
         let turn = self.rate.product(&reached.rate).clamp(-1.0, 1.0).acos();
         if turn > MOST_TURN {
             return Err(Refused::Turned(turn));

@@ -50,7 +50,7 @@ impl Start<'_> {
     pub(super) fn join_changes(&self, tried: &Attempt, work: &mut Work) -> Option<Joined> {
         let Attempt { reached: far, watches, passed, .. } = tried;
         let turns = watches.iter().any(|watch| matches!(watch, Watch::LoadRate { .. }));
-        if passed.len() < 2 || !turns || self.drift.is_some() || self.slides() {
+        if passed.len() < 2 || !turns || !self.may_join() {
             return None;
         }
         let first = passed.iter().map(|watch| self.smooth(*watch)).collect::<Option<BTreeSet<usize>>>()?;
@@ -80,10 +80,11 @@ impl Start<'_> {
         Some(Joined { reached, changes: changed.len() as u64, signature, unchanged: far.rate.clone() })
     }
 
-    /// Whether a contact slips against friction.
-    fn slides(&self) -> bool {
+    /// Whether changes in a step may be taken together: not where a contact slips against friction.
+    pub(super) fn may_join(&self) -> bool {
         let mut modes = self.modes.iter().zip(self.loading.contacts);
-        modes.any(|(mode, contact)| matches!(mode, Mode::Slip { .. }) && contact.tangents() > 0)
+        let slides = modes.any(|(mode, contact)| matches!(mode, Mode::Slip { .. }) && contact.tangents() > 0);
+        self.drift.is_none() && !slides
     }
 
     /// The contact that touches or lifts off where a quantity is zero, if it has no friction and its node no other contact.

@@ -46,7 +46,7 @@ pub fn beside_singular(
         let passed = bounds.iter().any(|bound| left_to(bound, &beyond.corrected.state) < -AT_END);
         (passed && beyond.determinant.is_some()).then_some(beyond)
     })?;
-    let here = Signature::at(start.loading, start.modes, start.state, start.rate, work);
+    let here = Signature::at(start.loading, start.modes, start.state, start.rate, &mut None, work);
     let located = known.or(here).and_then(|before| match singular::compare(start, before, &beyond).1 {
         Change::None => None,
         change => critical::locate(start, before, change, &beyond, work),

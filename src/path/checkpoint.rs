@@ -16,7 +16,7 @@ use crate::contact::Mode;
 use serde::{Deserialize, Serialize};
 
 /// Changes when a checkpoint of before would be read as something else.
-const VERSION: u32 = 6;
+const VERSION: u32 = 7;
 
 /// A path at one of its points.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -120,6 +120,7 @@ impl Checkpoint {
         modes(&self.at.here.modes)?;
         self.at.here.rate.iter().try_for_each(rate)?;
         self.at.here.drift.iter().try_for_each(rate)?;
+        self.at.here.before.iter().try_for_each(|before| state(&before.state).and_then(|()| rate(&before.rate)))?;
         self.at.visited.states().try_for_each(|visited| {
             same("degrees of freedom", visited.displacement.len(), freedoms)?;
             let last = visited.held.iter().map(|held| held.contact).max();

@@ -110,11 +110,16 @@ fn stepped(
 ) -> Option<(Corrected, Rate)> {
     let system = ModeSystem::new(loading, modes, state);
     let place = Place::ArcLength { from: state, step };
-    let corrected = system.correct(state.advanced(rate, step), place, force_scale).ok()?;
+    let mut serving = None;
+    let guess = system.iterate(state.advanced(rate, step));
+    let corrected = system.correct_from(guess, place, force_scale, &mut serving).ok()?;
     if state.angle_of_chord(&corrected.state, rate) > MOST_TURN {
         return None;
     }
-    let rate = system.tangent(&corrected, rate)?;
+    let rate = match serving {
+        Some(_) => system.tangent_and_error(&corrected, rate, &mut serving, &mut 0)?.rate,
+        None => system.tangent(&corrected, rate)?,
+    };
     Some((corrected, rate))
 }
 

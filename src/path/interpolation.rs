@@ -3,9 +3,11 @@
 
 use super::advance::{Reached, Start};
 use super::state::{Rate, State};
+use serde::{Deserialize, Serialize};
 
-/// A point on the path with its place: the distance from the start of the step.
-#[derive(Clone)]
+/// A point on the path with its place: the distance from the start of the step, negative before it.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Placed {
     pub place: f64,
     pub state: State,
@@ -19,6 +21,35 @@ pub(super) fn placed(start: &Start<'_>, reached: &Reached) -> Placed {
     let mut rate = reached.rate.clone();
     rate.scale(1.0 / cosine);
     Placed { place, state: reached.corrected.state.clone(), rate }
+}
+
+/// Multiple of the step before up to which the path is foreseen from it: what rounding left in that is not to be seen.
+const MOST_FORESEEN: f64 = 4.0;
+
+impl Placed {
+    /// The point before another of the same mode, `rate` its direction.
+    pub fn before(state: State, mut rate: Rate, here: &State) -> Option<Self> {
+        let width = state.distance(here);
+        let cosine = state.angle_of_chord(here, &rate).cos();
+        if width <= 0.0 || cosine <= 0.0 {
+            return None;
+        }
+        rate.scale(1.0 / cosine);
+        Some(Self { place: -width, state, rate })
+    }
+
+    /// The state a step past a point of direction `rate`, by the cubic through both: displacements and load are off by the
+    /// fourth power of the step. Reactions, which the equations are linear in, are taken straight on: rounding that they
+    /// do not see, of a traction off its plane, must not grow from step to step.
+    pub fn foresee(&self, here: &State, rate: &Rate, step: f64) -> Option<State> {
+        if step > -MOST_FORESEEN * self.place {
+            return None;
+        }
+        let straight = here.advanced(rate, step);
+        let here = Placed { place: 0.0, state: here.clone(), rate: rate.clone() };
+        let (bent, _) = between(self, &here, step);
+        Some(State { reactions: straight.reactions, ..bent })
+    }
 }
 
 pub(super) fn unit(rate: &Rate) -> Rate {

@@ -6,9 +6,9 @@
 //! square of itself and more. Where it does not fall the bracket is halved.
 
 use super::advance::{PASSED, Reached, Refused, Start, Work};
-use super::interpolation::{Knot, Placed, Polynomial, between, placed};
+use super::interpolation::{Knot, Placed, Polynomial, between, placed, unit};
 use super::mode_system::ModeSystem;
-use super::newton::Failure;
+use super::newton::{ACCEPTED_RESIDUAL, Failure};
 use super::root::find_root;
 use super::scene::End;
 use super::state::State;
@@ -23,6 +23,11 @@ const MOST_POINTS: usize = 100;
 const FURTHER_ON: [f64; 3] = [1e-3, 1e-6, 1e-9];
 /// A value that has fallen by less than this since the point before has fallen slowly.
 const SLOW: f64 = 0.25;
+/// Multiple of what counts as zero within which the zero is found by a straight step: what that leaves over is of second
+/// order.
+const BY_SERIES: f64 = 1e3;
+/// Length of that step over the distance to the next point, along which the direction changes evenly.
+const MOST_BY_SERIES: f64 = 1e-3;
 /// Points closer than this to another, over the bracket, tell nothing more.
 const CLOSE: f64 = 1e-2;
 /// How far the point at which a bound is met may be from where it was expected, over the bracket.
@@ -225,6 +230,11 @@ impl Start<'_> {
             if value.abs() <= located {
                 return Ok(found);
             }
+            if value.abs() <= BY_SERIES * zero
+                && let Some(exact) = self.by_series(watch, stretch, zero, &found)
+            {
+                return Ok(exact);
+            }
             if nearest <= zero {
                 // What is left is rounding.
                 return Ok(if value.abs() < nearest { found } else { stretch.points[best.max(1) - 1].1.clone() });
@@ -233,6 +243,39 @@ impl Start<'_> {
             nearest = nearest.min(value.abs());
         }
         Err(unclear)
+    }
+
+    /// The zero so close to a point found that what a straight step leaves over is below rounding.
+    fn by_series(&self, watch: Watch, stretch: &Stretch, zero: f64, found: &Reached) -> Option<Reached> {
+        let system = ModeSystem::new(self.loading, self.modes, self.state);
+        if system.has_tracks() {
+            return None;
+        }
+        let bracket = self.bracket(watch, stretch, 0.0)?;
+        let place = bracket.estimate(zero)?;
+        let [left, right] = [bracket.end - 1, bracket.end].map(|index| stretch.placed().nth(index));
+        let (left, right) = (left?, right?);
+        let distance = |point: &Placed| (point.place - place).abs();
+        let (near, far) = if distance(left) < distance(right) { (left, right) } else { (right, left) };
+        let (way, width) = (place - near.place, far.place - near.place);
+        if way.abs() > MOST_BY_SERIES * width.abs() {
+            return None;
+        }
+        let mut rate = near.rate.clone();
+        rate.scale(1.0 - way / width);
+        rate.add(&far.rate, way / width);
+        let state = near.state.advanced(&near.rate, way);
+        let rate = unit(&rate);
+        let value = watch.value(self.loading, self.modes, &state, &rate).abs();
+        let mut corrected = system.judged(state, self.force_scale);
+        if value > zero || corrected.residual > ACCEPTED_RESIDUAL {
+            return None;
+        }
+        corrected.modes.clone_from(&found.corrected.modes);
+        corrected.directions.clone_from(&found.corrected.directions);
+        corrected.iterations_to_small = found.corrected.iterations_to_small;
+        let step = corrected.state.distance(self.state);
+        Some(Reached { corrected, rate, step, ..found.clone() })
     }
 
     /// The point at which a bound of the stage is met, which is an equation of its own; `None` where that leads elsewhere.

@@ -300,6 +300,10 @@ impl Progress {
         modes(&mut self.here.modes);
         self.here.rate.iter_mut().for_each(rate);
         self.here.drift.iter_mut().for_each(rate);
+        if let Some(before) = &mut self.here.before {
+            state(&mut before.state);
+            rate(&mut before.rate);
+        }
         if let Some((begun, direction)) = &mut self.begun {
             state(begun);
             rate(direction);

@@ -113,6 +113,8 @@ impl ModeSystem<'_> {
         // Sizes of the last correction and the one before.
         let (mut correction, mut before) = (f64::INFINITY, f64::INFINITY);
         let mut small_by_correction = None;
+        // What the last correction left is below the rounding of each displacement.
+        let mut nothing_left = false;
         // Rows are judged by the largest force first, and each by its own once that is done.
         let mut row_by_row = false;
         // Near the solution the last factorisation serves on: what it is off by is as small as the error was.
@@ -153,6 +155,7 @@ impl ModeSystem<'_> {
             // It goes on as far as rounding lets it: a fresh one would have gone beyond the bar at once.
             let stalled = !improved && (!was_reused || least <= ROUND_OFF);
             let settled = (least <= ROUND_OFF && !was_reused)
+                || (nothing_left && least <= ACCEPTED_RESIDUAL)
                 || error == 0.0
                 || (stalled && (row_by_row || least <= ACCEPTED_RESIDUAL));
             if settled && iterations > 0 {
@@ -193,6 +196,8 @@ impl ModeSystem<'_> {
             if correction <= SMALL {
                 small_by_correction.get_or_insert(iterations);
             }
+            let contraction = if before.is_finite() { correction / before } else { SERVES_ON };
+            nothing_left = contraction <= SERVES_ON && self.is_rounding(&iterate.state, &values, contraction);
             iterate = self.corrected_by(&iterate, &values);
             iterations += 1;
         }
@@ -237,6 +242,13 @@ impl ModeSystem<'_> {
         rows.filter(|(size, _)| *size < WEAK * scale)
             .map(|(size, value)| value / size.max(f64::EPSILON * scale))
             .fold(0.0, f64::max)
+    }
+
+    /// Whether a correction times a factor is below the rounding of every displacement and of the load.
+    fn is_rounding(&self, state: &State, correction: &DVector<f64>, factor: f64) -> bool {
+        let freedoms = &self.loading.structure.freedom_of;
+        let values = freedoms.iter().map(|freedom| state.displacement[*freedom]).chain(std::iter::once(state.load));
+        values.zip(correction.iter()).all(|(value, change)| (factor * change).abs() <= f64::EPSILON * value.abs())
     }
 
     /// Whether what is left over of each equation is within the rounding of the state's numbers; then the largest
@@ -303,7 +315,7 @@ impl ModeSystem<'_> {
 
     /// A factorisation that may serve nearby. With slips in planes the directions have equations of their own; dense
     /// matrices are factorised as fast.
-    fn may_serve(&self, factorisation: SystemFactorisation) -> Option<SystemFactorisation> {
+    pub(super) fn may_serve(&self, factorisation: SystemFactorisation) -> Option<SystemFactorisation> {
         let may = matches!(factorisation, SystemFactorisation::Sparse(_)) && !self.has_tracks();
         may.then_some(factorisation)
     }

@@ -2,6 +2,7 @@
 
 use super::follow::{Followed, Listed};
 use super::history::History;
+use super::interpolation::Placed;
 use super::loading::LoadPattern;
 use super::scene::{End, Scene};
 use super::singular::Signature;
@@ -51,6 +52,10 @@ pub(super) struct Here {
     pub load_sign: f64,
     /// Error of the path up to here, where it has one.
     pub drift: Option<Rate>,
+    /// The point before, in the same modes and of the same stage.
+    pub before: Option<Placed>,
+    /// Arc length from one contact change to the next, where both ended a step and the last is the present point.
+    pub apart: Option<f64>,
     /// Signs that tell smooth bifurcations; `None` until known in these modes.
     pub signature: Option<Signature>,
 }
@@ -134,6 +139,8 @@ impl Progress {
                 rate: None,
                 load_sign: 0.0,
                 drift: None,
+                before: None,
+                apart: None,
                 signature: None,
             },
             step: scene.analysis.arc_length.initial,

@@ -28,7 +28,7 @@ use super::state::{Rate, State};
 use super::watch::Watch;
 use crate::contact::{Contact, Mode};
 use crate::linear_algebra::sparse::held_inertia;
-use crate::linear_algebra::{Determinant, determinant, inertia, null_space};
+use crate::linear_algebra::{Determinant, SystemFactorisation, determinant, inertia, null_space};
 use crate::structure::element::Element;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
@@ -196,13 +196,19 @@ impl Signature {
         Some(Self { determinant: turns * self.determinant, negative })
     }
 
-    /// At the start of a step; where the equations are singular there, a little further on.
-    pub fn past_start(start: &Start<'_>, step: f64, work: &mut Work) -> Option<Self> {
+    /// At the start of a step; where the equations are singular there, a little further on. `serving` becomes the
+    /// factorisation at the start.
+    pub fn past_start(
+        start: &Start<'_>,
+        step: f64,
+        serving: &mut Option<SystemFactorisation>,
+        work: &mut Work,
+    ) -> Option<Self> {
         if !start.loading.structure.allows_dense() {
             // Bifurcation points are not looked for.
             return None;
         }
-        Self::at(start.loading, start.modes, start.state, start.rate, work).or_else(|| {
+        Self::at(start.loading, start.modes, start.state, start.rate, serving, work).or_else(|| {
             FURTHER_ON.iter().find_map(|part| {
                 let near = start.reach(part * step, work).ok()?;
                 let sign = near.determinant?;
@@ -212,7 +218,14 @@ impl Signature {
     }
 
     /// At a point from which a step is to start; `None` where the equations are singular.
-    pub fn at(loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate, work: &mut Work) -> Option<Self> {
+    pub fn at(
+        loading: Loading<'_>,
+        modes: &[Mode],
+        state: &State,
+        rate: &Rate,
+        serving: &mut Option<SystemFactorisation>,
+        work: &mut Work,
+    ) -> Option<Self> {
         let system = ModeSystem::new(loading, modes, state);
         if !loading.structure.allows_dense() {
             return None;
@@ -224,7 +237,9 @@ impl Signature {
             if bordered.pivot_ratio() <= UNCERTAIN {
                 return None;
             }
-            return Self::with_determinant(loading, modes, state, state, bordered.determinant_sign());
+            let sign = bordered.determinant_sign();
+            *serving = system.may_serve(bordered);
+            return Self::with_determinant(loading, modes, state, state, sign);
         }
         let determinant = bordered_determinant(&system, loading, state, rate)?;
         if determinant.pivot_ratio <= UNCERTAIN {

@@ -86,6 +86,7 @@ impl Path<'_> {
         at.here.state.load = 0.0;
         at.here.rate = None;
         at.here.signature = None;
+        (at.here.before, at.here.apart) = (None, None);
         at.counts = StageCounts::default();
         at.visited = History::default();
         self.load_anew();

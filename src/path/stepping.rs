@@ -40,6 +40,10 @@ const REJECTED: f64 = 0.55;
 
 /// A step that ends before this fraction of what was tried does not let the next be longer.
 const CUT_SHORT: f64 = 0.5;
+/// Where contacts change one after another, the next is looked for within this multiple of the way between the last two,
+/// if that is less than this part of a step: over a short way Newton's method and the location of events have little to do.
+const NEXT_WITHIN: f64 = 4.0;
+const MOST_OF_STEP: f64 = 0.5;
 /// Shorter steps that are tried where a change of signs cannot be made out.
 const MOST_UNRESOLVED: u64 = 4;
 
@@ -98,7 +102,7 @@ fn crossing_when_loose(
     work: &mut Work,
 ) -> Option<(Reached, Crossing)> {
     let loosened = Start { modes: loose, ..*start };
-    let before = Signature::past_start(&loosened, reached.step, work)?;
+    let before = Signature::past_start(&loosened, reached.step, &mut None, work)?;
     let mut end = loosened.reach_near(reached.corrected.state.clone(), reached.step, work).ok()?;
     end.event = reached.event;
     let (_, change) = singular::compare(&loosened, before, &end);
@@ -162,6 +166,7 @@ impl Path<'_> {
         let mut step = jump.unwrap_or(ordinary);
         self.look_ahead(step);
         let mut unresolved = 0;
+        let mut next = self.at.here.apart.map(|apart| NEXT_WITHIN * apart);
         let mut known = self.at.here.signature;
         loop {
             if self.cancel.is_cancelled() {
@@ -180,7 +185,16 @@ impl Path<'_> {
             let ends = &self.scene.stages[self.at.stage].ends;
             let may_join = jump != Some(step) && self.may_join_changes();
             let mut joined = None;
-            let tried = start.attempt(step, ends, self.at.here.load_sign, &mut work);
+            let sign = self.at.here.load_sign;
+            let next = next.take().filter(|next| *next < MOST_OF_STEP * step && !(may_join && start.may_join()));
+            let next = next.and_then(|next| {
+                let mut serving = None;
+                known = known.or_else(|| Signature::past_start(&start, next, &mut serving, &mut work));
+                let tried = start.attempt(next, None, serving, ends, sign, &mut work).ok()?;
+                (!tried.passed.is_empty()).then_some(tried)
+            });
+            let before = self.at.here.before.as_ref();
+            let tried = next.map_or_else(|| start.attempt(step, before, None, ends, sign, &mut work), Ok);
             let outcome = tried.and_then(|tried| {
                 joined = may_join.then(|| start.join_changes(&tried, &mut work)).flatten();
                 match &joined {
@@ -192,7 +206,6 @@ impl Path<'_> {
                 Ok(reached) => matches!(reached.event, Some(Watch::End(_))) && reached.determinant.is_none(),
                 Err(refused) => matches!(refused, Refused::Newton(_)),
             };
-            let sign = self.at.here.load_sign;
             let ended = is_lost.then(|| bound::beside_singular(&start, step, ends, sign, known, &mut work)).flatten();
             let back = outcome.as_ref().ok().and_then(|reached| self.way_back(&start, reached, &mut work));
             let outcome = match (outcome, back, ended) {
@@ -200,7 +213,7 @@ impl Path<'_> {
                 (_, _, Some((reached, crossing, signature))) => Ok((reached, crossing, signature, false)),
                 (Ok(reached), None, None) if let Some(joined) = &joined => Ok((reached, None, joined.signature, false)),
                 (Ok(reached), None, None) => {
-                    let before = known.or_else(|| Signature::past_start(&start, reached.step, &mut work));
+                    let before = known.or_else(|| Signature::past_start(&start, reached.step, &mut None, &mut work));
                     known = before;
                     first_crossing(&start, before, reached, unresolved < MOST_UNRESOLVED, &mut work)
                         .map(|(reached, crossing, signature)| (reached, crossing, signature, false))

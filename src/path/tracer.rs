@@ -10,6 +10,7 @@ use super::corner::{is_in_plane, taken_apart, total_force};
 use super::decide::{Choice, Decision, Rules};
 use super::follow::{Arriving, Listed};
 use super::increment::{Increment, Point, PointKind};
+use super::interpolation::Placed;
 use super::loading::Loading;
 use super::near::{self, FarContacts, Near};
 use super::newton::NO_FORCE;
@@ -23,6 +24,7 @@ use super::standing::{Standing, standings};
 use super::state::State;
 use super::stepping::Accepted;
 use super::stop::{Outcome, StopReason};
+use super::watch::Watch;
 use crate::cancel::CancelFlag;
 use crate::contact::{Mode, Reaction};
 use std::borrow::Cow;
@@ -108,6 +110,7 @@ impl<'a> Path<'a> {
     pub(super) fn go(&mut self, choice: &Choice) {
         self.at.here.modes.clone_from(&choice.modes);
         self.at.here.signature = None;
+        self.at.here.before = None;
         self.at.here.load_sign = choice.load_sign;
         self.at.here.rate = Some(choice.rate.clone());
         // A node that leaves a corner along one of its obstacles, or slides along an edge, takes the whole force there.
@@ -148,6 +151,10 @@ impl<'a> Path<'a> {
         self.at.counts.increments += 1;
         let here = &mut self.at.here;
         let before = std::mem::replace(&mut here.state, reached.corrected.state);
+        let begun = here.rate.clone().filter(|_| accepted.joined == 0);
+        let changes = reached.event.is_some_and(Watch::is_of_contact);
+        here.apart = (changes && here.before.is_none()).then_some(reached.step);
+        here.before = begun.and_then(|rate| Placed::before(before.clone(), rate, &here.state));
         let mut modes = std::mem::replace(&mut here.modes, reached.corrected.modes);
         here.drift = reached.drift;
         here.signature = accepted.signature;

@@ -2,8 +2,8 @@
 
 use super::equations::{Changing, Equations};
 use super::proof::Control;
-use crate::contact::Mode;
-use crate::contact::vector::{Vector, dot, scaled};
+use crate::contact::vector::{Vector, add, dot, scaled};
+use crate::contact::{Mode, Reaction};
 use crate::linear_algebra::Sink;
 use crate::path::corner::whole_rates;
 use crate::path::directions::{Alternative, Candidate, WEAK};
@@ -67,14 +67,44 @@ impl Equations<'_> {
             if !load.iter().zip(&is_cone).all(stays) {
                 return None;
             }
-            let mut rate = self.line(&self.held, None)?;
-            rate.scale(sign * rate.load.signum());
+            let rate = self.rest(sign)?;
             match self.violations(&self.held, &rate) {
                 (None, doubts) => Some(self.candidate(rate, self.held.clone(), doubts)),
                 (Some(_), _) => None,
             }
         };
         [1.0, -1.0].into_iter().filter_map(rests).collect()
+    }
+
+    /// Nothing moves, and what each closed contact bears of the load grows with it; solved for where supports bear some.
+    fn rest(&self, sign: f64) -> Option<Rate> {
+        let (loading, structure) = (self.loading, self.loading.structure);
+        let freedoms = |contact: usize| {
+            let first = loading.contacts[contact].node * structure.dimension;
+            first..first + structure.dimension
+        };
+        let mut closed = (0..self.held.len()).filter(|contact| self.held[*contact] != Mode::Free);
+        let shares = closed.any(|contact| freedoms(contact).any(|freedom| structure.unknown_of[freedom].is_none()));
+        if shares || loading.pattern.moves_boundary() {
+            let mut rate = self.line(&self.held, None)?;
+            rate.scale(sign * rate.load.signum());
+            return Some(rate);
+        }
+        let reaction = |(contact, mode): (usize, &Mode)| {
+            if *mode == Mode::Free {
+                return Reaction::default();
+            }
+            let mut force = [0.0; 3];
+            let loads = &loading.pattern.forces[freedoms(contact)];
+            force.iter_mut().zip(loads).for_each(|(force, load)| *force = -sign * load);
+            let normal = loading.frame(contact, self.state).normal;
+            let along = dot(&force, &normal);
+            let is_smooth = loading.contacts[contact].tangents() == 0;
+            let tangential = if is_smooth { [0.0; 3] } else { add(&force, -along, &normal) };
+            Reaction { normal: along, tangential }
+        };
+        let reactions = self.held.iter().enumerate().map(reaction).collect();
+        Some(Rate { displacement: vec![0.0; loading.structure.freedoms()], load: sign, reactions })
     }
 
     /// The order in which a search lists candidates: held where they can be, the first contact counting fastest.
