@@ -52,6 +52,7 @@ mod energy;
 mod exhaustive;
 mod folded;
 mod follow;
+mod foresight;
 mod going_on;
 mod history;
 pub mod increment;

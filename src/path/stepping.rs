@@ -70,7 +70,7 @@ impl Accepted {
 
 /// The next smaller of eight values an octave: what the factor is computed from is a difference of nearly equal
 /// energies, and its round-off must not move the points of the path.
-fn quantised(factor: f64) -> f64 {
+pub(super) fn quantised(factor: f64) -> f64 {
     ((factor.log2() * 8.0).floor() / 8.0).exp2()
 }
 
@@ -159,8 +159,10 @@ impl Path<'_> {
         // An event nearer than that is located within an ordinary step.
         let ordinary = self.at.step.min(most);
         let jump = self.way_to_next_event().filter(|way| *way > ordinary);
-        let mut step = jump.unwrap_or(ordinary);
-        self.look_ahead(step);
+        self.look_ahead(jump.unwrap_or(ordinary));
+        let may_join = self.at.waiting.is_over() && self.may_join_changes();
+        let foreseen = if jump.is_none() { self.step_to_foreseen_change(ordinary, may_join) } else { None };
+        let mut step = jump.or(foreseen).unwrap_or(ordinary);
         let mut unresolved = 0;
         let mut known = self.at.here.signature;
         loop {
@@ -178,11 +180,12 @@ impl Path<'_> {
             };
             let mut work = self.at.totals.work;
             let ends = &self.scene.stages[self.at.stage].ends;
-            let may_join = jump != Some(step) && self.may_join_changes();
-            let mut joined = None;
+            let may_join = may_join && jump != Some(step);
+            let (mut first, mut joined) = (None, None);
             let tried = start.attempt(step, ends, self.at.here.load_sign, &mut work);
             let outcome = tried.and_then(|tried| {
-                joined = may_join.then(|| start.join_changes(&tried, &mut work)).flatten();
+                first = may_join.then(|| start.changes_to_join(&tried)).flatten();
+                joined = first.as_ref().and_then(|first| start.join_changes(first, &tried, &mut work));
                 match &joined {
                     Some(joined) => Ok(joined.reached.clone()),
                     None => start.stop_at_event(tried, ends, &mut work),
@@ -219,6 +222,9 @@ impl Path<'_> {
                 }
             });
             self.at.totals.work = work;
+            if first.is_some() {
+                self.at.waiting.note(joined.is_some());
+            }
             match outcome {
                 Ok((reached, crossing, signature, returned)) => {
                     let mut accepted = self.balance(&rate, reached);
@@ -238,7 +244,8 @@ impl Path<'_> {
                             _ => self.program_joins_changes(&rate, step, &accepted.reached.corrected.modes),
                         });
                         if jump != Some(step) {
-                            self.at.step = (step * factor).clamp(least, most);
+                            let next = if foreseen == Some(step) && factor >= 1.0 { ordinary } else { step * factor };
+                            self.at.step = next.clamp(least, most);
                         }
                         return Ok(accepted);
                     }
