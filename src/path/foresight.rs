@@ -13,9 +13,7 @@ use super::watch;
 
 /// How far past the change the step is to end, over the way there: rates are not all that tells where it is.
 const PAST: f64 = 1.25;
-/// A step is cut if that makes it shorter than this part of what it was to be ...
-const WORTH: f64 = 1.0;
-/// ... but not below this part.
+/// No step is cut to less than this part of what it was to be.
 const LEAST: f64 = 1.0 / 256.0;
 
 impl Path<'_> {
@@ -42,6 +40,6 @@ impl Path<'_> {
             return None;
         }
         let part = PAST * way / step;
-        (part < WORTH).then(|| step * quantised(part.max(LEAST)))
+        (part < 1.0).then(|| step * quantised(part.max(LEAST)))
     }
 }
