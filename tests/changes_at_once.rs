@@ -153,24 +153,70 @@ fn changes_that_are_counted_are_points_each() {
     assert_eq!(all.last().expect("an end").displacements, auto.last().expect("an end").displacements);
 }
 
-#[test]
-fn a_path_with_changes_taken_together_is_taken_up_again_with_the_same_bits() {
-    let request = trusses(8, Events::Auto);
-    let scene = Scene::new(&request).expect("a scene");
+/// An arch of some 1,000 unknowns that rolls onto a floor: it leaves it where it first touched.
+fn rolling(friction: f64) -> JobRequest {
+    let plain = LatticeArch { friction, increments: 50, spread: 0.3, ..LatticeArch::of_unknowns(1_000) };
+    LatticeArch { contacts: 22, ..plain }.request().expect("a request")
+}
+
+/// The increments of a path that is put down and taken up again at each, beside those of one that is not; and how many
+/// steps were left to wait at each.
+fn assert_same_bits(request: &JobRequest) -> Vec<u64> {
+    let scene = Scene::new(request).expect("a scene");
     let line = |mut increment: Increment| {
         increment.diagnostics.elapsed_s = 0.0;
         serde_json::to_string(&increment).expect("written")
     };
     let whole: Vec<String> = Path::new(&scene, CancelFlag::default()).map(line).collect();
     let mut path = Path::new(&scene, CancelFlag::default());
-    let mut rows = Vec::new();
+    let (mut rows, mut left) = (Vec::new(), Vec::new());
     while let Some(row) = path.next() {
         rows.push(line(row));
         let text = serde_json::to_string(&path.checkpoint()).expect("written");
+        let value: serde_json::Value = serde_json::from_str(&text).expect("read");
+        left.push(value["at"]["waiting"]["steps"].as_u64().expect("steps"));
         let checkpoint: Checkpoint = serde_json::from_str(&text).expect("read");
         path = Path::resume(&scene, checkpoint, CancelFlag::default()).expect("resumed");
     }
     assert_eq!(rows, whole);
+    left
+}
+
+#[test]
+fn a_path_with_changes_taken_together_is_taken_up_again_with_the_same_bits() {
+    assert_same_bits(&trusses(8, Events::Auto));
+}
+
+#[test]
+fn a_path_that_waits_after_a_failure_is_taken_up_again_with_the_same_bits() {
+    let left = assert_same_bits(&rolling(0.0));
+    let begun: Vec<u64> = left.windows(2).filter(|two| two[1] > two[0]).map(|two| two[1]).collect();
+    assert!(begun.len() >= 2 && begun.is_sorted(), "each wait is longer: {begun:?}");
+    assert!(left.windows(2).all(|two| two[1] > two[0] || two[1] == two[0].saturating_sub(1)), "{left:?}");
+}
+
+/// Without friction the changes taken together fail here, with friction none may be; a step to just past the change that
+/// comes next spares what was solved further on.
+#[test]
+fn changes_that_are_foreseen_take_few_factorisations() {
+    for friction in [0.0, 0.3] {
+        let request = rolling(friction);
+        let (increments, _) = trace(&request);
+        assert_lawful(&request, &increments);
+        let of = |row: &Increment| row.point.kind == PointKind::ContactChange;
+        let made = |row: &Increment| {
+            row.diagnostics.factorisations - increments[row.index as usize - 1].diagnostics.factorisations
+        };
+        let mut changes: Vec<u64> = increments.iter().filter(|row| of(row)).map(made).collect();
+        changes.sort_unstable();
+        println!("friction {friction}: {changes:?}");
+        assert!(changes.len() >= 8, "{}", changes.len());
+        // One or two to just past it; the last serves at the change itself as a rule.
+        assert!(changes[changes.len() / 2] <= 5, "{changes:?}");
+        // What a change cuts short is not taken for the length of the steps to come.
+        let longest = request.analysis.arc_length.max;
+        assert!(increments.iter().any(|row| row.step > 0.9 * longest));
+    }
 }
 
 /// Friction remembers where a node came to rest: its changes are points, whatever is asked.

@@ -17,11 +17,15 @@
 //! many negative eigenvalues with all of them held as with all of them free. That is asked for at both ends of the
 //! step, and the same number at both: no eigenvalue crosses zero in between, so that no limit point and no bifurcation
 //! lies there in any mode that the path may have had. The way on from each change is then not the way back, and keeps the
-//! sign of the load rate.
+//! sign of the load rate. Contacts that change there and back within the step are asked for as well.
+//!
+//! Where a try fails, as many in a row do as a rule (an arch that rolls onto a floor leaves it where it first touched, and
+//! stands only while one of the two contacts holds it): it waits for some steps, and for longer each time.
 //!
 //! Everything else ends a step as it always does: friction remembers where a node has landed.
 
 use super::advance::{Attempt, COINCIDING, MOST_TURN, PASSED, Reached, Start, Work};
+use super::loading::Loading;
 use super::mode_system::ModeSystem;
 use super::newton::{Corrected, Place};
 use super::singular::{Signature, negative_eigenvalues};
@@ -30,10 +34,39 @@ use super::state::{Rate, State};
 use super::watch::{self, Watch};
 use crate::contact::Mode;
 use crate::linear_algebra::SystemFactorisation;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
 /// Modes that are tried at the end of a step.
 const MOST_ROUNDS: usize = 12;
+/// Steps after a first failure in which changes are not taken together.
+const FIRST_WAIT: u32 = 4;
+/// The longest wait.
+const MOST_WAIT: u32 = 64;
+
+/// When changes are to be taken together again, after a failure.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Waiting {
+    /// Steps that are left.
+    steps: u32,
+    /// Steps after the last failure; 0 where none came before.
+    last: u32,
+}
+
+impl Waiting {
+    /// Whether a step that begins may try.
+    pub fn is_over(&mut self) -> bool {
+        let over = self.steps == 0;
+        self.steps = self.steps.saturating_sub(1);
+        over
+    }
+
+    pub fn note(&mut self, success: bool) {
+        self.last = if success { 0 } else { (2 * self.last).clamp(FIRST_WAIT, MOST_WAIT) };
+        self.steps = self.last;
+    }
+}
 
 /// The end of a step with contact changes inside.
 pub(super) struct Joined {
@@ -45,66 +78,89 @@ pub(super) struct Joined {
     pub unchanged: Rate,
 }
 
+/// The contact that touches or lifts off where a quantity is zero, if it has no friction and its node no other contact.
+fn smooth(loading: Loading<'_>, watch: Watch) -> Option<usize> {
+    let (Watch::Gap(contact) | Watch::Normal(contact)) = watch else { return None };
+    let alone = !loading.corners.iter().any(|corner| corner.contacts.contains(&contact));
+    (alone && loading.contacts[contact].tangents() == 0).then_some(contact)
+}
+
+/// Whether a contact slips against friction.
+fn slides(loading: Loading<'_>, modes: &[Mode]) -> bool {
+    let mut modes = modes.iter().zip(loading.contacts);
+    modes.any(|(mode, contact)| matches!(mode, Mode::Slip { .. }) && contact.tangents() > 0)
+}
+
+/// Whether the change at which a quantity is zero may be taken together with others.
+pub(super) fn may_join_at(loading: Loading<'_>, modes: &[Mode], watch: Watch) -> bool {
+    smooth(loading, watch).is_some() && !slides(loading, modes)
+}
+
 impl Start<'_> {
-    /// The end of a step that passes several contact changes, if they can be taken together.
-    pub(super) fn join_changes(&self, tried: &Attempt, work: &mut Work) -> Option<Joined> {
-        let Attempt { reached: far, watches, passed, .. } = tried;
-        let turns = watches.iter().any(|watch| matches!(watch, Watch::LoadRate { .. }));
-        if passed.len() < 2 || !turns || !self.may_join() {
+    /// The contacts that change in a step, if they are several and may be taken together.
+    pub(super) fn changes_to_join(&self, tried: &Attempt) -> Option<BTreeSet<usize>> {
+        let turns = tried.watches.iter().any(|watch| matches!(watch, Watch::LoadRate { .. }));
+        if tried.passed.len() < 2 || !turns || !self.may_join() {
             return None;
         }
-        let first = passed.iter().map(|watch| self.smooth(*watch)).collect::<Option<BTreeSet<usize>>>()?;
+        tried.passed.iter().map(|watch| self.smooth(*watch)).collect()
+    }
+
+    /// The end of a step that passes these contact changes, if they can be taken together.
+    pub(super) fn join_changes(&self, first: &BTreeSet<usize>, tried: &Attempt, work: &mut Work) -> Option<Joined> {
+        let Attempt { reached: far, watches, .. } = tried;
         // What holds at neither end is not worth the solves.
-        let negative = self.negative_where_held_or_free(&first, self.state)?;
+        let negative = self.negative_where_held_or_free(first, self.state)?;
         let mut serving = None;
-        let (modes, corrected) = self.end_modes(&first, far, &mut serving, work)?;
+        let (modes, corrected, asked) = self.end_modes(first, negative, far, &mut serving, work)?;
         let end = Start { modes: &modes, ..*self };
         let system = ModeSystem::new(self.loading, &modes, self.state);
         let hardness = far.corrected.iterations_to_small;
         let place = Place::ArcLength { from: self.state, step: far.step };
         let mut reached = end.directed(system, corrected, place, &mut serving, work).ok()?;
         reached.corrected.iterations_to_small = hardness;
-        let changed: BTreeSet<usize> =
+        let mut restless: BTreeSet<usize> =
             (0..modes.len()).filter(|contact| modes[*contact] != self.modes[*contact]).collect();
+        let changes = restless.len();
         let turn = self.rate.product(&reached.rate).clamp(-1.0, 1.0).acos();
-        if changed.len() < 2 || turn > MOST_TURN || !self.nothing_else_ends(watches, &changed, &reached) {
+        if changes < 2 || turn > MOST_TURN || !self.nothing_else_ends(watches, &mut restless, &reached) {
             return None;
         }
-        let same = |state: &State| self.negative_where_held_or_free(&changed, state) == Some(negative);
-        if (changed != first && !same(self.state)) || !same(&reached.corrected.state) {
+        let same = |state: &State| self.negative_where_held_or_free(&restless, state) == Some(negative);
+        // What holds with more contacts held or free holds with fewer.
+        if (!restless.is_subset(&asked) && !same(self.state)) || !same(&reached.corrected.state) {
             return None;
         }
         let analysed = self.loading.structure.allows_dense();
         let signature = reached.determinant.filter(|_| analysed);
         let signature = signature.map(|determinant| Signature { determinant, negative: Some(negative) });
-        Some(Joined { reached, changes: changed.len() as u64, signature, unchanged: far.rate.clone() })
+        Some(Joined { reached, changes: changes as u64, signature, unchanged: far.rate.clone() })
     }
 
     /// Whether changes in a step may be taken together: not where a contact slips against friction.
     pub(super) fn may_join(&self) -> bool {
-        let mut modes = self.modes.iter().zip(self.loading.contacts);
-        let slides = modes.any(|(mode, contact)| matches!(mode, Mode::Slip { .. }) && contact.tangents() > 0);
-        self.drift.is_none() && !slides
+        self.drift.is_none() && !slides(self.loading, self.modes)
     }
 
-    /// The contact that touches or lifts off where a quantity is zero, if it has no friction and its node no other contact.
     fn smooth(&self, watch: Watch) -> Option<usize> {
-        let (Watch::Gap(contact) | Watch::Normal(contact)) = watch else { return None };
-        let alone = !self.loading.corners.iter().any(|corner| corner.contacts.contains(&contact));
-        (alone && self.loading.contacts[contact].tangents() == 0).then_some(contact)
+        smooth(self.loading, watch)
     }
 
-    /// The modes that hold at the end of the step, and the point there, with the `last` factorisation.
+    /// The modes that hold at the end of the step, and the point there, with the `last` factorisation, and all contacts
+    /// that were changed on the way to them: with these held and free the tangent at the start has the `negative`
+    /// eigenvalues that it has with the `first` of them.
     fn end_modes(
         &self,
         first: &BTreeSet<usize>,
+        negative: usize,
         far: &Reached,
         last: &mut Option<SystemFactorisation>,
         work: &mut Work,
-    ) -> Option<(Vec<Mode>, Corrected)> {
+    ) -> Option<(Vec<Mode>, Corrected, BTreeSet<usize>)> {
         let mut modes = self.modes.to_vec();
         let mut state = far.corrected.state.clone();
         let mut wrong: Vec<usize> = first.iter().copied().collect();
+        let mut asked = first.clone();
         let mut tried = BTreeSet::new();
         for _ in 0..MOST_ROUNDS {
             for contact in &wrong {
@@ -129,7 +185,12 @@ impl Start<'_> {
                 });
             wrong = broken.map(|watch| self.smooth(watch)).collect::<Option<Vec<usize>>>()?;
             if wrong.is_empty() {
-                return Some((modes, corrected));
+                return Some((modes, corrected, asked));
+            }
+            let known = asked.len();
+            asked.extend(&wrong);
+            if asked.len() > known && self.negative_where_held_or_free(&asked, self.state) != Some(negative) {
+                return None;
             }
             state = corrected.state;
         }
@@ -137,22 +198,29 @@ impl Start<'_> {
     }
 
     /// Whether no stage ends within the step or at its end, the load rate keeps its sign, the other contacts keep their
-    /// modes, and none can change at the end.
-    fn nothing_else_ends(&self, watches: &[Watch], changed: &BTreeSet<usize>, reached: &Reached) -> bool {
+    /// modes, and none can change at the end. Those that may have changed there and back join the `restless`.
+    fn nothing_else_ends(&self, watches: &[Watch], restless: &mut BTreeSet<usize>, reached: &Reached) -> bool {
         let state = &reached.corrected.state;
         let forces = self.force_scale.max(reached.corrected.force_scale);
         let ends = ((self.state, self.rate), (state, &reached.rate));
-        let holds = |watch: &Watch| {
-            if self.smooth(*watch).is_some_and(|contact| changed.contains(&contact)) {
-                return true;
+        for watch in watches {
+            let smooth = self.smooth(*watch);
+            if smooth.is_some_and(|contact| restless.contains(&contact)) {
+                continue;
             }
             let zero = PASSED * watch.scale(self.loading, state, forces);
             let last = watch.value(self.loading, self.modes, state, &reached.rate);
             let dip = watch.dip(self.loading, self.modes, ends.0, ends.1, reached.step, zero);
-            last > watch.zero_within(self.loading, state, COINCIDING, forces) && dip.is_none()
-        };
+            if last > watch.zero_within(self.loading, state, COINCIDING, forces) && dip.is_none() {
+                continue;
+            }
+            match smooth {
+                Some(contact) => restless.insert(contact),
+                None => return false,
+            };
+        }
         let settled = |standing: &Standing| matches!(standing, Standing::Settled(_));
-        watches.iter().all(holds) && standings(self.loading, state, forces).iter().all(settled)
+        standings(self.loading, state, forces).iter().all(settled)
     }
 
     /// Negative eigenvalues of the tangent at a state with some contacts held and with them free, where these are as many.

@@ -13,6 +13,7 @@
 //! | `watch`, `advance` | what ends a mode; one step, ended exactly at the first event |
 //! | `interpolation`, `locate`, `root` | between points that are reached; where a quantity is zero |
 //! | `at_once` | contact changes of one step that are taken together |
+//! | `foresight` | a step to just past the next contact change that rates foresee |
 //! | `singular`, `critical`, `branches` | whether a step passes a smooth bifurcation; where; which directions leave it |
 //! | `bound` | a bound of the stage at or beside a smooth bifurcation |
 //! | `folded` | points of slip in a plane at which the direction is not determined |
@@ -52,6 +53,7 @@ mod energy;
 mod exhaustive;
 mod folded;
 mod follow;
+mod foresight;
 mod going_on;
 mod history;
 pub mod increment;

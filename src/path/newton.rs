@@ -81,6 +81,8 @@ const STILL_FALLS: f64 = 1e-2;
 const SERVES_ON: f64 = 0.1;
 /// Multiple of the bound on rounding within which what is left over counts as rounding.
 const ROOM: f64 = 8.0;
+/// Gaps and arc lengths (dimensionless) that are off by no more than this may be rounding.
+const AT_PLACE: f64 = 1e-13;
 /// Rows with forces below this part of the force scale are judged by their own.
 const WEAK: f64 = 1e-3;
 /// Corrections that fall by less than this factor are rounding themselves.
@@ -153,7 +155,11 @@ impl ModeSystem<'_> {
             let serves = error <= SMALL && improved && falls && !row_by_row && is_regular;
             let was_reused = std::mem::replace(&mut reused, serves);
             // It goes on as far as rounding lets it: a fresh one would have gone beyond the bar at once.
-            let stalled = !improved && (!was_reused || least <= ROUND_OFF);
+            let is_rounding = || {
+                let is_large = self.loading.structure.layout().is_some();
+                is_large && geometric <= AT_PLACE && self.left_by_rounding(&iterate.state, &values, scale) == Some(0.0)
+            };
+            let stalled = !improved && (!was_reused || least <= ROUND_OFF || is_rounding());
             let settled = (least <= ROUND_OFF && !was_reused)
                 || (nothing_left && least <= ACCEPTED_RESIDUAL)
                 || error == 0.0

@@ -1,5 +1,6 @@
 //! Everything that decides how a path goes on from its present point: what a checkpoint holds.
 
+use super::at_once::Waiting;
 use super::follow::{Followed, Listed};
 use super::history::History;
 use super::interpolation::Placed;
@@ -30,6 +31,8 @@ pub(super) struct Progress {
     pub here: Here,
     /// Arc length that the next step tries.
     pub step: f64,
+    /// When contact changes are to be taken together again.
+    pub waiting: Waiting,
     pub totals: Totals,
     pub counts: StageCounts,
     /// States at which a direction was taken, for telling a cycle.
@@ -144,6 +147,7 @@ impl Progress {
                 signature: None,
             },
             step: scene.analysis.arc_length.initial,
+            waiting: Waiting::default(),
             totals: Totals::begun(),
             counts: StageCounts::default(),
             visited: History::default(),

@@ -74,7 +74,7 @@ impl Accepted {
 
 /// The next smaller of eight values an octave: what the factor is computed from is a difference of nearly equal
 /// energies, and its round-off must not move the points of the path.
-fn quantised(factor: f64) -> f64 {
+pub(super) fn quantised(factor: f64) -> f64 {
     ((factor.log2() * 8.0).floor() / 8.0).exp2()
 }
 
@@ -163,8 +163,10 @@ impl Path<'_> {
         // An event nearer than that is located within an ordinary step.
         let ordinary = self.at.step.min(most);
         let jump = self.way_to_next_event().filter(|way| *way > ordinary);
-        let mut step = jump.unwrap_or(ordinary);
-        self.look_ahead(step);
+        self.look_ahead(jump.unwrap_or(ordinary));
+        let may_join = self.at.waiting.is_over() && self.may_join_changes();
+        let foreseen = if jump.is_none() { self.step_to_foreseen_change(ordinary, may_join) } else { None };
+        let mut step = jump.or(foreseen).unwrap_or(ordinary);
         let mut unresolved = 0;
         let mut next = self.at.here.apart.map(|apart| NEXT_WITHIN * apart);
         let mut known = self.at.here.signature;
@@ -183,8 +185,8 @@ impl Path<'_> {
             };
             let mut work = self.at.totals.work;
             let ends = &self.scene.stages[self.at.stage].ends;
-            let may_join = jump != Some(step) && self.may_join_changes();
-            let mut joined = None;
+            let may_join = may_join && jump != Some(step);
+            let (mut first, mut joined) = (None, None);
             let sign = self.at.here.load_sign;
             let next = next.take().filter(|next| *next < MOST_OF_STEP * step && !(may_join && start.may_join()));
             let next = next.and_then(|next| {
@@ -196,7 +198,8 @@ impl Path<'_> {
             let before = self.at.here.before.as_ref();
             let tried = next.map_or_else(|| start.attempt(step, before, None, ends, sign, &mut work), Ok);
             let outcome = tried.and_then(|tried| {
-                joined = may_join.then(|| start.join_changes(&tried, &mut work)).flatten();
+                first = may_join.then(|| start.changes_to_join(&tried)).flatten();
+                joined = first.as_ref().and_then(|first| start.join_changes(first, &tried, &mut work));
                 match &joined {
                     Some(joined) => Ok(joined.reached.clone()),
                     None => start.stop_at_event(tried, ends, &mut work),
@@ -232,6 +235,9 @@ impl Path<'_> {
                 }
             });
             self.at.totals.work = work;
+            if first.is_some() {
+                self.at.waiting.note(joined.is_some());
+            }
             match outcome {
                 Ok((reached, crossing, signature, returned)) => {
                     let mut accepted = self.balance(&rate, reached);
@@ -251,7 +257,8 @@ impl Path<'_> {
                             _ => self.program_joins_changes(&rate, step, &accepted.reached.corrected.modes),
                         });
                         if jump != Some(step) {
-                            self.at.step = (step * factor).clamp(least, most);
+                            let next = if foreseen == Some(step) && factor >= 1.0 { ordinary } else { step * factor };
+                            self.at.step = next.clamp(least, most);
                         }
                         return Ok(accepted);
                     }

@@ -33,8 +33,11 @@ use proof::Control;
 /// where some touch, each of which has four ways to go on.
 const FEW: usize = 16;
 const FEW_TOUCHING: usize = 3;
-/// The same of structures with sparse matrices, where each contact that can change is one more solve.
+/// The same of structures with sparse matrices, at the least: each contact that can change is one more solve, and costs as
+/// much of the factorisations that a proof takes as the factor's columns are short.
 const FEW_OF_MANY: usize = 4;
+/// Entries of a column of the factor for which one more contact is as quick.
+const ENTRIES_A_CONTACT: usize = 3;
 /// Numbers of the condensed equations (contacts that can change times what each moves) that are too many.
 const MOST_CONDENSED: usize = 25_000_000;
 
@@ -92,6 +95,9 @@ pub(super) fn directions(
 fn are_few(loading: Loading<'_>, standings: &[Standing]) -> bool {
     let touching = standings.iter().filter(|standing| matches!(standing, Standing::Touching)).count();
     let changing = standings.iter().filter(|standing| !matches!(standing, Standing::Settled(_))).count();
-    let few = if loading.structure.layout().is_some() { FEW_OF_MANY } else { FEW };
+    let few = loading.structure.layout().map_or(FEW, |layout| {
+        let entries_of_column = layout.pattern.factor_entries() / layout.pattern.size().max(1);
+        (entries_of_column / ENTRIES_A_CONTACT).clamp(FEW_OF_MANY, FEW)
+    });
     changing <= few && touching <= FEW_TOUCHING
 }
