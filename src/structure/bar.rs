@@ -99,7 +99,7 @@ impl Bar {
         axial.abs()
     }
 
-    pub fn add_stiffness(&self, structure: &Structure, displacement: &[f64], add: &mut dyn FnMut(usize, usize, f64)) {
+    pub fn add_stiffness(&self, structure: &Structure, displacement: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
         let deformed = self.deformed(structure, displacement);
         let (_, axial, slope) = self.response(deformed.elongation);
         self.add_parts(structure, &deformed, slope, axial / deformed.length, add);
@@ -110,7 +110,7 @@ impl Bar {
         &self,
         structure: &Structure,
         displacement: &[f64],
-        add: &mut dyn FnMut(usize, usize, f64),
+        add: &mut impl FnMut(usize, usize, f64),
     ) {
         let deformed = self.deformed(structure, displacement);
         let (_, axial, _) = self.response(deformed.elongation);
@@ -135,7 +135,7 @@ impl Bar {
         deformed: &Deformed,
         slope: f64,
         geometric: f64,
-        add: &mut dyn FnMut(usize, usize, f64),
+        add: &mut impl FnMut(usize, usize, f64),
     ) {
         let dimension = structure.dimension;
         let (first, second) = (self.nodes[0] * dimension, self.nodes[1] * dimension);

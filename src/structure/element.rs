@@ -38,7 +38,7 @@ impl Element {
 
     /// Calls `add(row, column, value)` for every entry of the element's tangent, rows and columns being degrees of
     /// freedom.
-    pub fn add_stiffness(&self, structure: &Structure, displacement: &[f64], add: &mut dyn FnMut(usize, usize, f64)) {
+    pub fn add_stiffness(&self, structure: &Structure, displacement: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
         match self {
             Self::Bar(bar) => bar.add_stiffness(structure, displacement, add),
             Self::Spring(spring) => spring.add_stiffness(structure, add),
@@ -50,7 +50,7 @@ impl Element {
         &self,
         structure: &Structure,
         displacement: &[f64],
-        add: &mut dyn FnMut(usize, usize, f64),
+        add: &mut impl FnMut(usize, usize, f64),
     ) {
         match self {
             Self::Bar(bar) => bar.add_stiffness_across(structure, displacement, add),

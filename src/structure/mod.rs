@@ -136,7 +136,7 @@ impl Structure {
 
     /// Calls `add(row, column, value)` for every entry of every element's tangent; rows and columns are degrees of
     /// freedom, supported ones included.
-    pub fn each_stiffness(&self, displacement: &[f64], add: &mut dyn FnMut(usize, usize, f64)) {
+    pub fn each_stiffness(&self, displacement: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
         for element in &self.elements {
             element.add_stiffness(self, displacement, add);
         }
@@ -152,7 +152,7 @@ impl Structure {
     }
 
     /// Calls `add` for every entry of every element's tangent without the parts that [`Self::stretching`] lists.
-    pub fn each_stiffness_across(&self, displacement: &[f64], add: &mut dyn FnMut(usize, usize, f64)) {
+    pub fn each_stiffness_across(&self, displacement: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
         for element in &self.elements {
             element.add_stiffness_across(self, displacement, add);
         }

@@ -48,7 +48,7 @@ impl Spring {
         largest
     }
 
-    pub fn add_stiffness(&self, structure: &Structure, add: &mut dyn FnMut(usize, usize, f64)) {
+    pub fn add_stiffness(&self, structure: &Structure, add: &mut impl FnMut(usize, usize, f64)) {
         let dimension = structure.dimension;
         let node = self.node * dimension;
         for row in 0..dimension {

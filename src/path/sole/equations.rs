@@ -123,7 +123,7 @@ impl<'a> Equations<'a> {
     }
 
     /// Calls with every entry of `A`; several at one place add up.
-    pub fn each_entry(&self, each: &mut dyn FnMut(usize, usize, f64)) {
+    pub fn each_entry(&self, each: &mut impl FnMut(usize, usize, f64)) {
         self.loading.structure.each_stiffness(&self.state.displacement, &mut |row, column, value| {
             for test in &self.parts[row] {
                 let value = test.test * value;
