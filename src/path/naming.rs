@@ -1,17 +1,17 @@
 //! Where the MPEC names the mode: every increment of `method: "mpec"`, and the direction taken where a mode ends.
 
-use super::advance::Reached;
+use super::advance::{Reached, Start};
 use super::corner::agree;
 use super::decide::Choice;
+use super::interpolation::{Placed, between, placed};
 use super::loading::Loading;
-use super::program::{Counts, Foreseen, IncrementProgram, Named};
+use super::program::{Arrived, Counts, Foreseen, IncrementProgram, Named};
 use super::standing::ZERO;
 use super::state::{Rate, State};
 use super::tracer::Path;
 use super::watch;
 use crate::contact::Mode;
 use crate::mpec::Problem;
-use nalgebra::DVector;
 
 /// Arc length at which a direction is first put to the program, as a fraction of the path's next step.
 const FIRST_TRIAL: f64 = 0.25;
@@ -30,12 +30,50 @@ const NEAR: f64 = 1e-5;
 impl Path<'_> {
     /// Whether the program, started along the present direction, ends in the present mode; up to an event, on the way there.
     pub(super) fn program_keeps_mode(&mut self, rate: &Rate, reached: &Reached, step: f64) -> bool {
-        let way = if reached.event.is_some() { WITHIN * reached.step } else { step };
+        let modes = self.at.here.modes.clone();
+        let (way, guess) = if reached.event.is_some() {
+            let way = WITHIN * reached.step;
+            let start = self.start(rate, &modes);
+            let origin = Placed { place: 0.0, state: start.state.clone(), rate: rate.clone() };
+            (way, Some(between(&origin, &placed(&start, reached), way).0))
+        } else {
+            (step, None)
+        };
         // So near to the event the program tells nothing apart.
-        way < RESOLVED || {
-            let modes = self.at.here.modes.clone();
-            self.is_named(rate, &modes, way, true)
+        way < RESOLVED
+            || match guess {
+                Some(guess) => self.is_shown_near(guess, rate, &modes, way),
+                None => self.is_shown(rate, &modes, reached),
+            }
+            || self.is_named(rate, &modes, way, true)
+    }
+
+    fn start<'a>(&'a self, rate: &'a Rate, modes: &'a [Mode]) -> Start<'a> {
+        let (here, force_scale) = (&self.at.here, self.at.totals.force_scale);
+        Start { loading: self.loading(), state: &here.state, rate, modes, drift: None, force_scale }
+    }
+
+    /// Whether the point of a mode near a guess is shown to solve the program of its increment.
+    fn is_shown_near(&mut self, guess: State, rate: &Rate, modes: &[Mode], way: f64) -> bool {
+        let mut work = self.at.totals.work;
+        let reached = self.start(rate, modes).reach_near(guess, way, &mut work);
+        self.at.totals.work = work;
+        reached.is_ok_and(|reached| self.is_shown(rate, modes, &reached))
+    }
+
+    /// Whether a point reached in a mode is shown to solve the program of its increment: nothing is left to search.
+    fn is_shown(&mut self, rate: &Rate, modes: &[Mode], reached: &Reached) -> bool {
+        if reached.determinant.is_none() {
+            return false;
         }
+        let (state, end) = (&self.at.here.state, &reached.corrected.state);
+        let program = Self::program(self.loading(), self.at.totals.force_scale, (state, end), rate, reached.step);
+        let Some(mut program) = program else { return true };
+        let end = Arrived { state: end, rate: &reached.rate, error: reached.error_estimate };
+        let named = program.solved_at(end, modes);
+        let is_shown = named.is_some_and(|named| agree(self.loading(), &named.modes, modes));
+        self.at.totals.work.mpec_solves += u64::from(is_shown);
+        is_shown
     }
 
     /// Whether the program, started along a direction, ends in the direction's own mode.
@@ -52,6 +90,9 @@ impl Path<'_> {
         }
         let mut tried = step;
         while tried >= RESOLVED {
+            if self.is_shown_near(state.advanced(rate, tried), rate, modes, tried) {
+                return true;
+            }
             match self.foresee(&state, rate, modes, tried) {
                 Foreseen::Named(named) if agree(self.loading(), &named.modes, modes) => return true,
                 Foreseen::EndsAfter(part) => tried *= WITHIN * part.clamp(SHORTEST, 1.0),
@@ -100,33 +141,36 @@ impl Path<'_> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// The increment's program and its start; `None` where no contact can be reached: there is nothing to decide.
+    /// The increment's program from a state to about another; `None` where no contact can be reached: there is nothing to
+    /// decide.
     fn program<'a>(
         loading: Loading<'a>,
         force_scale: f64,
-        base: &'a State,
+        (base, ahead): (&'a State, &State),
         expected: &'a Rate,
         step: f64,
-    ) -> Option<(IncrementProgram<'a>, DVector<f64>)> {
-        let ahead = base.advanced(expected, step);
+    ) -> Option<IncrementProgram<'a>> {
         let reactions = ahead.reactions.iter().fold(0.0_f64, |largest, reaction| largest.max(reaction.size()));
         let force = force_scale.max(ahead.load.abs()).max(reactions).max(f64::MIN_POSITIVE);
         let program = IncrementProgram::new(loading, base, expected, step, force);
-        let start = program.variables_at(expected);
-        (program.pairs() > 0).then_some((program, start))
+        (program.pairs() > 0).then_some(program)
     }
 
     fn name(&mut self, base: &State, expected: &Rate, modes: &[Mode], step: f64) -> Option<Named> {
-        let program = Self::program(self.loading(), self.at.totals.force_scale, base, expected, step);
-        let Some((mut program, start)) = program else { return Some(Named::of(modes)) };
+        let ahead = base.advanced(expected, step);
+        let program = Self::program(self.loading(), self.at.totals.force_scale, (base, &ahead), expected, step);
+        let Some(mut program) = program else { return Some(Named::of(modes)) };
+        let start = program.variables_at(expected);
         let (named, counts) = program.name(&start, modes, &self.cancel);
         self.count(counts);
         named
     }
 
     fn foresee(&mut self, base: &State, expected: &Rate, modes: &[Mode], step: f64) -> Foreseen {
-        let program = Self::program(self.loading(), self.at.totals.force_scale, base, expected, step);
-        let Some((mut program, start)) = program else { return Foreseen::Named(Named::of(modes)) };
+        let ahead = base.advanced(expected, step);
+        let program = Self::program(self.loading(), self.at.totals.force_scale, (base, &ahead), expected, step);
+        let Some(mut program) = program else { return Foreseen::Named(Named::of(modes)) };
+        let start = program.variables_at(expected);
         let (foreseen, counts) = program.foresee(&start, modes, &self.cancel);
         self.count(counts);
         foreseen

@@ -21,6 +21,7 @@
 //! was expected, `γ1` is adapted until `‖y‖` is near 1. `γ2` is a fraction of the dissipation (or 1 where there is
 //! none), so that the branch does not depend on the step.
 
+mod certificate;
 mod end;
 mod frame;
 mod functions;
@@ -38,6 +39,7 @@ use crate::cancel::CancelFlag;
 use crate::contact::vector::{Vector, dot, scaled};
 use crate::contact::{Frame, Mode};
 use crate::mpec::{self, Finish, PairActivity, Settings, StationarityKind};
+pub use certificate::Arrived;
 use frame::Components;
 use nalgebra::DVector;
 
