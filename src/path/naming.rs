@@ -3,7 +3,6 @@
 use super::advance::{Reached, Start};
 use super::corner::agree;
 use super::decide::Choice;
-use super::interpolation::{Placed, between, placed};
 use super::loading::Loading;
 use super::program::{Arrived, Counts, Foreseen, IncrementProgram, Named};
 use super::standing::ZERO;
@@ -31,21 +30,12 @@ impl Path<'_> {
     /// Whether the program, started along the present direction, ends in the present mode; up to an event, on the way there.
     pub(super) fn program_keeps_mode(&mut self, rate: &Rate, reached: &Reached, step: f64) -> bool {
         let modes = self.at.here.modes.clone();
-        let (way, guess) = if reached.event.is_some() {
-            let way = WITHIN * reached.step;
-            let start = self.start(rate, &modes);
-            let origin = Placed { place: 0.0, state: start.state.clone(), rate: rate.clone() };
-            (way, Some(between(&origin, &placed(&start, reached), way).0))
-        } else {
-            (step, None)
-        };
+        if self.is_shown(rate, &modes, reached) {
+            return true;
+        }
+        let way = if reached.event.is_some() { WITHIN * reached.step } else { step };
         // So near to the event the program tells nothing apart.
-        way < RESOLVED
-            || match guess {
-                Some(guess) => self.is_shown_near(guess, rate, &modes, way),
-                None => self.is_shown(rate, &modes, reached),
-            }
-            || self.is_named(rate, &modes, way, true)
+        way < RESOLVED || self.is_named(rate, &modes, way, true)
     }
 
     fn start<'a>(&'a self, rate: &'a Rate, modes: &'a [Mode]) -> Start<'a> {
@@ -53,27 +43,32 @@ impl Path<'_> {
         Start { loading: self.loading(), state: &here.state, rate, modes, drift: None, force_scale }
     }
 
-    /// Whether the point of a mode near a guess is shown to solve the program of its increment.
-    fn is_shown_near(&mut self, guess: State, rate: &Rate, modes: &[Mode], way: f64) -> bool {
+    /// What the point of a mode at an arc length shows of its increment's program.
+    fn show(&mut self, rate: &Rate, modes: &[Mode], way: f64) -> Foreseen {
         let mut work = self.at.totals.work;
-        let reached = self.start(rate, modes).reach_near(guess, way, &mut work);
+        let reached = self.start(rate, modes).reach(way, &mut work);
         self.at.totals.work = work;
-        reached.is_ok_and(|reached| self.is_shown(rate, modes, &reached))
+        reached.map_or(Foreseen::Unclear, |reached| self.show_at(rate, modes, &reached))
+    }
+
+    /// What a point reached in a mode shows of its increment's program.
+    fn show_at(&mut self, rate: &Rate, modes: &[Mode], reached: &Reached) -> Foreseen {
+        if reached.determinant.is_none() || reached.step <= 0.0 {
+            return Foreseen::Unclear;
+        }
+        let ends = (&self.at.here.state, &reached.corrected.state);
+        let program = Self::program(self.loading(), self.at.totals.force_scale, ends, rate, reached.step);
+        let Some(mut program) = program else { return Foreseen::Named(Named::of(modes)) };
+        let end = Arrived { state: ends.1, rate: &reached.rate, error: reached.error_estimate };
+        let foreseen = program.solved_at(end, modes);
+        self.at.totals.work.mpec_solves += u64::from(matches!(foreseen, Foreseen::Named(_)));
+        foreseen
     }
 
     /// Whether a point reached in a mode is shown to solve the program of its increment: nothing is left to search.
     fn is_shown(&mut self, rate: &Rate, modes: &[Mode], reached: &Reached) -> bool {
-        if reached.determinant.is_none() {
-            return false;
-        }
-        let (state, end) = (&self.at.here.state, &reached.corrected.state);
-        let program = Self::program(self.loading(), self.at.totals.force_scale, (state, end), rate, reached.step);
-        let Some(mut program) = program else { return true };
-        let end = Arrived { state: end, rate: &reached.rate, error: reached.error_estimate };
-        let named = program.solved_at(end, modes);
-        let is_shown = named.is_some_and(|named| agree(self.loading(), &named.modes, modes));
-        self.at.totals.work.mpec_solves += u64::from(is_shown);
-        is_shown
+        let foreseen = self.show_at(rate, modes, reached);
+        matches!(foreseen, Foreseen::Named(named) if agree(self.loading(), &named.modes, modes))
     }
 
     /// Whether the program, started along a direction, ends in the direction's own mode.
@@ -90,8 +85,13 @@ impl Path<'_> {
         }
         let mut tried = step;
         while tried >= RESOLVED {
-            if self.is_shown_near(state.advanced(rate, tried), rate, modes, tried) {
-                return true;
+            match self.show(rate, modes, tried) {
+                Foreseen::Named(named) if agree(self.loading(), &named.modes, modes) => return true,
+                Foreseen::EndsAfter(part) => {
+                    tried *= WITHIN * part;
+                    continue;
+                }
+                Foreseen::Named(_) | Foreseen::Untold | Foreseen::Unclear => {}
             }
             match self.foresee(&state, rate, modes, tried) {
                 Foreseen::Named(named) if agree(self.loading(), &named.modes, modes) => return true,

@@ -1,6 +1,6 @@
 //! A point that the path has reached already, shown to solve the increment's program.
 //!
-//! Where at a feasible point one member of every pair is clearly positive, the feasible points nearby are those of one
+//! Where at a feasible point one member of every pair is positive, the feasible points nearby are those of one
 //! contact mode, and where the equations of that mode are regular these are a curve. Along it, with
 //! `τ = ‖(Δu, Δs)‖/S` for parameter and `y = (Δu, Δs)/S`, the objective is
 //!
@@ -15,22 +15,29 @@
 //! multipliers, and with no pair biactive the point is strongly stationary, hence B-stationary: H. Scheel and S. Scholtes,
 //! Math. Oper. Res. 25 (2000), doi:10.1287/moor.25.1.1.15213.
 //!
+//! A member is positive where it is so by more than what the point leaves violated and rounding could make of zero. A
+//! smaller one is if it was not negative at the start, did not fall there and rises at the end: rates are known to more
+//! digits than the difference of two nearly equal states. One that falls to zero at the end itself was positive just before: what is shown
+//! then holds of every increment a little shorter, since all else is strict.
+//!
 //! The two parts of the slip of a contact that is apart are no matter: there is no force, and only their difference counts.
 //!
 //! Nothing is claimed where any of this fails or is not clear, where a cone is circular (there the path's rule is of higher
 //! order than the program's) or where two contacts press one node (their reactions need not be unique): then the program
 //! is solved.
 
-use super::{InReach, IncrementProgram, LOOSEST, Named, frame};
+use super::{Foreseen, InReach, IncrementProgram, LOOSEST, Named, frame};
 use crate::contact::Mode;
-use crate::contact::vector::{Vector, add};
+use crate::contact::vector::{Vector, add, dot};
 use crate::mpec::{Activities, PairActivity, Problem, Settings};
 use crate::path::state::{Rate, State};
 use nalgebra::DVector;
 
-/// Least member of a pair that is clearly positive, and how much larger it is than what the point leaves violated.
+/// Least member that is positive by itself, and how much larger it is than what the point leaves violated.
 const CLEAR: f64 = 1e-9;
 const LEEWAY: f64 = 10.0;
+/// Rounding of rates: of velocities, and of forces relative to the largest.
+const ROUNDING_OF_RATES: f64 = 1e-12;
 /// Least cosine between the chord of the increment and the direction at its end.
 const FORWARD: f64 = 0.5;
 
@@ -44,19 +51,68 @@ pub struct Arrived<'s> {
     pub error: f64,
 }
 
+/// One member of a pair along the increment.
+#[derive(Debug, Clone, Copy)]
+struct Member {
+    start: f64,
+    end: f64,
+    /// Rates at both ends, by the arc length over the one sought.
+    rates: [f64; 2],
+    /// Of the rates.
+    rounding: f64,
+    /// A slip, which starts at zero and may turn on the way.
+    is_slip: bool,
+}
+
+impl Member {
+    fn is_positive(&self, clear: f64) -> bool {
+        let [first, last] = self.rates;
+        let is_small = self.end.abs() <= clear;
+        let rises = self.start >= -clear && first >= -self.rounding && last > self.rounding;
+        let arrives = self.start > clear && last < -self.rounding;
+        self.end > clear || is_small && (rises || arrives)
+    }
+
+    /// Its value at the end; of a slip the part that has this sense.
+    fn part(&self) -> f64 {
+        if self.is_slip { self.end.max(0.0) } else { self.end }
+    }
+
+    /// The part of the way after which it is negative, where it is at the end: by the parabola through both ends that
+    /// leaves as it does; of a slip, where it turns, by the line through both rates.
+    fn ends_after(&self) -> f64 {
+        let [first, last] = self.rates;
+        let part = if self.is_slip {
+            first / (first - last)
+        } else {
+            let bend = self.end - self.start - first;
+            2.0 * self.start / ((first * first - 4.0 * bend * self.start).max(0.0).sqrt() - first)
+        };
+        // One that leaves from zero comes back where the rest of the parabola is zero.
+        let back = if self.start > 0.0 || self.is_slip { part } else { first / (first - self.end + self.start) };
+        if back.is_finite() { back.clamp(0.0, 1.0) } else { 0.0 }
+    }
+}
+
 impl IncrementProgram<'_> {
-    /// The modes at the end of an increment of the arc length sought along `forward`, where that end is shown to solve the
-    /// program with `γ1` adapted to it.
+    /// What is shown of an increment of the arc length sought that ends at a point: [`Foreseen::Named`] where it solves the
+    /// program with `γ1` adapted to it, [`Foreseen::EndsAfter`] where it lies past the end of its mode,
+    /// [`Foreseen::Unclear`] where nothing is.
     ///
     /// `forward` is the direction at the start in the mode that leads to the end, and the equations of that mode are
     /// regular at the end.
-    pub fn solved_at(&mut self, end: Arrived<'_>, present: &[Mode]) -> Option<Named> {
+    pub fn solved_at(&mut self, end: Arrived<'_>, present: &[Mode]) -> Foreseen {
         if self.reach.iter().any(|entry| entry.tangents == 2) || self.is_any_node_pressed_twice(end.state) {
-            return None;
+            return Foreseen::Unclear;
         }
         let x = self.variables_of(end.state);
-        let activities = self.clear_activities(&x, end)?;
-        self.is_strict_solution(&x, end).then(|| Named::of(&self.read(&x, &activities, present)))
+        match self.clear_activities(&x, end) {
+            Ok(activities) if self.is_strict_solution(&x, end) => {
+                Foreseen::Named(Named::of(&self.read(&x, &activities, present)))
+            }
+            Ok(_) => Foreseen::Unclear,
+            Err(refused) => refused,
+        }
     }
 
     /// The variables of the program at a state.
@@ -88,42 +144,105 @@ impl IncrementProgram<'_> {
         add(&self.loading.relative(entry.contact, state), -1.0, &before)
     }
 
-    /// Which member of each pair is zero, where the variables are feasible and that is clear.
-    fn clear_activities(&self, x: &DVector<f64>, end: Arrived<'_>) -> Option<Activities> {
+    /// Which member of each pair is zero, where the variables are feasible and that is certain.
+    fn clear_activities(&self, x: &DVector<f64>, end: Arrived<'_>) -> Result<Activities, Foreseen> {
         let mut equality = DVector::zeros(self.equalities());
-        let (mut first, mut second) = (DVector::zeros(self.pairs()), DVector::zeros(self.pairs()));
         self.equality_values(x, &mut equality);
-        self.pair_values(x, &mut first, &mut second);
-        let smaller = first.iter().zip(second.iter()).map(|(a, b)| a.min(*b));
-        let left = equality.iter().copied().chain(smaller).fold(0.0, |most: f64, value| {
-            // Not `max`, which passes over what is not a number.
-            if value.abs() <= most { most } else { value.abs() }
-        });
+        // Not `max`, which passes over what is not a number.
+        let larger = |most: f64, value: f64| if value.abs() <= most { most } else { value.abs() };
+        let members = self.members(x, end);
         let rounding = self.rounding(x);
-        let is_feasible = left <= Settings::warm().tolerance.max(rounding).min(LOOSEST);
-        let error = end.error / self.step;
-        let clear = CLEAR.max(LEEWAY * left.max(rounding).max(error));
-        if !is_feasible || !clear.is_finite() {
-            return None;
+        let left = equality.iter().copied().fold(0.0, larger);
+        let clear = CLEAR.max(LEEWAY * left.max(rounding).max(end.error / self.step));
+        let smaller = members.iter().map(|[first, second]| first.end.min(second.part()));
+        let feasible = Settings::warm().tolerance.max(rounding).min(LOOSEST);
+        let is_left = smaller.fold(left, larger) > feasible;
+        if is_left || !clear.is_finite() {
+            // Where there is no force against a slip, it may have either sense.
+            let is_broken = |[first, second]: &[Member; 2]| {
+                let turns = second.is_slip && first.end.abs() <= feasible;
+                [first.end < -feasible, second.end < -feasible && (turns || !second.is_slip)]
+            };
+            let broken = members.iter().flat_map(|pair| pair.iter().zip(is_broken(pair)));
+            let parts = broken.filter(|(_, is_broken)| *is_broken).map(|(member, _)| member.ends_after());
+            let part = parts.fold(f64::INFINITY, f64::min);
+            let is_past = left <= feasible && part > 0.0 && part < 1.0;
+            return Err(if is_past { Foreseen::EndsAfter(part) } else { Foreseen::Unclear });
         }
-        let activity = |pair: usize| match (first[pair] > clear, second[pair] > clear) {
+        let activity = |[first, second]: &[Member; 2]| match (first.is_positive(clear), second.is_positive(clear)) {
             (true, false) => PairActivity::SecondZero,
             (false, true) => PairActivity::FirstZero,
             (false, false) => PairActivity::BothZero,
             (true, true) => PairActivity::NeitherZero,
         };
-        let pairs: Vec<PairActivity> = (0..first.len()).map(activity).collect();
+        let pairs: Vec<PairActivity> = members.iter().map(activity).collect();
         let is_clear = |pair: &PairActivity| matches!(pair, PairActivity::FirstZero | PairActivity::SecondZero);
-        let mut next = 0;
+        let mut rest = &pairs[..];
         for entry in &self.reach {
-            let (normal, friction) = (next, next + 1..next + 1 + 2 * entry.tangents);
-            next = friction.end;
-            let is_apart = pairs[normal] == PairActivity::SecondZero;
-            if !is_clear(&pairs[normal]) || !is_apart && !pairs[friction].iter().all(is_clear) {
-                return None;
+            let (own, others) = rest.split_at(1 + 2 * entry.tangents);
+            rest = others;
+            let is_apart = own[0] == PairActivity::SecondZero;
+            if !is_clear(&own[0]) || !is_apart && !own.iter().all(is_clear) {
+                return Err(Foreseen::Unclear);
             }
         }
-        Some(Activities { pairs, cones: Vec::new() })
+        Ok(Activities { pairs, cones: Vec::new() })
+    }
+
+    /// Both members of every pair, in the order of [`Problem::pair_values`].
+    fn members(&self, x: &DVector<f64>, end: Arrived<'_>) -> Vec<[Member; 2]> {
+        let (mut first, mut second) = (DVector::zeros(self.pairs()), DVector::zeros(self.pairs()));
+        self.pair_values(x, &mut first, &mut second);
+        let per_force = self.step / self.force;
+        let of_forces =
+            [self.forward, end.rate].map(|rate| rate.largest_reaction()).into_iter().fold(0.0, f64::max) * per_force;
+        let kinematic = |end: f64, start: f64, rates: [f64; 2]| Member {
+            start,
+            end,
+            rates,
+            rounding: ROUNDING_OF_RATES,
+            is_slip: false,
+        };
+        let force = |end: f64, start: f64, rates: [f64; 2]| Member {
+            start,
+            end,
+            rates,
+            rounding: ROUNDING_OF_RATES * of_forces,
+            is_slip: false,
+        };
+        let mut members = Vec::with_capacity(first.len());
+        for entry in &self.reach {
+            let contact = entry.contact;
+            let here = self.loading.frame(contact, end.state);
+            let ends = [(self.forward, &entry.frame), (end.rate, &here)];
+            let velocities = ends.map(|(rate, frame)| dot(&frame.normal, &self.loading.relative_rate(contact, rate)));
+            let normal = self.base.reactions[contact].normal / self.force;
+            let normal_rates = ends.map(|(rate, _)| rate.reactions[contact].normal * per_force);
+            let pair = members.len();
+            members.push([
+                kinematic(first[pair], entry.frame.gap / self.step, velocities),
+                force(second[pair], normal, normal_rates),
+            ]);
+            if entry.tangents == 0 {
+                continue;
+            }
+            let friction = entry.friction;
+            let traction_rates =
+                ends.map(|(rate, frame)| frame::components(frame, &rate.reactions[contact].tangential)[0] * per_force);
+            let slip_rates = ends.map(|(rate, _)| self.motion(entry, rate)[0]);
+            let slipped = entry.parts().map(|(part, side)| side * x[part]).iter().sum::<f64>();
+            for (place, (_, side)) in entry.parts().into_iter().enumerate() {
+                let pair = pair + 1 + place;
+                let off_cone = |normal: f64, traction: f64| (friction * normal + side * traction) / (1.0 + friction);
+                let rates = [0, 1].map(|k| off_cone(normal_rates[k], traction_rates[k]));
+                let slip = kinematic(side * slipped, 0.0, slip_rates.map(|rate| side * rate));
+                members.push([
+                    force(first[pair], off_cone(normal, entry.traction[0]), rates),
+                    Member { is_slip: true, ..slip },
+                ]);
+            }
+        }
+        members
     }
 
     /// Whether the objective has a strict maximum along the curve at its end, with `γ1` adapted to it.
