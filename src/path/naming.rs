@@ -68,13 +68,25 @@ impl Path<'_> {
     /// Whether a point reached in a mode is shown to solve the program of its increment: nothing is left to search.
     fn is_shown(&mut self, rate: &Rate, modes: &[Mode], reached: &Reached) -> bool {
         let foreseen = self.show_at(rate, modes, reached);
+        self.is_of(&foreseen, modes)
+    }
+
+    /// The same of the point at an arc length.
+    fn is_shown_within(&mut self, rate: &Rate, modes: &[Mode], way: f64) -> bool {
+        let foreseen = self.show(rate, modes, way);
+        self.is_of(&foreseen, modes)
+    }
+
+    /// Whether these modes are named.
+    fn is_of(&self, foreseen: &Foreseen, modes: &[Mode]) -> bool {
         matches!(foreseen, Foreseen::Named(named) if agree(self.loading(), &named.modes, modes))
     }
 
     /// Whether the program, started along a direction, ends in the direction's own mode.
     ///
     /// Its increment has about the arc length asked for, not exactly; where it names another mode, it may have gone past
-    /// the end of this one, and is asked again for shorter increments. First the branch of the direction's mode alone is
+    /// the end of this one, and is asked again for shorter increments. First the point of the mode is looked at: as a rule
+    /// it is shown to solve the program. Then the branch of the direction's mode alone is
     /// solved: where it holds, it is the program's solution, and where it ends, it says how far it goes. The whole program
     /// has the word where that does not settle it; `untold` is the answer where no program can tell.
     fn is_named(&mut self, rate: &Rate, modes: &[Mode], step: f64, untold: bool) -> bool {
@@ -83,10 +95,14 @@ impl Path<'_> {
             // A cone may bind a branch that holds.
             return self.is_named_by_whole(&state, rate, modes, step);
         }
+        if untold && step <= NEAR {
+            // So near to where contacts change no answer of a search would count against the mode.
+            return true;
+        }
         let mut tried = step;
         while tried >= RESOLVED {
             match self.show(rate, modes, tried) {
-                Foreseen::Named(named) if agree(self.loading(), &named.modes, modes) => return true,
+                shown if self.is_of(&shown, modes) => return true,
                 Foreseen::EndsAfter(part) => {
                     tried *= WITHIN * part;
                     continue;
@@ -143,7 +159,7 @@ impl Path<'_> {
 
     /// The increment's program from a state to about another; `None` where no contact can be reached: there is nothing to
     /// decide.
-    fn program<'a>(
+    pub(super) fn program<'a>(
         loading: Loading<'a>,
         force_scale: f64,
         (base, ahead): (&'a State, &State),
@@ -186,9 +202,14 @@ impl Path<'_> {
     ///
     /// The forward term rewards the direction that is tried, not the one in which the path came: where the path turns
     /// against its past (a contact closes, the load turns), that term would hold the increment back at zero.
-    pub(super) fn is_confirmed_by_program(&mut self, choice: &Choice) -> bool {
+    ///
+    /// Changes come in clusters: what is tried first goes no further than the `last` step did.
+    pub(super) fn is_confirmed_by_program(&mut self, choice: &Choice, last: f64) -> bool {
         let within = WITHIN * self.way_to_next_change(&choice.modes, &choice.rate);
+        let first = (FIRST_TRIAL * self.at.step).min(within);
+        let soon = last.max(RESOLVED);
         within >= RESOLVED
-            && self.is_named(&choice.rate, &choice.modes, (FIRST_TRIAL * self.at.step).min(within), false)
+            && (soon < first && self.is_shown_within(&choice.rate, &choice.modes, soon)
+                || self.is_named(&choice.rate, &choice.modes, first, false))
     }
 }

@@ -16,7 +16,7 @@
 //! Math. Oper. Res. 25 (2000), doi:10.1287/moor.25.1.1.15213.
 //!
 //! A member is positive where it is so by more than what the point leaves violated and rounding could make of zero. A
-//! smaller one is if it was not negative at the start, did not fall there and rises at the end: rates are known to more
+//! smaller one is if it was not negative at the start, falls at neither end and rises at one: rates are known to more
 //! digits than the difference of two nearly equal states. One that falls to zero at the end itself was positive just before: what is shown
 //! then holds of every increment a little shorter, since all else is strict.
 //!
@@ -27,8 +27,8 @@
 //! is solved.
 
 use super::{Foreseen, InReach, IncrementProgram, LOOSEST, Named, frame};
-use crate::contact::Mode;
 use crate::contact::vector::{Vector, add, dot};
+use crate::contact::{Frame, Mode};
 use crate::mpec::{Activities, PairActivity, Problem, Settings};
 use crate::path::state::{Rate, State};
 use nalgebra::DVector;
@@ -68,7 +68,7 @@ impl Member {
     fn is_positive(&self, clear: f64) -> bool {
         let [first, last] = self.rates;
         let is_small = self.end.abs() <= clear;
-        let rises = self.start >= -clear && first >= -self.rounding && last > self.rounding;
+        let rises = self.start >= -clear && first.min(last) >= -self.rounding && first.max(last) > self.rounding;
         let arrives = self.start > clear && last < -self.rounding;
         self.end > clear || is_small && (rises || arrives)
     }
@@ -105,8 +105,12 @@ impl IncrementProgram<'_> {
         if self.reach.iter().any(|entry| entry.tangents == 2) || self.is_any_node_pressed_twice(end.state) {
             return Foreseen::Unclear;
         }
-        let x = self.variables_of(end.state);
-        match self.clear_activities(&x, end) {
+        let frames: Vec<Frame> = self.reach.iter().map(|entry| self.loading.frame(entry.contact, end.state)).collect();
+        let x = self.variables_of(end.state, &frames);
+        if !x.iter().all(|value| value.is_finite()) {
+            return Foreseen::Unclear;
+        }
+        match self.clear_activities(&x, end, &frames) {
             Ok(activities) if self.is_strict_solution(&x, end) => {
                 Foreseen::Named(Named::of(&self.read(&x, &activities, present)))
             }
@@ -115,20 +119,19 @@ impl IncrementProgram<'_> {
         }
     }
 
-    /// The variables of the program at a state.
-    fn variables_of(&self, state: &State) -> DVector<f64> {
+    /// The variables of the program at a state where the contacts in reach have these frames.
+    pub(super) fn variables_of(&self, state: &State, frames: &[Frame]) -> DVector<f64> {
         let structure = self.loading.structure;
         let mut x = DVector::zeros(self.variables);
         for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
             x[unknown] = (state.displacement[*freedom] - self.base.displacement[*freedom]) / self.step;
         }
         x[structure.unknowns()] = (state.load - self.base.load) / self.step;
-        for entry in &self.reach {
+        for (entry, here) in self.reach.iter().zip(frames) {
             let reaction = &state.reactions[entry.contact];
             x[entry.normal()] = reaction.normal / self.force;
             if entry.tangents == 1 {
-                let here = self.loading.frame(entry.contact, state);
-                x[entry.tangential(0)] = frame::components(&here, &reaction.tangential)[0] / self.force;
+                x[entry.tangential(0)] = frame::components(here, &reaction.tangential)[0] / self.force;
                 let slip = frame::components(&entry.frame, &self.chord(entry, state))[0] / self.step;
                 for (part, side) in entry.parts() {
                     x[part] = (side * slip).max(0.0);
@@ -145,19 +148,20 @@ impl IncrementProgram<'_> {
     }
 
     /// Which member of each pair is zero, where the variables are feasible and that is certain.
-    fn clear_activities(&self, x: &DVector<f64>, end: Arrived<'_>) -> Result<Activities, Foreseen> {
+    fn clear_activities(&self, x: &DVector<f64>, end: Arrived<'_>, frames: &[Frame]) -> Result<Activities, Foreseen> {
         let mut equality = DVector::zeros(self.equalities());
         self.equality_values(x, &mut equality);
         // Not `max`, which passes over what is not a number.
-        let larger = |most: f64, value: f64| if value.abs() <= most { most } else { value.abs() };
-        let members = self.members(x, end);
+        let larger = |most: f64, value: f64| if most.is_nan() || value.abs() <= most { most } else { value.abs() };
+        let members = self.members(x, end, frames);
         let rounding = self.rounding(x);
         let left = equality.iter().copied().fold(0.0, larger);
         let clear = CLEAR.max(LEEWAY * left.max(rounding).max(end.error / self.step));
         let smaller = members.iter().map(|[first, second]| first.end.min(second.part()));
         let feasible = Settings::warm().tolerance.max(rounding).min(LOOSEST);
-        let is_left = smaller.fold(left, larger) > feasible;
-        if is_left || !clear.is_finite() {
+        let is_feasible = smaller.fold(left, larger) <= feasible;
+        let is_near = end.error <= LOOSEST * self.step;
+        if !is_feasible || !is_near {
             // Where there is no force against a slip, it may have either sense.
             let is_broken = |[first, second]: &[Member; 2]| {
                 let turns = second.is_slip && first.end.abs() <= feasible;
@@ -166,7 +170,7 @@ impl IncrementProgram<'_> {
             let broken = members.iter().flat_map(|pair| pair.iter().zip(is_broken(pair)));
             let parts = broken.filter(|(_, is_broken)| *is_broken).map(|(member, _)| member.ends_after());
             let part = parts.fold(f64::INFINITY, f64::min);
-            let is_past = left <= feasible && part > 0.0 && part < 1.0;
+            let is_past = is_near && left <= feasible && part > 0.0 && part < 1.0;
             return Err(if is_past { Foreseen::EndsAfter(part) } else { Foreseen::Unclear });
         }
         let activity = |[first, second]: &[Member; 2]| match (first.is_positive(clear), second.is_positive(clear)) {
@@ -190,55 +194,41 @@ impl IncrementProgram<'_> {
     }
 
     /// Both members of every pair, in the order of [`Problem::pair_values`].
-    fn members(&self, x: &DVector<f64>, end: Arrived<'_>) -> Vec<[Member; 2]> {
-        let (mut first, mut second) = (DVector::zeros(self.pairs()), DVector::zeros(self.pairs()));
-        self.pair_values(x, &mut first, &mut second);
+    fn members(&self, x: &DVector<f64>, end: Arrived<'_>, frames: &[Frame]) -> Vec<[Member; 2]> {
         let per_force = self.step / self.force;
-        let of_forces =
-            [self.forward, end.rate].map(|rate| rate.largest_reaction()).into_iter().fold(0.0, f64::max) * per_force;
-        let kinematic = |end: f64, start: f64, rates: [f64; 2]| Member {
+        let of_forces = self.forward.largest_reaction().max(end.rate.largest_reaction()) * per_force;
+        let member = |start: f64, end: f64, rates: [f64; 2], rounding: f64, is_slip: bool| Member {
             start,
             end,
             rates,
-            rounding: ROUNDING_OF_RATES,
-            is_slip: false,
+            rounding: ROUNDING_OF_RATES * rounding,
+            is_slip,
         };
-        let force = |end: f64, start: f64, rates: [f64; 2]| Member {
-            start,
-            end,
-            rates,
-            rounding: ROUNDING_OF_RATES * of_forces,
-            is_slip: false,
-        };
-        let mut members = Vec::with_capacity(first.len());
-        for entry in &self.reach {
-            let contact = entry.contact;
-            let here = self.loading.frame(contact, end.state);
-            let ends = [(self.forward, &entry.frame), (end.rate, &here)];
+        let mut members = Vec::with_capacity(self.pairs());
+        for (entry, here) in self.reach.iter().zip(frames) {
+            let (contact, friction) = (entry.contact, entry.friction);
+            let ends = [(self.forward, &entry.frame), (end.rate, here)];
             let velocities = ends.map(|(rate, frame)| dot(&frame.normal, &self.loading.relative_rate(contact, rate)));
-            let normal = self.base.reactions[contact].normal / self.force;
-            let normal_rates = ends.map(|(rate, _)| rate.reactions[contact].normal * per_force);
-            let pair = members.len();
+            let pressed = self.base.reactions[contact].normal / self.force;
+            let pressed_rates = ends.map(|(rate, _)| rate.reactions[contact].normal * per_force);
             members.push([
-                kinematic(first[pair], entry.frame.gap / self.step, velocities),
-                force(second[pair], normal, normal_rates),
+                member(entry.frame.gap / self.step, here.gap / self.step, velocities, 1.0, false),
+                member(pressed, x[entry.normal()], pressed_rates, of_forces, false),
             ]);
             if entry.tangents == 0 {
                 continue;
             }
-            let friction = entry.friction;
             let traction_rates =
                 ends.map(|(rate, frame)| frame::components(frame, &rate.reactions[contact].tangential)[0] * per_force);
             let slip_rates = ends.map(|(rate, _)| self.motion(entry, rate)[0]);
-            let slipped = entry.parts().map(|(part, side)| side * x[part]).iter().sum::<f64>();
-            for (place, (_, side)) in entry.parts().into_iter().enumerate() {
-                let pair = pair + 1 + place;
+            let slipped: f64 = entry.parts().map(|(part, side)| side * x[part]).iter().sum();
+            for (_, side) in entry.parts() {
                 let off_cone = |normal: f64, traction: f64| (friction * normal + side * traction) / (1.0 + friction);
-                let rates = [0, 1].map(|k| off_cone(normal_rates[k], traction_rates[k]));
-                let slip = kinematic(side * slipped, 0.0, slip_rates.map(|rate| side * rate));
+                let ends = (off_cone(pressed, entry.traction[0]), off_cone(x[entry.normal()], x[entry.tangential(0)]));
+                let rates = [0, 1].map(|k| off_cone(pressed_rates[k], traction_rates[k]));
                 members.push([
-                    force(first[pair], off_cone(normal, entry.traction[0]), rates),
-                    Member { is_slip: true, ..slip },
+                    member(ends.0, ends.1, rates, of_forces, false),
+                    member(0.0, side * slipped, slip_rates.map(|rate| side * rate), 1.0, true),
                 ]);
             }
         }
@@ -253,7 +243,7 @@ impl IncrementProgram<'_> {
             along_forward += x[unknown] * self.forward.displacement[*freedom];
             along_end += x[unknown] * end.rate.displacement[*freedom];
         }
-        if along_end < FORWARD {
+        if along_end.is_nan() || along_end < FORWARD {
             return false;
         }
         let linear = |rate: &Rate| self.dissipation_along(rate) + self.forward_weight * self.forward.product(rate);

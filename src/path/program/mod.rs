@@ -30,6 +30,8 @@ mod tests;
 #[cfg(test)]
 mod tests_in_space;
 #[cfg(test)]
+mod tests_of_certificate;
+#[cfg(test)]
 mod tests_of_chains;
 
 use super::loading::Loading;
