@@ -1,4 +1,7 @@
 //! Where the MPEC names the mode: every increment of `method: "mpec"`, and the direction taken where a mode ends.
+//!
+//! The point that the path has reached is shown to solve the increment's program, without a quadratic program; where it
+//! is not, the program is solved from the direction at hand.
 
 use super::advance::{Reached, Start};
 use super::corner::agree;

@@ -20,6 +20,9 @@
 //! `(D + γ2 d·e) α - ½ γ1 α²`, largest at `α = 1` for `γ1 = D + γ2 d·e`. Where the program leaves the direction that
 //! was expected, `γ1` is adapted until `‖y‖` is near 1. `γ2` is a fraction of the dissipation (or 1 where there is
 //! none), so that the branch does not depend on the step.
+//!
+//! A point that the path has reached in a mode is first held against the conditions under which it solves the program
+//! (`certificate`); the search is for where they do not settle it.
 
 mod certificate;
 mod end;
