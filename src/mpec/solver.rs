@@ -47,12 +47,7 @@ pub fn solve<P: Problem + ?Sized>(
     settings: &Settings,
     cancel: &CancelFlag,
 ) -> Result<Solution, InputError> {
-    let bounds = problem.bounds();
-    check_input(problem, start, &bounds, settings)?;
-    let mut run =
-        Run { problem, bounds, settings, cancel, steps: StepSolver::default(), best: None, seen: Ends::default() };
-    let stopped = run.go(start);
-    Ok(run.finish(start, stopped))
+    solve_by(problem, start, settings, cancel, |run, at| run.go(start, at))
 }
 
 /// Follows one branch from `start` to its own optimum and looks at no other: the branch in which the given member of each
@@ -71,20 +66,34 @@ pub fn follow_branch<P: Problem + ?Sized>(
     settings: &Settings,
     cancel: &CancelFlag,
 ) -> Result<Solution, InputError> {
+    solve_by(problem, start, settings, cancel, |run, at| {
+        run.steps.is_elastic = false;
+        let pattern = branch::nearest_pattern(at).with_zeros(zero_members);
+        let (steps, bounds) = (&mut run.steps, &run.bounds);
+        let candidate = branch::follow(problem, bounds, start, &pattern, settings, steps, cancel);
+        run.accept(candidate).and_then(Over::reason)
+    })
+}
+
+/// Solves by a search that begins with the functions' values at the start; it answers the reason where it was stopped
+/// before its time.
+fn solve_by<'a, P: Problem + ?Sized>(
+    problem: &'a P,
+    start: &DVector<f64>,
+    settings: &'a Settings,
+    cancel: &'a CancelFlag,
+    search: impl FnOnce(&mut Run<'a, P>, &Evaluation) -> Option<Status>,
+) -> Result<Solution, InputError> {
     let bounds = problem.bounds();
     check_input(problem, start, &bounds, settings)?;
     let mut run =
         Run { problem, bounds, settings, cancel, steps: StepSolver::default(), best: None, seen: Ends::default() };
-    run.steps.is_elastic = false;
     let mut at = Evaluation::new(problem);
-    let stopped = match at.update_values(problem, start) {
+    let is_finite = start.iter().all(|value| value.is_finite());
+    let values = if is_finite { at.update_values(problem, start) } else { Err(Quantity::Start) };
+    let stopped = match values {
+        Ok(()) => search(&mut run, &at),
         Err(quantity) => Some(Status::NotFinite(quantity)),
-        Ok(()) => {
-            let pattern = branch::nearest_pattern(&at).with_zeros(zero_members);
-            let (steps, bounds) = (&mut run.steps, &run.bounds);
-            let candidate = branch::follow(problem, bounds, start, &pattern, settings, steps, cancel);
-            run.accept(candidate).and_then(Over::reason)
-        }
     };
     Ok(run.finish(start, stopped))
 }
@@ -111,17 +120,10 @@ struct Run<'a, P: Problem + ?Sized> {
 
 impl<P: Problem + ?Sized> Run<'_, P> {
     /// Runs to the end; the reason where it was stopped before its time.
-    fn go(&mut self, start: &DVector<f64>) -> Option<Status> {
-        if start.iter().any(|value| !value.is_finite()) {
-            return Some(Status::NotFinite(Quantity::Start));
-        }
-        let mut at = Evaluation::new(self.problem);
-        if let Err(quantity) = at.update_values(self.problem, start) {
-            return Some(Status::NotFinite(quantity));
-        }
+    fn go(&mut self, start: &DVector<f64>, at: &Evaluation) -> Option<Status> {
         let unpaired = self.problem.pairs() == 0 && at.cones.count() == 0;
-        if (unpaired || self.settings.warm_start && branch::is_clear(&at))
-            && let Some(end) = self.search(start, &at)
+        if (unpaired || self.settings.warm_start && branch::is_clear(at))
+            && let Some(end) = self.search(start, at)
         {
             return end.reason();
         }

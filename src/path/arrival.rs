@@ -37,7 +37,13 @@ pub(super) struct Arrival {
 
 impl Path<'_> {
     /// What kind of point this is, and how the path goes on.
-    pub(super) fn classify(&mut self, event: Option<Watch>, crossing: Option<Crossing>, incoming: &Rate) -> Arrival {
+    pub(super) fn classify(
+        &mut self,
+        event: Option<Watch>,
+        crossing: Option<Crossing>,
+        incoming: &Rate,
+        step: f64,
+    ) -> Arrival {
         match event {
             None | Some(Watch::End(_)) if let Some(crossing) = crossing => {
                 self.smooth_bifurcation(crossing, incoming, event.is_some())
@@ -55,7 +61,7 @@ impl Path<'_> {
                 self.look_around(incoming, PointKind::SmoothLimit, Some(what.to_owned()), Some(-sign), false)
             }
             Some(Watch::Gap(_) | Watch::Normal(_) | Watch::Cone { .. } | Watch::Sliding(_) | Watch::Facet { .. }) => {
-                self.contact_change(incoming)
+                self.contact_change(incoming, step)
             }
         }
     }
@@ -182,8 +188,8 @@ impl Path<'_> {
         Arrival { point, options: Vec::new(), taken: None, stop, stage_ends: false, unconfirmed: false }
     }
 
-    /// A contact has reached the end of its mode: list the directions and take one.
-    fn contact_change(&mut self, incoming: &Rate) -> Arrival {
+    /// A contact has reached the end of its mode after a step of this arc length: list the directions and take one.
+    fn contact_change(&mut self, incoming: &Rate, step: f64) -> Arrival {
         self.at.counts.contact_changes += 1;
         let standings = self.standings(&self.at.here.state);
         for (reaction, standing) in self.at.here.state.reactions.iter_mut().zip(&standings) {
@@ -207,7 +213,7 @@ impl Path<'_> {
         // the mode of the one taken.
         let confirmed = match decision.taken {
             Some(taken) if self.scene.analysis.method == Method::Mpec => {
-                self.is_confirmed_by_program(&decision.options[taken])
+                self.is_confirmed_by_program(&decision.options[taken], step)
             }
             _ => true,
         };

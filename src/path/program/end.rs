@@ -53,7 +53,7 @@ impl IncrementProgram<'_> {
     }
 
     /// The contact modes at variables of the program; `present` decides where a pair is biactive.
-    fn read(&self, x: &DVector<f64>, activities: &Activities, present: &[Mode]) -> Vec<Mode> {
+    pub(super) fn read(&self, x: &DVector<f64>, activities: &Activities, present: &[Mode]) -> Vec<Mode> {
         let mut modes = vec![Mode::Free; self.loading.contacts.len()];
         let mut pairs = activities.pairs.iter().copied();
         let mut next = || pairs.next().unwrap_or(PairActivity::NeitherZero);

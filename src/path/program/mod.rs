@@ -20,7 +20,11 @@
 //! `(D + γ2 d·e) α - ½ γ1 α²`, largest at `α = 1` for `γ1 = D + γ2 d·e`. Where the program leaves the direction that
 //! was expected, `γ1` is adapted until `‖y‖` is near 1. `γ2` is a fraction of the dissipation (or 1 where there is
 //! none), so that the branch does not depend on the step.
+//!
+//! A point that the path has reached in a mode is first held against the conditions under which it solves the program
+//! (`certificate`); the search is for where they do not settle it.
 
+mod certificate;
 mod end;
 mod frame;
 mod functions;
@@ -28,6 +32,8 @@ mod functions;
 mod tests;
 #[cfg(test)]
 mod tests_in_space;
+#[cfg(test)]
+mod tests_of_certificate;
 #[cfg(test)]
 mod tests_of_chains;
 
@@ -38,6 +44,7 @@ use crate::cancel::CancelFlag;
 use crate::contact::vector::{Vector, dot, scaled};
 use crate::contact::{Frame, Mode};
 use crate::mpec::{self, Finish, PairActivity, Settings, StationarityKind};
+pub use certificate::Arrived;
 use frame::Components;
 use nalgebra::DVector;
 
