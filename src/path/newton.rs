@@ -160,8 +160,7 @@ impl ModeSystem<'_> {
                 is_large && geometric <= AT_PLACE && self.left_by_rounding(&iterate.state, &values, scale) == Some(0.0)
             };
             let stalled = !improved && (!was_reused || least <= ROUND_OFF || is_rounding());
-            let settled = (least <= ROUND_OFF && !was_reused)
-                || (nothing_left && least <= ACCEPTED_RESIDUAL)
+            let settled = (least <= ROUND_OFF && (!was_reused || nothing_left))
                 || error == 0.0
                 || (stalled && (row_by_row || least <= ACCEPTED_RESIDUAL));
             if settled && iterations > 0 {

@@ -1,8 +1,10 @@
 //! The chain of n sliders to its end, by size: every block's first slip at its exact load, every block at its exact place,
 //! and how time and memory grow with n. Beside the time of the pull stands that of the start, where the directions of all
-//! blocks that touch without reaction are searched.
+//! blocks that touch without reaction are searched. Times are the processor's.
 //!
 //! `cargo bench --bench chain` (100, 316 and 1,000 blocks), `cargo bench --bench chain -- 10000` (others)
+
+mod processor_time;
 
 use allocation_counter::measure;
 use arcslip::cancel::CancelFlag;
@@ -11,7 +13,7 @@ use arcslip::model::request::{Record, RecordedContacts};
 use arcslip::path::increment::PointKind;
 use arcslip::path::{Increment, Path, Scene};
 use arcslip::scenes::of_any_size::slider_chain;
-use std::time::Instant;
+use processor_time::Stopwatch;
 
 const FRICTION: f64 = 0.3;
 const WEIGHT: f64 = 1.0;
@@ -87,13 +89,13 @@ fn trace(size: usize) -> Result<Traced, String> {
         Some(Record { contacts: Some(RecordedContacts::Named(Vec::new())), directions: false, ..Record::default() });
     let scene = Scene::new(&request).map_err(|errors| errors.to_string())?;
     let mut path = Path::new(&scene, CancelFlag::default());
-    let began = Instant::now();
+    let watch = Stopwatch::start();
     let (mut increments, mut events, mut start_s) = (0, 0, 0.0);
     let (mut load_error, mut place_error) = (0.0_f64, 0.0_f64);
     for increment in path.by_ref() {
         increments += 1;
         if &*increment.stage != "pull" {
-            start_s = began.elapsed().as_secs_f64();
+            start_s = watch.seconds();
             continue;
         }
         if matches!(increment.point.kind, PointKind::ContactChange | PointKind::End) {
@@ -103,7 +105,7 @@ fn trace(size: usize) -> Result<Traced, String> {
             place_error = place_error.max(error_of_places(&increment, events));
         }
     }
-    let pull_s = began.elapsed().as_secs_f64() - start_s;
+    let pull_s = watch.seconds() - start_s;
     let report = path.report().ok_or("a path without a report")?;
     let (factorisations, end) = (report.factorisations, format!("{:?}", report.stop_reason));
     Ok(Traced { increments, events, start_s, pull_s, factorisations, load_error, place_error, end })
