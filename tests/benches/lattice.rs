@@ -10,6 +10,10 @@ use arcslip::path::{Path, Scene};
 use arcslip::scenes::lattice::LatticeArch;
 use std::time::Instant;
 
+/// As in the program.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 /// Increments of each path, where no others are asked for.
 const INCREMENTS: usize = 60;
 

@@ -18,6 +18,10 @@ use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::time::Instant;
 
+/// As in the program.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 /// Pairs of paths; no more are begun after so many seconds.
 const REPEATS: usize = 9;
 const SECONDS: f64 = 30.0;
