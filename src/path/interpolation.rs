@@ -134,7 +134,25 @@ impl Polynomial {
 
 #[cfg(test)]
 mod tests {
-    use super::{Knot, Polynomial};
+    use super::{Knot, Placed, Polynomial};
+    use crate::path::state::{Rate, State};
+
+    /// On a circle of radius 1 the guess is off by the fourth power of the step, on a straight path by nothing; and too far
+    /// on there is none.
+    #[test]
+    fn a_step_is_foreseen_to_fourth_order() {
+        let state = |angle: f64| State { displacement: vec![angle.cos()], load: angle.sin(), reactions: Vec::new() };
+        let rate = |angle: f64| Rate { displacement: vec![-angle.sin()], load: angle.cos(), reactions: Vec::new() };
+        let error = |step: f64| {
+            let before = Placed::before(state(-step), rate(-step), &state(0.0)).expect("a point before");
+            let guess = before.foresee(&state(0.0), &rate(0.0), step).expect("a guess");
+            assert!(before.foresee(&state(0.0), &rate(0.0), 4.1 * step).is_none());
+            (guess.displacement[0].hypot(guess.load) - 1.0).abs()
+        };
+        let (coarse, fine) = (error(0.1), error(0.05));
+        assert!(coarse < 1e-4 && coarse / fine > 12.0, "{coarse:e} {fine:e}");
+        assert!(Placed::before(state(0.0), rate(0.0), &state(0.0)).is_none(), "no way between");
+    }
 
     #[test]
     fn a_polynomial_meets_values_and_slopes() {
