@@ -22,9 +22,13 @@ use std::time::Instant;
 #[global_allocator]
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
-/// Pairs of paths; no more are begun after so many seconds.
-const REPEATS: usize = 9;
-const SECONDS: f64 = 30.0;
+/// Pairs of paths at the most, and seconds after which no more are begun: short paths are taken many times, since
+/// processors change their speed meanwhile.
+const REPEATS: usize = 301;
+const SECONDS: f64 = 8.0;
+/// Pairs that are taken however long they last, unless it is this long.
+const FEWEST: usize = 9;
+const MOST_SECONDS: f64 = 30.0;
 
 /// A program, the method that it is compared with, and the sizes of the row.
 const PEERS: [(&str, &str, Method, &[usize]); 2] = [
@@ -66,7 +70,11 @@ fn compare(size: usize, method: Method, peer: &mut Peer) -> Result<(), String> {
     // The first answer of each is not timed: the peer builds its program with it.
     let warm = peer.ask(size)?;
     let began = Instant::now();
-    while ours.len() < REPEATS && (ours.is_empty() || began.elapsed().as_secs_f64() < SECONDS) {
+    let goes_on = |pairs: usize| {
+        let seconds = if pairs < FEWEST { MOST_SECONDS } else { SECONDS };
+        pairs == 0 || pairs < REPEATS && began.elapsed().as_secs_f64() < seconds
+    };
+    while goes_on(ours.len()) {
         let own = trace(&scene)?;
         let answer = peer.ask(size)?;
         ours.push(own.elapsed_s / own.increments as f64 * 1e3);
