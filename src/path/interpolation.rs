@@ -137,8 +137,7 @@ mod tests {
     use super::{Knot, Placed, Polynomial};
     use crate::path::state::{Rate, State};
 
-    /// On a circle of radius 1 the guess is off by the fourth power of the step, on a straight path by nothing; and too far
-    /// on there is none.
+    /// On a circle of radius 1 the guess is off by the fourth power of the step, and too far on there is none.
     #[test]
     fn a_step_is_foreseen_to_fourth_order() {
         let state = |angle: f64| State { displacement: vec![angle.cos()], load: angle.sin(), reactions: Vec::new() };

@@ -245,7 +245,8 @@ impl Start<'_> {
         Err(unclear)
     }
 
-    /// The zero so close to a point found that what a straight step leaves over is below rounding.
+    /// The zero so close to a point found that a straight step leads there; `None` where what that leaves over counts for
+    /// something.
     fn by_series(&self, watch: Watch, stretch: &Stretch, zero: f64, found: &Reached) -> Option<Reached> {
         let system = ModeSystem::new(self.loading, self.modes, self.state);
         if system.has_tracks() {

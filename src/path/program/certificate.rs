@@ -17,8 +17,8 @@
 //!
 //! A member is positive where it is so by more than what the point leaves violated and rounding could make of zero. A
 //! smaller one is if it was not negative at the start, falls at neither end and rises at one: rates are known to more
-//! digits than the difference of two nearly equal states. One that falls to zero at the end itself was positive just before: what is shown
-//! then holds of every increment a little shorter, since all else is strict.
+//! digits than the difference of two nearly equal states. One that falls to zero at the end itself was positive just
+//! before: what is shown then holds of every increment a little shorter, since all else is strict.
 //!
 //! The two parts of the slip of a contact that is apart are no matter: there is no force, and only their difference counts.
 //!
