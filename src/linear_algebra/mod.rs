@@ -154,6 +154,14 @@ impl SystemFactorisation {
             Self::Sparse(sparse) => sparse.solve(right_hand_side),
         }
     }
+
+    /// The same without looking at what the solution leaves over, for whoever does so himself.
+    pub fn solve_once(&self, right_hand_side: &mut DVector<f64>) -> bool {
+        match self {
+            Self::Dense(dense) => dense.solve(right_hand_side),
+            Self::Sparse(sparse) => sparse.solve_once(right_hand_side) || sparse.solve(right_hand_side),
+        }
+    }
 }
 
 /// A determinant as its sign and its size's natural logarithm.

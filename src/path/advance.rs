@@ -324,9 +324,11 @@ impl Start<'_> {
     fn coinciding(&self, watches: &[Watch], reached: &Reached) -> Option<Watch> {
         watches.iter().copied().filter(|watch| watch.is_of_contact()).find(|watch| {
             let forces = self.force_scale.max(reached.corrected.force_scale);
-            let scale = watch.zero_within(self.loading, &reached.corrected.state, COINCIDING, forces);
-            let last = self.value(*watch, &reached.corrected.state, &reached.rate);
-            last <= scale && self.value(*watch, self.state, self.rate) > scale
+            let state = &reached.corrected.state;
+            let last = self.value(*watch, state, &reached.rate);
+            !watch.is_above_zero(self.loading, state, last, COINCIDING, forces)
+                && self.value(*watch, self.state, self.rate)
+                    > watch.zero_within(self.loading, state, COINCIDING, forces)
         })
     }
 

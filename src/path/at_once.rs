@@ -208,10 +208,11 @@ impl Start<'_> {
             if smooth.is_some_and(|contact| restless.contains(&contact)) {
                 continue;
             }
-            let zero = PASSED * watch.scale(self.loading, state, forces);
             let last = watch.value(self.loading, self.modes, state, &reached.rate);
-            let dip = watch.dip(self.loading, self.modes, ends.0, ends.1, reached.step, zero);
-            if last > watch.zero_within(self.loading, state, COINCIDING, forces) && dip.is_none() {
+            let dips = |zero| watch.dip(self.loading, self.modes, ends.0, ends.1, reached.step, zero).is_some();
+            if watch.is_above_zero(self.loading, state, last, COINCIDING, forces)
+                && !(dips(0.0) && dips(PASSED * watch.scale(self.loading, state, forces)))
+            {
                 continue;
             }
             match smooth {

@@ -177,14 +177,17 @@ impl Trial<'_> {
         let mut unclear = false;
         let mut culprits = Vec::new();
         for watch in watch::of_mode(loading, modes, state, &candidate.rate) {
-            let scale = watch.scale(loading, &corrected.state, forces);
             let first = watch.value(loading, modes, state, &candidate.rate);
-            let (tendency, size) = match watch.slope(loading, state, &candidate.rate) {
-                None => (0.0, 1.0),
-                Some(slope) if watch.is_of_forces() => (slope, rates * (scale / forces)),
-                Some(slope) => (slope, 1.0),
-            };
-            if first > watch.zero_within(loading, state, IN_DOUBT, forces) || tendency > IN_DOUBT * size {
+            let tendency = watch.slope(loading, state, &candidate.rate);
+            let most = if watch.is_of_forces() { rates } else { 1.0 };
+            if tendency.is_some_and(|slope| slope > IN_DOUBT * most)
+                || watch.is_above_zero(loading, state, first, IN_DOUBT, forces)
+            {
+                continue;
+            }
+            let scale = watch.scale(loading, &corrected.state, forces);
+            let size = if tendency.is_some() && watch.is_of_forces() { rates * (scale / forces) } else { 1.0 };
+            if tendency.is_some_and(|slope| slope > IN_DOUBT * size) {
                 continue;
             }
             let last = watch.value(loading, modes, &corrected.state, &rate) / scale;

@@ -84,7 +84,7 @@ impl Search<'_> {
             for (column, way) in ways.column_iter().enumerate() {
                 let moved = |by: f64| {
                     let values = way * -by;
-                    self.tests(&self.system.corrected_by(&iterate, &values), &psi, &borders)
+                    self.tests(&self.system.corrected_by(iterate.clone(), &values), &psi, &borders)
                 };
                 slopes.set_column(column, &((moved(DIFFERENCE)? - moved(-DIFFERENCE)?) / (2.0 * DIFFERENCE)));
             }
@@ -94,7 +94,7 @@ impl Search<'_> {
             if !size.is_finite() || size > reach.max(0.1) {
                 return None;
             }
-            iterate = self.projected(self.system.corrected_by(&iterate, &correction))?;
+            iterate = self.projected(self.system.corrected_by(iterate, &correction))?;
             if iterate.state.distance(&origin) > 2.0 * reach {
                 return None;
             }
@@ -143,7 +143,7 @@ impl Search<'_> {
             }
             least = least.min(size);
             let correction = matrix.svd(true, true).solve(&values, f64::EPSILON).ok()?;
-            iterate = self.system.corrected_by(&iterate, &correction);
+            iterate = self.system.corrected_by(iterate, &correction);
         }
         None
     }

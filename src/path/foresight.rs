@@ -27,11 +27,11 @@ impl Path<'_> {
         loading.structure.layout()?;
         let rate = here.rate.as_ref()?;
         let way = |watch: &watch::Watch| {
-            let zero = PASSED * watch.scale(loading, &here.state, self.at.totals.force_scale);
+            let slope = watch.slope(loading, &here.state, rate).filter(|slope| *slope < 0.0)?;
             let value = watch.value(loading, &here.modes, &here.state, rate);
-            let slope = watch.slope(loading, &here.state, rate)?;
             // What is zero here has just changed.
-            (value > zero && slope < 0.0).then(|| value / -slope)
+            let is_above = watch.is_above(loading, &here.state, value, PASSED, self.at.totals.force_scale);
+            is_above.then(|| value / -slope)
         };
         let watches = watch::of_mode(loading, &here.modes, &here.state, rate);
         let ways = watches.iter().filter_map(|watch| Some((*watch, way(watch)?)));

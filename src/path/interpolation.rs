@@ -45,10 +45,21 @@ impl Placed {
         if step > -MOST_FORESEEN * self.place {
             return None;
         }
-        let straight = here.advanced(rate, step);
-        let here = Placed { place: 0.0, state: here.clone(), rate: rate.clone() };
-        let (bent, _) = between(self, &here, step);
-        Some(State { reactions: straight.reactions, ..bent })
+        let mut state = here.advanced(rate, step);
+        let width = -self.place;
+        let x = (step + width) / width;
+        let y = 1.0 - x;
+        let (along, begun, ended) = (x * x * (1.0 + 2.0 * y), width * x * y * y, -width * x * x * y);
+        let bent = |before: f64, before_rate: f64, here: f64, rate: f64| {
+            before + along * (here - before) + begun * before_rate + ended * rate
+        };
+        let ends = self.state.displacement.iter().zip(&self.rate.displacement);
+        let ends = ends.zip(here.displacement.iter().zip(&rate.displacement));
+        for (value, ((before, before_rate), (here, rate))) in state.displacement.iter_mut().zip(ends) {
+            *value = bent(*before, *before_rate, *here, *rate);
+        }
+        state.load = bent(self.state.load, self.rate.load, here.load, rate.load);
+        Some(state)
     }
 }
 
@@ -70,11 +81,9 @@ pub(super) fn between(left: &Placed, right: &Placed, place: f64) -> (State, Rate
     let x = (place - left.place) / width;
     let y = 1.0 - x;
     let chord = left.state.chord(&right.state);
-    let state = left
-        .state
-        .advanced(&chord, x * x * (1.0 + 2.0 * y))
-        .advanced(&left.rate, width * x * y * y)
-        .advanced(&right.rate, -width * x * x * y);
+    let mut state = left.state.advanced(&chord, x * x * (1.0 + 2.0 * y));
+    state.advance(&left.rate, width * x * y * y);
+    state.advance(&right.rate, -width * x * x * y);
     let mut rate = chord;
     rate.scale(6.0 * x * y / width);
     rate.add(&left.rate, y * (y - 2.0 * x));

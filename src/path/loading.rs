@@ -105,6 +105,12 @@ impl Loading<'_> {
         meeting.min(force_scale).max(f64::EPSILON * force_scale)
     }
 
+    /// Whether a force at a contact is at most so many times the forces against which its reaction is zero.
+    pub fn is_no_force(&self, contact: usize, state: &State, force: f64, tolerance: f64, force_scale: f64) -> bool {
+        // The largest of the path often tells.
+        force <= tolerance * force_scale && force <= tolerance * self.force_scale_at(contact, state, force_scale)
+    }
+
     /// Displacement of a supported degree of freedom per load factor.
     pub fn support_rate(&self, freedom: usize) -> f64 {
         self.pattern.supports.get(freedom).copied().unwrap_or(0.0)

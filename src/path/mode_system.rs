@@ -85,6 +85,14 @@ pub(super) struct Iterate {
     pub directions: Vec<Vector>,
 }
 
+impl Iterate {
+    /// Becomes another one of the same equations, in the memory that it has.
+    pub fn set_to(&mut self, other: &Self) {
+        self.state.set_to(&other.state);
+        self.directions.clone_from(&other.directions);
+    }
+}
+
 /// Friction force (dimensionless) below which Newton's matrix takes it as this.
 const LEAST_PRESSED: f64 = 1e-10;
 
@@ -309,18 +317,18 @@ impl<'a> ModeSystem<'a> {
         let layout = structure.layout()?;
         let unknowns = structure.unknowns();
         let mut matrix = Bordered::new(layout.pattern.clone(), self.size - unknowns);
-        let mut call = 0;
-        structure.each_stiffness(&iterate.state.displacement, &mut |row, column, value| {
-            match layout.place(call) {
+        let mut places = layout.places();
+        structure.each_stiffness(
+            &iterate.state.displacement,
+            &mut |row, column, value| match places.next().flatten() {
                 Some(place) => matrix.add_at(place, value),
                 None => {
                     if let (Some(row), None) = (structure.unknown_of[row], structure.unknown_of[column]) {
                         matrix.add(row, unknowns, value * self.loading.support_rate(column));
                     }
                 }
-            }
-            call += 1;
-        });
+            },
+        );
         self.add_loads_and_contacts(iterate, kind, &mut matrix);
         Some(matrix)
     }
@@ -635,6 +643,7 @@ impl<'a> ModeSystem<'a> {
         let structure = self.loading.structure;
         let (last, unknowns) = (self.size - 1, structure.unknowns());
         match place {
+            Place::ArcLength { from, step } if matrix.is_none() => state.distance(from) - step,
             Place::ArcLength { from, step } => {
                 let mut chord = Rate {
                     displacement: state.displacement.iter().zip(&from.displacement).map(|(a, b)| a - b).collect(),
@@ -728,10 +737,10 @@ impl<'a> ModeSystem<'a> {
     }
 
     /// Goes on by minus a Newton correction.
-    pub(super) fn corrected_by(&self, iterate: &Iterate, values: &DVector<f64>) -> Iterate {
-        let correction = self.rate_at(iterate, values, Kind::Increment);
-        let mut state = iterate.state.advanced(&correction, -1.0);
-        let mut directions = iterate.directions.clone();
+    pub(super) fn corrected_by(&self, iterate: Iterate, values: &DVector<f64>) -> Iterate {
+        let correction = self.rate_at(&iterate, values, Kind::Increment);
+        let Iterate { mut state, mut directions } = iterate;
+        state.advance(&correction, -1.0);
         if self.has_tracks() {
             self.place_exactly(&mut state);
         }

@@ -141,9 +141,18 @@ impl ModeSystem<'_> {
             }
             let best_before = best.as_ref().map(|(least, ..)| *least);
             let improved = best.as_ref().is_none_or(|(least, ..)| error < 0.5 * least);
-            if best.as_ref().is_none_or(|(least, ..)| error <= *least) {
-                let figures = Figures { iterations, residual, left_over: values.clone(), force_scale: forces };
-                best = Some((error, iterate.clone(), figures));
+            match &mut best {
+                Some((least, ..)) if error > *least => {}
+                Some((least, known, figures)) => {
+                    *least = error;
+                    known.set_to(&iterate);
+                    (figures.iterations, figures.residual, figures.force_scale) = (iterations, residual, forces);
+                    figures.left_over.copy_from(&values);
+                }
+                None => {
+                    let figures = Figures { iterations, residual, left_over: values.clone(), force_scale: forces };
+                    best = Some((error, iterate.clone(), figures));
+                }
             }
             let least = best.as_ref().map_or(f64::INFINITY, |(least, ..)| *least);
             let is_regular = last_factorisation.as_ref().is_some_and(|last| {
@@ -157,12 +166,14 @@ impl ModeSystem<'_> {
             // It goes on as far as rounding lets it: a fresh one would have gone beyond the bar at once.
             let is_rounding = || {
                 let is_large = self.loading.structure.layout().is_some();
-                is_large && geometric <= AT_PLACE && self.left_by_rounding(&iterate.state, &values, scale) == Some(0.0)
+                let at_place = || geometric <= AT_PLACE.max(ROOM * f64::EPSILON * reach(&iterate.state));
+                is_large && at_place() && self.left_by_rounding(&iterate.state, &values, scale) == Some(0.0)
             };
-            let stalled = !improved && (!was_reused || least <= ROUND_OFF || is_rounding());
+            let rounding = !improved && is_rounding();
+            let stalled = !improved && (!was_reused || least <= ROUND_OFF || rounding);
             let settled = (least <= ROUND_OFF && (!was_reused || nothing_left))
                 || error == 0.0
-                || (stalled && (row_by_row || least <= ACCEPTED_RESIDUAL));
+                || (stalled && (row_by_row || least <= ACCEPTED_RESIDUAL || rounding));
             if settled && iterations > 0 {
                 let done = row_by_row || iterations == MOST_ITERATIONS;
                 if done || self.residual_of_rows(&iterate.state, &values, scale) <= ACCEPTED_RESIDUAL {
@@ -194,7 +205,10 @@ impl ModeSystem<'_> {
                 last_factorisation = self.factorise(&iterate, Kind::Increment, put_place);
                 factorisations += 1;
             }
-            if !last_factorisation.as_ref().ok_or(Failure::Singular)?.solve(&mut values) {
+            let factorisation = last_factorisation.as_ref().ok_or(Failure::Singular)?;
+            // What one from elsewhere leaves over is more than rounding anyway.
+            let solved = if reused { factorisation.solve_once(&mut values) } else { factorisation.solve(&mut values) };
+            if !solved {
                 return Err(Failure::Singular);
             }
             (before, correction) = (correction, values.rows(0, self.loading.structure.unknowns() + 1).norm());
@@ -203,7 +217,7 @@ impl ModeSystem<'_> {
             }
             let contraction = if before.is_finite() { correction / before } else { SERVES_ON };
             nothing_left = contraction <= SERVES_ON && self.is_rounding(&iterate.state, &values, contraction);
-            iterate = self.corrected_by(&iterate, &values);
+            iterate = self.corrected_by(iterate, &values);
             iterations += 1;
         }
         let Some((_, mut iterate, figures)) = best else { return Err(Failure::NotConverged) };
@@ -265,7 +279,7 @@ impl ModeSystem<'_> {
         for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
             residual = residual.max((values[unknown].abs() - ROOM * rounding[*freedom]) / scale);
         }
-        let reach = state.displacement.iter().fold(state.load.abs(), |reach, value| reach.max(value.abs()));
+        let reach = reach(state);
         let geometric = values.iter().skip(structure.unknowns()).fold(0.0_f64, |m, v| m.max(v.abs()));
         let within = geometric <= ACCEPTED_RESIDUAL + ROOM * f64::EPSILON * reach;
         (residual <= ACCEPTED_RESIDUAL && within).then_some(residual)
@@ -379,6 +393,11 @@ impl ModeSystem<'_> {
     pub(super) fn off_track(&self, corrected: &Corrected, rows: &[usize]) -> f64 {
         rows.iter().fold(0.0, |largest, row| largest.max(corrected.left_over[*row].abs()))
     }
+}
+
+/// The largest displacement, or the load: what the rounding of places is relative to.
+fn reach(state: &State) -> f64 {
+    state.displacement.iter().fold(state.load.abs(), |reach, value| reach.max(value.abs()))
 }
 
 /// What Newton's method says of its best iterate.

@@ -272,13 +272,12 @@ impl Scene {
         let unknowns = structure.unknowns();
         if let Some(layout) = structure.layout() {
             let mut matrix = Bordered::new(layout.pattern.clone(), 0);
-            let (mut call, mut stiffness) = (0, 0.0_f64);
+            let (mut places, mut stiffness) = (layout.places(), 0.0_f64);
             structure.each_stiffness(still, &mut |_, _, value| {
-                if let Some(place) = layout.place(call) {
+                if let Some(place) = places.next().flatten() {
                     matrix.add_at(place, value);
                     stiffness = stiffness.max(value.abs());
                 }
-                call += 1;
             });
             self.hold_closed_contacts(stiffness, &mut matrix);
             return matrix.null_vectors(1e-9).filter(|motions| !motions.is_empty());

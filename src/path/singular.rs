@@ -145,9 +145,7 @@ pub fn loosened(start: &Start<'_>, reached: &Reached) -> Option<Vec<Mode>> {
     let touches = |state: &State, contact: usize| {
         let force_scale = start.force_scale.max(reached.corrected.force_scale);
         let reaction = state.reactions[contact].size();
-        let is_zero = reaction == 0.0
-            || (reaction <= ZERO * force_scale
-                && reaction <= ZERO * start.loading.force_scale_at(contact, state, force_scale));
+        let is_zero = reaction == 0.0 || start.loading.is_no_force(contact, state, reaction, ZERO, force_scale);
         is_zero && start.loading.gap(contact, state) <= ZERO
     };
     let grazes = |(contact, mode): &(usize, &Mode)| {

@@ -100,8 +100,7 @@ fn standing_of_corner(loading: Loading<'_>, state: &State, closed: &[usize], for
 
 fn standing(loading: Loading<'_>, state: &State, index: usize, force_scale: f64) -> Standing {
     let (contact, reaction) = (&loading.contacts[index], &state.reactions[index]);
-    let zero = || ZERO * loading.force_scale_at(index, state, force_scale);
-    if reaction.normal <= 0.0 || reaction.normal <= zero() {
+    if reaction.normal <= 0.0 || loading.is_no_force(index, state, reaction.normal, ZERO, force_scale) {
         return if loading.gap(index, state) <= ZERO { Standing::Touching } else { Standing::Settled(Mode::Free) };
     }
     if contact.tangents() == 0 {

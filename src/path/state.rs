@@ -32,22 +32,35 @@ impl State {
     /// The state after a straight step along a rate.
     pub fn advanced(&self, rate: &Rate, step: f64) -> Self {
         let mut state = self.clone();
-        for (value, rate) in state.displacement.iter_mut().zip(&rate.displacement) {
+        state.advance(rate, step);
+        state
+    }
+
+    /// Goes on straight along a rate.
+    pub fn advance(&mut self, rate: &Rate, step: f64) {
+        for (value, rate) in self.displacement.iter_mut().zip(&rate.displacement) {
             *value += step * rate;
         }
-        state.load += step * rate.load;
-        for (reaction, rate) in state.reactions.iter_mut().zip(&rate.reactions) {
+        self.load += step * rate.load;
+        for (reaction, rate) in self.reactions.iter_mut().zip(&rate.reactions) {
             reaction.add(step, rate);
         }
-        state
+    }
+
+    /// Becomes another state; no memory is asked for where both are of one structure.
+    pub fn set_to(&mut self, other: &Self) {
+        self.displacement.clone_from(&other.displacement);
+        self.load = other.load;
+        self.reactions.clone_from(&other.reactions);
     }
 
     /// The change to another state.
     pub fn chord(&self, other: &Self) -> Rate {
         let mut chord =
             Rate { displacement: other.displacement.clone(), load: other.load, reactions: other.reactions.clone() };
-        let own = Rate { displacement: self.displacement.clone(), load: self.load, reactions: self.reactions.clone() };
-        chord.add(&own, -1.0);
+        chord.displacement.iter_mut().zip(&self.displacement).for_each(|(change, own)| *change -= own);
+        chord.load -= self.load;
+        chord.reactions.iter_mut().zip(&self.reactions).for_each(|(change, own)| change.add(-1.0, own));
         chord
     }
 

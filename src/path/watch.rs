@@ -186,6 +186,26 @@ impl Watch {
         }
     }
 
+    /// Whether a value of the quantity is above a tolerance times its scale.
+    pub fn is_above(self, loading: Loading<'_>, state: &State, value: f64, tolerance: f64, force_scale: f64) -> bool {
+        // No scale of forces is larger than that of the path, which often tells.
+        let most = if self.is_of_forces() { force_scale } else { 1.0 };
+        value > tolerance * most || value > tolerance * self.scale(loading, state, force_scale)
+    }
+
+    /// Whether a value is above [`Self::zero_within`], with a tolerance above the rounding of forces.
+    pub fn is_above_zero(
+        self,
+        loading: Loading<'_>,
+        state: &State,
+        value: f64,
+        tolerance: f64,
+        force_scale: f64,
+    ) -> bool {
+        let most = if self.is_of_forces() { force_scale } else { 1.0 };
+        value > tolerance * most || value > self.zero_within(loading, state, tolerance, force_scale)
+    }
+
     /// The value at a state that is zero as far as a relative tolerance tells.
     pub fn zero_within(self, loading: Loading<'_>, state: &State, tolerance: f64, force_scale: f64) -> f64 {
         match self {

@@ -45,8 +45,8 @@ impl Layout {
         Some(Self { pattern: Arc::new(pattern), places })
     }
 
-    /// Place of the entry of a call by its number.
-    pub fn place(&self, call: usize) -> Option<usize> {
-        self.places.get(call).copied().flatten().map(|place| place as usize)
+    /// Places of the entries of the calls, in their order.
+    pub fn places(&self) -> impl Iterator<Item = Option<usize>> + '_ {
+        self.places.iter().map(|place| place.map(|place| place as usize))
     }
 }

@@ -16,12 +16,12 @@ use super::Entries;
 use super::bordered::Bordered;
 use nalgebra::{Matrix3, Vector3};
 use smallvec::SmallVec;
-use std::cell::RefCell;
+use std::collections::VecDeque;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Border rows that hold unknowns of one node, and the border columns with its reactions, one for each row.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Holding {
     /// Unknowns of the node: at most three.
     pub unknowns: Places,
@@ -39,30 +39,50 @@ impl Holding {
     }
 }
 
-/// All holdings of a matrix. Whoever factorises several with one set keeps it: as long as the entries of its border rows
-/// and columns are the same, so are the nodes.
+/// All holdings of a matrix.
 #[derive(Default)]
 pub struct Holdings {
     list: Vec<Holding>,
-    last: RefCell<Option<Arc<Nodes>>>,
 }
 
 impl Holdings {
     pub fn new(list: Vec<Holding>) -> Self {
-        Self { list, last: RefCell::default() }
+        Self { list }
     }
 
     pub fn iter(&self) -> std::slice::Iter<'_, Holding> {
         self.list.iter()
     }
+}
 
-    fn nodes(&self, matrix: &Bordered, friction: Friction) -> Arc<Nodes> {
-        let known = self.last.borrow().as_ref().filter(|nodes| nodes.fit(matrix, &self.list, friction)).cloned();
-        known.unwrap_or_else(|| {
-            let nodes = Arc::new(Nodes::new(matrix, &self.list, friction));
-            *self.last.borrow_mut() = Some(Arc::clone(&nodes));
-            nodes
-        })
+/// The nodes of the matrices of one pattern that were factorised last: as long as the holdings and the entries of their
+/// border rows and columns are the same, so are the nodes.
+#[derive(Default)]
+pub(super) struct LastNodes(Mutex<VecDeque<Arc<Nodes>>>);
+
+/// So many sets of nodes are kept: of the modes on trial at an event and of those before it.
+const KEPT: usize = 4;
+
+impl LastNodes {
+    fn of(&self, matrix: &Bordered, holdings: &[Holding], friction: Friction) -> Arc<Nodes> {
+        // It is whole at every point where its holder could panic.
+        let mut last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let enters = enters(matrix);
+        match last.iter().position(|nodes| nodes.fit(matrix, holdings, friction, &enters)) {
+            Some(0) => {}
+            Some(place) => last.swap(0, place),
+            None => {
+                last.truncate(KEPT - 1);
+                last.push_front(Arc::new(Nodes::new(matrix, holdings, friction, enters)));
+            }
+        }
+        Arc::clone(&last[0])
+    }
+}
+
+impl std::fmt::Debug for LastNodes {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        out.write_str("LastNodes")
     }
 }
 
@@ -109,6 +129,7 @@ struct Nodes {
     /// Node and place in it of each unknown.
     place_of: Vec<Option<(u32, u32)>>,
     friction: Friction,
+    holdings: Vec<Holding>,
     /// Border columns that enter border rows.
     enters: Vec<bool>,
     /// Entries of the rows and columns of the holdings, one after the other.
@@ -131,16 +152,15 @@ const NOTHING: f64 = 1e-14;
 const DEPENDENT: f64 = 1e-6;
 
 impl Nodes {
-    fn new(matrix: &Bordered, holdings: &[Holding], friction: Friction) -> Self {
+    fn new(matrix: &Bordered, holdings: &[Holding], friction: Friction, enters: Vec<bool>) -> Self {
         let n = matrix.pattern.size();
         let mut is_reaction = vec![false; matrix.lower.len()];
         holdings.iter().flat_map(|holding| &holding.columns).for_each(|column| is_reaction[*column] = true);
-        // Reactions that enter border equations stay.
-        let enters = enters(matrix);
         let mut place_of = vec![None; n];
         let mut nodes: Vec<HeldNode> = Vec::with_capacity(holdings.len());
         for holding in holdings {
             let free = holding.unknowns.iter().all(|unknown| place_of[*unknown].is_none());
+            // Reactions that enter border equations stay.
             if !free || holding.columns.iter().any(|column| enters[*column]) {
                 continue;
             }
@@ -152,14 +172,14 @@ impl Nodes {
             nodes.push(node);
         }
         let borders = borders(matrix, holdings).collect();
-        Self { nodes, place_of, friction, enters, borders }
+        Self { nodes, place_of, friction, holdings: holdings.to_vec(), enters, borders }
     }
 
-    /// Whether they are those of a matrix, too.
-    fn fit(&self, matrix: &Bordered, holdings: &[Holding], friction: Friction) -> bool {
+    /// Whether they are those of a matrix with this pattern, too.
+    fn fit(&self, matrix: &Bordered, holdings: &[Holding], friction: Friction, enters: &[bool]) -> bool {
         self.friction == friction
-            && self.place_of.len() == matrix.pattern.size()
-            && self.enters == enters(matrix)
+            && self.holdings == holdings
+            && self.enters == enters
             && borders(matrix, holdings).eq(self.borders.iter().copied())
     }
 }
@@ -188,7 +208,7 @@ fn borders<'a>(matrix: &'a Bordered, holdings: &'a [Holding]) -> impl Iterator<I
 impl Elimination {
     /// Eliminates; with the matrix that is left. A holding that cannot be eliminated so stays in the borders.
     pub fn new(matrix: &Bordered, holdings: &Holdings, friction: Friction) -> (Self, Vec<f64>) {
-        let all = holdings.nodes(matrix, friction);
+        let all = matrix.pattern.last_nodes.of(matrix, &holdings.list, friction);
         let nodes = &all.nodes;
         let mut values = matrix.values.clone();
         let mut entries = Vec::with_capacity(4 * nodes.iter().map(|node| node.count * node.held).sum::<usize>());

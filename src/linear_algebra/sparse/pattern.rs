@@ -1,5 +1,6 @@
 //! Where a symmetric sparse matrix may have entries, and the order in which it is eliminated.
 
+use super::held::LastNodes;
 use super::unsymmetric::Fill;
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::cholesky::{SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky};
@@ -17,6 +18,7 @@ pub struct Pattern {
     pub(super) symbolic: SymbolicCholesky<usize>,
     /// Made when first needed.
     fill: OnceLock<Fill>,
+    pub(super) last_nodes: LastNodes,
 }
 
 impl Pattern {
@@ -57,7 +59,7 @@ impl Pattern {
             faer::sparse::linalg::cholesky::CholeskySymbolicParams::default(),
         )
         .ok()?;
-        Some(Self { size, starts, rows, mirrors, symbolic, fill: OnceLock::new() })
+        Some(Self { size, starts, rows, mirrors, symbolic, fill: OnceLock::new(), last_nodes: LastNodes::default() })
     }
 
     /// Rows of the matrix.
