@@ -41,6 +41,8 @@ pub struct Reached {
     pub event: Option<Watch>,
     /// Sign of the bordered determinant there, where it is certain.
     pub determinant: Option<f64>,
+    /// The contact at which the step ends because its slip does, where its speed is seen to fall through zero.
+    pub stopped: Option<usize>,
 }
 
 /// A step that is tried, and what is watched along it.
@@ -198,7 +200,7 @@ impl Start<'_> {
         if turn > MOST_TURN {
             return Err(Refused::Turned(turn));
         }
-        Ok(Reached { corrected, rate, step, error_estimate, drift: None, event: None, determinant })
+        Ok(Reached { corrected, rate, step, error_estimate, drift: None, event: None, determinant, stopped: None })
     }
 
     /// A step of an arc length, or to the first event before.
@@ -272,6 +274,12 @@ impl Start<'_> {
             reached = self.hold_exactly(end, reached, work)?;
         }
         reached.event = event;
+        reached.stopped = match (event, &stretch) {
+            (Some(watch @ Watch::Sliding(contact)), Some(stretch)) => {
+                self.falls_through(watch, stretch, &reached).then_some(contact)
+            }
+            _ => None,
+        };
         reached.corrected.iterations_to_small = hardness;
         reached.drift = self.drift_at(&reached, work);
         reached.error_estimate += reached.drift.as_ref().map_or(0.0, Rate::size);

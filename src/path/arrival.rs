@@ -5,7 +5,7 @@ use super::carried::Carried;
 use super::confirm::later_load;
 use super::corner;
 use super::critical::Crossing;
-use super::decide::{self, Before, Choice};
+use super::decide::{self, Before, Choice, Incoming};
 use super::directions::Found;
 use super::going_on::directions_going_on;
 use super::history;
@@ -42,6 +42,7 @@ impl Path<'_> {
         event: Option<Watch>,
         crossing: Option<Crossing>,
         incoming: &Rate,
+        stopped: Option<usize>,
         step: f64,
     ) -> Arrival {
         match event {
@@ -61,7 +62,7 @@ impl Path<'_> {
                 self.look_around(incoming, PointKind::SmoothLimit, Some(what.to_owned()), Some(-sign), false)
             }
             Some(Watch::Gap(_) | Watch::Normal(_) | Watch::Cone { .. } | Watch::Sliding(_) | Watch::Facet { .. }) => {
-                self.contact_change(incoming, step)
+                self.contact_change(incoming, stopped, step)
             }
         }
     }
@@ -96,7 +97,10 @@ impl Path<'_> {
         let at_once = directions_going_on(loading, &here.state, &standings, &here.modes, incoming, rules);
         let (options, found) = match at_once {
             Some(options) => (options, Found::default()),
-            None => decide::list(loading, &here.state, &standings, Before::Incoming(incoming), rules),
+            None => {
+                let before = Before::Incoming(Incoming::along(incoming));
+                decide::list(loading, &here.state, &standings, before, rules)
+            }
         };
         let taken = options.iter().position(|option| option.rate.product(incoming) > 1.0 - 1e-9);
         point.bifurcation = decide::is_bifurcation(&options, taken, sign);
@@ -142,7 +146,7 @@ impl Path<'_> {
         };
         if !standings.iter().all(|standing| matches!(standing, Standing::Settled(_))) {
             // Other modes of the contacts that can change; in the current mode, singular here, the branches are it.
-            let before = Before::Incoming(incoming);
+            let before = Before::Incoming(Incoming::along(incoming));
             let (others, listed) = decide::list(self.loading(), &self.at.here.state, &standings, before, rules);
             if listed.degenerate && others.is_empty() {
                 branches::in_other_modes(here, modes, &mut found);
@@ -189,7 +193,7 @@ impl Path<'_> {
     }
 
     /// A contact has reached the end of its mode after a step of this arc length: list the directions and take one.
-    fn contact_change(&mut self, incoming: &Rate, step: f64) -> Arrival {
+    fn contact_change(&mut self, incoming: &Rate, stopped: Option<usize>, step: f64) -> Arrival {
         self.at.counts.contact_changes += 1;
         let standings = self.standings(&self.at.here.state);
         for (reaction, standing) in self.at.here.state.reactions.iter_mut().zip(&standings) {
@@ -198,7 +202,7 @@ impl Path<'_> {
                 *reaction = Reaction::default();
             }
         }
-        let before = Before::Incoming(incoming);
+        let before = Before::Incoming(Incoming { rate: incoming, stopped });
         let rules = self.rules();
         let mut decision = decide::decide(self.loading(), &self.at.here.state, &standings, before, rules);
         // Ways that share a node's force anew come last: they begin with a rest, not with the motion that led here.

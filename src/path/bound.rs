@@ -135,5 +135,6 @@ fn ended(
         drift: start.drift.cloned(),
         event: Some(Watch::End(bound)),
         determinant: None,
+        stopped: None,
     })
 }

@@ -124,6 +124,7 @@ pub fn locate(
             drift: start.drift.cloned(),
             event: None,
             determinant: None,
+            stopped: None,
         };
         best = Some((residual, Located { point, crossing, between: Some([left.clone(), right.clone()]) }));
         if residual <= GOOD {

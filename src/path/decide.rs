@@ -12,7 +12,7 @@
 
 use super::confirm::confirm;
 use super::corner::whole_rates;
-use super::directions::{Found, difference_of_forces, directions, is_mechanism};
+use super::directions::{Candidate, Found, difference_of_forces, directions, is_mechanism};
 use super::energy;
 use super::loading::Loading;
 use super::rates::Effort;
@@ -50,11 +50,42 @@ pub struct Choice {
     pub mechanism: bool,
 }
 
+/// How the path arrived.
+#[derive(Debug, Clone, Copy)]
+pub struct Incoming<'a> {
+    /// Its direction.
+    pub rate: &'a Rate,
+    /// A contact that would slip backwards if its mode went on: its speed falls through zero here, and not at rest.
+    pub stopped: Option<usize>,
+}
+
+impl<'a> Incoming<'a> {
+    /// In a mode that goes on, or of whose end nothing more is known.
+    pub fn along(rate: &'a Rate) -> Self {
+        Self { rate, stopped: None }
+    }
+
+    /// Whether a direction that may be taken in two modes at first order is known to be taken in the first.
+    ///
+    /// It is the incoming one, and only the contact that stops is in doubt: if it slipped on, its speed would be `-κ t` after
+    /// an arc length `t`. Where the directions are proven to be the only ones, by a matrix whose principal minors are all
+    /// positive, the rates of the rates have the same matrix, and what is left of the cone if it sticks has the second
+    /// derivative `m κ`, `m` being a quotient of two such minors: it sticks.
+    fn tells(&self, candidate: &Candidate, is_proven: bool) -> bool {
+        let in_doubt =
+            || candidate.alternatives.iter().filter(|alternatives| alternatives.len() > 1).flatten().flatten();
+        is_proven
+            && self.stopped.is_some_and(|stopped| {
+                candidate.modes[stopped] == Mode::Stick && in_doubt().all(|(contact, _)| *contact == stopped)
+            })
+            && candidate.rate.product(self.rate) > 1.0 - SAME_WAY
+    }
+}
+
 /// What the path was doing before.
 #[derive(Debug, Clone, Copy)]
 pub enum Before<'a> {
-    /// It arrived along this direction.
-    Incoming(&'a Rate),
+    Incoming(Incoming<'a>),
     /// A stage begins: the load is to rise; ties go to the motion that the pattern pushes.
     StageStart,
 }
@@ -69,6 +100,8 @@ const BACK: f64 = 4e-5;
 const BACK_FORCES: f64 = 1e-4;
 /// Displacement rates along the incoming one that differ by less than this part of their sizes tie.
 const TIE_OF_MOTIONS: f64 = 1e-9;
+/// One less the product of two directions that are one.
+const SAME_WAY: f64 = 1e-9;
 /// Displacement rates below this part of a direction are no motion.
 const STILL: f64 = 1e-12;
 
@@ -89,16 +122,17 @@ pub fn list(
     rules: Rules<'_>,
 ) -> (Vec<Choice>, Found) {
     let incoming = match before {
-        Before::Incoming(rate) => Some(rate),
+        Before::Incoming(incoming) => Some(incoming),
         Before::StageStart => None,
     };
-    let mut found = directions(loading, state, standings, incoming, rules.effort);
+    let mut found = directions(loading, state, standings, incoming.map(|incoming| incoming.rate), rules.effort);
     let candidates = std::mem::take(&mut found.candidates);
     let mut options = Vec::with_capacity(candidates.len());
     let holds_exactly = || rules.effort.certify && straight::is_linear(loading);
     for candidate in candidates {
         let mechanism = is_mechanism(loading, state, &candidate.rate);
-        let confirmed = if candidate.weak && !mechanism && !holds_exactly() {
+        let is_known = || incoming.is_some_and(|incoming| incoming.tells(&candidate, found.is_proven));
+        let confirmed = if candidate.weak && !mechanism && !holds_exactly() && !is_known() {
             confirm(loading, state, &candidate, rules.force_scale)
         } else {
             Some((candidate.modes.clone(), 0.0))
@@ -117,7 +151,7 @@ pub fn list(
         });
     }
     if let Some(incoming) = incoming {
-        mark_retrace(loading, state, &mut options, incoming);
+        mark_retrace(loading, state, &mut options, incoming.rate);
     }
     (options, found)
 }
@@ -174,7 +208,7 @@ pub fn decide(
     push.iter_mut().zip(&loading.pattern.supports).for_each(|(sum, value)| *sum += value);
     let pushed = Rate { displacement: push, load: 0.0, reactions: Vec::new() };
     let previous = match before {
-        Before::Incoming(rate) => rate,
+        Before::Incoming(incoming) => incoming.rate,
         Before::StageStart => {
             if found.unexplored > 0 && open.iter().all(|&index| options[index].load_sign <= 0.0) {
                 // The load is to rise, and the mode in which it does may be among those not examined.

@@ -58,6 +58,8 @@ pub type Alternative = Vec<(usize, Mode)>;
 #[derive(Debug, Clone, Default)]
 pub struct Found {
     pub candidates: Vec<Candidate>,
+    /// A matrix whose principal minors are all positive proves that they are all.
+    pub is_proven: bool,
     /// Modes that were not examined.
     pub unexplored: u64,
     /// Those of them in which nodes begin to slip at once in space, in directions that are not proven to be all.

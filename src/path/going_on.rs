@@ -453,7 +453,7 @@ impl Response {
 mod tests {
     use super::*;
     use crate::cancel::CancelFlag;
-    use crate::path::decide::{self, Before};
+    use crate::path::decide::{self, Before, Incoming};
     use crate::path::{Path, Scene};
     use crate::scenes;
 
@@ -478,7 +478,7 @@ mod tests {
                     else {
                         continue;
                     };
-                    let before = Before::Incoming(incoming);
+                    let before = Before::Incoming(Incoming::along(incoming));
                     let (everywhere, rest) = decide::list(loading, &here.state, &standings, before, rules);
                     let place = format!("{} {}", built_in.name, increment.index);
                     assert_eq!((rest.unexplored, rest.degenerate), (0, false), "{place}");

@@ -30,6 +30,8 @@ const BY_SERIES: f64 = 1e3;
 const MOST_BY_SERIES: f64 = 1e-3;
 /// Points closer than this to another, over the bracket, tell nothing more.
 const CLOSE: f64 = 1e-2;
+/// Slopes that differ by no more than this factor are alike.
+const ALIKE: f64 = 4.0;
 /// How far the point at which a bound is met may be from where it was expected, over the bracket.
 const EXPECTED: f64 = 0.1;
 /// How far beside a place a point is tried where none is found at it, over what counts as one place.
@@ -243,6 +245,19 @@ impl Start<'_> {
             nearest = nearest.min(value.abs());
         }
         Err(unclear)
+    }
+
+    /// Whether a quantity falls at a point where it is zero, and is not just zero there: the slopes of the lines to points
+    /// on both sides of it are much alike.
+    pub(super) fn falls_through(&self, watch: Watch, stretch: &Stretch, zero: &Reached) -> bool {
+        let away = |placed: &&Placed| (placed.place - zero.step).abs() > CLOSE * zero.step;
+        let slope = |placed: &Placed| {
+            watch.value(self.loading, self.modes, &placed.state, &placed.rate) / (placed.place - zero.step)
+        };
+        let before = stretch.placed().filter(away).filter(|placed| placed.place < zero.step).last();
+        let after = stretch.placed().filter(away).find(|placed| placed.place > zero.step);
+        let (Some(before), Some(after)) = (before.map(slope), after.map(slope)) else { return false };
+        before < 0.0 && after < 0.0 && (ALIKE * before..=before / ALIKE).contains(&after)
     }
 
     /// The zero so close to a point found that a straight step leads there; `None` where what that leaves over counts for

@@ -6,7 +6,7 @@ use super::bound;
 use super::contact_law;
 use super::corner;
 use super::critical::{self, Crossing, Located};
-use super::decide::{self, Before};
+use super::decide::{self, Before, Incoming};
 use super::energy;
 use super::increment::Energy;
 use super::mode_system::ModeSystem;
@@ -327,7 +327,8 @@ impl Path<'_> {
     fn mode_ends_here(&self, rate: &Rate) -> bool {
         let here = &self.at.here;
         let standings = self.standings(&here.state);
-        let decision = decide::decide(self.loading(), &here.state, &standings, Before::Incoming(rate), self.rules());
+        let before = Before::Incoming(Incoming::along(rate));
+        let decision = decide::decide(self.loading(), &here.state, &standings, before, self.rules());
         decision.taken.is_none_or(|index| !all_continue(&decision.options[index].modes, &here.modes))
     }
 
@@ -346,6 +347,7 @@ impl Path<'_> {
             drift: here.drift.clone(),
             event: Some(watch),
             determinant: None,
+            stopped: None,
         }
     }
 

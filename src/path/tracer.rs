@@ -166,7 +166,7 @@ impl<'a> Path<'a> {
             modes.clone_from(&self.at.here.modes);
             arrival
         } else {
-            self.classify(reached.event, accepted.crossing, &reached.rate, reached.step)
+            self.classify(reached.event, accepted.crossing, &reached.rate, reached.stopped, reached.step)
         };
         if accepted.returned {
             arrival.stop = Some(StopReason::Cycle);

@@ -83,6 +83,7 @@ pub(super) fn directions(
         }
     }
     found.candidates.extend(candidates);
+    found.is_proven = complete;
     found.candidates.sort_by_cached_key(|candidate| equations.order(candidate));
     if !complete {
         let modes = |ways: u64, count: usize| ways.saturating_pow(u32::try_from(count).unwrap_or(u32::MAX));
