@@ -202,8 +202,9 @@ impl Path<'_> {
                 *reaction = Reaction::default();
             }
         }
-        let before = Before::Incoming(Incoming { rate: incoming, stopped });
         let rules = self.rules();
+        let modes = Some(&self.at.here.modes[..]);
+        let before = Before::Incoming(Incoming { rate: incoming, modes, stopped });
         let mut decision = decide::decide(self.loading(), &self.at.here.state, &standings, before, rules);
         // Ways that share a node's force anew come last: they begin with a rest, not with the motion that led here.
         let keeps: Vec<bool> = decision.options.iter().map(|option| self.keeps_shares(option)).collect();

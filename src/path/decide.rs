@@ -55,6 +55,8 @@ pub struct Choice {
 pub struct Incoming<'a> {
     /// Its direction.
     pub rate: &'a Rate,
+    /// The modes of which that is the direction at the point, where it is known to be.
+    pub modes: Option<&'a [Mode]>,
     /// A contact that would slip backwards if its mode went on: its speed falls through zero here, and not at rest.
     pub stopped: Option<usize>,
 }
@@ -62,7 +64,7 @@ pub struct Incoming<'a> {
 impl<'a> Incoming<'a> {
     /// In a mode that goes on, or of whose end nothing more is known.
     pub fn along(rate: &'a Rate) -> Self {
-        Self { rate, stopped: None }
+        Self { rate, modes: None, stopped: None }
     }
 
     /// Whether a direction that may be taken in two modes at first order is known to be taken in the first.
@@ -125,7 +127,7 @@ pub fn list(
         Before::Incoming(incoming) => Some(incoming),
         Before::StageStart => None,
     };
-    let mut found = directions(loading, state, standings, incoming.map(|incoming| incoming.rate), rules.effort);
+    let mut found = directions(loading, state, standings, incoming, rules.effort);
     let candidates = std::mem::take(&mut found.candidates);
     let mut options = Vec::with_capacity(candidates.len());
     let holds_exactly = || rules.effort.certify && straight::is_linear(loading);

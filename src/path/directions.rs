@@ -23,6 +23,7 @@
 
 use super::condensed::Condensed;
 use super::corner;
+use super::decide::Incoming;
 use super::loading::Loading;
 use super::mode_system::ModeSystem;
 use super::rates::Effort;
@@ -84,7 +85,7 @@ pub fn directions(
     loading: Loading<'_>,
     state: &State,
     standings: &[Standing],
-    incoming: Option<&Rate>,
+    incoming: Option<Incoming<'_>>,
     effort: Effort<'_>,
 ) -> Found {
     let held: Vec<Mode> = standings
@@ -106,6 +107,7 @@ pub fn directions(
     if sole::directions(loading, state, standings, incoming, effort, &mut found) {
         return found;
     }
+    let incoming = incoming.map(|incoming| incoming.rate);
     let Some(condensed) = Condensed::new(&system, loading, state, standings, incoming) else {
         found.degenerate = true;
         found.mechanism = resists_nothing(&system, loading, state);

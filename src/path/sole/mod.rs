@@ -21,11 +21,12 @@ mod proof;
 #[cfg(test)]
 mod tests;
 
+use super::decide::Incoming;
 use super::directions::Found;
 use super::loading::Loading;
 use super::rates::Effort;
 use super::standing::Standing;
-use super::state::{Rate, State};
+use super::state::State;
 use equations::Equations;
 use proof::Control;
 
@@ -46,7 +47,7 @@ pub(super) fn directions(
     loading: Loading<'_>,
     state: &State,
     standings: &[Standing],
-    incoming: Option<&Rate>,
+    incoming: Option<Incoming<'_>>,
     effort: Effort<'_>,
     found: &mut Found,
 ) -> bool {
@@ -58,7 +59,8 @@ pub(super) fn directions(
     let is_huge = columns * (loading.structure.freedoms() + 4 * loading.contacts.len()) > MOST_CONDENSED;
     // The members of a family that no element resists are searched for where contacts are few.
     let is_few = equations.changing.len() <= FEW;
-    let proof = equations.proof(incoming).filter(|proof| !is_few || proof.free_motions() <= 1);
+    let proof =
+        equations.proof(incoming.map(|incoming| incoming.rate)).filter(|proof| !is_few || proof.free_motions() <= 1);
     if proof.is_none() && !is_huge {
         return false;
     }

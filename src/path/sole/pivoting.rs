@@ -3,9 +3,10 @@
 use super::equations::{Changing, Equations};
 use super::proof::Control;
 use crate::contact::vector::{Vector, add, dot, scaled};
-use crate::contact::{Mode, Reaction};
+use crate::contact::{Mode, Reaction, all_continue};
 use crate::linear_algebra::Sink;
 use crate::path::corner::whole_rates;
+use crate::path::decide::Incoming;
 use crate::path::directions::{Alternative, Candidate, WEAK};
 use crate::path::mode_system::{Kind, ModeSystem};
 use crate::path::rates::IN_DOUBT;
@@ -25,16 +26,19 @@ pub(super) struct Doubt {
 
 impl Equations<'_> {
     /// A direction with this sign of what controls it, by block pivoting.
-    pub fn solve(&self, control: Control, sign: f64, incoming: Option<&Rate>) -> Option<Candidate> {
+    pub fn solve(&self, control: Control, sign: f64, incoming: Option<Incoming<'_>>) -> Option<Candidate> {
         let mut modes = self.held.clone();
-        if incoming.is_some_and(|rate| self.value_of(control, rate) * sign > 0.0) {
+        if incoming.is_some_and(|incoming| self.value_of(control, incoming.rate) * sign > 0.0) {
             for one in &self.changing {
                 modes[one.contact] = one.direction.map_or(modes[one.contact], |direction| Mode::Slip { direction });
             }
         }
         for round in 0..ROUNDS + ROUNDS_ONE_BY_ONE {
             let mut rate = match (control, incoming) {
-                (Control::Power, Some(incoming)) => self.line(&modes, Some(incoming)),
+                (_, Some(incoming)) if incoming.modes.is_some_and(|of| all_continue(of, &modes)) => {
+                    Some(incoming.rate.clone())
+                }
+                (Control::Power, Some(incoming)) => self.line(&modes, Some(incoming.rate)),
                 _ => None,
             }
             .or_else(|| self.line(&modes, None))?;

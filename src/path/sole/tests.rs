@@ -4,6 +4,7 @@ use super::directions;
 use crate::cancel::CancelFlag;
 use crate::contact::Mode;
 use crate::path::condensed::Condensed;
+use crate::path::decide::Incoming;
 use crate::path::directions::{Candidate, Found};
 use crate::path::mode_system::ModeSystem;
 use crate::path::rates::Random;
@@ -46,7 +47,7 @@ fn both(path: &Path<'_>, incoming: Option<&Rate>) -> Option<(Found, Found)> {
     let (loading, state) = (path.loading(), &path.at.here.state);
     let (standings, effort) = (path.standings(state), path.rules().effort);
     let (mut own, mut others) = (Found::default(), Found::default());
-    if !directions(loading, state, &standings, incoming, effort, &mut own) {
+    if !directions(loading, state, &standings, incoming.map(Incoming::along), effort, &mut own) {
         return None;
     }
     let held: Vec<Mode> = standings
