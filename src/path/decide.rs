@@ -12,8 +12,9 @@
 
 use super::confirm::confirm;
 use super::corner::whole_rates;
-use super::directions::{Candidate, Found, difference_of_forces, directions, is_mechanism};
+use super::directions::{Found, difference_of_forces, directions, is_mechanism};
 use super::energy;
+use super::incoming::Incoming;
 use super::loading::Loading;
 use super::rates::Effort;
 use super::standing::Standing;
@@ -50,40 +51,6 @@ pub struct Choice {
     pub mechanism: bool,
 }
 
-/// How the path arrived.
-#[derive(Debug, Clone, Copy)]
-pub struct Incoming<'a> {
-    /// Its direction.
-    pub rate: &'a Rate,
-    /// The modes of which that is the direction at the point, where it is known to be.
-    pub modes: Option<&'a [Mode]>,
-    /// A contact that would slip backwards if its mode went on: its speed falls through zero here, and not at rest.
-    pub stopped: Option<usize>,
-}
-
-impl<'a> Incoming<'a> {
-    /// In a mode that goes on, or of whose end nothing more is known.
-    pub fn along(rate: &'a Rate) -> Self {
-        Self { rate, modes: None, stopped: None }
-    }
-
-    /// Whether a direction that may be taken in two modes at first order is known to be taken in the first.
-    ///
-    /// It is the incoming one, and only the contact that stops is in doubt: if it slipped on, its speed would be `-κ t` after
-    /// an arc length `t`. Where the directions are proven to be the only ones, by a matrix whose principal minors are all
-    /// positive, the rates of the rates have the same matrix, and what is left of the cone if it sticks has the second
-    /// derivative `m κ`, `m` being a quotient of two such minors: it sticks.
-    fn tells(&self, candidate: &Candidate, is_proven: bool) -> bool {
-        let in_doubt =
-            || candidate.alternatives.iter().filter(|alternatives| alternatives.len() > 1).flatten().flatten();
-        is_proven
-            && self.stopped.is_some_and(|stopped| {
-                candidate.modes[stopped] == Mode::Stick && in_doubt().all(|(contact, _)| *contact == stopped)
-            })
-            && candidate.rate.product(self.rate) > 1.0 - SAME_WAY
-    }
-}
-
 /// What the path was doing before.
 #[derive(Debug, Clone, Copy)]
 pub enum Before<'a> {
@@ -102,8 +69,6 @@ const BACK: f64 = 4e-5;
 const BACK_FORCES: f64 = 1e-4;
 /// Displacement rates along the incoming one that differ by less than this part of their sizes tie.
 const TIE_OF_MOTIONS: f64 = 1e-9;
-/// One less the product of two directions that are one.
-const SAME_WAY: f64 = 1e-9;
 /// Displacement rates below this part of a direction are no motion.
 const STILL: f64 = 1e-12;
 

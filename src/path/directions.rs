@@ -23,7 +23,7 @@
 
 use super::condensed::Condensed;
 use super::corner;
-use super::decide::Incoming;
+use super::incoming::Incoming;
 use super::loading::Loading;
 use super::mode_system::ModeSystem;
 use super::rates::Effort;

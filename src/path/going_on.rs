@@ -453,7 +453,8 @@ impl Response {
 mod tests {
     use super::*;
     use crate::cancel::CancelFlag;
-    use crate::path::decide::{self, Before, Incoming};
+    use crate::path::decide::{self, Before};
+    use crate::path::incoming::Incoming;
     use crate::path::{Path, Scene};
     use crate::scenes;
 

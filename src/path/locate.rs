@@ -247,17 +247,15 @@ impl Start<'_> {
         Err(unclear)
     }
 
-    /// Whether a quantity falls at a point where it is zero, and is not just zero there: the slopes of the lines to points
-    /// on both sides of it are much alike.
+    /// Whether a quantity that is zero at a point falls through zero there.
     pub(super) fn falls_through(&self, watch: Watch, stretch: &Stretch, zero: &Reached) -> bool {
         let away = |placed: &&Placed| (placed.place - zero.step).abs() > CLOSE * zero.step;
-        let slope = |placed: &Placed| {
-            watch.value(self.loading, self.modes, &placed.state, &placed.rate) / (placed.place - zero.step)
+        let sampled = |placed: &Placed| {
+            (placed.place - zero.step, watch.value(self.loading, self.modes, &placed.state, &placed.rate))
         };
         let before = stretch.placed().filter(away).filter(|placed| placed.place < zero.step).last();
         let after = stretch.placed().filter(away).find(|placed| placed.place > zero.step);
-        let (Some(before), Some(after)) = (before.map(slope), after.map(slope)) else { return false };
-        before < 0.0 && after < 0.0 && (ALIKE * before..=before / ALIKE).contains(&after)
+        before.zip(after).is_some_and(|(before, after)| falls(sampled(before), sampled(after)))
     }
 
     /// The zero so close to a point found that a straight step leads there; `None` where what that leaves over counts for
@@ -313,5 +311,28 @@ impl Start<'_> {
             }
         }
         Err(Refused::AtStart(watch))
+    }
+}
+
+/// Whether a quantity that is zero at place 0 falls there, and is not just zero: the lines to values at places on both
+/// sides of it fall much alike.
+fn falls(before: (f64, f64), after: (f64, f64)) -> bool {
+    let (first, second) = (before.1 / before.0, after.1 / after.0);
+    first < 0.0 && second < 0.0 && first <= second / ALIKE && second <= first / ALIKE
+}
+
+#[cfg(test)]
+mod tests {
+    use super::falls;
+
+    #[test]
+    fn what_touches_zero_or_lingers_there_is_not_seen_to_fall() {
+        let sees = |value: fn(f64) -> f64| falls((-0.2, value(-0.2)), (0.02, value(0.02)));
+        assert!(sees(|x| -3.0 * x));
+        assert!(sees(|x| -x - x * x));
+        assert!(!sees(|x| x * x), "it touches zero");
+        assert!(!sees(|x| -x * x * x), "it lingers");
+        assert!(!sees(|x| x), "it rises");
+        assert!(!sees(|_| 0.0), "it stays");
     }
 }

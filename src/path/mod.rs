@@ -56,6 +56,7 @@ mod follow;
 mod foresight;
 mod going_on;
 mod history;
+mod incoming;
 pub mod increment;
 mod interpolation;
 mod loading;

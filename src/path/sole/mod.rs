@@ -21,8 +21,8 @@ mod proof;
 #[cfg(test)]
 mod tests;
 
-use super::decide::Incoming;
 use super::directions::Found;
+use super::incoming::Incoming;
 use super::loading::Loading;
 use super::rates::Effort;
 use super::standing::Standing;

@@ -1,0 +1,85 @@
+//! How a path comes to a point, and what that tells of the directions there.
+
+use super::directions::Candidate;
+use super::state::Rate;
+use crate::contact::Mode;
+
+/// One less the product of two directions that are one.
+const SAME_WAY: f64 = 1e-9;
+
+/// How the path arrived.
+#[derive(Debug, Clone, Copy)]
+pub struct Incoming<'a> {
+    /// Its direction.
+    pub rate: &'a Rate,
+    /// The modes of which that is the direction at the point, where it is known to be.
+    pub modes: Option<&'a [Mode]>,
+    /// A contact that would slip backwards if its mode went on: its speed falls through zero here, and not at rest.
+    pub stopped: Option<usize>,
+}
+
+impl<'a> Incoming<'a> {
+    /// In a mode that goes on, or of whose end nothing more is known.
+    pub fn along(rate: &'a Rate) -> Self {
+        Self { rate, modes: None, stopped: None }
+    }
+
+    /// Whether a direction that may be taken in two modes at first order is known to be taken in the first.
+    ///
+    /// It is the incoming one, and only the contact that stops is in doubt: if it slipped on, its speed would be `-κ t` after
+    /// an arc length `t`. Where the directions are proven to be the only ones, by a matrix whose principal minors are all
+    /// positive, the rates of the rates have the same matrix, and what is left of the cone if it sticks has the second
+    /// derivative `m κ`, `m` being a quotient of two such minors: it sticks.
+    pub(super) fn tells(&self, candidate: &Candidate, is_proven: bool) -> bool {
+        let in_doubt =
+            || candidate.alternatives.iter().filter(|alternatives| alternatives.len() > 1).flatten().flatten();
+        is_proven
+            && self.stopped.is_some_and(|stopped| {
+                candidate.modes[stopped] == Mode::Stick && in_doubt().all(|(contact, _)| *contact == stopped)
+            })
+            && candidate.rate.product(self.rate) > 1.0 - SAME_WAY
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Incoming;
+    use crate::cancel::CancelFlag;
+    use crate::contact::Mode;
+    use crate::path::decide::{Before, list};
+    use crate::path::directions::directions;
+    use crate::path::{Path, Scene};
+    use crate::scenes::of_any_size::row_of_bars;
+
+    #[test]
+    fn what_is_seen_to_stop_sticks_as_a_trial_step_finds() {
+        let request = serde_json::from_value(row_of_bars(20)).expect("a request");
+        let scene = Scene::new(&request).expect("a scene");
+        let mut path = Path::new(&scene, CancelFlag::default());
+        let mut told = 0;
+        while let Some(increment) = path.next() {
+            let Some(listed) = &path.at.listed else { continue };
+            let (Some(arriving), Some(taken)) = (&listed.arriving, listed.taken) else { continue };
+            let taken = &listed.options[taken];
+            let stops = |contact: &usize| {
+                matches!(arriving.modes[*contact], Mode::Slip { .. }) && taken.modes[*contact] == Mode::Stick
+            };
+            let Some(stopped) = (0..scene.contacts.len()).find(stops) else { continue };
+            let (loading, state, rules) = (path.loading(), &path.at.here.state, path.rules());
+            let standings = path.standings(state);
+            let tried = Incoming::along(&taken.rate);
+            let known = Incoming { stopped: Some(stopped), ..tried };
+            let found = directions(loading, state, &standings, Some(known), rules.effort);
+            told += found.candidates.iter().filter(|one| one.weak && known.tells(one, found.is_proven)).count();
+            assert!(!found.candidates.iter().any(|one| known.tells(one, false)), "there is no telling without a proof");
+            let [by_trial, by_knowledge] =
+                [tried, known].map(|incoming| list(loading, state, &standings, Before::Incoming(incoming), rules).0);
+            assert_eq!(by_trial.len(), by_knowledge.len(), "increment {}", increment.index);
+            for (one, other) in by_trial.iter().zip(&by_knowledge) {
+                assert_eq!((&one.modes, &one.rate), (&other.modes, &other.rate), "increment {}", increment.index);
+                assert_eq!((one.load_sign, one.dissipation), (other.load_sign, other.dissipation));
+            }
+        }
+        assert!(told >= 15, "{told} of the 19 slips that end");
+    }
+}
