@@ -1,0 +1,260 @@
+//! The equations of one contact mode.
+//!
+//! ```text
+//! f_int(u) - s f - f_held - Σ_i (n r_n + r_t)_i = 0          equilibrium
+//! g_i(u, s) = 0                                              closed contacts
+//! t·(x_i - x_i⁰) = 0                                         sticking contacts, unknown r_t
+//! r_t = -μ r_n d                                             slipping contacts, d a tangent, or along an edge
+//! c(u, s) = 0                                                arc length, or a held load or displacement
+//! ```
+//!
+//! `x_i` is the node's place relative to its obstacle. Along a line `d` is known; in a plane it is an unknown with the
+//! equation of `track`. Unknowns are `(u, s)`, then for each closed contact `r_n` and what its mode adds; the matrix is
+//! square, and regular at smooth limit points because `c` borders it
+//! (E. Riks, Int. J. Solids Struct. 15 (1979) 529, doi:10.1016/0020-7683(79)90081-7).
+
+mod factorise;
+mod matrix;
+mod rates;
+mod residual;
+mod turns;
+
+use super::corner::{self, total_force};
+use super::loading::Loading;
+use super::newton::Corrected;
+use super::pocket::{Edge, beside, free_directions};
+use super::state::State;
+use super::track::{Start, Turn};
+use crate::contact::vector::{Vector, add, dot, scaled};
+use crate::contact::{Frame, Mode, Reaction};
+use crate::linear_algebra::sparse::Holdings;
+use smallvec::SmallVec;
+use std::cell::OnceCell;
+
+/// What a contact contributes to the equations.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Role {
+    Free,
+    /// Closed, no traction.
+    Frictionless,
+    /// Slip along the frame's first tangent, in the sense of the sign.
+    Line {
+        sign: f64,
+    },
+    /// Slip along the edge with the obstacle of another contact of the node, in the sense of the sign: see `edge`.
+    Edge {
+        beside: usize,
+        sign: f64,
+    },
+    /// Slip along any tangent, on a track with an equation of its own.
+    Plane {
+        start: Start,
+        turn: Turn,
+    },
+    Stick,
+    /// Holds its node together with other contacts, and has the whole force in its unknowns.
+    Held,
+    /// Holds its node together with one that is `Held`; adds nothing.
+    HeldBy,
+}
+
+/// Which equation the track of a slip in a plane has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Of rates: the node goes along the direction.
+    Rates,
+    /// Of the increment: its chord lies between the directions at both ends.
+    Increment,
+}
+
+/// A state on the way to convergence, with the directions of slip (one a contact; empty where none is unknown).
+#[derive(Debug, Clone)]
+pub(super) struct Iterate {
+    pub state: State,
+    pub directions: Vec<Vector>,
+}
+
+impl Iterate {
+    /// Becomes another one of the same equations, in the memory that it has.
+    pub fn set_to(&mut self, other: &Self) {
+        self.state.set_to(&other.state);
+        self.directions.clone_from(&other.directions);
+    }
+}
+
+/// Up to three orthonormal directions.
+pub(super) type Directions = SmallVec<[Vector; 3]>;
+
+/// One mode's equations.
+pub struct ModeSystem<'a> {
+    pub(super) loading: Loading<'a>,
+    /// Where sticking contacts hold their nodes and slips start.
+    pub(super) anchor: &'a State,
+    pub(super) roles: Vec<Role>,
+    modes: &'a [Mode],
+    /// First row and column of each closed contact.
+    first_of: Vec<usize>,
+    pub(super) size: usize,
+    /// Made when first needed.
+    holdings: OnceCell<Holdings>,
+    /// Of each contact, see [`Self::held_directions`]; made when first needed.
+    held: OnceCell<Vec<Directions>>,
+}
+
+impl<'a> ModeSystem<'a> {
+    /// `anchor` is the state in which the modes begin.
+    pub fn new(loading: Loading<'a>, modes: &'a [Mode], anchor: &'a State) -> Self {
+        let mut next = loading.structure.unknowns() + 1;
+        let mut first_of = Vec::with_capacity(modes.len());
+        let mut roles = Vec::with_capacity(modes.len());
+        for (index, (mode, contact)) in modes.iter().zip(loading.contacts).enumerate() {
+            let held = loading.corners.iter().find_map(|corner| {
+                let mut holding = corner.holding(modes);
+                let first = holding.next()?;
+                (first == index || holding.any(|other| other == index)).then_some(first == index)
+            });
+            let role = match mode {
+                Mode::Stick if held == Some(true) => Role::Held,
+                Mode::Stick | Mode::Slip { .. } if held == Some(false) => Role::HeldBy,
+                Mode::Free => Role::Free,
+                Mode::Stick => Role::Stick,
+                Mode::Slip { .. } if contact.tangents() == 0 => Role::Frictionless,
+                Mode::Slip { direction } if contact.tangents() == 1 => {
+                    let tangent = loading.frame(index, anchor).tangents[0];
+                    Role::Line { sign: if dot(direction, &tangent) < 0.0 { -1.0 } else { 1.0 } }
+                }
+                Mode::Slip { direction } if let Some(beside) = beside(loading, modes, index) => {
+                    let edge = Edge::new(loading, [index, beside], anchor);
+                    Role::Edge { beside, sign: if dot(direction, &edge.direction) < 0.0 { -1.0 } else { 1.0 } }
+                }
+                Mode::Slip { direction } => {
+                    let normal = loading.frame(index, anchor).normal;
+                    Role::Plane { start: Start { direction: *direction, normal }, turn: Turn::default() }
+                }
+            };
+            first_of.push(next);
+            next += match role {
+                Role::Free | Role::HeldBy => 0,
+                Role::Held => free_directions(loading, contact.node).len(),
+                Role::Frictionless | Role::Line { .. } | Role::Edge { .. } => 1,
+                Role::Plane { .. } => 2,
+                Role::Stick => 1 + contact.tangents(),
+            };
+            roles.push(role);
+        }
+        Self { loading, anchor, roles, modes, first_of, size: next, holdings: OnceCell::new(), held: OnceCell::new() }
+    }
+
+    /// Number of unknowns.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Whether some contact slips in a plane.
+    pub fn has_tracks(&self) -> bool {
+        self.roles.iter().any(|role| matches!(role, Role::Plane { .. }))
+    }
+
+    /// Column of a closed contact's normal reaction; its other unknowns follow. Its rows are one less.
+    pub fn column_of(&self, contact: usize) -> usize {
+        self.first_of[contact]
+    }
+
+    /// Row of a closed contact's normal equation; its others follow.
+    pub fn row_of(&self, contact: usize) -> usize {
+        self.first_of[contact] - 1
+    }
+
+    /// A state with the directions of slip that the modes give; where contacts hold a node together, the first of them
+    /// has the whole force.
+    pub(super) fn iterate(&self, mut state: State) -> Iterate {
+        for corner in self.loading.corners {
+            let mut holding = corner.holding(self.modes);
+            if let Some(first) = holding.next() {
+                let force = total_force(self.loading, corner.holding(self.modes), &state);
+                let normal = self.loading.frame(first, &state).normal;
+                let along = dot(&force, &normal);
+                state.reactions[first] = Reaction { normal: along, tangential: add(&force, -along, &normal) };
+                holding.for_each(|other| state.reactions[other] = Reaction::default());
+            }
+        }
+        let directions = if self.has_tracks() {
+            let of = |(index, role): (usize, &Role)| match role {
+                Role::Plane { start, .. } => start.carried_to(&self.loading.frame(index, &state).normal),
+                _ => [0.0; 3],
+            };
+            self.roles.iter().enumerate().map(of).collect()
+        } else {
+            Vec::new()
+        };
+        Iterate { state, directions }
+    }
+
+    /// A converged point.
+    pub(super) fn iterate_of(&self, corrected: &Corrected) -> Iterate {
+        Iterate { directions: corrected.directions.clone(), ..self.iterate(corrected.state.clone()) }
+    }
+
+    /// Where several contacts hold a node together, their reactions become those of least norm.
+    pub(super) fn share(&self, state: &mut State) {
+        corner::share(self.loading, self.loading.corners, self.modes, state);
+    }
+
+    /// Orthonormal directions in which a sticking contact holds its node, along which it has a force: the normal and the
+    /// tangents with friction; where it holds the node together with others, all in which the node is free.
+    pub(super) fn held_directions(&self, contact: usize) -> &[Vector] {
+        &self.held.get_or_init(|| (0..self.roles.len()).map(|contact| self.directions_held(contact)).collect())[contact]
+    }
+
+    fn directions_held(&self, contact: usize) -> Directions {
+        let data = &self.loading.contacts[contact];
+        let in_frame = |tangents: usize| {
+            let frame = self.loading.frame(contact, self.anchor);
+            std::iter::once(frame.normal).chain(frame.tangents.into_iter().take(tangents)).collect()
+        };
+        match self.roles[contact] {
+            Role::Stick => in_frame(data.tangents()),
+            Role::Held => {
+                let free = free_directions(self.loading, data.node);
+                let dimension = self.loading.structure.dimension;
+                if free.len() == dimension { in_frame(dimension - 1) } else { Directions::from_vec(free) }
+            }
+            Role::Free
+            | Role::Frictionless
+            | Role::Line { .. }
+            | Role::Edge { .. }
+            | Role::Plane { .. }
+            | Role::HeldBy => Directions::new(),
+        }
+    }
+
+    /// Motion relative to the obstacle since the anchor.
+    pub(super) fn chord(&self, contact: usize, state: &State) -> Vector {
+        add(&self.loading.relative(contact, state), -1.0, &self.loading.relative(contact, self.anchor))
+    }
+
+    /// The direction of a slip at an iterate; zero without friction.
+    fn direction(&self, contact: usize, frame: &Frame, iterate: &Iterate) -> Vector {
+        match self.roles[contact] {
+            Role::Line { sign } => scaled(&frame.tangents[0], sign),
+            Role::Edge { beside, sign } => {
+                scaled(&Edge::new(self.loading, [contact, beside], &iterate.state).direction, sign)
+            }
+            Role::Plane { .. } => iterate.directions[contact],
+            Role::Free | Role::Frictionless | Role::Stick | Role::Held | Role::HeldBy => [0.0; 3],
+        }
+    }
+
+    /// How a slip's direction turns with the place on the obstacle, its own turn apart.
+    fn direction_change(&self, contact: usize, iterate: &Iterate, direction: &Vector, motion: &Vector) -> Vector {
+        let frame = self.loading.frame(contact, &iterate.state);
+        match self.roles[contact] {
+            Role::Line { sign } => scaled(&frame.tangent_change(motion), sign),
+            Role::Edge { beside, sign } => {
+                scaled(&Edge::new(self.loading, [contact, beside], &iterate.state).change(motion), sign)
+            }
+            Role::Plane { .. } => scaled(&frame.normal, -dot(&frame.normal_change(motion), direction)),
+            Role::Free | Role::Frictionless | Role::Stick | Role::Held | Role::HeldBy => [0.0; 3],
+        }
+    }
+}

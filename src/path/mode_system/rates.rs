@@ -1,0 +1,136 @@
+//! Solutions of the equations taken apart: rates, corrections and the path's direction.
+
+use super::{Iterate, Kind, ModeSystem, Role};
+use crate::contact::vector::{add, cross, dot, scaled};
+use crate::contact::{Mode, Reaction};
+use crate::linear_algebra::SystemFactorisation;
+use crate::path::newton::Corrected;
+use crate::path::state::{Rate, State};
+use crate::path::track;
+use nalgebra::DVector;
+
+impl ModeSystem<'_> {
+    /// Takes a vector of unknowns apart, at a state.
+    pub fn rate_from(&self, state: &State, values: &DVector<f64>) -> Rate {
+        self.rate_at(&self.iterate(state.clone()), values, Kind::Rates)
+    }
+
+    /// `kind` is that of the equations whose solution the values are.
+    pub(in crate::path) fn rate_at(&self, iterate: &Iterate, values: &DVector<f64>, kind: Kind) -> Rate {
+        let structure = self.loading.structure;
+        let load = values[structure.unknowns()];
+        let mut displacement = vec![0.0; structure.freedoms()];
+        for (freedom, value) in displacement.iter_mut().enumerate() {
+            *value = match structure.unknown_of[freedom] {
+                Some(unknown) => values[unknown],
+                None => load * self.loading.support_rate(freedom),
+            };
+        }
+        let mut rate = Rate { displacement, load, reactions: vec![Reaction::default(); self.roles.len()] };
+        for (contact, role) in self.roles.iter().enumerate() {
+            let column = self.column_of(contact);
+            rate.reactions[contact] = match role {
+                Role::Free | Role::HeldBy => continue,
+                Role::Stick | Role::Held => {
+                    let normal = self.loading.frame(contact, self.anchor).normal;
+                    let directions = self.held_directions(contact);
+                    // In the frame of the contact the first is the normal.
+                    let is_normal = directions[0] == normal;
+                    let others = directions.iter().enumerate().skip(usize::from(is_normal));
+                    let rest = others.fold([0.0; 3], |sum, (k, direction)| add(&sum, values[column + k], direction));
+                    if is_normal {
+                        Reaction { normal: values[column], tangential: rest }
+                    } else {
+                        let along = dot(&rest, &normal);
+                        Reaction { normal: along, tangential: add(&rest, -along, &normal) }
+                    }
+                }
+                Role::Frictionless => Reaction { normal: values[column], tangential: [0.0; 3] },
+                Role::Line { .. } | Role::Edge { .. } | Role::Plane { .. } => {
+                    let frame = self.loading.frame(contact, &iterate.state);
+                    let friction = self.loading.contacts[contact].friction;
+                    let pressed = friction * iterate.state.reactions[contact].normal;
+                    let direction = self.direction(contact, &frame, iterate);
+                    let mut tangential = scaled(&direction, -friction * values[column]);
+                    if matches!(role, Role::Plane { .. }) {
+                        let across = cross(&frame.normal, &direction);
+                        let per_turn = if kind == Kind::Rates { 1.0 } else { pressed };
+                        tangential = add(&tangential, -per_turn * values[column + 1], &across);
+                    }
+                    if frame.curvature != 0.0 || matches!(role, Role::Edge { .. }) {
+                        let motion = self.loading.relative_rate(contact, &rate);
+                        let change = self.direction_change(contact, iterate, &direction, &motion);
+                        tangential = add(&tangential, -pressed, &change);
+                    }
+                    Reaction { normal: values[column], tangential }
+                }
+            };
+        }
+        rate
+    }
+
+    /// Goes on by minus a Newton correction.
+    pub(in crate::path) fn corrected_by(&self, iterate: Iterate, values: &DVector<f64>) -> Iterate {
+        let correction = self.rate_at(&iterate, values, Kind::Increment);
+        let Iterate { mut state, mut directions } = iterate;
+        state.advance(&correction, -1.0);
+        if self.has_tracks() {
+            self.place_exactly(&mut state);
+        }
+        for (contact, role) in self.roles.iter().enumerate() {
+            if let Role::Plane { .. } = role {
+                let frame = self.loading.frame(contact, &state);
+                let turn = -values[self.column_of(contact) + 1];
+                directions[contact] = track::turned(&frame, &directions[contact], turn);
+            }
+        }
+        let mut next = Iterate { state, directions };
+        self.make_consistent(&mut next);
+        next
+    }
+
+    /// The modes at an iterate: directions of slip as they are there.
+    pub(in crate::path) fn modes_at(&self, iterate: &Iterate) -> Vec<Mode> {
+        let at = |(contact, mode): (usize, &Mode)| match self.roles[contact] {
+            Role::Line { .. } | Role::Edge { .. } | Role::Plane { .. } => {
+                let frame = self.loading.frame(contact, &iterate.state);
+                Mode::Slip { direction: self.direction(contact, &frame, iterate) }
+            }
+            Role::Free | Role::Frictionless | Role::Stick | Role::Held | Role::HeldBy => *mode,
+        };
+        self.modes.iter().enumerate().map(at).collect()
+    }
+
+    /// The path's direction in this mode at its anchor or at a converged point: the null vector of the rate equations, of
+    /// unit arc length, on the side of `towards`. `None` where the equations have no such vector or more than one.
+    pub fn tangent(&self, corrected: &Corrected, towards: &Rate) -> Option<Rate> {
+        let iterate = self.iterate_of(corrected);
+        self.tangent_by(&self.bordered(&iterate, towards)?, &iterate)
+    }
+
+    pub(in crate::path) fn tangent_by(&self, factorisation: &SystemFactorisation, iterate: &Iterate) -> Option<Rate> {
+        let mut values = self.bordering();
+        if !factorisation.solve(&mut values) {
+            return None;
+        }
+        self.direction_from(iterate, &values)
+    }
+
+    /// The right-hand side whose solution is the path's direction.
+    pub(in crate::path) fn bordering(&self) -> DVector<f64> {
+        let mut values = DVector::zeros(self.size);
+        values[self.size - 1] = 1.0;
+        values
+    }
+
+    /// A solution of the rate equations, of unit arc length.
+    pub(in crate::path) fn direction_from(&self, iterate: &Iterate, values: &DVector<f64>) -> Option<Rate> {
+        let mut rate = self.rate_at(iterate, values, Kind::Rates);
+        let size = rate.size();
+        if size <= 0.0 || !size.is_finite() {
+            return None;
+        }
+        rate.scale(1.0 / size);
+        Some(rate)
+    }
+}

@@ -1,0 +1,61 @@
+//! How fast slips in planes turn, and by how much they have.
+
+use super::{ModeSystem, Role};
+use crate::contact::Mode;
+use crate::contact::vector::size;
+use crate::path::newton::{Corrected, Tangent};
+use crate::path::state::Rate;
+use crate::path::track::{self, Turn};
+
+impl ModeSystem<'_> {
+    /// Sets how fast the slips in planes turn at the start, by the path's direction there, and for another solve at the
+    /// end. Whether some direction settles there is returned.
+    pub fn set_turns(&mut self, start: &Rate, end: &Corrected, tangent: &Tangent) -> bool {
+        let mut settles = false;
+        for index in 0..self.roles.len() {
+            let Role::Plane { start: begun, .. } = self.roles[index] else { continue };
+            let Mode::Slip { direction } = end.modes[index] else { continue };
+            let at_start = track::turn_rate(self.loading, index, self.anchor, start, &begun.direction);
+            let at_end = track::turn_rate(self.loading, index, &end.state, &tangent.rate, &direction);
+            let settling = tangent.stiffness_across[index].and_then(|stiffness| {
+                let chord = size(&self.chord(index, &end.state));
+                let here = (&end.state, &tangent.rate);
+                track::settling(self.loading, index, here, (&begun, &direction), (chord, stiffness))
+            });
+            settles |= settling.is_some_and(|settling| settling.share() > 0.0);
+            self.roles[index] = Role::Plane { start: begun, turn: Turn { at_start, at_end, settling } };
+        }
+        settles
+    }
+
+    /// The largest angle (radians) by which the direction of a slip in a plane differs from that of another point, or
+    /// from that at the start; a node that is not pressed has none.
+    pub fn largest_turn(&self, corrected: &Corrected, other: Option<&Corrected>) -> f64 {
+        let of = |(index, role): (usize, &Role)| {
+            let (Role::Plane { start, .. }, Mode::Slip { direction }) = (role, corrected.modes[index]) else {
+                return 0.0;
+            };
+            if corrected.state.reactions[index].normal <= 0.0 {
+                return 0.0;
+            }
+            let normal = self.loading.frame(index, &corrected.state).normal;
+            let from = match other.map(|other| other.modes[index]) {
+                Some(Mode::Slip { direction }) => direction,
+                Some(Mode::Free | Mode::Stick) | None => start.carried_to(&normal),
+            };
+            track::angle(&normal, &from, &direction).abs()
+        };
+        self.roles.iter().enumerate().map(of).fold(0.0, f64::max)
+    }
+
+    /// The largest angle (radians) by which turns move the chord of a track that does not settle.
+    pub fn largest_correction(&self, corrected: &Corrected) -> f64 {
+        let of = |(index, role): (usize, &Role)| match role {
+            Role::Plane { turn, .. } if turn.settling.is_none_or(|settling| settling.share() == 0.0) => {
+                turn.correction(size(&self.chord(index, &corrected.state))).abs()
+            }
+            _ => 0.0,
+        };
+        self.roles.iter().enumerate().map(of).fold(0.0, f64::max)
+    }
+}
