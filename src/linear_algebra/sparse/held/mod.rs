@@ -1,0 +1,182 @@
+//! Nodes that border rows hold, eliminated where they are.
+//!
+//! A closed contact adds rows `C u_i + d L = g` at its node `i` and reactions `r` in the node's own equations, so that its
+//! saddle point needs no border: with `Q` orthogonal, `y = Qᵀ u_i = (y_H, y_T)` and `C Q = [M, 0]`,
+//!
+//! ```text
+//! y_H = M⁻¹ (g - d L),      R r = f_H - (K y)_H - ...,      QᵀB = [R; F]
+//! ```
+//!
+//! Rows and columns `H` leave the matrix (a one stays on the diagonal), whose pattern remains. Without friction `F = 0`
+//! and `r` follows in the end. With friction (`F != 0`) there are two ways: `r` stays a border, and the equations `H` are
+//! its rows, so that the matrix stays symmetric; or the equations `H` times `F R⁻¹` are taken from the equations `T`, which
+//! makes it unsymmetric, and `r` follows in the end, too.
+
+mod node;
+mod nodes;
+
+pub(super) use node::HeldNode;
+pub(super) use nodes::LastNodes;
+
+use super::Entries;
+use super::bordered::Bordered;
+use nodes::Nodes;
+use smallvec::SmallVec;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Border rows that hold unknowns of one node, and the border columns with its reactions, one for each row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Holding {
+    /// Unknowns of the node: at most three.
+    pub unknowns: Places,
+    pub rows: Places,
+    pub columns: Places,
+}
+
+/// Some numbers of rows, columns or unknowns.
+pub type Places = SmallVec<[usize; 3]>;
+
+impl Holding {
+    /// Of a node that nothing holds yet.
+    pub fn new(unknowns: impl IntoIterator<Item = usize>) -> Self {
+        Self { unknowns: unknowns.into_iter().collect(), rows: Places::new(), columns: Places::new() }
+    }
+}
+
+/// All holdings of a matrix.
+#[derive(Default)]
+pub struct Holdings {
+    list: Vec<Holding>,
+}
+
+impl Holdings {
+    pub fn new(list: Vec<Holding>) -> Self {
+        Self { list }
+    }
+
+    pub fn iter(&self) -> std::slice::Iter<'_, Holding> {
+        self.list.iter()
+    }
+}
+
+/// What becomes of the reactions of contacts with friction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Friction {
+    /// They stay borders.
+    Bordered,
+    /// They are eliminated, and the matrix is unsymmetric.
+    Folded,
+}
+
+/// What is left of a matrix, and what was taken.
+pub(super) struct Elimination {
+    nodes: Arc<Nodes>,
+    /// Of each node, where its columns and its rows `H` of the matrix begin and end.
+    columns_at: Vec<[Range<usize>; 3]>,
+    rows_at: Vec<[Range<usize>; 3]>,
+    /// Entries of all rows and columns `H`.
+    entries: Vec<(usize, f64)>,
+}
+
+impl Elimination {
+    /// Eliminates; with the matrix that is left. A holding that cannot be eliminated so stays in the borders.
+    pub fn new(matrix: &Bordered, holdings: &Holdings, friction: Friction) -> (Self, Vec<f64>) {
+        let all = matrix.pattern.last_nodes.of(matrix, &holdings.list, friction);
+        let nodes = &all.nodes;
+        let mut values = matrix.values.clone();
+        let mut entries = Vec::with_capacity(4 * nodes.iter().map(|node| node.count * node.held).sum::<usize>());
+        nodes.iter().for_each(|node| node.rotate_matrix(matrix, &mut values));
+        // All rows and columns are taken before any is cleared: those of neighbours have entries in each other's.
+        let rows_at = nodes.iter().map(|node| node.take_rows(matrix, &values, &mut entries)).collect();
+        nodes.iter().for_each(|node| node.fold(matrix, &mut values));
+        let columns_at = nodes.iter().map(|node| node.take_columns(matrix, &values, &mut entries)).collect();
+        nodes.iter().for_each(|node| node.clear(matrix, &mut values));
+        (Self { nodes: all, columns_at, rows_at, entries }, values)
+    }
+
+    pub fn nodes(&self) -> &[HeldNode] {
+        &self.nodes.nodes
+    }
+
+    /// A column `H` of a node.
+    pub fn stiffness(&self, node: &HeldNode, index: usize) -> &[(usize, f64)] {
+        &self.entries[self.columns_at[node.place][index].clone()]
+    }
+
+    /// A row `H` of a node.
+    pub fn equilibrium(&self, node: &HeldNode, index: usize) -> &[(usize, f64)] {
+        &self.entries[self.rows_at[node.place][index].clone()]
+    }
+
+    /// Whether an unknown of the rotated system is held.
+    pub fn is_held(&self, unknown: usize) -> bool {
+        self.nodes.place_of[unknown].is_some_and(|(node, local)| (local as usize) < self.nodes()[node as usize].held)
+    }
+
+    /// Entries of a row or a column over the rotated unknowns: those that are not held, and those that are.
+    pub fn rotated(&self, entries: &[(usize, f64)]) -> (Entries, Entries) {
+        let (mut free, mut held) = (Entries::with_capacity(entries.len()), Entries::new());
+        let mut at_nodes: SmallVec<[(u32, u32, f64); 8]> = SmallVec::new();
+        for (unknown, value) in entries {
+            match self.nodes.place_of[*unknown] {
+                None => free.push((*unknown, *value)),
+                Some((node, local)) => at_nodes.push((node, local, *value)),
+            }
+        }
+        at_nodes.sort_by_key(|(node, local, _)| (*node, *local));
+        for group in at_nodes.chunk_by(|a, b| a.0 == b.0) {
+            let node = &self.nodes()[group[0].0 as usize];
+            for (place, unknown) in node.unknowns().iter().enumerate() {
+                let part = |(_, local, value): &(u32, u32, f64)| node.rotation[(*local as usize, place)] * value;
+                let value: f64 = group.iter().map(part).sum();
+                if value != 0.0 {
+                    if place < node.held { &mut held } else { &mut free }.push((*unknown, value));
+                }
+            }
+        }
+        (free, held)
+    }
+
+    /// Splits a column of the rotated matrix.
+    pub fn split(&self, entries: &[(usize, f64)]) -> (Entries, Entries) {
+        entries.iter().copied().partition(|(unknown, _)| !self.is_held(*unknown))
+    }
+
+    /// What entries of a column at held unknowns become in the other equations of their nodes, where friction is folded.
+    pub fn folded(&self, held: &[(usize, f64)]) -> Entries {
+        let mut free = Entries::new();
+        for (unknown, value) in held {
+            let Some((node, local)) = self.nodes.place_of[*unknown] else { continue };
+            let node = &self.nodes()[node as usize];
+            if let Some(friction) = &node.friction {
+                for other in node.held..node.count {
+                    free.push((node.unknowns[other], -friction[(other, local as usize)] * value));
+                }
+            }
+        }
+        free
+    }
+
+    /// `Qᵀ x` or `Q x` at every node.
+    pub fn rotate(&self, x: &mut [f64], back: bool) {
+        for node in self.nodes().iter().filter(|node| node.turns) {
+            let here = node.gather(x);
+            let turned = if back { node.rotation * here } else { node.rotation.tr_mul(&here) };
+            node.unknowns().iter().zip(turned.iter()).for_each(|(unknown, value)| x[*unknown] = *value);
+        }
+    }
+
+    /// Folds a right-hand side that was rotated.
+    pub fn fold(&self, x: &mut [f64]) {
+        for node in self.nodes() {
+            if let Some(friction) = &node.friction {
+                let here = node.gather(x);
+                for other in node.held..node.count {
+                    x[node.unknowns[other]] -=
+                        (0..node.held).map(|held| friction[(other, held)] * here[held]).sum::<f64>();
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! All held nodes of a matrix, kept as long as they stay the same.
+
+use super::node::HeldNode;
+use super::{Friction, Holding};
+use crate::linear_algebra::sparse::Entries;
+use crate::linear_algebra::sparse::bordered::Bordered;
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// All of them, for some entries of the borders.
+pub(super) struct Nodes {
+    pub nodes: Vec<HeldNode>,
+    /// Node and place in it of each unknown.
+    pub place_of: Vec<Option<(u32, u32)>>,
+    friction: Friction,
+    holdings: Vec<Holding>,
+    /// Border columns that enter border rows.
+    enters: Vec<bool>,
+    /// Entries of the rows and columns of the holdings, one after the other.
+    borders: Vec<(usize, f64)>,
+}
+
+/// The nodes of the matrices of one pattern that were factorised last: as long as the holdings and the entries of their
+/// border rows and columns are the same, so are the nodes.
+#[derive(Default)]
+pub(in crate::linear_algebra::sparse) struct LastNodes(Mutex<VecDeque<Arc<Nodes>>>);
+
+/// So many sets of nodes are kept: of the modes on trial at an event and of those before it.
+const KEPT: usize = 4;
+
+impl LastNodes {
+    pub(super) fn of(&self, matrix: &Bordered, holdings: &[Holding], friction: Friction) -> Arc<Nodes> {
+        // It is whole at every point where its holder could panic.
+        let mut last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let enters = enters(matrix);
+        match last.iter().position(|nodes| nodes.fit(matrix, holdings, friction, &enters)) {
+            Some(0) => {}
+            Some(place) => last.swap(0, place),
+            None => {
+                last.truncate(KEPT - 1);
+                last.push_front(Arc::new(Nodes::new(matrix, holdings, friction, enters)));
+            }
+        }
+        Arc::clone(&last[0])
+    }
+}
+
+impl std::fmt::Debug for LastNodes {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        out.write_str("LastNodes")
+    }
+}
+
+impl Nodes {
+    fn new(matrix: &Bordered, holdings: &[Holding], friction: Friction, enters: Vec<bool>) -> Self {
+        let n = matrix.pattern.size();
+        let mut is_reaction = vec![false; matrix.lower.len()];
+        holdings.iter().flat_map(|holding| &holding.columns).for_each(|column| is_reaction[*column] = true);
+        let mut place_of = vec![None; n];
+        let mut nodes: Vec<HeldNode> = Vec::with_capacity(holdings.len());
+        for holding in holdings {
+            let free = holding.unknowns.iter().all(|unknown| place_of[*unknown].is_none());
+            // Reactions that enter border equations stay.
+            if !free || holding.columns.iter().any(|column| enters[*column]) {
+                continue;
+            }
+            let Some(mut node) = HeldNode::new(matrix, holding, &is_reaction, friction) else { continue };
+            for (local, unknown) in node.unknowns().iter().enumerate() {
+                place_of[*unknown] = Some((nodes.len() as u32, local as u32));
+            }
+            node.place = nodes.len();
+            nodes.push(node);
+        }
+        let borders = borders(matrix, holdings).collect();
+        Self { nodes, place_of, friction, holdings: holdings.to_vec(), enters, borders }
+    }
+
+    /// Whether they are those of a matrix with this pattern, too.
+    fn fit(&self, matrix: &Bordered, holdings: &[Holding], friction: Friction, enters: &[bool]) -> bool {
+        self.friction == friction
+            && self.holdings == holdings
+            && self.enters == enters
+            && borders(matrix, holdings).eq(self.borders.iter().copied())
+    }
+}
+
+/// Which border columns have entries in border rows.
+fn enters(matrix: &Bordered) -> Vec<bool> {
+    let n = matrix.pattern.size();
+    let mut enters = vec![false; matrix.lower.len()];
+    for (column, _) in matrix.lower.iter().flatten() {
+        if *column >= n {
+            enters[*column - n] = true;
+        }
+    }
+    enters
+}
+
+/// The entries of the rows and columns of holdings, each row and column closed by its length.
+fn borders<'a>(matrix: &'a Bordered, holdings: &'a [Holding]) -> impl Iterator<Item = (usize, f64)> + 'a {
+    let closed = |entries: &'a Entries| entries.iter().copied().chain(std::iter::once((entries.len(), 0.0)));
+    holdings.iter().flat_map(move |holding| {
+        let rows = holding.rows.iter().flat_map(move |row| closed(&matrix.lower[*row]));
+        rows.chain(holding.columns.iter().flat_map(move |column| closed(&matrix.right[*column])))
+    })
+}

@@ -1,0 +1,203 @@
+//! A request made ready for tracing: checked, numbered and dimensionless.
+//!
+//! Lengths are divided by `displacement_scale` `ℓ`, forces by `force_scale` `φ`, each stage's load factor by its
+//! `load_scale` `σ`; a pattern `f` becomes `f σ/φ`. By default `ℓ` is the longest bar and `φ` the smallest axial
+//! stiffness; without bars, `φ` is the largest force of any stage at the load factor at which the stage is to end (1 where
+//! it names none), or the largest spring stiffness (Frobenius norm) times the largest prescribed motion if that is more,
+//! and `ℓ` that force over that stiffness.
+//! `σ` is the smaller of `φ / max |f|` and `ℓ / max |motion|`. All follow the units of the input, so that a change of units changes nothing but round-off.
+
+mod build;
+mod refuse;
+
+use super::corner::Corner;
+use super::loading::LoadPattern;
+use super::newton::Place;
+use super::plan::Plan;
+use super::state::State;
+use crate::contact::Contact;
+use crate::model::InputErrors;
+use crate::model::request::{Analysis, JobRequest};
+use crate::structure::Structure;
+use build::{Contacts, Scaled, build_contacts, build_stage, build_structure, scales};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Everything a path needs to know; shared by all who trace it.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    pub(super) structure: Structure,
+    /// Contacts that are solved for; coincident ones of a node are one of them.
+    pub(super) contacts: Vec<Contact>,
+    /// Names of their nodes and obstacles.
+    pub(super) contact_names: Vec<(Arc<str>, Arc<str>)>,
+    /// The contacts of the request, in its order.
+    pub(super) reported: Vec<Reported>,
+    /// Nodes with several contacts.
+    pub(super) corners: Vec<Corner>,
+    pub(super) node_names: Vec<Arc<str>>,
+    pub(super) stages: Vec<StageLoad>,
+    pub(super) analysis: Analysis,
+    /// Which of the request's contacts have a row in every increment, in reach or not; `None`: all.
+    pub(super) asked_rows: Option<Vec<usize>>,
+    /// Straight stretches are one increment.
+    pub(super) jumps: bool,
+    plan: Plan,
+}
+
+/// A contact of the request and its part of the one that is solved for.
+#[derive(Debug, Clone)]
+pub(super) struct Reported {
+    pub node: Arc<str>,
+    pub obstacle: Arc<str>,
+    /// Which of the scene's contacts.
+    pub contact: usize,
+    /// Shares of the reaction's parts; 1 but for coincident contacts.
+    pub normal_share: f64,
+    pub tangential_share: f64,
+    /// Others of the request share that contact.
+    pub shared: bool,
+}
+
+/// A stage's load pattern over all degrees of freedom and its ends, dimensionless.
+#[derive(Debug, Clone)]
+pub(super) struct StageLoad {
+    pub name: Arc<str>,
+    pub pattern: LoadPattern,
+    pub load_scale: f64,
+    pub ends: Vec<End>,
+    /// The loads at which the stage may end, in the user's units, in the order of those `ends`.
+    given_loads: Vec<f64>,
+}
+
+impl StageLoad {
+    /// A load in the user's units. At the bound of a stage it is the number that was given: dividing it by a scale and
+    /// multiplying again may not give it back.
+    pub fn load_factor(&self, load: f64) -> f64 {
+        let bounds =
+            self.ends.iter().filter_map(|end| if let End::Load { bound, .. } = end { Some(*bound) } else { None });
+        let given = bounds.zip(&self.given_loads).find(|(bound, _)| *bound == load);
+        given.map_or(load * self.load_scale, |(_, given)| *given)
+    }
+}
+
+/// One way in which a stage ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum End {
+    /// `sign (s - bound) >= 0`
+    Load {
+        bound: f64,
+        sign: f64,
+    },
+    /// `sign (u - bound) >= 0`
+    Displacement {
+        freedom: usize,
+        bound: f64,
+        sign: f64,
+    },
+    LimitPoints(u64),
+    ContactChanges(u64),
+    Increments(u64),
+}
+
+impl End {
+    /// Whether it is a bound of the load or of a displacement, not a count.
+    pub fn is_bound(self) -> bool {
+        matches!(self, Self::Load { .. } | Self::Displacement { .. })
+    }
+
+    /// The equation of a bound; `None` of a count.
+    pub fn place(self) -> Option<Place<'static>> {
+        match self {
+            Self::Load { bound, .. } => Some(Place::Load(bound)),
+            Self::Displacement { freedom, bound, .. } => Some(Place::Displacement { freedom, value: bound }),
+            Self::LimitPoints(_) | Self::ContactChanges(_) | Self::Increments(_) => None,
+        }
+    }
+
+    /// Whether a state meets a bound without even round-off.
+    pub fn is_met_exactly(self, state: &State) -> bool {
+        match self {
+            Self::Load { bound, .. } => state.load == bound,
+            Self::Displacement { freedom, bound, .. } => state.displacement[freedom] == bound,
+            Self::LimitPoints(_) | Self::ContactChanges(_) | Self::Increments(_) => false,
+        }
+    }
+
+    /// Puts a state that meets a bound to round-off exactly there.
+    pub fn make_exact(self, state: &mut State) {
+        match self {
+            Self::Load { bound, .. } => state.load = bound,
+            Self::Displacement { freedom, bound, .. } => state.displacement[freedom] = bound,
+            Self::LimitPoints(_) | Self::ContactChanges(_) | Self::Increments(_) => {}
+        }
+    }
+}
+
+impl Scene {
+    /// Checks the request as a whole and makes it dimensionless.
+    pub fn new(request: &JobRequest) -> Result<Self, InputErrors> {
+        crate::model::check::check(request)?;
+        let model = &request.model;
+        let (length, force) = scales(model, &request.analysis);
+        let numbers: HashMap<&str, usize> =
+            model.nodes.keys().enumerate().map(|(number, name)| (name.as_str(), number)).collect();
+        let structure = build_structure(model, &numbers, length, force);
+        let mut left_out = Vec::new();
+        let Contacts { contacts, contact_names, reported, corners } =
+            build_contacts(model, &numbers, length, &structure, &mut left_out);
+        // A contact that is solved for is numbered when the first of the request's for it is read.
+        let mut first_contacts: Vec<usize> = Vec::with_capacity(contacts.len());
+        for (index, one) in reported.iter().enumerate() {
+            if one.contact == first_contacts.len() {
+                first_contacts.push(index);
+            }
+        }
+        let scaled = Scaled {
+            model,
+            analysis: &request.analysis,
+            numbers: &numbers,
+            structure: &structure,
+            first_contacts: &first_contacts,
+            length,
+            force,
+        };
+        let stages: Vec<StageLoad> = model.stages.iter().map(|stage| build_stage(stage, &scaled)).collect();
+        let plan = Plan {
+            unknowns: structure.unknowns() as u64,
+            contacts: reported.len() as u64,
+            stages: stages.len() as u64,
+            displacement_scale: length,
+            force_scale: force,
+            load_scales: stages.iter().map(|stage| stage.load_scale).collect(),
+            left_out,
+        };
+        let node_names = model.nodes.keys().map(|name| Arc::from(name.as_str())).collect();
+        let analysis = request.analysis.clone();
+        let asked_rows = super::near::asked_rows(request);
+        let jumps = super::straight::jumps(&analysis, &structure);
+        let mut scene = Self {
+            structure,
+            contacts,
+            contact_names,
+            reported,
+            corners,
+            node_names,
+            stages,
+            analysis,
+            asked_rows,
+            jumps,
+            plan,
+        };
+        scene.plan.left_out.extend(super::plan::left_out(&scene));
+        scene.refuse_mechanism()?;
+        scene.refuse_imbalance()?;
+        scene.refuse_dragged_supports(model)?;
+        Ok(scene)
+    }
+
+    /// What the scene needs and what is left out.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+}
