@@ -91,6 +91,7 @@ mod totals;
 mod traced;
 pub mod tracer;
 mod track;
+mod trying;
 mod turning;
 mod watch;
 

@@ -2,10 +2,8 @@
 
 use super::advance::{Reached, Refused, Start, Work};
 use super::arrival::SAME_STATE;
-use super::bound;
-use super::contact_law;
 use super::corner;
-use super::critical::{self, Crossing, Located};
+use super::critical::Crossing;
 use super::decide::{self, Before};
 use super::energy;
 use super::incoming::Incoming;
@@ -14,13 +12,14 @@ use super::mode_system::ModeSystem;
 use super::pocket::Pocket;
 use super::root::find_root;
 use super::scene::End;
-use super::singular::{self, Change, Signature};
+use super::singular::Signature;
 use super::state::{Rate, State};
 use super::stop::StopReason;
 use super::totals::{Added, NO_ENERGY};
 use super::tracer::Path;
+use super::trying::{Sought, Tried, Tries};
 use super::watch::Watch;
-use crate::contact::{Mode, all_continue};
+use crate::contact::all_continue;
 use crate::model::request::{Events, Method};
 
 /// The turn of the path (radians) that a step aims at.
@@ -41,13 +40,6 @@ const REJECTED: f64 = 0.55;
 
 /// A step that ends before this fraction of what was tried does not let the next be longer.
 const CUT_SHORT: f64 = 0.5;
-/// Where contacts change one after another, the next is looked for within this multiple of the way between the last two,
-/// if that is less than this part of a step: over a short way Newton's method and the location of events have little to do.
-const NEXT_WITHIN: f64 = 4.0;
-const MOST_OF_STEP: f64 = 0.5;
-/// Shorter steps that are tried where a change of signs cannot be made out.
-const MOST_UNRESOLVED: u64 = 4;
-
 /// A point reached, with the energies of the way there.
 pub(super) struct Accepted {
     pub reached: Reached,
@@ -79,199 +71,36 @@ pub(super) fn quantised(factor: f64) -> f64 {
     ((factor.log2() * 8.0).floor() / 8.0).exp2()
 }
 
-/// Ends a step at the first smooth bifurcation in it, of its own mode or of that in which contacts that touch without
-/// reaction all along are free; with the signs past its end.
-fn first_crossing(
-    start: &Start<'_>,
-    before: Option<Signature>,
-    reached: Reached,
-    may_refuse: bool,
-    work: &mut Work,
-) -> Result<(Reached, Option<Crossing>, Option<Signature>), Refused> {
-    let (reached, crossing, after) = crossing_in_mode(start, before, reached, may_refuse, work)?;
-    match singular::loosened(start, &reached).and_then(|loose| crossing_when_loose(start, &loose, &reached, work)) {
-        Some((point, crossing)) => Ok((point, Some(crossing), before)),
-        None => Ok((reached, crossing, after)),
-    }
-}
-
-/// The first smooth bifurcation of a step in looser modes.
-fn crossing_when_loose(
-    start: &Start<'_>,
-    loose: &[Mode],
-    reached: &Reached,
-    work: &mut Work,
-) -> Option<(Reached, Crossing)> {
-    let loosened = Start { modes: loose, ..*start };
-    let before = Signature::past_start(&loosened, reached.step, &mut None, work)?;
-    let mut end = loosened.reach_near(reached.corrected.state.clone(), reached.step, work).ok()?;
-    end.event = reached.event;
-    let (_, change) = singular::compare(&loosened, before, &end);
-    if change == Change::None {
-        return None;
-    }
-    let Located { mut point, crossing, .. } = critical::locate(&loosened, before, change, &end, work)?;
-    if point.step >= reached.step || crossing.eigenvalues == 0 {
-        return None;
-    }
-    for (contact, mode) in point.corrected.modes.iter_mut().enumerate() {
-        if loose[contact] != start.modes[contact] {
-            *mode = start.modes[contact];
-        }
-    }
-    point.corrected.iterations_to_small = reached.corrected.iterations_to_small;
-    Some((point, Crossing { grazing: true, ..crossing }))
-}
-
-/// Ends a step at the first smooth bifurcation in its own mode.
-fn crossing_in_mode(
-    start: &Start<'_>,
-    before: Option<Signature>,
-    reached: Reached,
-    may_refuse: bool,
-    work: &mut Work,
-) -> Result<(Reached, Option<Crossing>, Option<Signature>), Refused> {
-    let Some(before) = before else {
-        // The start is singular: signs are known from the end on.
-        let state = &reached.corrected.state;
-        let regular = reached.determinant.filter(|_| !matches!(reached.event, Some(Watch::LoadRate { .. })));
-        let after =
-            regular.and_then(|sign| Signature::with_determinant(start.loading, start.modes, start.state, state, sign));
-        return Ok((reached, None, after));
-    };
-    let (after, change) = singular::compare(start, before, &reached);
-    if after.is_none() && reached.event.is_none() && may_refuse {
-        return Err(Refused::Unresolved);
-    }
-    if change == Change::None {
-        return Ok((reached, None, after));
-    }
-    match critical::locate(start, before, change, &reached, work) {
-        Some(Located { mut point, crossing, .. }) if point.step < reached.step || crossing.eigenvalues == 0 => {
-            point.corrected.iterations_to_small = reached.corrected.iterations_to_small;
-            Ok((point, Some(crossing), Some(crossing.after)))
-        }
-        Some(_) => Ok((reached, None, Some(before))),
-        None if may_refuse => Err(Refused::Unresolved),
-        None => Ok((reached, None, after)),
-    }
-}
-
 impl Path<'_> {
     /// Steps until a point is accepted.
     pub(super) fn step(&mut self) -> Result<Accepted, StopReason> {
-        let (least, most) = (self.scene.analysis.arc_length.min, self.scene.analysis.arc_length.max);
-        // An event nearer than that is located within an ordinary step.
-        let ordinary = self.at.step.min(most);
-        let jump = self.way_to_next_event().filter(|way| *way > ordinary);
-        self.look_ahead(jump.unwrap_or(ordinary));
-        let may_join = self.at.waiting.is_over() && self.may_join_changes();
-        let foreseen = if jump.is_none() { self.step_to_foreseen_change(ordinary, may_join) } else { None };
-        let mut step = jump.or(foreseen).unwrap_or(ordinary);
-        let mut unresolved = 0;
-        let mut next = self.at.here.apart.map(|apart| NEXT_WITHIN * apart);
-        let mut known = self.at.here.signature;
+        let least = self.scene.analysis.arc_length.min;
+        let sought = self.sought_step();
+        let mut step = sought.step();
+        let mut tries = Tries::new(&self.at.here);
         loop {
             if self.cancel.is_cancelled() {
                 return Err(StopReason::Cancelled);
             }
             let Some(rate) = self.at.here.rate.clone() else { return Err(StopReason::NoDirection) };
-            let start = Start {
-                loading: self.loading(),
-                state: &self.at.here.state,
-                rate: &rate,
-                modes: &self.at.here.modes,
-                drift: self.at.here.drift.as_ref(),
-                force_scale: self.at.totals.force_scale,
-            };
             let mut work = self.at.totals.work;
-            let ends = &self.scene.stages[self.at.stage].ends;
-            let may_join = may_join && jump != Some(step);
-            let (mut first, mut joined) = (None, None);
-            let sign = self.at.here.load_sign;
-            let next = next.take().filter(|next| *next < MOST_OF_STEP * step && !(may_join && start.may_join()));
-            let next = next.and_then(|next| {
-                let mut serving = None;
-                known = known.or_else(|| Signature::past_start(&start, next, &mut serving, &mut work));
-                let tried = start.attempt(next, None, serving, ends, sign, &mut work).ok()?;
-                (!tried.passed.is_empty()).then_some(tried)
-            });
-            let before = self.at.here.before.as_ref();
-            let tried = next.map_or_else(|| start.attempt(step, before, None, ends, sign, &mut work), Ok);
-            let outcome = tried.and_then(|tried| {
-                first = may_join.then(|| start.changes_to_join(&tried)).flatten();
-                joined = first.as_ref().and_then(|first| start.join_changes(first, &tried, &mut work));
-                match &joined {
-                    Some(joined) => Ok(joined.reached.clone()),
-                    None => start.stop_at_event(tried, ends, &mut work),
-                }
-            });
-            let is_lost = match &outcome {
-                Ok(reached) => matches!(reached.event, Some(Watch::End(_))) && reached.determinant.is_none(),
-                Err(refused) => matches!(refused, Refused::Newton(_)),
-            };
-            let ended = is_lost.then(|| bound::beside_singular(&start, step, ends, sign, known, &mut work)).flatten();
-            let back = outcome.as_ref().ok().and_then(|reached| self.way_back(&start, reached, &mut work));
-            let outcome = match (outcome, back, ended) {
-                (Ok(_), Some(back), _) => Ok((back, None, None, true)),
-                (_, _, Some((reached, crossing, signature))) => Ok((reached, crossing, signature, false)),
-                (Ok(reached), None, None) if let Some(joined) = &joined => Ok((reached, None, joined.signature, false)),
-                (Ok(reached), None, None) => {
-                    let before = known.or_else(|| Signature::past_start(&start, reached.step, &mut None, &mut work));
-                    known = before;
-                    first_crossing(&start, before, reached, unresolved < MOST_UNRESOLVED, &mut work)
-                        .map(|(reached, crossing, signature)| (reached, crossing, signature, false))
-                }
-                (Err(refused), ..) => Err(refused),
-            };
-            let outcome = outcome.and_then(|point| {
-                let corrected = &point.0.corrected;
-                let forces = self.at.totals.force_scale.max(corrected.force_scale);
-                if !contact_law::holds(self.loading(), &corrected.state, forces) {
-                    Err(Refused::Unlawful)
-                } else if self.shrinks_to_a_point(&corrected.state) {
-                    Err(Refused::Collapsed)
-                } else {
-                    Ok(point)
-                }
-            });
+            let outcome = self.try_step(&rate, step, &sought, &mut tries, &mut work);
             self.at.totals.work = work;
-            if first.is_some() {
-                self.at.waiting.note(joined.is_some());
+            if let Some(joined) = tries.joined.take() {
+                self.at.waiting.note(joined);
             }
             match outcome {
-                Ok((reached, crossing, signature, returned)) => {
-                    let mut accepted = self.balance(&rate, reached);
-                    (accepted.crossing, accepted.signature, accepted.returned) = (crossing, signature, returned);
-                    // The kinks of a step with contact changes say nothing of its length.
-                    let mut last = None;
-                    if let Some(joined) = joined.filter(|_| !returned) {
-                        accepted.join(joined.changes, &self.at.totals.energy);
-                        last = Some(joined.unchanged);
-                    }
-                    let turned = rate.product(last.as_ref().unwrap_or(&accepted.reached.rate));
-                    let factor = self.next_step_factor(turned.clamp(-1.0, 1.0).acos(), &accepted, step);
-                    if factor > REJECTED || step * factor < least {
-                        // Where the mode ends inside the step, the program names the next one, from there.
-                        accepted.mode_named = self.is_named_by_program().then(|| match accepted.joined {
-                            0 => self.program_keeps_mode(&rate, &accepted.reached, step),
-                            _ => self.program_joins_changes(&rate, step, &accepted.reached.corrected.modes),
-                        });
-                        if jump != Some(step) {
-                            let next = if foreseen == Some(step) && factor >= 1.0 { ordinary } else { step * factor };
-                            self.at.step = next.clamp(least, most);
-                        }
-                        return Ok(accepted);
-                    }
-                    step *= factor;
-                }
+                Ok(tried) => match self.weigh(&rate, tried, step, &sought) {
+                    Ok(accepted) => return Ok(accepted),
+                    Err(factor) => step *= factor,
+                },
                 Err(Refused::AtStart(watch)) if watch.is_of_contact() && self.mode_ends_here(&rate) => {
                     let mut accepted = self.balance(&rate, self.without_step(watch, &rate));
                     accepted.mode_named = self.is_named_by_program().then_some(true);
                     return Ok(accepted);
                 }
                 Err(Refused::Unresolved) => {
-                    unresolved += 1;
+                    tries.unresolved += 1;
                     step *= 0.7;
                 }
                 Err(refused) => {
@@ -294,6 +123,48 @@ impl Path<'_> {
         }
     }
 
+    /// How long a step is to be, as far as is known before it is tried.
+    fn sought_step(&mut self) -> Sought {
+        // An event nearer than that is located within an ordinary step.
+        let ordinary = self.at.step.min(self.scene.analysis.arc_length.max);
+        let jump = self.way_to_next_event().filter(|way| *way > ordinary);
+        self.look_ahead(jump.unwrap_or(ordinary));
+        let may_join = self.at.waiting.is_over() && self.may_join_changes();
+        let foreseen = if jump.is_none() { self.step_to_foreseen_change(ordinary, may_join) } else { None };
+        Sought { ordinary, jump, foreseen, may_join }
+    }
+
+    /// Accepts a point with what its increment did to the energies and chooses the next step, or says by what factor a
+    /// step is to be shorter that went too far for them.
+    fn weigh(&mut self, rate: &Rate, tried: Tried, step: f64, sought: &Sought) -> Result<Accepted, f64> {
+        let (least, most) = (self.scene.analysis.arc_length.min, self.scene.analysis.arc_length.max);
+        let Tried { reached, crossing, signature, returned, joined } = tried;
+        let mut accepted = self.balance(rate, reached);
+        (accepted.crossing, accepted.signature, accepted.returned) = (crossing, signature, returned);
+        // The kinks of a step with contact changes say nothing of its length.
+        let mut last = None;
+        if let Some((changes, unchanged)) = joined {
+            accepted.join(changes, &self.at.totals.energy);
+            last = Some(unchanged);
+        }
+        let turned = rate.product(last.as_ref().unwrap_or(&accepted.reached.rate));
+        let factor = self.next_step_factor(turned.clamp(-1.0, 1.0).acos(), &accepted, step);
+        if factor <= REJECTED && step * factor >= least {
+            return Err(factor);
+        }
+        // Where the mode ends inside the step, the program names the next one, from there.
+        accepted.mode_named = self.is_named_by_program().then(|| match accepted.joined {
+            0 => self.program_keeps_mode(rate, &accepted.reached, step),
+            _ => self.program_joins_changes(rate, step, &accepted.reached.corrected.modes),
+        });
+        if sought.jump != Some(step) {
+            let was_cut = sought.foreseen == Some(step) && factor >= 1.0;
+            let next = if was_cut { sought.ordinary } else { step * factor };
+            self.at.step = next.clamp(least, most);
+        }
+        Ok(accepted)
+    }
+
     /// Whether several obstacles hold some node by a force beyond the slides that leave them.
     fn is_held_beyond(&self, rate: &Rate) -> bool {
         let (loading, here) = (self.loading(), &self.at.here);
@@ -306,7 +177,7 @@ impl Path<'_> {
     }
 
     /// Whether some bar has come to have no direction that the displacements could tell.
-    fn shrinks_to_a_point(&self, state: &State) -> bool {
+    pub(super) fn shrinks_to_a_point(&self, state: &State) -> bool {
         let structure = &self.scene.structure;
         structure.smallest_stretch(&state.displacement) < A_POINT
             && structure.smallest_stretch(&self.at.here.state.displacement) >= A_POINT
@@ -353,7 +224,7 @@ impl Path<'_> {
     }
 
     /// The point at which the stage began, where a step without event passes it again in the same sense.
-    fn way_back(&self, start: &Start<'_>, reached: &Reached, work: &mut Work) -> Option<Reached> {
+    pub(super) fn way_back(&self, start: &Start<'_>, reached: &Reached, work: &mut Work) -> Option<Reached> {
         let (origin, sense) = self.at.begun.as_ref()?;
         // How far a state lies past the origin.
         let past = |state: &State| {

@@ -1,0 +1,231 @@
+//! One try of a step: how far its mode goes, and whether what is reached can be a point of the path.
+
+use super::advance::{Reached, Refused, Start, Work};
+use super::at_once::Joined;
+use super::bound;
+use super::contact_law;
+use super::critical::{self, Crossing, Located};
+use super::progress::Here;
+use super::singular::{self, Change, Signature};
+use super::state::Rate;
+use super::tracer::Path;
+use super::watch::Watch;
+use crate::contact::Mode;
+
+/// Where contacts change one after another, the next is looked for within this multiple of the way between the last two,
+/// if that is less than this part of a step: over a short way Newton's method and the location of events have little to do.
+const NEXT_WITHIN: f64 = 4.0;
+const MOST_OF_STEP: f64 = 0.5;
+/// Shorter steps that are tried where a change of signs cannot be made out.
+const MOST_UNRESOLVED: u64 = 4;
+
+/// The length of a step as far as it is known before it is tried.
+pub(super) struct Sought {
+    /// By the path's turn, Newton's work and the energy balance of the steps before.
+    pub ordinary: f64,
+    /// To the next event of a path that is straight up to there.
+    pub jump: Option<f64>,
+    /// To just past the next contact change that the rates foresee.
+    pub foreseen: Option<f64>,
+    /// Contact changes in it may be taken together.
+    pub may_join: bool,
+}
+
+impl Sought {
+    /// The first length to try.
+    pub fn step(&self) -> f64 {
+        self.jump.or(self.foreseen).unwrap_or(self.ordinary)
+    }
+}
+
+/// What the tries of one step have found so far.
+pub(super) struct Tries {
+    /// The way within which the next change is looked for, once.
+    next: Option<f64>,
+    /// Signs just past the start.
+    known: Option<Signature>,
+    /// Tries at which a change of signs could not be made out.
+    pub unresolved: u64,
+    /// Of the last try: whether changes that might have been taken together were; `None` where there were none.
+    pub joined: Option<bool>,
+}
+
+impl Tries {
+    pub fn new(here: &Here) -> Self {
+        let next = here.apart.map(|apart| NEXT_WITHIN * apart);
+        Self { next, known: here.signature, unresolved: 0, joined: None }
+    }
+}
+
+/// What a try leads to.
+pub(super) struct Tried {
+    pub reached: Reached,
+    /// The smooth bifurcation there, if it is one.
+    pub crossing: Option<Crossing>,
+    /// Signs just past it.
+    pub signature: Option<Signature>,
+    /// It is where the stage began.
+    pub returned: bool,
+    /// How many contact changes within the step are taken together, and the direction at its end without them.
+    pub joined: Option<(u64, Rate)>,
+}
+
+impl Tried {
+    fn plain(reached: Reached, crossing: Option<Crossing>, signature: Option<Signature>) -> Self {
+        Self { reached, crossing, signature, returned: false, joined: None }
+    }
+}
+
+impl Path<'_> {
+    /// Tries a step of this length along the direction just now.
+    pub(super) fn try_step(
+        &self,
+        rate: &Rate,
+        step: f64,
+        sought: &Sought,
+        tries: &mut Tries,
+        work: &mut Work,
+    ) -> Result<Tried, Refused> {
+        let here = &self.at.here;
+        let start = Start {
+            loading: self.loading(),
+            state: &here.state,
+            rate,
+            modes: &here.modes,
+            drift: here.drift.as_ref(),
+            force_scale: self.at.totals.force_scale,
+        };
+        let ends = &self.scene.stages[self.at.stage].ends;
+        let may_join = sought.may_join && sought.jump != Some(step);
+        let next = tries.next.take().filter(|next| *next < MOST_OF_STEP * step && !(may_join && start.may_join()));
+        let next = next.and_then(|next| {
+            let mut serving = None;
+            tries.known = tries.known.or_else(|| Signature::past_start(&start, next, &mut serving, work));
+            let tried = start.attempt(next, None, serving, ends, here.load_sign, work).ok()?;
+            (!tried.passed.is_empty()).then_some(tried)
+        });
+        let before = here.before.as_ref();
+        let tried = next.map_or_else(|| start.attempt(step, before, None, ends, here.load_sign, work), Ok);
+        let mut joined = None;
+        let outcome = tried.and_then(|tried| {
+            let first = may_join.then(|| start.changes_to_join(&tried)).flatten();
+            joined = first.as_ref().and_then(|first| start.join_changes(first, &tried, work));
+            tries.joined = first.map(|_| joined.is_some());
+            match &joined {
+                Some(joined) => Ok(joined.reached.clone()),
+                None => start.stop_at_event(tried, ends, work),
+            }
+        });
+        let is_lost = match &outcome {
+            Ok(reached) => matches!(reached.event, Some(Watch::End(_))) && reached.determinant.is_none(),
+            Err(refused) => matches!(refused, Refused::Newton(_)),
+        };
+        let bounded =
+            is_lost.then(|| bound::beside_singular(&start, step, ends, here.load_sign, tries.known, work)).flatten();
+        let back = outcome.as_ref().ok().and_then(|reached| self.way_back(&start, reached, work));
+        let tried = match (outcome, back, bounded) {
+            (Ok(_), Some(back), _) => Tried { returned: true, ..Tried::plain(back, None, None) },
+            (_, _, Some((reached, crossing, signature))) => Tried::plain(reached, crossing, signature),
+            (Ok(reached), None, None) => match joined {
+                Some(Joined { changes, signature, unchanged, .. }) => {
+                    Tried { joined: Some((changes, unchanged)), ..Tried::plain(reached, None, signature) }
+                }
+                None => {
+                    let known = tries.known.or_else(|| Signature::past_start(&start, reached.step, &mut None, work));
+                    tries.known = known;
+                    let may_refuse = tries.unresolved < MOST_UNRESOLVED;
+                    let (reached, crossing, signature) = first_crossing(&start, known, reached, may_refuse, work)?;
+                    Tried::plain(reached, crossing, signature)
+                }
+            },
+            (Err(refused), ..) => return Err(refused),
+        };
+        let corrected = &tried.reached.corrected;
+        let forces = self.at.totals.force_scale.max(corrected.force_scale);
+        if !contact_law::holds(self.loading(), &corrected.state, forces) {
+            Err(Refused::Unlawful)
+        } else if self.shrinks_to_a_point(&corrected.state) {
+            Err(Refused::Collapsed)
+        } else {
+            Ok(tried)
+        }
+    }
+}
+
+/// Ends a step at the first smooth bifurcation in it, of its own mode or of that in which contacts that touch without
+/// reaction all along are free; with the signs past its end.
+fn first_crossing(
+    start: &Start<'_>,
+    before: Option<Signature>,
+    reached: Reached,
+    may_refuse: bool,
+    work: &mut Work,
+) -> Result<(Reached, Option<Crossing>, Option<Signature>), Refused> {
+    let (reached, crossing, after) = crossing_in_mode(start, before, reached, may_refuse, work)?;
+    match singular::loosened(start, &reached).and_then(|loose| crossing_when_loose(start, &loose, &reached, work)) {
+        Some((point, crossing)) => Ok((point, Some(crossing), before)),
+        None => Ok((reached, crossing, after)),
+    }
+}
+
+/// The first smooth bifurcation of a step in looser modes.
+fn crossing_when_loose(
+    start: &Start<'_>,
+    loose: &[Mode],
+    reached: &Reached,
+    work: &mut Work,
+) -> Option<(Reached, Crossing)> {
+    let loosened = Start { modes: loose, ..*start };
+    let before = Signature::past_start(&loosened, reached.step, &mut None, work)?;
+    let mut end = loosened.reach_near(reached.corrected.state.clone(), reached.step, work).ok()?;
+    end.event = reached.event;
+    let (_, change) = singular::compare(&loosened, before, &end);
+    if change == Change::None {
+        return None;
+    }
+    let Located { mut point, crossing, .. } = critical::locate(&loosened, before, change, &end, work)?;
+    if point.step >= reached.step || crossing.eigenvalues == 0 {
+        return None;
+    }
+    for (contact, mode) in point.corrected.modes.iter_mut().enumerate() {
+        if loose[contact] != start.modes[contact] {
+            *mode = start.modes[contact];
+        }
+    }
+    point.corrected.iterations_to_small = reached.corrected.iterations_to_small;
+    Some((point, Crossing { grazing: true, ..crossing }))
+}
+
+/// Ends a step at the first smooth bifurcation in its own mode.
+fn crossing_in_mode(
+    start: &Start<'_>,
+    before: Option<Signature>,
+    reached: Reached,
+    may_refuse: bool,
+    work: &mut Work,
+) -> Result<(Reached, Option<Crossing>, Option<Signature>), Refused> {
+    let Some(before) = before else {
+        // The start is singular: signs are known from the end on.
+        let state = &reached.corrected.state;
+        let regular = reached.determinant.filter(|_| !matches!(reached.event, Some(Watch::LoadRate { .. })));
+        let after =
+            regular.and_then(|sign| Signature::with_determinant(start.loading, start.modes, start.state, state, sign));
+        return Ok((reached, None, after));
+    };
+    let (after, change) = singular::compare(start, before, &reached);
+    if after.is_none() && reached.event.is_none() && may_refuse {
+        return Err(Refused::Unresolved);
+    }
+    if change == Change::None {
+        return Ok((reached, None, after));
+    }
+    match critical::locate(start, before, change, &reached, work) {
+        Some(Located { mut point, crossing, .. }) if point.step < reached.step || crossing.eigenvalues == 0 => {
+            point.corrected.iterations_to_small = reached.corrected.iterations_to_small;
+            Ok((point, Some(crossing), Some(crossing.after)))
+        }
+        Some(_) => Ok((reached, None, Some(before))),
+        None if may_refuse => Err(Refused::Unresolved),
+        None => Ok((reached, None, after)),
+    }
+}
