@@ -70,6 +70,17 @@ pub struct Reaction {
 }
 
 impl Reaction {
+    /// A force taken apart along a normal and across it.
+    pub fn of(force: &Vector, normal: &Vector) -> Self {
+        let along = vector::dot(force, normal);
+        Self { normal: along, tangential: vector::add(force, -along, normal) }
+    }
+
+    /// The same where what is across the normal is rounding: there is no friction.
+    pub fn along(force: &Vector, normal: &Vector) -> Self {
+        Self { normal: vector::dot(force, normal), tangential: [0.0; 3] }
+    }
+
     /// `|r_t|`
     pub fn tangential_size(&self) -> f64 {
         size(&self.tangential)

@@ -177,11 +177,7 @@ impl Carried {
     /// Reactions (or their rates) in these modes that make up a force (or its rate), one a contact.
     pub fn reactions(&self, loading: Loading<'_>, modes: &[Mode], force: &Vector, state: &State) -> [Reaction; 2] {
         let own = self.contacts.map(|contact| modes[contact]);
-        let whole = |place: usize| {
-            let normal = self.frames[place].normal;
-            let along = dot(force, &normal);
-            Reaction { normal: along, tangential: add(force, -along, &normal) }
-        };
+        let whole = |place: usize| Reaction::of(force, &self.frames[place].normal);
         match own {
             [Mode::Free, Mode::Free] => [Reaction::default(); 2],
             [_, Mode::Free] => [whole(0), Reaction::default()],
@@ -191,11 +187,7 @@ impl Carried {
                 let turn = |a: &Vector, b: &Vector| a[0] * b[1] - a[1] * b[0];
                 let determinant = turn(&rays[0], &rays[1]);
                 let sizes = [turn(force, &rays[1]) / determinant, turn(&rays[0], force) / determinant];
-                [0, 1].map(|place| {
-                    let part = scaled(&rays[place], sizes[place]);
-                    let normal = dot(&part, &self.frames[place].normal);
-                    Reaction { normal, tangential: add(&part, -normal, &self.frames[place].normal) }
-                })
+                [0, 1].map(|place| Reaction::of(&scaled(&rays[place], sizes[place]), &self.frames[place].normal))
             }
             [Mode::Stick, _] | [_, Mode::Stick] => {
                 let mut shared = state.clone();

@@ -282,11 +282,10 @@ pub fn share(loading: Loading<'_>, corners: &[Corner], modes: &[Mode], state: &m
 /// Normal and tangential parts of a force in the cone of a contact. With much friction the normal part may be lost in the
 /// rounding of the whole: it is then what the cone makes of the tangential one.
 pub fn taken_apart(force: &Vector, frame: &Frame, friction: f64) -> Reaction {
-    let normal = dot(force, &frame.normal);
     if friction == 0.0 {
-        return Reaction { normal, tangential: [0.0; 3] };
+        return Reaction::along(force, &frame.normal);
     }
-    let tangential = add(force, -normal, &frame.normal);
+    let Reaction { normal, tangential } = Reaction::of(force, &frame.normal);
     // A little more, so that the cone holds in spite of rounding, however large the force.
     let least = size(&tangential) / friction * (1.0 + 4.0 * f64::EPSILON);
     let is_round_off = least - normal <= FLAT * size(force);

@@ -18,12 +18,12 @@
 
 use super::decide::{Choice, Rules, mark_retrace, potential_rate, sign_of};
 use super::directions::is_mechanism;
-use super::loading::Loading;
+use super::loading::{Loading, of_node};
 use super::rates::{Pairs, all_solutions, is_definite};
 use super::standing::Standing;
 use super::state::{Rate, State};
 use crate::contact::vector::{Vector, add, dot};
-use crate::contact::{Frame, Mode, Reaction};
+use crate::contact::{Mode, Reaction};
 use crate::linear_algebra::sparse::{Bordered, Holdings, SparseFactorisation};
 use crate::linear_algebra::{Factorisation, Sink};
 use nalgebra::{DMatrix, DVector};
@@ -382,14 +382,8 @@ impl<'a> Reduced<'a> {
         });
         let mut rate = Rate { displacement, load, reactions: vec![Reaction::default(); loading.contacts.len()] };
         let dimension = structure.dimension;
-        let is_smooth = |contact: usize| loading.contacts[contact].tangents() == 0;
         for (node, contact) in self.holder.iter().enumerate().filter_map(|(node, holder)| Some((node, (*holder)?))) {
-            let frame: Frame = loading.frame(contact, self.state);
-            let mut force = [0.0; 3];
-            force[..dimension].copy_from_slice(&forces[node * dimension..(node + 1) * dimension]);
-            let normal = dot(&force, &frame.normal);
-            let tangential = if is_smooth(contact) { [0.0; 3] } else { add(&force, -normal, &frame.normal) };
-            rate.reactions[contact] = Reaction { normal, tangential };
+            rate.reactions[contact] = loading.taken_by(contact, self.state, &of_node(dimension, node, &forces));
         }
         let size = rate.size();
         if !size.is_finite() || size <= MARGIN * rate.largest_reaction() {

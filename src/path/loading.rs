@@ -3,7 +3,7 @@
 use super::corner::Corner;
 use super::state::{Rate, State};
 use crate::contact::vector::{Vector, add};
-use crate::contact::{Contact, Frame};
+use crate::contact::{Contact, Frame, Reaction};
 use crate::structure::Structure;
 use serde::{Deserialize, Serialize};
 
@@ -86,6 +86,16 @@ impl Loading<'_> {
     /// Gap, normal and tangents of a contact.
     pub fn frame(&self, contact: usize, state: &State) -> Frame {
         self.contacts[contact].frame(&self.relative(contact, state))
+    }
+
+    /// The reaction (or its rate) by which a contact takes a force on its node; across the normal where there is friction.
+    pub fn taken_by(&self, contact: usize, state: &State, force: &Vector) -> Reaction {
+        let normal = self.frame(contact, state).normal;
+        if self.contacts[contact].tangents() == 0 {
+            Reaction::along(force, &normal)
+        } else {
+            Reaction::of(force, &normal)
+        }
     }
 
     /// Gap of a contact.

@@ -173,8 +173,7 @@ impl<'a> ModeSystem<'a> {
             if let Some(first) = holding.next() {
                 let force = total_force(self.loading, corner.holding(self.modes), &state);
                 let normal = self.loading.frame(first, &state).normal;
-                let along = dot(&force, &normal);
-                state.reactions[first] = Reaction { normal: along, tangential: add(&force, -along, &normal) };
+                state.reactions[first] = Reaction::of(&force, &normal);
                 holding.for_each(|other| state.reactions[other] = Reaction::default());
             }
         }

@@ -1,7 +1,7 @@
 //! Solutions of the equations taken apart: rates, corrections and the path's direction.
 
 use super::{Iterate, Kind, ModeSystem, Role};
-use crate::contact::vector::{add, cross, dot, scaled};
+use crate::contact::vector::{add, cross, scaled};
 use crate::contact::{Mode, Reaction};
 use crate::linear_algebra::SystemFactorisation;
 use crate::path::newton::Corrected;
@@ -41,8 +41,7 @@ impl ModeSystem<'_> {
                     if is_normal {
                         Reaction { normal: values[column], tangential: rest }
                     } else {
-                        let along = dot(&rest, &normal);
-                        Reaction { normal: along, tangential: add(&rest, -along, &normal) }
+                        Reaction::of(&rest, &normal)
                     }
                 }
                 Role::Frictionless => Reaction { normal: values[column], tangential: [0.0; 3] },

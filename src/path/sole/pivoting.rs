@@ -2,7 +2,7 @@
 
 use super::equations::{Changing, Equations};
 use super::proof::Control;
-use crate::contact::vector::{Vector, add, dot, scaled};
+use crate::contact::vector::{Vector, dot, scaled};
 use crate::contact::{Mode, Reaction, all_continue};
 use crate::linear_algebra::Sink;
 use crate::path::corner::whole_rates;
@@ -101,11 +101,7 @@ impl Equations<'_> {
             let mut force = [0.0; 3];
             let loads = &loading.pattern.forces[freedoms(contact)];
             force.iter_mut().zip(loads).for_each(|(force, load)| *force = -sign * load);
-            let normal = loading.frame(contact, self.state).normal;
-            let along = dot(&force, &normal);
-            let is_smooth = loading.contacts[contact].tangents() == 0;
-            let tangential = if is_smooth { [0.0; 3] } else { add(&force, -along, &normal) };
-            Reaction { normal: along, tangential }
+            loading.taken_by(contact, self.state, &force)
         };
         let reactions = self.held.iter().enumerate().map(reaction).collect();
         Some(Rate { displacement: vec![0.0; loading.structure.freedoms()], load: sign, reactions })
