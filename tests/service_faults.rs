@@ -32,6 +32,23 @@ async fn a_database_that_is_locked_for_a_moment_costs_nothing() {
 }
 
 #[tokio::test]
+async fn a_worker_that_panics_fails_its_job_and_goes_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (store, server) = start(folder.path(), MadeUp::default()).await;
+    // More often than there are workers.
+    for _ in 0..5 {
+        store.panicking_appends.store(1, Ordering::Relaxed);
+        let id = server.submit(&request("unlucky", 10)).await;
+        let job = server.ended(&id).await;
+        assert_eq!((&job["status"], &job["attempt"]), (&Value::from("failed"), &Value::from(1)), "{job}");
+        assert!(job["error"].as_str().expect("a text").contains("a made-up defect of the store"), "{job}");
+    }
+    assert_eq!(server.get_json("/readyz").await["workers"], 2);
+    let id = server.submit(&request("next", 10)).await;
+    assert_eq!(server.ended(&id).await["status"], "completed");
+}
+
+#[tokio::test]
 async fn a_full_disk_fails_the_job_keeps_what_is_stored_and_passes() {
     let folder = tempfile::tempdir().expect("a folder");
     let solver = MadeUp::holding_at(5);

@@ -6,15 +6,11 @@ mod common;
 use arcslip::jobs::{PathSolver, Settings};
 use arcslip::store::{self, LeaseAnswer, Line, Page};
 use common::server::{TestServer, settings};
-use common::service::without_elapsed;
+use common::service::{scene, without_elapsed};
 use reqwest::{Method, StatusCode};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::time::Duration;
-
-fn scene(name: &str) -> Value {
-    serde_json::from_str(arcslip::scenes::find(name).expect("a scene").request).expect("JSON")
-}
 
 /// The one-bar truss with a path short enough to be traced often.
 fn one_bar() -> Value {
@@ -148,10 +144,12 @@ async fn a_follower_stands_on_its_own_and_is_taken_up_by_another_process() {
     assert_eq!(gone.status(), StatusCode::NO_CONTENT);
     assert!(server.stop().await);
     let lost = store::open(&database).await.expect("a store");
-    let claim = lost.claim("lost", Duration::from_millis(50)).await.expect("a claim").expect("a job");
+    let claim = lost.claim("lost", Duration::from_secs(5)).await.expect("a claim").expect("a job");
     assert_eq!(claim.lease.job.to_string(), name(&queued));
-    let stored: Vec<Line> =
-        (0..4).zip(&expected).map(|(index, body)| Line { index, body: body.clone(), branch: None }).collect();
+    let stored: Vec<Line> = (0..4)
+        .zip(&expected)
+        .map(|(index, body)| Line { index, body: body.clone(), branch: None, checkpoint: None })
+        .collect();
     let answer = lost.append(&claim.lease, &stored, Duration::from_millis(50)).await.expect("stored");
     assert_eq!(answer, LeaseAnswer::Held { cancel_requested: false });
 

@@ -3,8 +3,10 @@
 //! Exit status: 0 done, 1 stopped or failed, 2 bad input. Called by `main` alone.
 
 mod check;
+mod duration;
 mod health;
 mod input;
+mod limits;
 mod openapi;
 mod scenes;
 mod serve;

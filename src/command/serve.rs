@@ -1,6 +1,6 @@
 //! `arcslip serve`: the HTTP service and its workers.
 
-use super::{Failure, Outcome, say};
+use super::{Failure, Outcome, duration, limits, say};
 use crate::http::server::Server;
 use crate::jobs::{PathSolver, Settings, demonstration};
 use crate::store;
@@ -10,6 +10,7 @@ use std::num::NonZero;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
+use std::time::Duration;
 use tokio::signal::unix::{SignalKind, signal};
 use tracing_subscriber::EnvFilter;
 
@@ -25,6 +26,15 @@ pub struct Arguments {
     /// Solves at a time, 1 to 1024. Default: one a processor.
     #[arg(long, value_name = "N", env = "ARCSLIP_WORKERS", value_parser = clap::value_parser!(u16).range(1..=1024))]
     workers: Option<u16>,
+    /// A worker that has not been heard of for so long has lost its job, which is then taken up by another; such as `10s`.
+    #[arg(long, value_name = "DURATION", default_value = "10s", env = "ARCSLIP_LEASE", value_parser = duration::lease)]
+    lease: Duration,
+    /// A job fails that has lost so many workers in a row with nothing stored between.
+    #[arg(long, value_name = "N", default_value_t = 3, env = "ARCSLIP_MAX_ATTEMPTS",
+        value_parser = clap::value_parser!(u32).range(1..))]
+    max_attempts: u32,
+    #[command(flatten)]
+    limits: limits::Arguments,
     /// Queue every built-in scene once.
     #[arg(long)]
     demo: bool,
@@ -51,7 +61,9 @@ async fn serve(arguments: &Arguments) -> Outcome {
     let store = store::open(&arguments.database).await.map_err(Failure::other)?;
     let workers =
         arguments.workers.map_or_else(|| std::thread::available_parallelism().map_or(1, NonZero::get), usize::from);
-    let settings = Settings { workers, ..Settings::default() };
+    let Arguments { lease, max_attempts, limits, .. } = *arguments;
+    let keep = limits.keep;
+    let settings = Settings { workers, lease, max_attempts, limits: limits.limits(), keep, ..Settings::default() };
     let server =
         Server::start(arguments.listen, store, Arc::new(PathSolver), settings).await.map_err(Failure::other)?;
     if arguments.demo {

@@ -1,6 +1,7 @@
 //! The OpenAPI description: collected from the calls, completed with what holds for all of them.
 
 use super::problem::{Document, Kind};
+use crate::jobs::Limits;
 use std::fmt::Write;
 use utoipa::OpenApi;
 use utoipa::openapi::path::{Operation, PathItem};
@@ -19,8 +20,8 @@ A job is queued by `POST /v1/jobs`; its increments can be followed as they conve
 (`/increments`, `/path.csv`). An increment is the same bytes everywhere, and the same as `arcslip solve` prints, but for \
 `elapsed_s`.
 
-Every answer carries an `x-request-id`; a short plain one that a request brings is kept. Bodies are `application/json` of \
-at most 16 MiB; unknown members and unknown query parameters are refused. Every error is `application/problem+json` \
+Every answer carries an `x-request-id`; a short plain one that a request brings is kept. Bodies are `application/json`; \
+unknown members and unknown query parameters are refused. Every error is `application/problem+json` \
 (RFC 9457) with one of these types:
 
 | type | status | title |
@@ -45,14 +46,15 @@ pub fn base() -> utoipa::openapi::OpenApi {
     Base::openapi()
 }
 
-/// The document as text, with the problems in it.
-pub fn finish(mut document: utoipa::openapi::OpenApi) -> serde_json::Result<String> {
+/// The document as text, with the problems and the limits in it.
+pub fn finish(mut document: utoipa::openapi::OpenApi, limits: &Limits) -> serde_json::Result<String> {
     let mut description = DESCRIPTION.to_owned();
     for kind in Kind::ALL {
         let (name, status, title) = kind.parts();
         // Writing to a string does not fail.
         let _ = writeln!(description, "| `{name}` | {} | {title} |", status.as_u16());
     }
+    let _ = write!(description, "\nThis service's limits, within those of the model's schema:\n\n{limits}");
     document.info.description = Some(description);
     for operation in document.paths.paths.values_mut().flat_map(operations) {
         let content = ContentBuilder::new().schema(Some(Ref::from_schema_name("Problem"))).build();

@@ -1,5 +1,6 @@
 //! What calls read from requests; every refusal is a problem.
 
+use super::Service;
 use super::problem::{Kind, Problem};
 use crate::model::names::{quoted, suggestion};
 use axum::body::Bytes;
@@ -16,14 +17,15 @@ const LONGEST_KEY: usize = 255;
 /// A JSON body as it came; who reads it says what is wrong with it.
 pub struct JsonText(pub Vec<u8>);
 
-impl<S: Send + Sync> FromRequest<S> for JsonText {
+impl FromRequest<Service> for JsonText {
     type Rejection = Problem;
 
-    async fn from_request(request: Request, state: &S) -> Result<Self, Problem> {
+    async fn from_request(request: Request, state: &Service) -> Result<Self, Problem> {
         if !is_json(request.headers()) {
             return Err(Problem::new(Kind::UnsupportedMediaType, "send the header Content-Type: application/json"));
         }
-        Ok(Self(Bytes::from_request(request, state).await.map_err(refused_body)?.into()))
+        let most = state.jobs.settings.limits.body_bytes;
+        Ok(Self(Bytes::from_request(request, state).await.map_err(|rejection| refused_body(rejection, most))?.into()))
     }
 }
 
@@ -33,11 +35,9 @@ fn is_json(headers: &HeaderMap) -> bool {
     essence.trim().eq_ignore_ascii_case("application/json")
 }
 
-fn refused_body(rejection: BytesRejection) -> Problem {
+fn refused_body(rejection: BytesRejection, most: usize) -> Problem {
     match rejection.into_response().status() {
-        StatusCode::PAYLOAD_TOO_LARGE => {
-            Problem::new(Kind::BodyTooLarge, format!("at most {} bytes are taken", super::BODY_LIMIT))
-        }
+        StatusCode::PAYLOAD_TOO_LARGE => Problem::new(Kind::BodyTooLarge, format!("at most {most} bytes are taken")),
         _ => Problem::new(Kind::RequestFailed, "the body broke off before its end"),
     }
 }

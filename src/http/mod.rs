@@ -25,8 +25,8 @@ pub mod studies;
 pub mod view;
 pub mod view_study;
 
-use crate::jobs::Jobs;
 use crate::jobs::crew::Attendance;
+use crate::jobs::{Jobs, Limits};
 use axum::extract::DefaultBodyLimit;
 use axum::middleware::from_fn;
 use axum::{Router, routing};
@@ -36,9 +36,6 @@ use tower_http::catch_panic::CatchPanicLayer;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use utoipa_swagger_ui::{Config, SwaggerUi};
-
-/// Bytes of a request's body.
-pub const BODY_LIMIT: usize = 16 << 20;
 
 /// What every call can reach.
 #[derive(Clone)]
@@ -71,21 +68,22 @@ fn api() -> OpenApiRouter<Service> {
         .routes(routes!(probes::ready))
 }
 
-/// The OpenAPI document as it is served and committed.
+/// The OpenAPI document as it is committed, and served where the limits are the defaults.
 pub fn openapi_json() -> serde_json::Result<String> {
-    document::finish(api().into_openapi())
+    document::finish(api().into_openapi(), &Limits::default())
 }
 
 /// Every route, with what applies to all of them.
 pub fn router(service: Service) -> serde_json::Result<Router> {
     let (routes, description) = api().split_for_parts();
-    let description: Arc<str> = document::finish(description)?.into();
+    let limits = service.jobs.settings.limits;
+    let description: Arc<str> = document::finish(description, &limits)?.into();
     Ok(routes
         .route("/", routing::get(pages::index))
         .route("/openapi.json", routing::get(move || pages::openapi(description.clone())))
         .with_state(service)
         .merge(SwaggerUi::new("/docs").config(Config::from("/openapi.json")))
-        .layer(DefaultBodyLimit::max(BODY_LIMIT))
+        .layer(DefaultBodyLimit::max(limits.body_bytes))
         .layer(CatchPanicLayer::custom(problem::from_panic))
         .layer(from_fn(problem::every_error))
         .layer(from_fn(request_id::name_request)))

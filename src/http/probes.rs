@@ -3,6 +3,7 @@
 use super::problem::{Kind, Problem};
 use super::view::{Health, Readiness};
 use super::{Service, document};
+use crate::store::StoreError;
 use axum::Json;
 use axum::extract::State;
 use std::time::Duration;
@@ -34,6 +35,14 @@ pub async fn ready(State(service): State<Service>) -> Result<Json<Readiness>, Pr
     }
     match timeout(PATIENCE, service.jobs.store().probe()).await {
         Ok(Ok(())) => Ok(Json(Readiness { status: "ready", workers: service.attendance.alive() })),
+        Ok(Err(error @ StoreError::Damaged(_))) => {
+            tracing::error!(%error, "the database is damaged");
+            Err(Problem::new(Kind::Unavailable, "the database is damaged; a copy of it has to be restored"))
+        }
+        Ok(Err(error @ StoreError::Full(_))) => {
+            tracing::error!(%error, "the database takes no writes");
+            Err(Problem::new(Kind::Unavailable, "the disk that holds the database is full"))
+        }
         Ok(Err(error)) => {
             tracing::error!(%error, "the database takes no writes");
             Err(Problem::new(Kind::Unavailable, "the database takes no writes"))

@@ -17,6 +17,8 @@ use std::any::Any;
 const MEDIA_TYPE: &str = "application/problem+json";
 /// When what is unavailable is worth asking for again.
 const RETRY_AFTER_SECONDS: HeaderValue = HeaderValue::from_static("2");
+/// A queue as long as it may be takes longer.
+const RETRY_WHEN_FULL_SECONDS: HeaderValue = HeaderValue::from_static("10");
 
 /// Every kind of problem: the last part of its `type`, its status, its title.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,13 +34,15 @@ pub enum Kind {
     BodyTooLarge,
     UnsupportedMediaType,
     RequestFailed,
+    QueueFull,
     Unavailable,
     StorageFull,
+    StorageDamaged,
     Internal,
 }
 
 impl Kind {
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 16] = [
         Self::InvalidJson,
         Self::InvalidModel,
         Self::InvalidParameter,
@@ -50,8 +54,10 @@ impl Kind {
         Self::BodyTooLarge,
         Self::UnsupportedMediaType,
         Self::RequestFailed,
+        Self::QueueFull,
         Self::Unavailable,
         Self::StorageFull,
+        Self::StorageDamaged,
         Self::Internal,
     ];
 
@@ -80,9 +86,7 @@ impl Kind {
             Self::NotAcceptable => {
                 ("/problems/not-acceptable", StatusCode::NOT_ACCEPTABLE, "None of the accepted media types is offered")
             }
-            Self::BodyTooLarge => {
-                ("/problems/body-too-large", StatusCode::PAYLOAD_TOO_LARGE, "The body is larger than 16 MiB")
-            }
+            Self::BodyTooLarge => ("/problems/body-too-large", StatusCode::PAYLOAD_TOO_LARGE, "The body is too large"),
             Self::UnsupportedMediaType => (
                 "/problems/unsupported-media-type",
                 StatusCode::UNSUPPORTED_MEDIA_TYPE,
@@ -93,6 +97,10 @@ impl Kind {
             }
             Self::Unavailable => {
                 ("/problems/unavailable", StatusCode::SERVICE_UNAVAILABLE, "The service cannot do this now")
+            }
+            Self::QueueFull => ("/problems/queue-full", StatusCode::TOO_MANY_REQUESTS, "Too many jobs wait already"),
+            Self::StorageDamaged => {
+                ("/problems/storage-damaged", StatusCode::INTERNAL_SERVER_ERROR, "What is stored is damaged")
             }
             Self::StorageFull => {
                 ("/problems/storage-full", StatusCode::INSUFFICIENT_STORAGE, "There is no room to store this")
@@ -109,6 +117,7 @@ impl Kind {
             StatusCode::NOT_ACCEPTABLE => Self::NotAcceptable,
             StatusCode::PAYLOAD_TOO_LARGE => Self::BodyTooLarge,
             StatusCode::UNSUPPORTED_MEDIA_TYPE => Self::UnsupportedMediaType,
+            StatusCode::TOO_MANY_REQUESTS => Self::QueueFull,
             StatusCode::SERVICE_UNAVAILABLE => Self::Unavailable,
             status if status.is_client_error() => Self::RequestFailed,
             _ => Self::Internal,
@@ -172,6 +181,9 @@ impl From<JobsError> for Problem {
             JobsError::KeyReused => {
                 Self::new(Kind::KeyReused, "repeat the first request byte for byte, or send another Idempotency-Key")
             }
+            JobsError::QueueFull(most) => {
+                Self::new(Kind::QueueFull, format!("{most} jobs wait, as many as this service queues; come back later"))
+            }
             JobsError::NoJob(id) => Self::not_found(format_args!("job {id}")),
             JobsError::NoStudy(id) => Self::not_found(format_args!("study {id}")),
             JobsError::Store(error) => error.into(),
@@ -189,7 +201,10 @@ impl From<StoreError> for Problem {
         match error {
             StoreError::Unavailable(_) => Self::new(Kind::Unavailable, "the database is not available; try again"),
             StoreError::Full(_) => Self::new(Kind::StorageFull, "the disk that holds the database is full"),
-            StoreError::Damaged(_) => Self::new(Kind::Internal, "what is stored cannot be read"),
+            StoreError::Damaged(_) => Self::new(
+                Kind::StorageDamaged,
+                "the database is damaged; nothing is taken until whoever runs the service has restored a copy of it",
+            ),
             StoreError::Open(_) | StoreError::Refused(_) => {
                 Self::new(Kind::Internal, "the log has more under this answer's x-request-id")
             }
@@ -211,8 +226,13 @@ impl IntoResponse for Problem {
         // Five plain members: there is nothing in them that JSON cannot hold.
         let body = serde_json::to_vec(&document).unwrap_or_default();
         let mut response = (status, [(header::CONTENT_TYPE, MEDIA_TYPE)], body).into_response();
-        if self.kind == Kind::Unavailable {
-            response.headers_mut().insert(header::RETRY_AFTER, RETRY_AFTER_SECONDS);
+        let retry_after = match self.kind {
+            Kind::Unavailable => Some(RETRY_AFTER_SECONDS),
+            Kind::QueueFull => Some(RETRY_WHEN_FULL_SECONDS),
+            _ => None,
+        };
+        if let Some(seconds) = retry_after {
+            response.headers_mut().insert(header::RETRY_AFTER, seconds);
         }
         response
     }

@@ -61,7 +61,7 @@ pub struct ListStudies {
 
 impl Taken for ListStudies {
     const TAKEN: &'static [(&'static str, &'static str)] = &[
-        ("status", "`queued`, `running`, `completed`, `cancelled` or `failed`"),
+        ("status", "`queued`, `running`, `completed`, `stopped`, `cancelled` or `failed`"),
         ("cursor", "the `next_cursor` of the page before, a UUID,"),
         ("limit", "a whole number from 1 to 200"),
     ];

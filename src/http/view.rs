@@ -16,12 +16,15 @@ pub struct Submitted {
     /// The model's own name.
     pub name: Option<String>,
     pub status: Status,
-    /// Why it failed.
+    /// Why it failed, or which limit of this service stopped it.
     pub error: Option<String>,
     /// A cancel was asked for; it ends within one iteration.
     pub cancel_requested: bool,
     /// Times it was started.
     pub attempt: u32,
+    /// Workers that it has lost in a row (their process ended, or did not answer in time), nothing stored between.
+    pub losses: u32,
+    /// So many of them, and it fails.
     pub max_attempts: u32,
     #[schema(value_type = String, format = DateTime)]
     pub created_at: Timestamp,
@@ -40,6 +43,7 @@ impl From<&JobRecord> for Submitted {
             error: record.error.clone(),
             cancel_requested: record.cancel_requested,
             attempt: record.attempt,
+            losses: record.losses,
             max_attempts: record.max_attempts,
             created_at: record.created_at,
             started_at: record.started_at,
@@ -57,9 +61,10 @@ pub struct Job {
     /// What the scene needs, and what is left out and why.
     #[schema(value_type = Plan)]
     pub plan: Box<RawValue>,
-    /// Why the path ended; null before that, and for failed jobs.
-    #[schema(value_type = Option<StopReason>)]
+    /// Why the path ended, or was ended by a limit of this service; null before that, and for failed jobs.
+    #[schema(value_type = Option<JobStopReason>)]
     pub stop_reason: Option<String>,
+    /// Null before the path ends, and where it was not the path that did.
     #[schema(value_type = Option<JudgedReport>)]
     pub report: Option<Box<RawValue>>,
     /// The direction of another job that this one follows; null for a job that starts at rest.
@@ -69,6 +74,24 @@ pub struct Job {
     /// Of jobs whose analysis says `explore`, and of those queued for it.
     pub explore: Option<Exploration>,
     pub links: Links,
+}
+
+/// Why a job has stopped.
+#[derive(Debug, Serialize, ToSchema)]
+#[serde(untagged)]
+pub enum JobStopReason {
+    Path(StopReason),
+    Limit(LimitReached),
+}
+
+/// A limit of this service; what is stored of the job stands.
+#[derive(Debug, Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum LimitReached {
+    /// It has run for as long as a job may.
+    TimeLimit,
+    /// More would be stored of it than may be.
+    StorageLimit,
 }
 
 /// What a job follows. The other job may have been deleted since; what it gave is kept with this one.

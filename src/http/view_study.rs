@@ -8,7 +8,8 @@ use serde_json::value::{RawValue, to_raw_value};
 use utoipa::ToSchema;
 use uuid::Uuid;
 
-/// A study, without what it has found. Its status is never `stopped`: how a path ends is a finding.
+/// A study, without what it has found. Its status is `stopped` only where a limit of this service was reached (`error` says
+/// which): how a path ends is a finding.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct Study {
     #[serde(flatten)]

@@ -1,11 +1,12 @@
 //! Increments on their way to the store: gathered for a moment, then appended in one transaction.
 
 use super::Settings;
+use super::limits::Reached;
 use crate::cancel::CancelFlag;
-use crate::store::{Lease, LeaseAnswer, Line, Store, StoreError};
+use crate::store::{Claim, Lease, LeaseAnswer, Line, Store, StoreError};
 use std::time::Duration;
 use tokio::sync::mpsc;
-use tokio::time::{Instant, MissedTickBehavior, interval_at, timeout_at};
+use tokio::time::{Instant, MissedTickBehavior, interval_at, sleep_until, timeout_at};
 use tokio_util::sync::CancellationToken;
 
 /// Tries of one write while the store is passingly unavailable, each after twice the pause of the one before.
@@ -22,30 +23,75 @@ pub enum Drained {
     /// The job is gone or another's.
     LeaseLost,
     Failed(StoreError),
+    /// The job has used up what it may use; what is stored is within the limit.
+    Reached(Reached),
+}
+
+/// What a job may still use.
+#[derive(Debug, Clone, Copy)]
+pub struct Allowance {
+    /// None where that is too far off to be told.
+    pub until: Option<Instant>,
+    pub bytes: u64,
+}
+
+impl Allowance {
+    /// What is left of the service's limits.
+    pub fn of(settings: &Settings, claim: &Claim) -> Self {
+        let limits = &settings.limits;
+        Self {
+            until: Instant::now().checked_add(limits.wall_time.saturating_sub(claim.ran)),
+            bytes: limits.stored_bytes.saturating_sub(claim.stored_bytes),
+        }
+    }
+
+    /// Takes the lines' bytes; cuts off what is too much, and answers whether there was such.
+    fn take(&mut self, batch: &mut Vec<Line>) -> bool {
+        let fits = batch.iter().position(|line| match self.bytes.checked_sub(line.bytes()) {
+            Some(left) => {
+                self.bytes = left;
+                false
+            }
+            None => true,
+        });
+        batch.truncate(fits.unwrap_or(batch.len()));
+        fits.is_some()
+    }
 }
 
 /// Stores increments until the solver ends or one of the reasons above stops it; the lease is prolonged on the way.
 pub async fn drain(
     store: &dyn Store,
     settings: &Settings,
-    lease: &Lease,
+    claim: &Claim,
     lines: &mut mpsc::Receiver<Line>,
     cancel: &CancelFlag,
     shutdown: &CancellationToken,
 ) -> Drained {
+    let (lease, mut allowance) = (&claim.lease, Allowance::of(settings, claim));
     let heartbeat = settings.lease / 3;
     let mut beats = interval_at(Instant::now() + heartbeat, heartbeat.max(Duration::from_millis(1)));
     beats.set_missed_tick_behavior(MissedTickBehavior::Delay);
     let mut batch = Vec::new();
     loop {
-        let mut complete = false;
+        let (mut complete, mut reached) = (false, None);
+        let time_is_up = async {
+            match allowance.until {
+                Some(until) => sleep_until(until).await,
+                None => std::future::pending().await,
+            }
+        };
         tokio::select! {
             biased;
             () = shutdown.cancelled() => return Drained::ShuttingDown,
+            () = time_is_up => reached = Some(Reached::Time),
             _ = beats.tick() => {}
             received = gather(lines, &mut batch, settings) => complete = received == Received::Last,
         }
         // A cancelled gather leaves what it had in the batch, so a beat stores it too.
+        if allowance.take(&mut batch) {
+            reached = Some(Reached::Storage);
+        }
         match append(store, settings, lease, &batch).await {
             Ok(LeaseAnswer::Held { cancel_requested }) => {
                 if cancel_requested {
@@ -56,6 +102,9 @@ pub async fn drain(
             Err(error) => return Drained::Failed(error),
         }
         batch.clear();
+        if let Some(reached) = reached {
+            return Drained::Reached(reached);
+        }
         if complete {
             return Drained::Complete;
         }

@@ -1,11 +1,16 @@
 //! All workers of a process, and the sweeper that takes back what lost workers held.
 
-use super::{Jobs, worker};
+use super::{Jobs, retention, worker};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
 use tokio::task::JoinSet;
 use tokio_util::sync::CancellationToken;
+use tokio_util::task::AbortOnDropHandle;
 use uuid::Uuid;
+
+/// A task that panics again and again does not take the processor from the others.
+const AFTER_A_PANIC: Duration = Duration::from_secs(1);
 
 /// The workers under way.
 pub struct Crew {
@@ -39,13 +44,16 @@ impl Crew {
         let process = Uuid::now_v7();
         for number in 0..jobs.settings.workers {
             let present = Present::new(&attendance.alive);
-            let work = worker::work(jobs.clone(), format!("{process}/{number}"), shutdown.clone());
+            let (jobs, name, shutdown) = (jobs.clone(), format!("{process}/{number}"), shutdown.clone());
             tasks.spawn(async move {
                 let _present = present;
-                work.await;
+                kept_up(&shutdown, || worker::work(jobs.clone(), name.clone(), shutdown.clone())).await;
             });
         }
-        tasks.spawn(sweep(jobs.clone(), shutdown.clone()));
+        let (sweeping, stop) = (jobs.clone(), shutdown.clone());
+        tasks.spawn(async move { kept_up(&stop, || sweep(sweeping.clone(), stop.clone())).await });
+        let (tidying, stop) = (jobs.clone(), shutdown.clone());
+        tasks.spawn(async move { kept_up(&stop, || tidy(tidying.clone(), stop.clone())).await });
         Self { tasks, attendance }
     }
 
@@ -63,6 +71,17 @@ impl Crew {
     }
 }
 
+/// Begins a task anew when it has panicked, after a moment.
+async fn kept_up<F: Future<Output = ()> + Send + 'static>(shutdown: &CancellationToken, begin: impl Fn() -> F) {
+    while let Err(error) = AbortOnDropHandle::new(tokio::spawn(begin())).await {
+        tracing::error!(%error, "a task of the service panicked; it begins anew");
+        tokio::select! {
+            () = shutdown.cancelled() => return,
+            () = tokio::time::sleep(AFTER_A_PANIC) => {}
+        }
+    }
+}
+
 async fn sweep(jobs: Jobs, shutdown: CancellationToken) {
     loop {
         match jobs.store.reclaim_expired().await {
@@ -75,6 +94,25 @@ async fn sweep(jobs: Jobs, shutdown: CancellationToken) {
         tokio::select! {
             () = shutdown.cancelled() => return,
             () = tokio::time::sleep(jobs.settings.lease / 4) => {}
+        }
+    }
+}
+
+async fn tidy(jobs: Jobs, shutdown: CancellationToken) {
+    tokio::select! {
+        () = shutdown.cancelled() => return,
+        checked = jobs.store.check() => if let Err(error) = checked {
+            tracing::error!(%error, source = ?std::error::Error::source(&error), "the database does not stand its check");
+        }
+    }
+    loop {
+        tokio::select! {
+            () = shutdown.cancelled() => return,
+            () = retention::tidy(&jobs) => {}
+        }
+        tokio::select! {
+            () = shutdown.cancelled() => return,
+            () = tokio::time::sleep(jobs.settings.tidy_interval) => {}
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::submission::wrong_input;
 use super::{Jobs, JobsError, branches, queued};
-use crate::model::{FollowRequest, InputError, InputErrors, decode};
+use crate::model::{InputError, InputErrors, decode};
 use crate::path::Increment;
 use crate::store::{JobRecord, NewFollower, Page, Parent, Task};
 use std::sync::Arc;
@@ -17,10 +17,21 @@ impl Jobs {
         idempotency_key: Option<String>,
     ) -> Result<JobRecord, JobsError> {
         let asked = decode::follow(&body).map_err(|errors| wrong_input(&body, errors, JobsError::Follow))?;
+        let limits = self.settings.limits;
+        if let Some(past) = asked.max_increments.and_then(|most| limits.past_increments("/max_increments", most)) {
+            return Err(JobsError::Follow(InputErrors(vec![past])));
+        }
         let job = self.find(Task::Path, id).await?;
         let parent = Parent { job: id, increment: asked.increment, direction: asked.direction };
+        self.check_listed(&job, asked.increment).await?;
         let Some(origin) = self.store.branch(id, asked.increment).await? else {
-            return Err(self.why_no_branch(&job, &asked).await?);
+            let increment = asked.increment;
+            return Err(refused(
+                "/increment",
+                format!(
+                    "increment {increment} was stored by a version that kept nothing to go on from: trace the path anew"
+                ),
+            ));
         };
         let text = self.store.request(id).await?.ok_or(JobsError::NoJob(id))?;
         let solver = Arc::clone(&self.solver);
@@ -36,35 +47,32 @@ impl Jobs {
         .await??;
         let max_increments = Some(asked.max_increments.unwrap_or(job.max_increments));
         // Nothing to be found here any more: the parent was deleted just now.
-        let submitted = self.store.follow(NewFollower { parent, max_increments, idempotency_key }).await?;
+        let submitted = self
+            .store
+            .follow(NewFollower { parent, max_increments, idempotency_key, most_queued: limits.queued })
+            .await?;
         queued(submitted.ok_or(JobsError::NoJob(id))?)
     }
 
-    async fn why_no_branch(&self, job: &JobRecord, asked: &FollowRequest) -> Result<JobsError, JobsError> {
-        let FollowRequest { increment, .. } = asked;
+    /// Refuses an increment that is not stored, and one that lists no directions.
+    async fn check_listed(&self, job: &JobRecord, increment: u64) -> Result<(), JobsError> {
         let before = increment.checked_sub(1);
         let lines = self.store.increments(job.id, before, Page { rows: 1, bytes: 1 }).await?;
-        let line = lines.first().filter(|line| line.index == *increment);
-        let Some(line) = line else {
+        let Some(line) = lines.first().filter(|line| line.index == increment) else {
             let stored = match job.last_index {
                 Some(last) => format!("increments 0 to {last} are stored"),
                 None => "no increment is stored yet".to_owned(),
             };
-            return Ok(refused("/increment", format!("found {increment}; {stored}")));
+            return Err(refused("/increment", format!("found {increment}; {stored}")));
         };
         let lists = serde_json::from_str::<Increment>(&line.body).is_ok_and(|increment| increment.directions.is_some());
-        Ok(refused(
-            "/increment",
-            if lists {
-                format!(
-                    "increment {increment} was stored by a version that kept nothing to go on from: trace the path anew"
-                )
-            } else {
-                format!(
-                    "increment {increment} lists no directions, the path has one way on; take one that has `directions`"
-                )
-            },
-        ))
+        if lists {
+            return Ok(());
+        }
+        let detail = format!(
+            "increment {increment} lists no directions, the path has one way on; take one that has `directions`"
+        );
+        Err(refused("/increment", detail))
     }
 }
 

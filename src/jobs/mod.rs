@@ -2,22 +2,30 @@
 //!
 //! [`solver`] is the seam to the path tracer, [`submission`] what is done with a request before it is queued, [`solve`]
 //! one solve on a thread of its own, [`batch`] its increments on their way to the store, [`worker`] the loop around both,
-//! [`crew`] all workers of a process, [`demonstration`] the built-in scenes as jobs; [`follow`] jobs that follow a direction
+//! [`given`] makes what a solve gives ready for the store, [`checkpoints`] says where it can be taken up after a loss, [`cadence`] how often,
+//! [`limits`] what is taken and how much a job may use, [`retention`] what is kept of ended jobs;
+//! [`trail`] how the states that it has passed are stored once; [`crew`] all workers of a process, [`demonstration`] the built-in scenes as jobs; [`follow`] jobs that follow a direction
 //! of another, [`branches`] the points they begin from, [`explore`] which of them are queued unasked; [`studies`] are jobs of
 //! another task. Called by `http` and `command`; knows `store`, `judged`, `studies`, `path` and `model`.
 
 pub mod batch;
 pub mod branches;
+pub mod cadence;
+pub mod checkpoints;
 pub mod crew;
 pub mod demonstration;
 pub mod explore;
 pub mod follow;
+pub mod given;
+pub mod limits;
+pub mod retention;
 pub mod running;
 pub mod settings;
 pub mod solve;
 pub mod solver;
 pub mod studies;
 pub mod submission;
+pub mod trail;
 pub mod worker;
 
 use crate::model::InputErrors;
@@ -28,6 +36,7 @@ use std::sync::Arc;
 use uuid::Uuid;
 
 pub use crew::Crew;
+pub use limits::Limits;
 pub use settings::Settings;
 pub use solver::{PathSolver, Solver};
 
@@ -40,6 +49,8 @@ pub enum JobsError {
     Input(InputErrors),
     #[error("this idempotency key came before with another request")]
     KeyReused,
+    #[error("{0} jobs wait already")]
+    QueueFull(u64),
     #[error("there is nothing to follow")]
     Follow(InputErrors),
     #[error("no job {0}")]
@@ -86,6 +97,7 @@ impl Jobs {
             request: prepared.text,
             max_increments: prepared.max_increments,
             max_attempts: self.settings.max_attempts,
+            most_queued: self.settings.limits.queued,
             priority: 0,
             idempotency_key,
             explore: prepared.explore,
@@ -116,8 +128,8 @@ impl Jobs {
 
     /// Reading and checking a large model takes time that the runtime's threads do not have.
     async fn prepare(&self, request: Vec<u8>) -> Result<submission::Prepared, JobsError> {
-        let solver = Arc::clone(&self.solver);
-        tokio::task::spawn_blocking(move || submission::prepare(solver.as_ref(), request)).await?
+        let (solver, limits) = (Arc::clone(&self.solver), self.settings.limits);
+        tokio::task::spawn_blocking(move || submission::prepare(solver.as_ref(), &limits, request)).await?
     }
 }
 
@@ -136,5 +148,6 @@ fn queued(submitted: Submitted) -> Result<JobRecord, JobsError> {
         }
         Submitted::Repeated(job) => Ok(job),
         Submitted::KeyReused => Err(JobsError::KeyReused),
+        Submitted::QueueFull { most } => Err(JobsError::QueueFull(most)),
     }
 }

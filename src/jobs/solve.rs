@@ -3,18 +3,19 @@
 //! Increments leave it over a bounded channel: a store that is slow makes the solver wait, not the memory grow. A panic
 //! ends here and becomes the text of this one job.
 
-use super::Solver;
-use super::branches::{self, Recorder};
-use super::solver::{Accept, Junction};
+use super::checkpoints::PutDown;
+use super::given::Given;
+use super::solver::ResumeError;
+use super::{Solver, branches};
 use crate::cancel::CancelFlag;
 use crate::judged::JudgedReport;
 use crate::model::{InputErrors, decode};
-use crate::output::json_line;
 use crate::store::{Claim, Line, Task};
 use crate::studies::{self, Run};
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
+use std::time::Duration;
 use tokio::sync::{mpsc, oneshot};
 
 /// Increments between solver and store: enough to solve on while a batch is written.
@@ -35,6 +36,8 @@ pub enum SolveEnd {
     Refused(InputErrors),
     Panicked(String),
     Unwritable(String),
+    /// This increment is stored and comes out otherwise now, or not at all.
+    Differs(u64),
     /// Where the job begins, or what it has found already, cannot be read.
     Unreadable(String),
     /// A study has ended, complete or cancelled.
@@ -51,9 +54,16 @@ pub struct Solve {
     pub end: oneshot::Receiver<SolveEnd>,
 }
 
-/// Starts the thread. Increments up to `claim.last_index` are stored already: they are computed again (the run is
-/// deterministic) and not sent. A study goes on from `stored`, the lines of its finished runs.
-pub fn start(solver: Arc<dyn Solver>, claim: &Claim, stored: Vec<Line>, cancel: CancelFlag) -> std::io::Result<Solve> {
+/// Starts the thread. A path goes on from its checkpoint, or, where there is none that can be read, from its start;
+/// increments up to `claim.last` are stored already and not sent again. A study goes on from `stored`, the lines of its
+/// finished runs. Checkpoints are made no sooner than `put_down` after one another.
+pub fn start(
+    solver: Arc<dyn Solver>,
+    claim: &Claim,
+    stored: Vec<Line>,
+    put_down: Duration,
+    cancel: CancelFlag,
+) -> std::io::Result<Solve> {
     let (line_sender, lines) = mpsc::channel(places(claim.request.len()));
     let (end_sender, end) = oneshot::channel();
     let claim_of_thread = claim.clone();
@@ -62,7 +72,7 @@ pub fn start(solver: Arc<dyn Solver>, claim: &Claim, stored: Vec<Line>, cancel: 
         move || {
             let _entered = span.enter();
             let ended = catch_unwind(AssertUnwindSafe(|| match claim_of_thread.task {
-                Task::Path => run(solver.as_ref(), &claim_of_thread, cancel, &line_sender),
+                Task::Path => run(solver.as_ref(), &claim_of_thread, put_down, cancel, &line_sender),
                 Task::Study => study(solver.as_ref(), &claim_of_thread, &stored, &cancel, &line_sender),
             }))
             .unwrap_or_else(|panic| SolveEnd::Panicked(panic_text(panic.as_ref())));
@@ -77,50 +87,44 @@ fn places(model_bytes: usize) -> usize {
     (IN_FLIGHT_BYTES / OF_MODEL / model_bytes.max(1)).clamp(FEWEST_IN_FLIGHT, IN_FLIGHT)
 }
 
-fn run(solver: &dyn Solver, claim: &Claim, cancel: CancelFlag, lines: &mpsc::Sender<Line>) -> SolveEnd {
+fn run(
+    solver: &dyn Solver,
+    claim: &Claim,
+    put_down: Duration,
+    cancel: CancelFlag,
+    lines: &mpsc::Sender<Line>,
+) -> SolveEnd {
     let mut request = match decode::decode(claim.request.as_bytes()) {
         Ok(request) => request,
         Err(errors) => return SolveEnd::Refused(errors),
     };
     // A job that follows another has that one's request, but for this.
     request.analysis.max_increments = claim.max_increments;
+    let anew = |why: &dyn std::error::Error| tracing::warn!(%why, "the path is traced from its start once more");
+    match claim.checkpoint.as_ref().map(PutDown::read) {
+        Some(Ok(from)) => {
+            let mut given = Given::new(claim, put_down, lines);
+            given.go_on_from(&from);
+            match solver.resume(&request, from.at, cancel.clone(), &mut |judged, place| given.take(judged, place)) {
+                Ok(report) => return given.end(report),
+                Err(ResumeError::Input(errors)) => return SolveEnd::Refused(errors),
+                Err(ResumeError::Checkpoint(error)) => anew(&error),
+            }
+        }
+        Some(Err(error)) => anew(&error),
+        None => {}
+    }
     let beginning = match claim.origin.as_ref().map(|(parent, origin)| branches::beginning(parent, origin)).transpose()
     {
         Ok(beginning) => beginning,
         Err(error) => return SolveEnd::Unreadable(error.to_string()),
     };
-    let mut recorder = Recorder::default();
-    let mut unwritable = None;
-    let accept: Accept<'_> = &mut |judged, junction| {
-        // What is stored already is looked at too: what comes after depends on it.
-        let stored = claim.last_index.is_some_and(|stored| judged.increment.index <= stored);
-        let branch = junction()
-            .map(|Junction { checkpoint, alternatives, open: _ }| {
-                recorder.branch(checkpoint, if claim.explores { alternatives } else { Vec::new() })
-            })
-            .transpose();
-        let line = branch.and_then(|branch| {
-            let body = if stored { String::new() } else { json_line(&judged)? };
-            Ok(Line { index: judged.increment.index, body, branch })
-        });
-        match line {
-            Ok(_) if stored => ControlFlow::Continue(()),
-            Ok(line) => match lines.blocking_send(line) {
-                Ok(()) => ControlFlow::Continue(()),
-                Err(_) => ControlFlow::Break(()),
-            },
-            Err(error) => {
-                unwritable = Some(error.to_string());
-                ControlFlow::Break(())
-            }
-        }
-    };
-    let reported = solver.solve(&request, beginning, cancel, accept);
-    match (unwritable, reported) {
-        (Some(error), _) => SolveEnd::Unwritable(error),
-        (None, Ok(Some(report))) => SolveEnd::Reported(Box::new(report)),
-        (None, Ok(None)) => SolveEnd::Silent,
-        (None, Err(errors)) => SolveEnd::Refused(errors),
+    let mut given = Given::new(claim, put_down, lines);
+    match solver.solve(&request, beginning, cancel.clone(), &mut |judged, place| given.take(judged, place)) {
+        Ok(report) => given.end(report),
+        // On the way to the point where it begins.
+        Err(_) if cancel.is_cancelled() => SolveEnd::Cancelled,
+        Err(errors) => SolveEnd::Refused(errors),
     }
 }
 
@@ -141,7 +145,7 @@ fn study(
     };
     let mut unwritable = None;
     let reported = solver.study(&request, done, cancel, &mut |run| match serde_json::to_string(run) {
-        Ok(body) => match lines.blocking_send(Line { index: run.index, body, branch: None }) {
+        Ok(body) => match lines.blocking_send(Line { index: run.index, body, branch: None, checkpoint: None }) {
             Ok(()) => ControlFlow::Continue(()),
             Err(_) => ControlFlow::Break(()),
         },

@@ -10,24 +10,35 @@ use std::ops::ControlFlow;
 /// Where a path begins that follows a direction of another.
 #[derive(Debug, Clone)]
 pub struct Beginning {
+    /// Of the other path, at this increment or before it.
     pub checkpoint: JudgedCheckpoint,
+    pub increment: u64,
     pub direction: usize,
     /// The event of its first increment.
     pub event: String,
 }
 
-/// A point whose directions are listed.
-#[derive(Debug, Clone)]
-pub struct Junction {
-    pub checkpoint: JudgedCheckpoint,
-    /// Which of the directions can be followed.
-    pub open: Vec<bool>,
-    /// Those that appear here first: see [`crate::judged::Alternatives`].
-    pub alternatives: Vec<u64>,
+/// A path at the increment that it has just given.
+pub trait Place {
+    /// Of the directions listed here those that appear here first: see [`crate::judged::Alternatives`].
+    fn alternatives(&self) -> &[u64];
+
+    /// What it takes to go on from here; `None` by a method whose paths cannot be put down.
+    fn checkpoint(&self) -> Option<JudgedCheckpoint>;
 }
 
-/// Takes an increment and, where directions are listed with it, what makes its junction.
-pub type Accept<'a> = &'a mut dyn FnMut(JudgedIncrement, &dyn Fn() -> Option<Junction>) -> ControlFlow<()>;
+/// Takes an increment and the place where the path is.
+pub type Accept<'a> = &'a mut dyn FnMut(JudgedIncrement, &dyn Place) -> ControlFlow<()>;
+
+/// Why a path was not taken up.
+#[derive(Debug, thiserror::Error)]
+pub enum ResumeError {
+    #[error(transparent)]
+    Input(#[from] InputErrors),
+    /// The checkpoint is of another version of this program; the path can be traced from its start.
+    #[error(transparent)]
+    Checkpoint(#[from] JudgedCheckpointError),
+}
 
 pub trait Solver: Send + Sync + 'static {
     /// Checks a request as a whole and says what it needs.
@@ -45,6 +56,15 @@ pub trait Solver: Send + Sync + 'static {
         cancel: CancelFlag,
         accept: Accept<'_>,
     ) -> Result<Option<JudgedReport>, InputErrors>;
+
+    /// Goes on with a path from its checkpoint; otherwise as [`solve`](Self::solve).
+    fn resume(
+        &self,
+        request: &JobRequest,
+        checkpoint: JudgedCheckpoint,
+        cancel: CancelFlag,
+        accept: Accept<'_>,
+    ) -> Result<Option<JudgedReport>, ResumeError>;
 
     /// Checks a study and says what it is going to do.
     fn plan_study(&self, request: &StudyRequest) -> Result<studies::Plan, InputErrors> {
@@ -84,19 +104,33 @@ impl Solver for PathSolver {
         accept: Accept<'_>,
     ) -> Result<Option<JudgedReport>, InputErrors> {
         let scene = Scene::new(request)?;
-        let mut path = begin(request, &scene, beginning, cancel)?;
-        let mut off_measure = false;
-        while let Some(increment) = path.next() {
-            // The first one only: a path that is off once may be off at every point after. The report counts them.
-            if path.is_off_measure() && !std::mem::replace(&mut off_measure, true) {
-                warn_off_measure(&increment);
-            }
-            if accept(increment, &|| junction(&path)).is_break() {
-                return Ok(None);
-            }
-        }
-        Ok(path.report())
+        Ok(trace(begin(request, &scene, beginning, cancel)?, accept))
     }
+
+    fn resume(
+        &self,
+        request: &JobRequest,
+        checkpoint: JudgedCheckpoint,
+        cancel: CancelFlag,
+        accept: Accept<'_>,
+    ) -> Result<Option<JudgedReport>, ResumeError> {
+        let scene = Scene::new(request)?;
+        Ok(trace(JudgedPath::resume(request, &scene, checkpoint, cancel)?, accept))
+    }
+}
+
+fn trace(mut path: JudgedPath<'_>, accept: Accept<'_>) -> Option<JudgedReport> {
+    let mut off_measure = false;
+    while let Some(increment) = path.next() {
+        // The first one only: a path that is off once may be off at every point after. The report counts them.
+        if path.is_off_measure() && !std::mem::replace(&mut off_measure, true) {
+            warn_off_measure(&increment);
+        }
+        if accept(increment, &path).is_break() {
+            return None;
+        }
+    }
+    path.report()
 }
 
 fn warn_off_measure(judged: &JudgedIncrement) {
@@ -104,10 +138,14 @@ fn warn_off_measure(judged: &JudgedIncrement) {
     tracing::warn!(increment = judged.increment.index, %errors, "an accepted increment is off the measure");
 }
 
-fn junction(path: &JudgedPath<'_>) -> Option<Junction> {
-    let open = path.open_directions();
-    let alternatives = path.alternatives().to_vec();
-    if open.is_empty() { None } else { Some(Junction { checkpoint: path.checkpoint()?, open, alternatives }) }
+impl Place for JudgedPath<'_> {
+    fn alternatives(&self) -> &[u64] {
+        JudgedPath::alternatives(self)
+    }
+
+    fn checkpoint(&self) -> Option<JudgedCheckpoint> {
+        JudgedPath::checkpoint(self)
+    }
 }
 
 fn begin<'a>(
@@ -116,21 +154,46 @@ fn begin<'a>(
     beginning: Option<Beginning>,
     cancel: CancelFlag,
 ) -> Result<JudgedPath<'a>, InputErrors> {
-    let Some(Beginning { checkpoint, direction, event }) = beginning else {
+    let Some(Beginning { checkpoint, increment, direction, event }) = beginning else {
         return Ok(JudgedPath::new(request, scene, cancel));
     };
-    JudgedPath::follow(request, scene, checkpoint, direction, event, cancel).map_err(|error| {
-        let pointer = match &error {
-            JudgedCheckpointError::History(_) => "/increment",
-            JudgedCheckpointError::Path(error) => match error {
-                CheckpointError::Version { .. }
-                | CheckpointError::OtherModel { .. }
-                | CheckpointError::NothingListed => "/increment",
-                CheckpointError::NoSuchDirection { .. }
-                | CheckpointError::Mechanism { .. }
-                | CheckpointError::StageEnds { .. } => "/direction",
-            },
-        };
-        InputErrors(vec![InputError::new(pointer, error.to_string())])
+    let checkpoint = led_to(request, checkpoint, increment, &cancel)?;
+    JudgedPath::follow(request, scene, checkpoint, direction, event, cancel).map_err(|error| refused(&error))
+}
+
+/// A path put down at this increment; it is traced on to there from a checkpoint before it.
+fn led_to(
+    request: &JobRequest,
+    checkpoint: JudgedCheckpoint,
+    increment: u64,
+    cancel: &CancelFlag,
+) -> Result<JudgedCheckpoint, InputErrors> {
+    if checkpoint.path.index() == increment {
+        return Ok(checkpoint);
+    }
+    // Ending there, it gives that increment even where few are recorded.
+    let mut request = request.clone();
+    request.analysis.max_increments = increment;
+    let scene = Scene::new(&request)?;
+    let mut path = JudgedPath::resume(&request, &scene, checkpoint, cancel.clone()).map_err(|error| refused(&error))?;
+    while path.next().is_some_and(|judged| judged.increment.index < increment) {}
+    path.checkpoint().filter(|checkpoint| checkpoint.path.index() == increment).ok_or_else(|| {
+        let detail = format!("the path does not come to increment {increment} once more: trace it anew");
+        InputErrors(vec![InputError::new("/increment", detail)])
     })
+}
+
+fn refused(error: &JudgedCheckpointError) -> InputErrors {
+    let pointer = match error {
+        JudgedCheckpointError::History(_) => "/increment",
+        JudgedCheckpointError::Path(error) => match error {
+            CheckpointError::Version { .. } | CheckpointError::OtherModel { .. } | CheckpointError::NothingListed => {
+                "/increment"
+            }
+            CheckpointError::NoSuchDirection { .. }
+            | CheckpointError::Mechanism { .. }
+            | CheckpointError::StageEnds { .. } => "/direction",
+        },
+    };
+    InputErrors(vec![InputError::new(pointer, error.to_string())])
 }

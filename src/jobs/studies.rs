@@ -1,7 +1,7 @@
 //! Studies as jobs: queued, run and resumed by the same workers as paths are.
 
 use super::submission::{not_text, wrong_input};
-use super::{Jobs, JobsError, Solver, queued};
+use super::{Jobs, JobsError, Limits, Solver, queued};
 use crate::model::decode;
 use crate::store::{JobRecord, Line, NewJob, Page, Task};
 use crate::store::{Result as StoreResult, StoreError};
@@ -37,6 +37,7 @@ impl Jobs {
             request: text,
             max_increments: plan.runs,
             max_attempts: self.settings.max_attempts,
+            most_queued: self.settings.limits.queued,
             priority: 0,
             idempotency_key,
             explore: None,
@@ -45,8 +46,8 @@ impl Jobs {
     }
 
     async fn prepare_study(&self, request: Vec<u8>) -> Result<Prepared, JobsError> {
-        let solver = Arc::clone(&self.solver);
-        tokio::task::spawn_blocking(move || prepare(solver.as_ref(), request)).await?
+        let (solver, limits) = (Arc::clone(&self.solver), self.settings.limits);
+        tokio::task::spawn_blocking(move || prepare(solver.as_ref(), &limits, request)).await?
     }
 
     /// What a study has found so far; `None` before the first path.
@@ -78,8 +79,9 @@ impl Jobs {
     }
 }
 
-fn prepare(solver: &dyn Solver, request: Vec<u8>) -> Result<Prepared, JobsError> {
+fn prepare(solver: &dyn Solver, limits: &Limits, request: Vec<u8>) -> Result<Prepared, JobsError> {
     let decoded = decode::study(&request).map_err(|errors| wrong_input(&request, errors, JobsError::Input))?;
+    limits.check(&decoded.model, decoded.analysis.max_increments).map_err(JobsError::Input)?;
     let plan = solver.plan_study(&decoded).map_err(JobsError::Input)?;
     Ok(Prepared { text: String::from_utf8(request).map_err(not_text)?, name: decoded.model.name, plan })
 }

@@ -1,6 +1,6 @@
 //! What is done with a request before it is queued: read, checked, planned.
 
-use super::{JobsError, Solver};
+use super::{JobsError, Limits, Solver};
 use crate::model::request::Explore;
 use crate::model::{InputError, InputErrors, decode};
 use crate::path::Plan;
@@ -18,8 +18,9 @@ pub struct Prepared {
     pub explore: Option<Explore>,
 }
 
-pub fn prepare(solver: &dyn Solver, request: Vec<u8>) -> Result<Prepared, JobsError> {
+pub fn prepare(solver: &dyn Solver, limits: &Limits, request: Vec<u8>) -> Result<Prepared, JobsError> {
     let decoded = decode::decode(&request).map_err(|errors| wrong_input(&request, errors, JobsError::Input))?;
+    limits.check(&decoded.model, decoded.analysis.max_increments).map_err(JobsError::Input)?;
     let plan = solver.plan(&decoded).map_err(JobsError::Input)?;
     let text = String::from_utf8(request).map_err(not_text)?;
     let max_increments = decoded.analysis.max_increments;

@@ -9,6 +9,7 @@ use crate::path::{Outcome, StopReason};
 use crate::store::{Claim, Ending, LeaseAnswer, Status, StoreError, Task};
 use crate::studies;
 use tokio_util::sync::CancellationToken;
+use tokio_util::task::AbortOnDropHandle;
 use tracing::Instrument;
 
 /// Works until `shutdown`; a job under way then goes back to the queue.
@@ -21,7 +22,7 @@ pub async fn work(jobs: Jobs, name: String, shutdown: CancellationToken) {
             Ok(Some(claim)) => {
                 let span =
                     tracing::info_span!("job", job = %claim.lease.job, attempt = claim.lease.attempt, worker = name);
-                run(&jobs, claim, &shutdown).instrument(span).await;
+                guarded(&jobs, claim, &shutdown).instrument(span).await;
                 continue;
             }
             Ok(None) => {}
@@ -35,8 +36,24 @@ pub async fn work(jobs: Jobs, name: String, shutdown: CancellationToken) {
     }
 }
 
+/// A panic of the service itself, the solver's being caught on its own thread, fails the job that it happened at and no
+/// other: the worker goes on.
+async fn guarded(jobs: &Jobs, claim: Claim, shutdown: &CancellationToken) {
+    let lease = claim.lease.clone();
+    let task = {
+        let (jobs, shutdown) = (jobs.clone(), shutdown.clone());
+        tokio::spawn(async move { run(&jobs, claim, &shutdown).await }.in_current_span())
+    };
+    let Err(error) = AbortOnDropHandle::new(task).await else { return };
+    let ending = Ending::failed(format!("the service has a defect: {error}"));
+    match batch::retry(|| jobs.store.finish(&lease, ending.clone())).await {
+        Ok(_) => tracing::error!(%error, "a worker panicked; the job failed"),
+        Err(unstored) => tracing::error!(%error, %unstored, "a worker panicked, and the end was not stored"),
+    }
+}
+
 async fn run(jobs: &Jobs, claim: Claim, shutdown: &CancellationToken) {
-    tracing::info!(stored = claim.last_index, "started");
+    tracing::info!(stored = claim.last.as_ref().map(|line| line.index), "started");
     match trace(jobs, &claim, shutdown).await {
         Ok(Finished::Ended(status)) => {
             tracing::info!(status = status.name(), "ended");
@@ -68,15 +85,18 @@ async fn trace(jobs: &Jobs, claim: &Claim, shutdown: &CancellationToken) -> Resu
         Task::Path => Vec::new(),
         Task::Study => batch::retry(|| jobs.stored(lease.job)).await?,
     };
-    let mut solve = match solve::start(jobs.solver.clone(), claim, stored, cancel.clone()) {
+    let mut solve = match solve::start(jobs.solver.clone(), claim, stored, jobs.settings.flush_interval, cancel.clone())
+    {
         Ok(solve) => solve,
-        Err(error) => return end(jobs, claim, Ending::failed(format!("no thread could be started: {error}"))).await,
+        Err(error) => {
+            return end(jobs, claim, Ending::failed(format!("no thread could be started: {error}")), shutdown).await;
+        }
     };
     let store = jobs.store.as_ref();
-    match batch::drain(store, &jobs.settings, lease, &mut solve.lines, &cancel, shutdown).await {
+    match batch::drain(store, &jobs.settings, claim, &mut solve.lines, &cancel, shutdown).await {
         Drained::Complete => {
             let ending = ending(solve.end.await.unwrap_or(SolveEnd::Silent));
-            end(jobs, claim, ending).await
+            end(jobs, claim, ending, shutdown).await
         }
         Drained::ShuttingDown => {
             cancel.cancel();
@@ -89,6 +109,20 @@ async fn trace(jobs: &Jobs, claim: &Claim, shutdown: &CancellationToken) -> Resu
                 LeaseAnswer::Lost => Finished::Lost,
             })
         }
+        Drained::Reached(reached) => {
+            cancel.cancel();
+            // Nothing that it still sends may be stored; the end is told before the thread has come to its own.
+            solve.lines.close();
+            let ending = Ending {
+                status: Status::Stopped,
+                stop_reason: Some(reached.name().to_owned()),
+                report: None,
+                error: Some(jobs.settings.limits.sentence(reached)),
+            };
+            let answer = end(jobs, claim, ending, shutdown).await;
+            stop(solve).await;
+            answer
+        }
         Drained::LeaseLost => {
             cancel.cancel();
             stop(solve).await;
@@ -98,7 +132,7 @@ async fn trace(jobs: &Jobs, claim: &Claim, shutdown: &CancellationToken) -> Resu
             cancel.cancel();
             stop(solve).await;
             tracing::error!(%error, source = ?std::error::Error::source(&error), "increments could not be stored");
-            end(jobs, claim, Ending::failed(format!("increments could not be stored: {error}"))).await
+            end(jobs, claim, Ending::failed(format!("increments could not be stored: {error}")), shutdown).await
         }
     }
 }
@@ -110,12 +144,24 @@ async fn stop(solve: Solve) {
     let _ = solve.end.await;
 }
 
-async fn end(jobs: &Jobs, claim: &Claim, ending: Ending) -> Result<Finished, StoreError> {
+/// Stores how a job ended. On a full disk that waits for room: if there is some before the lease has run out, the end is
+/// stored, and otherwise the job is taken up again from its last checkpoint.
+async fn end(jobs: &Jobs, claim: &Claim, ending: Ending, shutdown: &CancellationToken) -> Result<Finished, StoreError> {
     let status = ending.status;
-    Ok(match batch::retry(|| jobs.store.finish(&claim.lease, ending.clone())).await? {
-        LeaseAnswer::Held { .. } => Finished::Ended(status),
-        LeaseAnswer::Lost => Finished::Lost,
-    })
+    loop {
+        match batch::retry(|| jobs.store.finish(&claim.lease, ending.clone())).await {
+            Ok(LeaseAnswer::Held { .. }) => return Ok(Finished::Ended(status)),
+            Ok(LeaseAnswer::Lost) => return Ok(Finished::Lost),
+            Err(error @ StoreError::Full(_)) => {
+                tracing::error!(%error, "how the job ended waits for room to be stored");
+                tokio::select! {
+                    () = shutdown.cancelled() => return Err(error),
+                    () = tokio::time::sleep(jobs.settings.poll_interval) => {}
+                }
+            }
+            Err(error) => return Err(error),
+        }
+    }
 }
 
 fn ending(end: SolveEnd) -> Ending {
@@ -130,6 +176,10 @@ fn ending(end: SolveEnd) -> Ending {
         SolveEnd::Refused(errors) => Ending::failed(format!("the stored request is not accepted: {errors}")),
         SolveEnd::Panicked(text) => Ending::failed(format!("the solver panicked: {text}")),
         SolveEnd::Unwritable(error) => Ending::failed(format!("an increment cannot be written: {error}")),
+        SolveEnd::Differs(index) => Ending::failed(format!(
+            "increment {index} was stored by another version of this program and comes out otherwise now, so that the path \
+             cannot go on from there: what is stored stands; post the job anew for a path of one piece"
+        )),
         SolveEnd::Unreadable(error) => Ending::failed(format!("what is stored of the job cannot be read: {error}")),
         SolveEnd::Silent => Ending::failed("the solver ended without a report"),
     }

@@ -12,13 +12,15 @@
 
 use crate::path::Increment;
 use crate::path::increment::{Direction, PointKind, Status};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Load rates below this fraction of the largest one listed have no sign.
 const STATIONARY: f64 = 1e-9;
 
 /// Sees the increments of one path in order.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Alternatives {
     follows: bool,
     bifurcation: bool,
@@ -26,7 +28,8 @@ pub struct Alternatives {
 }
 
 /// By what an alternative is known again at the next increment.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Kind {
     /// Those that are not free: others may come into reach meanwhile.
     held: Vec<(Arc<str>, Arc<str>, Status)>,
@@ -39,6 +42,11 @@ impl Alternatives {
     /// `follows`: the path follows a direction of another.
     pub fn of(follows: bool) -> Self {
         Self { follows, ..Self::default() }
+    }
+
+    /// Nothing has been seen, and the path follows no other.
+    pub fn is_fresh(&self) -> bool {
+        *self == Self::default()
     }
 
     /// The directions that are followed from this increment; `open` says which of those listed can be.

@@ -1,5 +1,6 @@
 //! A path put down at a point together with what its judge remembers.
 
+use super::alternatives::Alternatives;
 use super::report::MeasureReport;
 use crate::measure::{History, HistoryError};
 use crate::path::{Checkpoint, CheckpointError};
@@ -13,6 +14,9 @@ pub struct JudgedCheckpoint {
     pub history: History,
     /// What the measure has said of the path up to here.
     pub measure: MeasureReport,
+    /// By what the directions are known that are not new at the next increment.
+    #[serde(default, skip_serializing_if = "Alternatives::is_fresh")]
+    pub alternatives: Alternatives,
 }
 
 /// Why a judged path cannot be taken up, or a direction of it not followed.

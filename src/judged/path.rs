@@ -73,7 +73,7 @@ impl<'a> JudgedPath<'a> {
         event: String,
         cancel: CancelFlag,
     ) -> Result<Self, JudgedCheckpointError> {
-        let JudgedCheckpoint { path, history, measure: _ } = checkpoint;
+        let JudgedCheckpoint { path, history, measure: _, alternatives: _ } = checkpoint;
         let path = Path::follow(scene, path, direction, event, cancel)?;
         let judge = judge(request, scene).taking_up(history)?;
         let mut followed = Self::of(request, TracedPath::Exact(Box::new(path)), judge, fresh(request));
@@ -81,8 +81,8 @@ impl<'a> JudgedPath<'a> {
         Ok(followed)
     }
 
-    /// Takes a path up where it was put down: increments and report are the same as if it had not been, but that all
-    /// alternatives at the next increment count as new.
+    /// Takes a path up where it was put down: increments and report are the same as if it had not been, but for
+    /// `elapsed_s`.
     ///
     /// # Errors
     /// A checkpoint of another model, or of another version of this program.
@@ -92,10 +92,10 @@ impl<'a> JudgedPath<'a> {
         checkpoint: JudgedCheckpoint,
         cancel: CancelFlag,
     ) -> Result<Self, JudgedCheckpointError> {
-        let JudgedCheckpoint { path, history, measure } = checkpoint;
+        let JudgedCheckpoint { path, history, measure, alternatives } = checkpoint;
         let path = Path::resume(scene, path, cancel)?;
         let judge = judge(request, scene).taking_up(history)?;
-        Ok(Self::of(request, TracedPath::Exact(Box::new(path)), judge, measure))
+        Ok(Self { alternatives, ..Self::of(request, TracedPath::Exact(Box::new(path)), judge, measure) })
     }
 
     /// The path at the last increment; `None` by a method whose paths cannot be put down.
@@ -108,7 +108,13 @@ impl<'a> JudgedPath<'a> {
 
     fn present(&self) -> Option<JudgedCheckpoint> {
         let TracedPath::Exact(path) = &self.path else { return None };
-        Some(JudgedCheckpoint { path: path.checkpoint(), history: self.judge.history(), measure: self.measure })
+        let alternatives = self.alternatives.clone();
+        Some(JudgedCheckpoint {
+            path: path.checkpoint(),
+            history: self.judge.history(),
+            measure: self.measure,
+            alternatives,
+        })
     }
 
     /// For each direction listed with the last increment, whether a path goes along it; empty where there is one way on,

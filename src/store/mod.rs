@@ -18,8 +18,8 @@ use uuid::Uuid;
 
 pub use error::StoreError;
 pub use record::{
-    Branch, Claim, Ending, JobRecord, Lease, LeaseAnswer, Line, ListFilter, Membership, NewFollower, NewJob, Origin,
-    Page, Parent, Status, Submitted, Task,
+    Branch, Checkpoint, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Membership, NewFollower,
+    NewJob, Origin, Page, Parent, Status, Submitted, Task,
 };
 
 pub type Result<T> = std::result::Result<T, StoreError>;
@@ -31,7 +31,7 @@ pub trait Store: Send + Sync + 'static {
     async fn submit(&self, job: NewJob) -> Result<Submitted>;
 
     /// Stores a job that follows another as `queued`, or finds the one that came with the same idempotency key.
-    /// `None`: the parent, or its branch at that increment, is not there.
+    /// `None`: the parent, or a branch of it up to that increment, is not there.
     async fn follow(&self, job: NewFollower) -> Result<Option<Submitted>>;
 
     async fn job(&self, id: Uuid) -> Result<Option<JobRecord>>;
@@ -39,7 +39,7 @@ pub trait Store: Send + Sync + 'static {
     /// A job's request, as posted.
     async fn request(&self, id: Uuid) -> Result<Option<String>>;
 
-    /// The branch stored with an increment.
+    /// The last branch stored with an increment up to this one.
     async fn branch(&self, id: Uuid, increment: u64) -> Result<Option<Origin>>;
 
     /// Queues what explorations have found: families are taken job by job, in the order of queueing, and each job when it
@@ -60,13 +60,14 @@ pub trait Store: Send + Sync + 'static {
     /// Drops a job and all its increments; a worker on it loses its lease. `false`: no such job.
     async fn delete(&self, id: Uuid) -> Result<bool>;
 
-    /// Takes the next queued job, if any.
+    /// Takes the next queued job, if any. Of jobs that have lost their worker and stored nothing since, any of which may end
+    /// the process that works on it, no two are worked on at a time: a job is not lost more than once for another's sake.
     async fn claim(&self, worker: &str, lease: Duration) -> Result<Option<Claim>>;
 
     /// Prolongs a lease.
     async fn renew(&self, lease: &Lease, duration: Duration) -> Result<LeaseAnswer>;
 
-    /// Appends increments, moves the job's progress and prolongs the lease, all or nothing.
+    /// Appends increments with what is stored beside them, moves the job's progress and prolongs the lease, all or nothing.
     async fn append(&self, lease: &Lease, lines: &[Line], duration: Duration) -> Result<LeaseAnswer>;
 
     /// Ends a job.
@@ -75,9 +76,23 @@ pub trait Store: Send + Sync + 'static {
     /// Hands a job back to the queue with its attempt, for a worker that is going away in good order.
     async fn release(&self, lease: &Lease) -> Result<LeaseAnswer>;
 
-    /// Puts jobs whose lease has run out back into the queue; those without attempts left become `failed`.
+    /// Puts jobs whose lease has run out back into the queue; one that has lost `max_attempts` workers in a row, with nothing
+    /// stored between, becomes `failed`.
     /// Answers how many were touched.
     async fn reclaim_expired(&self) -> Result<u64>;
+
+    /// Drops ended jobs that are not to be kept, a few at a time; answers how many. Those whose alternatives an exploration
+    /// has still to look at stay.
+    async fn retire(&self, keep: Keep) -> Result<u64>;
+
+    /// Gives room that is free in the database back to the disk, a part at a time; answers whether there is more.
+    async fn shrink(&self) -> Result<bool>;
+
+    /// Looks through the whole database for damage.
+    ///
+    /// # Errors
+    /// [`StoreError::Damaged`], which every call answers from then on that would write.
+    async fn check(&self) -> Result<()>;
 
     /// Proves that the store takes writes.
     async fn probe(&self) -> Result<()>;

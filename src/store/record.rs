@@ -3,6 +3,7 @@
 use crate::model::request::Explore;
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
+use std::time::Duration;
 use uuid::Uuid;
 
 /// Where a job is in its life.
@@ -81,7 +82,10 @@ pub struct NewJob {
     /// JSON.
     pub plan: String,
     pub max_increments: u64,
+    /// Workers that it may lose in a row, nothing stored between.
     pub max_attempts: u32,
+    /// It is refused where so many wait already.
+    pub most_queued: u64,
     pub priority: i32,
     pub idempotency_key: Option<String>,
     /// The job begins a family.
@@ -103,6 +107,8 @@ pub struct NewFollower {
     /// The parent's, if absent.
     pub max_increments: Option<u64>,
     pub idempotency_key: Option<String>,
+    /// It is refused where so many wait already.
+    pub most_queued: u64,
 }
 
 /// What it takes to go on from an increment along another direction; opaque here.
@@ -115,12 +121,22 @@ pub struct Branch {
     pub alternatives: Vec<u64>,
 }
 
-/// A branch as it is read back.
+/// A branch, or a checkpoint, as it is read back.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Origin {
     pub body: String,
     /// Lines: everything up to that point.
     pub trail: String,
+}
+
+/// What it takes to go on with a job from an increment of its own; opaque here. Of a job the newest is kept, until it ends.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Checkpoint {
+    pub body: String,
+    /// One line: what is new since the checkpoint before.
+    pub trail: Option<String>,
+    /// What the trail held before is of no use any more.
+    pub begins_trail: bool,
 }
 
 /// A job's place in an exploration.
@@ -147,6 +163,18 @@ pub enum Submitted {
     Repeated(JobRecord),
     /// The same key came before with another request.
     KeyReused,
+    QueueFull {
+        most: u64,
+    },
+}
+
+/// Which ended jobs are kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Keep {
+    /// Those that ended no longer ago.
+    For(Duration),
+    /// So many that ended last.
+    Newest(u64),
 }
 
 /// A job as stored, without its request and increments.
@@ -164,8 +192,11 @@ pub struct JobRecord {
     pub error: Option<String>,
     pub max_increments: u64,
     pub last_index: Option<u64>,
+    /// Times it was started.
     pub attempt: u32,
     pub max_attempts: u32,
+    /// Workers that it has lost in a row, nothing stored between; at `max_attempts` it fails.
+    pub losses: u32,
     pub cancel_requested: bool,
     pub created_at: Timestamp,
     pub started_at: Option<Timestamp>,
@@ -202,9 +233,22 @@ pub struct Line {
     pub body: String,
     /// Stored beside the increment, and not read back with it.
     pub branch: Option<Branch>,
+    /// Likewise.
+    pub checkpoint: Option<Checkpoint>,
 }
 
-/// The right to write to a job: valid while the job still names this worker and this attempt.
+impl Line {
+    /// Bytes for which there is a limit; a checkpoint is replaced and dropped, and does not count.
+    pub fn bytes(&self) -> u64 {
+        let branch =
+            self.branch.as_ref().map_or(0, |branch| branch.body.len() + branch.trail.as_ref().map_or(0, String::len));
+        (self.body.len() + branch) as u64
+    }
+}
+
+/// The right to write to a job: valid while the job still names this worker and this attempt, and until the time that it
+/// was given or last prolonged for has passed. After that nothing can be written with it, whether or not the job has been
+/// given to another meanwhile.
 #[derive(Debug, Clone)]
 pub struct Lease {
     pub job: Uuid,
@@ -219,12 +263,20 @@ pub struct Claim {
     pub task: Task,
     pub request: String,
     pub max_increments: u64,
-    /// Increments up to this index are stored already, from an earlier attempt.
-    pub last_index: Option<u64>,
+    /// Increments up to this one are stored already, from an earlier attempt.
+    pub last: Option<Line>,
+    /// The body of the last branch that an earlier attempt stored.
+    pub last_branch: Option<String>,
+    /// The newest checkpoint of an earlier attempt, at the last increment or before it.
+    pub checkpoint: Option<Origin>,
     /// Where the job begins, if it follows another.
     pub origin: Option<(Parent, Origin)>,
     /// Its alternatives are to be followed by jobs of their own.
     pub explores: bool,
+    /// How long its attempts before this one ran.
+    pub ran: Duration,
+    /// Bytes that they stored: see [`Line::bytes`].
+    pub stored_bytes: u64,
 }
 
 /// What became of a write under a lease.

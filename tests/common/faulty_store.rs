@@ -1,8 +1,8 @@
 //! A store whose writes can be made to fail; everything else is the real one.
 
 use arcslip::store::{
-    Claim, Ending, JobRecord, Lease, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, Origin, Page, Result, Store,
-    StoreError, Submitted,
+    Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, Origin, Page, Result,
+    Store, StoreError, Submitted,
 };
 use async_trait::async_trait;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -15,6 +15,8 @@ pub struct FaultyStore {
     inner: Arc<dyn Store>,
     /// So many appends fail as if the database were locked.
     pub locked_appends: AtomicU32,
+    /// So many appends panic.
+    pub panicking_appends: AtomicU32,
     /// Appends and submissions fail as if the disk were full.
     pub full: AtomicBool,
     /// Probes fail.
@@ -28,6 +30,7 @@ impl FaultyStore {
         Arc::new(Self {
             inner,
             locked_appends: AtomicU32::new(0),
+            panicking_appends: AtomicU32::new(0),
             full: AtomicBool::new(false),
             down: AtomicBool::new(false),
             stored: Mutex::default(),
@@ -97,8 +100,11 @@ impl Store for FaultyStore {
 
     async fn append(&self, lease: &Lease, lines: &[Line], duration: Duration) -> Result<LeaseAnswer> {
         self.room()?;
-        let locked = self.locked_appends.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1));
-        if locked.is_ok() {
+        let one_of = |faults: &AtomicU32| {
+            faults.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1)).is_ok()
+        };
+        assert!(!one_of(&self.panicking_appends), "a made-up defect of the store");
+        if one_of(&self.locked_appends) {
             return Err(StoreError::Unavailable("locked".into()));
         }
         let answer = self.inner.append(lease, lines, duration).await?;
@@ -116,6 +122,18 @@ impl Store for FaultyStore {
 
     async fn reclaim_expired(&self) -> Result<u64> {
         self.inner.reclaim_expired().await
+    }
+
+    async fn retire(&self, keep: Keep) -> Result<u64> {
+        self.inner.retire(keep).await
+    }
+
+    async fn shrink(&self) -> Result<bool> {
+        self.inner.shrink().await
+    }
+
+    async fn check(&self) -> Result<()> {
+        self.inner.check().await
     }
 
     async fn probe(&self) -> Result<()> {

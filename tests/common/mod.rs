@@ -8,6 +8,8 @@ pub mod faulty_store;
 pub mod generators;
 pub mod long_paths;
 pub mod paths;
+#[cfg(feature = "server")]
+pub mod process;
 pub mod random;
 #[cfg(feature = "server")]
 pub mod server;
@@ -15,3 +17,5 @@ pub mod server;
 pub mod service;
 #[cfg(feature = "server")]
 pub mod solver;
+#[cfg(feature = "server")]
+pub mod watched;

@@ -53,6 +53,10 @@ impl TestServer {
         self.server.stop().await
     }
 
+    pub fn address(&self) -> std::net::SocketAddr {
+        self.server.address()
+    }
+
     pub fn ask(&self, method: Method, path: &str) -> RequestBuilder {
         self.client.request(method, format!("{}{path}", self.url))
     }
@@ -131,13 +135,18 @@ impl EventStream {
 
     /// `None`: the stream has ended.
     pub async fn next(&mut self) -> Option<Event> {
+        self.try_next().await.expect("a stream that ends in order")
+    }
+
+    /// `None`: the stream broke off. What came of an event that is not whole does not count.
+    pub async fn try_next(&mut self) -> Option<Option<Event>> {
         loop {
             if let Some((event, rest)) = self.text.split_once("\n\n") {
                 let event = parse(event);
                 self.text = rest.to_owned();
-                return Some(event);
+                return Some(Some(event));
             }
-            let chunk = self.response.chunk().await.expect("a stream that ends in order")?;
+            let Some(chunk) = self.response.chunk().await.ok()? else { return Some(None) };
             self.text.push_str(std::str::from_utf8(&chunk).expect("text"));
         }
     }

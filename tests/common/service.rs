@@ -19,6 +19,20 @@ pub fn request(name: &str, max_increments: u64) -> Value {
     })
 }
 
+/// A built-in scene, as it is posted.
+pub fn scene(name: &str) -> Value {
+    serde_json::from_str(arcslip::scenes::find(name).expect("a scene").request).expect("JSON")
+}
+
+/// A scene in steps so short that it has about so many increments for each unit of arc length, and no more than these.
+pub fn in_short_steps(name: &str, increments: u64, of_a_unit: u64) -> Value {
+    let mut request = scene(name);
+    let step = 1.0 / of_a_unit as f64;
+    request["analysis"]["arc_length"] = json!({"initial": step, "min": 1e-3 * step, "max": step});
+    request["analysis"]["max_increments"] = json!(increments);
+    request
+}
+
 /// A line with its one value that differs from run to run taken out, and nothing else touched.
 pub fn without_elapsed(line: &str) -> String {
     let Some((before, rest)) = line.split_once("\"elapsed_s\":") else { return line.to_owned() };

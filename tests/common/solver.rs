@@ -2,8 +2,8 @@
 
 use arcslip::cancel::CancelFlag;
 use arcslip::jobs::Solver;
-use arcslip::jobs::solver::{Accept, Beginning};
-use arcslip::judged::{JudgedIncrement, JudgedReport, MeasureReport};
+use arcslip::jobs::solver::{Accept, Beginning, Place, ResumeError};
+use arcslip::judged::{JudgedCheckpoint, JudgedIncrement, JudgedReport, MeasureReport};
 use arcslip::measure::{Errors, Maxima};
 use arcslip::model::{InputErrors, JobRequest};
 use arcslip::path::increment::{ContactState, Diagnostics, Energy, Point, PointKind, Status};
@@ -14,6 +14,9 @@ use std::time::Duration;
 
 /// Models of this name panic at their third increment.
 pub const PANICS: &str = "panics";
+
+/// Models of this name end the process.
+pub const ABORTS: &str = "aborts";
 
 #[derive(Clone, Default)]
 pub struct MadeUp {
@@ -72,6 +75,9 @@ impl Solver for MadeUp {
         accept: Accept<'_>,
     ) -> Result<Option<JudgedReport>, InputErrors> {
         let run = self.runs.fetch_add(1, Ordering::Relaxed) + 1;
+        if request.model.name.as_deref() == Some(ABORTS) {
+            std::process::abort();
+        }
         let mut stop_reason = StopReason::MaxIncrements;
         let mut increments = 0;
         for index in 0..request.analysis.max_increments {
@@ -82,7 +88,7 @@ impl Solver for MadeUp {
             }
             assert!(!(request.model.name.as_deref() == Some(PANICS) && index == 3), "a made-up defect");
             increments += 1;
-            if accept(judged(index, run), &|| None).is_break() {
+            if accept(judged(index, run), &Nowhere).is_break() {
                 return Ok(None);
             }
         }
@@ -101,6 +107,29 @@ impl Solver for MadeUp {
         };
         let measure = MeasureReport { largest: Maxima::default(), bar: None, off_measure: 0 };
         Ok(Some(JudgedReport { report, measure }))
+    }
+
+    fn resume(
+        &self,
+        request: &JobRequest,
+        _checkpoint: JudgedCheckpoint,
+        cancel: CancelFlag,
+        accept: Accept<'_>,
+    ) -> Result<Option<JudgedReport>, ResumeError> {
+        Ok(self.solve(request, None, cancel, accept)?)
+    }
+}
+
+/// What is made up cannot be put down.
+struct Nowhere;
+
+impl Place for Nowhere {
+    fn alternatives(&self) -> &[u64] {
+        &[]
+    }
+
+    fn checkpoint(&self) -> Option<JudgedCheckpoint> {
+        None
     }
 }
 

@@ -1,21 +1,47 @@
 //! The queue: who works on what, and until when.
 //!
-//! Every statement of a worker is fenced by job, worker, attempt and `running`: a worker that comes back after its lease
-//! was given to another changes nothing.
+//! Every statement of a worker is fenced by job, worker, attempt, `running` and the time of the lease: a worker that comes
+//! back late changes nothing, whether or not the job was given to another meanwhile. Who holds a lease is then told by the
+//! row alone, and a worker that was stopped for long never goes on with a job that others believe lost. (The time is the
+//! system's; a clock that jumps forward costs a running job its lease, and it goes on from its last checkpoint.)
+//!
+//! Which job ends the process that works on it cannot be seen from outside: all that ran there are lost alike. So a loss
+//! counts for as long as nothing of the job was stored after it, and of the jobs with a loss that counts one is worked on
+//! at a time, next to others that have none. One that ends every process is then alone among the suspects at each of its
+//! attempts; a job that was beside it at the first is not beside it at the next.
 
 use super::rows::{self, unsigned};
-use super::{SqliteStore, after, followers, now};
+use super::{SqliteStore, after, followers, increments, now};
 use crate::store::{Claim, Ending, Lease, LeaseAnswer, Result, StoreError};
 use sqlx::Row;
 use std::time::Duration;
 use uuid::Uuid;
 
+/// The lease is held: `?1` job, `?2` worker, `?3` attempt, `?4` now.
+macro_rules! held {
+    () => {
+        " WHERE id = ?1 AND worker = ?2 AND attempt = ?3 AND status = 'running' AND lease_until >= ?4 "
+    };
+}
+pub(super) use held;
+
+/// Counts the time since the job was last heard of, `?4` being now.
+macro_rules! ran {
+    () => {
+        "ran_ms = ran_ms + max(0, ?4 - updated_at), updated_at = ?4"
+    };
+}
+pub(super) use ran;
+
 pub(super) async fn claim(store: &SqliteStore, worker: &str, lease: Duration) -> Result<Option<Claim>> {
     let row = sqlx::query(
         "UPDATE jobs SET status = 'running', worker = ?1, lease_until = ?2, attempt = attempt + 1, \
          started_at = coalesce(started_at, ?3), updated_at = ?3 \
-         WHERE id = (SELECT id FROM jobs WHERE status = 'queued' ORDER BY priority DESC, id LIMIT 1) \
-         RETURNING id, task, attempt, request, max_increments, last_index, parent, parent_increment, parent_direction, family",
+         WHERE id = (SELECT id FROM jobs WHERE status = 'queued' AND (losses = 0 OR NOT EXISTS \
+         (SELECT 1 FROM jobs AS suspect WHERE suspect.status = 'running' AND suspect.losses > 0)) \
+         ORDER BY priority DESC, id LIMIT 1) \
+         RETURNING id, task, attempt, request, max_increments, last_index, parent, parent_increment, parent_direction, family, \
+         ran_ms, stored_bytes",
     )
     .bind(worker)
     .bind(after(lease))
@@ -33,57 +59,68 @@ pub(super) async fn claim(store: &SqliteStore, worker: &str, lease: Duration) ->
         task: rows::task(&row)?,
         request: row.try_get("request")?,
         max_increments: unsigned(row.try_get("max_increments")?)?,
-        last_index: row.try_get::<Option<i64>, _>("last_index")?.map(unsigned).transpose()?,
+        last: match row.try_get::<Option<i64>, _>("last_index")? {
+            Some(index) => Some(increments::stored(store, job, unsigned(index)?).await?),
+            None => None,
+        },
+        last_branch: increments::last_branch(store, job).await?,
+        checkpoint: increments::checkpoint(store, job).await?,
         origin,
         explores: row.try_get::<Option<Uuid>, _>("family")?.is_some(),
+        ran: Duration::from_millis(unsigned(row.try_get("ran_ms")?)?),
+        stored_bytes: unsigned(row.try_get("stored_bytes")?)?,
     };
     store.signals.job_changed(job);
     Ok(Some(claim))
 }
 
 pub(super) async fn renew(store: &SqliteStore, lease: &Lease, duration: Duration) -> Result<LeaseAnswer> {
-    let row = sqlx::query(
-        "UPDATE jobs SET lease_until = ?4 WHERE id = ?1 AND worker = ?2 AND attempt = ?3 AND status = 'running' \
-         RETURNING cancel_requested",
-    )
-    .bind(lease.job)
-    .bind(&lease.worker)
-    .bind(lease.attempt)
-    .bind(after(duration))
-    .fetch_optional(&store.writer)
-    .await?;
+    let row = sqlx::query(concat!("UPDATE jobs SET lease_until = ?5, ", ran!(), held!(), "RETURNING cancel_requested"))
+        .bind(lease.job)
+        .bind(&lease.worker)
+        .bind(lease.attempt)
+        .bind(now())
+        .bind(after(duration))
+        .fetch_optional(&store.writer)
+        .await?;
     answer(row)
 }
 
 pub(super) async fn finish(store: &SqliteStore, lease: &Lease, ending: Ending) -> Result<LeaseAnswer> {
-    let row = sqlx::query(
-        "UPDATE jobs SET status = ?4, stop_reason = ?5, report = ?6, error = ?7, worker = NULL, lease_until = NULL, \
-         ended_at = ?8, updated_at = ?8 \
-         WHERE id = ?1 AND worker = ?2 AND attempt = ?3 AND status = 'running' RETURNING cancel_requested",
-    )
+    let row = sqlx::query(concat!(
+        "UPDATE jobs SET status = ?5, stop_reason = ?6, report = ?7, error = ?8, worker = NULL, lease_until = NULL, \
+         ended_at = ?4, ",
+        ran!(),
+        held!(),
+        "RETURNING cancel_requested"
+    ))
     .bind(lease.job)
     .bind(&lease.worker)
     .bind(lease.attempt)
+    .bind(now())
     .bind(ending.status.name())
     .bind(&ending.stop_reason)
     .bind(&ending.report)
     .bind(&ending.error)
-    .bind(now())
     .fetch_optional(&store.writer)
     .await?;
     store.signals.job_changed(lease.job);
+    // Where the job had lost workers, others of the kind may have waited for its end.
+    store.signals.queue_changed();
     answer(row)
 }
 
 pub(super) async fn release(store: &SqliteStore, lease: &Lease) -> Result<LeaseAnswer> {
     // The attempt is given back: going away in good order says nothing against the job. A cancelled one is not queued again.
-    let row = sqlx::query(
+    let row = sqlx::query(concat!(
         "UPDATE jobs SET status = CASE cancel_requested WHEN 0 THEN 'queued' ELSE 'cancelled' END, \
          stop_reason = CASE cancel_requested WHEN 0 THEN NULL ELSE 'cancelled' END, \
          ended_at = CASE cancel_requested WHEN 0 THEN NULL ELSE ?4 END, \
-         attempt = attempt - 1, worker = NULL, lease_until = NULL, updated_at = ?4 \
-         WHERE id = ?1 AND worker = ?2 AND attempt = ?3 AND status = 'running' RETURNING cancel_requested",
-    )
+         attempt = attempt - 1, worker = NULL, lease_until = NULL, ",
+        ran!(),
+        held!(),
+        "RETURNING cancel_requested"
+    ))
     .bind(lease.job)
     .bind(&lease.worker)
     .bind(lease.attempt)
@@ -97,12 +134,13 @@ pub(super) async fn release(store: &SqliteStore, lease: &Lease) -> Result<LeaseA
 
 pub(super) async fn reclaim_expired(store: &SqliteStore) -> Result<u64> {
     let rows = sqlx::query(
-        "UPDATE jobs SET \
-         status = CASE WHEN cancel_requested THEN 'cancelled' WHEN attempt < max_attempts THEN 'queued' ELSE 'failed' END, \
+        "UPDATE jobs SET losses = losses + 1, \
+         status = CASE WHEN cancel_requested THEN 'cancelled' WHEN losses + 1 < max_attempts THEN 'queued' ELSE 'failed' END, \
          stop_reason = CASE WHEN cancel_requested THEN 'cancelled' END, \
-         error = CASE WHEN NOT cancel_requested AND attempt >= max_attempts \
-                 THEN 'the worker was lost in each of ' || max_attempts || ' attempts' END, \
-         ended_at = CASE WHEN cancel_requested OR attempt >= max_attempts THEN ?1 END, \
+         error = CASE WHEN NOT cancel_requested AND losses + 1 >= max_attempts \
+                 THEN 'the worker was lost ' || (losses + 1) || ' times in a row, nothing stored between: the process that \
+works on the job ends, or does not answer in time' END, \
+         ended_at = CASE WHEN cancel_requested OR losses + 1 >= max_attempts THEN ?1 END, \
          worker = NULL, lease_until = NULL, updated_at = ?1 \
          WHERE status = 'running' AND lease_until < ?1 RETURNING id",
     )

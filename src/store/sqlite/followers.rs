@@ -1,5 +1,6 @@
 //! Jobs that follow a direction of another, and what they begin from.
 
+use super::jobs::waiting;
 use super::rows::{self, job_columns, signed};
 use super::{SqliteStore, jobs, now};
 use crate::store::{NewFollower, Origin, Parent, Result, Submitted};
@@ -26,8 +27,14 @@ pub(super) async fn follow(store: &SqliteStore, job: NewFollower) -> Result<Opti
         .bind(&job.idempotency_key)
         .fetch_optional(&mut *transaction)
         .await?;
+    let full: bool = sqlx::query_scalar(concat!("SELECT ", waiting!(), " >= ?1"))
+        .bind(signed(job.most_queued))
+        .fetch_one(&mut *transaction)
+        .await?;
     transaction.rollback().await?;
-    let Some(known) = known else { return Ok(None) };
+    let Some(known) = known else {
+        return Ok(full.then_some(Submitted::QueueFull { most: job.most_queued }));
+    };
     let record = rows::job(&known)?;
     let same_length = job.max_increments.is_none_or(|asked| asked == record.max_increments);
     let same = record.parent == Some(job.parent) && same_length;
@@ -35,7 +42,7 @@ pub(super) async fn follow(store: &SqliteStore, job: NewFollower) -> Result<Opti
 }
 
 /// Queues a job that follows another; what it begins from is copied, so that it stands when the other is deleted.
-/// `None`: the key is taken, or there is no such branch.
+/// `None`: the key is taken, there is no such branch, or there are enough jobs that wait.
 pub(super) async fn insert(
     transaction: &mut Transaction<'_, Sqlite>,
     job: &NewFollower,
@@ -43,14 +50,16 @@ pub(super) async fn insert(
 ) -> Result<Option<Uuid>> {
     let Parent { job: parent, increment, direction } = job.parent;
     let id = Uuid::now_v7();
-    let inserted = sqlx::query(
+    let inserted = sqlx::query(concat!(
         "INSERT INTO jobs (id, name, status, priority, request, idempotency_key, plan, max_increments, max_attempts, \
          created_at, updated_at, parent, parent_increment, parent_direction, family, family_number, generation) \
-         SELECT ?1, name, 'queued', priority, request, ?2, plan, coalesce(?3, max_increments), max_attempts, \
-         ?4, ?4, id, ?5, ?6, ?7, ?8, ?9 \
-         FROM jobs WHERE id = ?10 AND EXISTS (SELECT 1 FROM branches WHERE job = ?10 AND increment_index = ?5) \
-         ON CONFLICT (idempotency_key) DO NOTHING",
-    )
+         SELECT ?2, name, 'queued', priority, request, ?3, plan, coalesce(?4, max_increments), max_attempts, \
+         ?5, ?5, id, ?6, ?7, ?8, ?9, ?10 \
+         FROM jobs WHERE id = ?11 AND EXISTS (SELECT 1 FROM branches WHERE job = ?11 AND increment_index <= ?6) AND ",
+        waiting!(),
+        " < ?1 ON CONFLICT (idempotency_key) DO NOTHING",
+    ))
+    .bind(signed(job.most_queued))
     .bind(id)
     .bind(&job.idempotency_key)
     .bind(job.max_increments.map(signed))
@@ -69,7 +78,7 @@ pub(super) async fn insert(
     sqlx::query(
         "INSERT INTO origins (job, body, trail) SELECT ?1, body, (SELECT group_concat(trail, char(10)) FROM \
          (SELECT trail FROM branches WHERE job = ?2 AND increment_index <= ?3 ORDER BY increment_index)) \
-         FROM branches WHERE job = ?2 AND increment_index = ?3",
+         FROM branches WHERE job = ?2 AND increment_index <= ?3 ORDER BY increment_index DESC LIMIT 1",
     )
     .bind(id)
     .bind(parent)
@@ -87,7 +96,7 @@ pub(super) async fn branch(store: &SqliteStore, id: Uuid, increment: u64) -> Res
     let row = sqlx::query(
         "SELECT body, (SELECT group_concat(trail, char(10)) FROM \
          (SELECT trail FROM branches WHERE job = ?1 AND increment_index <= ?2 ORDER BY increment_index)) AS trail \
-         FROM branches WHERE job = ?1 AND increment_index = ?2",
+         FROM branches WHERE job = ?1 AND increment_index <= ?2 ORDER BY increment_index DESC LIMIT 1",
     )
     .bind(id)
     .bind(signed(increment))
@@ -103,7 +112,8 @@ pub(super) async fn origin(store: &SqliteStore, id: Uuid) -> Result<Origin> {
     read(&row)
 }
 
-fn read(row: &sqlx::sqlite::SqliteRow) -> Result<Origin> {
+/// Of a row with the columns `body` and `trail`.
+pub(super) fn read(row: &sqlx::sqlite::SqliteRow) -> Result<Origin> {
     let trail: Option<String> = row.try_get("trail")?;
     Ok(Origin { body: row.try_get("body")?, trail: trail.unwrap_or_default() })
 }

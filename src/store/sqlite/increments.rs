@@ -1,10 +1,12 @@
-//! Increments: appended in batches, read in order.
+//! Increments: appended in batches with what is stored beside them, read in order.
 
-use super::rows::{signed, unsigned};
-use super::{SqliteStore, after, claims, now};
-use crate::store::{Lease, LeaseAnswer, Line, Page, Result};
+use super::claims::{self, held, ran};
+use super::followers;
+use super::rows::{self, signed, unsigned};
+use super::{SqliteStore, after, now};
+use crate::store::{Lease, LeaseAnswer, Line, Origin, Page, Result};
 use sqlx::types::Json;
-use sqlx::{QueryBuilder, Row, Sqlite};
+use sqlx::{QueryBuilder, Row, Sqlite, Transaction};
 use std::time::Duration;
 use tokio_stream::StreamExt;
 use uuid::Uuid;
@@ -20,16 +22,19 @@ pub(super) async fn append(
 ) -> Result<LeaseAnswer> {
     let Some(last) = lines.last() else { return claims::renew(store, lease, duration).await };
     let mut transaction = store.writer.begin().await?;
-    let row = sqlx::query(
-        "UPDATE jobs SET last_index = ?4, lease_until = ?5, updated_at = ?6 \
-         WHERE id = ?1 AND worker = ?2 AND attempt = ?3 AND status = 'running' RETURNING cancel_requested",
-    )
+    let row = sqlx::query(concat!(
+        "UPDATE jobs SET last_index = ?5, lease_until = ?6, losses = 0, stored_bytes = stored_bytes + ?7, ",
+        ran!(),
+        held!(),
+        "RETURNING cancel_requested"
+    ))
     .bind(lease.job)
     .bind(&lease.worker)
     .bind(lease.attempt)
+    .bind(now())
     .bind(signed(last.index))
     .bind(after(duration))
-    .bind(now())
+    .bind(signed(lines.iter().map(Line::bytes).sum()))
     .fetch_optional(&mut *transaction)
     .await?;
     let answer = claims::answer(row)?;
@@ -56,9 +61,72 @@ pub(super) async fn append(
         });
         insert.build().execute(&mut *transaction).await?;
     }
+    put_checkpoint(&mut transaction, lease.job, lines).await?;
     transaction.commit().await?;
     store.signals.job_changed(lease.job);
     Ok(answer)
+}
+
+/// The newest checkpoint takes the place of the one before; trails are of all of them.
+async fn put_checkpoint(transaction: &mut Transaction<'_, Sqlite>, job: Uuid, lines: &[Line]) -> Result<()> {
+    let mut newest = None;
+    for (index, checkpoint) in lines.iter().filter_map(|line| Some((line.index, line.checkpoint.as_ref()?))) {
+        if checkpoint.begins_trail {
+            sqlx::query("DELETE FROM checkpoint_trails WHERE job = ?").bind(job).execute(&mut **transaction).await?;
+        }
+        if let Some(trail) = &checkpoint.trail {
+            sqlx::query("INSERT INTO checkpoint_trails (job, increment_index, trail) VALUES (?1, ?2, ?3)")
+                .bind(job)
+                .bind(signed(index))
+                .bind(trail)
+                .execute(&mut **transaction)
+                .await?;
+        }
+        newest = Some((index, &checkpoint.body));
+    }
+    if let Some((index, body)) = newest {
+        sqlx::query(
+            "INSERT INTO checkpoints (job, increment_index, body) VALUES (?1, ?2, ?3) ON CONFLICT (job) \
+             DO UPDATE SET increment_index = excluded.increment_index, body = excluded.body",
+        )
+        .bind(job)
+        .bind(signed(index))
+        .bind(body)
+        .execute(&mut **transaction)
+        .await?;
+    }
+    Ok(())
+}
+
+/// The newest checkpoint of a job that has not ended.
+pub(super) async fn checkpoint(store: &SqliteStore, job: Uuid) -> Result<Option<Origin>> {
+    let row = sqlx::query(
+        "SELECT body, (SELECT group_concat(trail, char(10)) FROM \
+         (SELECT trail FROM checkpoint_trails WHERE job = ?1 ORDER BY increment_index)) AS trail \
+         FROM checkpoints WHERE job = ?1",
+    )
+    .bind(job)
+    .fetch_optional(&store.writer)
+    .await?;
+    row.map(|row| followers::read(&row)).transpose()
+}
+
+/// The body of a job's last branch.
+pub(super) async fn last_branch(store: &SqliteStore, job: Uuid) -> Result<Option<String>> {
+    let body = sqlx::query_scalar("SELECT body FROM branches WHERE job = ? ORDER BY increment_index DESC LIMIT 1");
+    Ok(body.bind(job).fetch_optional(&store.writer).await?)
+}
+
+/// An increment that is there.
+pub(super) async fn stored(store: &SqliteStore, job: Uuid, index: u64) -> Result<Line> {
+    let body: Option<String> =
+        sqlx::query_scalar("SELECT body FROM increments WHERE job = ?1 AND increment_index = ?2")
+            .bind(job)
+            .bind(signed(index))
+            .fetch_optional(&store.writer)
+            .await?;
+    let body = body.ok_or_else(|| rows::damaged(format!("increment {index} of job {job} is missing")))?;
+    Ok(Line { index, body, branch: None, checkpoint: None })
 }
 
 pub(super) async fn read(store: &SqliteStore, id: Uuid, after: Option<u64>, page: Page) -> Result<Vec<Line>> {
@@ -76,7 +144,8 @@ pub(super) async fn read(store: &SqliteStore, id: Uuid, after: Option<u64>, page
         let row = row?;
         let body: String = row.try_get("body")?;
         bytes += body.len();
-        lines.push(Line { index: unsigned(row.try_get("increment_index")?)?, body, branch: None });
+        let index = unsigned(row.try_get("increment_index")?)?;
+        lines.push(Line { index, body, branch: None, checkpoint: None });
         if bytes >= page.bytes {
             break;
         }

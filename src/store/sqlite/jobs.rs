@@ -2,18 +2,31 @@
 
 use super::rows::{self, job_columns, signed};
 use super::{SqliteStore, now};
-use crate::store::{JobRecord, ListFilter, NewJob, Result, Status, Submitted};
+use crate::store::{JobRecord, Keep, ListFilter, NewJob, Result, Status, Submitted};
 use sqlx::{Row, Sqlite, Transaction};
 use uuid::Uuid;
+
+/// Ended jobs that are dropped in one go.
+const DROPPED_AT_ONCE: u32 = 10;
+
+/// How many jobs wait, up to so many; of a statement whose `?1` says how many.
+macro_rules! waiting {
+    () => {
+        "(SELECT count(*) FROM (SELECT 1 FROM jobs WHERE status = 'queued' LIMIT ?1))"
+    };
+}
+pub(super) use waiting;
 
 pub(super) async fn submit(store: &SqliteStore, job: NewJob) -> Result<Submitted> {
     let mut transaction = store.writer.begin().await?;
     let id = Uuid::now_v7();
-    let inserted = sqlx::query(
+    let inserted = sqlx::query(concat!(
         "INSERT INTO jobs (id, name, status, priority, request, idempotency_key, plan, max_increments, max_attempts, \
-         created_at, updated_at, family, task) VALUES (?1, ?2, 'queued', ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?9, ?10, ?11) \
-         ON CONFLICT (idempotency_key) DO NOTHING",
-    )
+         created_at, updated_at, family, task) SELECT ?2, ?3, 'queued', ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?10, ?11, ?12 WHERE ",
+        waiting!(),
+        " < ?1 ON CONFLICT (idempotency_key) DO NOTHING",
+    ))
+    .bind(signed(job.most_queued))
     .bind(id)
     .bind(&job.name)
     .bind(job.priority)
@@ -43,9 +56,10 @@ pub(super) async fn submit(store: &SqliteStore, job: NewJob) -> Result<Submitted
     }
     let row = sqlx::query(concat!("SELECT request, ", job_columns!(), " FROM jobs WHERE idempotency_key = ?"))
         .bind(&job.idempotency_key)
-        .fetch_one(&mut *transaction)
+        .fetch_optional(&mut *transaction)
         .await?;
     transaction.rollback().await?;
+    let Some(row) = row else { return Ok(Submitted::QueueFull { most: job.most_queued }) };
     let record = rows::job(&row)?;
     // A job that follows another has that one's request, and is another job.
     let same =
@@ -137,4 +151,29 @@ pub(super) async fn delete(store: &SqliteStore, id: Uuid) -> Result<bool> {
     transaction.commit().await?;
     store.signals.job_changed(id);
     Ok(deleted.is_some())
+}
+
+pub(super) async fn retire(store: &SqliteStore, keep: Keep) -> Result<u64> {
+    let ids: Vec<Uuid> = match keep {
+        Keep::For(length) => {
+            let length = i64::try_from(length.as_millis()).unwrap_or(i64::MAX);
+            sqlx::query_scalar(
+                "SELECT id FROM jobs WHERE ended_at < ?1 AND (family IS NULL OR explored = 1) ORDER BY ended_at LIMIT ?2",
+            )
+            .bind(now().saturating_sub(length))
+        }
+        Keep::Newest(count) => sqlx::query_scalar(
+            "SELECT id FROM jobs WHERE ended_at IS NOT NULL AND (family IS NULL OR explored = 1) \
+             ORDER BY ended_at DESC LIMIT ?2 OFFSET ?1",
+        )
+        .bind(signed(count)),
+    }
+    .bind(DROPPED_AT_ONCE)
+    .fetch_all(&store.readers)
+    .await?;
+    let mut dropped = 0;
+    for id in ids {
+        dropped += u64::from(delete(store, id).await?);
+    }
+    Ok(dropped)
 }

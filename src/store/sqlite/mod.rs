@@ -7,18 +7,23 @@
 mod claims;
 mod families;
 mod followers;
+mod health;
 mod increments;
 mod jobs;
 mod rows;
 
 use super::signals::Signals;
 use super::{
-    Claim, Ending, JobRecord, Lease, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, Origin, Page, Result, Store,
-    StoreError, Submitted,
+    Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, Origin, Page, Result,
+    Store, StoreError, Submitted,
 };
 use async_trait::async_trait;
+use health::Health;
 use jiff::Timestamp;
-use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous};
+use sqlx::Connection;
+use sqlx::sqlite::{
+    SqliteAutoVacuum, SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous,
+};
 use std::path::Path;
 use std::time::Duration;
 use tokio::sync::watch;
@@ -28,12 +33,15 @@ static MIGRATIONS: sqlx::migrate::Migrator = sqlx::migrate!("./migrations");
 
 const READERS: u32 = 4;
 const BUSY_TIMEOUT: Duration = Duration::from_secs(5);
+/// Bytes that the write-ahead log keeps on the disk when it has been written back.
+const LARGEST_LOG: &str = "67108864";
 const ACQUIRE_TIMEOUT: Duration = Duration::from_secs(15);
 
 pub struct SqliteStore {
     writer: SqlitePool,
     readers: SqlitePool,
     signals: Signals,
+    health: Health,
 }
 
 impl SqliteStore {
@@ -44,10 +52,21 @@ impl SqliteStore {
             .acquire_timeout(ACQUIRE_TIMEOUT)
             .idle_timeout(None)
             .max_lifetime(None)
+            // Where SQLite itself has rolled back, as it does on a full disk, the connection still counts a transaction, and the
+            // next one would only be a part of it: told as stored, and lost. Such a connection is closed.
+            .after_release(|connection, _| {
+                Box::pin(async move {
+                    connection.ping().await?;
+                    Ok(!connection.is_in_transaction())
+                })
+            })
             .connect_with(
                 options
                     .clone()
                     .create_if_missing(true)
+                    // Takes effect where the database is created.
+                    .auto_vacuum(SqliteAutoVacuum::Incremental)
+                    .pragma("journal_size_limit", LARGEST_LOG)
                     .journal_mode(SqliteJournalMode::Wal)
                     .synchronous(SqliteSynchronous::Full),
             )
@@ -60,7 +79,8 @@ impl SqliteStore {
             .connect_with(options.read_only(true))
             .await
             .map_err(|error| StoreError::Open(Box::new(error)))?;
-        Ok(Self { writer, readers, signals: Signals::default() })
+        let health = Health::of(&writer).await?;
+        Ok(Self { writer, readers, signals: Signals::default(), health })
     }
 }
 
@@ -98,70 +118,89 @@ impl From<sqlx::Error> for StoreError {
 #[async_trait]
 impl Store for SqliteStore {
     async fn submit(&self, job: NewJob) -> Result<Submitted> {
-        jobs::submit(self, job).await
+        self.health.allow()?;
+        self.health.note(jobs::submit(self, job).await)
     }
 
     async fn follow(&self, job: NewFollower) -> Result<Option<Submitted>> {
-        followers::follow(self, job).await
+        self.health.allow()?;
+        self.health.note(followers::follow(self, job).await)
     }
 
     async fn job(&self, id: Uuid) -> Result<Option<JobRecord>> {
-        jobs::get(self, id).await
+        self.health.note(jobs::get(self, id).await)
     }
 
     async fn request(&self, id: Uuid) -> Result<Option<String>> {
-        followers::request(self, id).await
+        self.health.note(followers::request(self, id).await)
     }
 
     async fn branch(&self, id: Uuid, increment: u64) -> Result<Option<Origin>> {
-        followers::branch(self, id, increment).await
+        self.health.note(followers::branch(self, id, increment).await)
     }
 
     async fn explore(&self) -> Result<u64> {
-        families::explore(self).await
+        self.health.allow()?;
+        self.health.note(families::explore(self).await)
     }
 
     async fn jobs(&self, filter: ListFilter) -> Result<Vec<JobRecord>> {
-        jobs::list(self, filter).await
+        self.health.note(jobs::list(self, filter).await)
     }
 
     async fn increments(&self, id: Uuid, after: Option<u64>, page: Page) -> Result<Vec<Line>> {
-        increments::read(self, id, after, page).await
+        self.health.note(increments::read(self, id, after, page).await)
     }
 
     async fn request_cancel(&self, id: Uuid) -> Result<Option<JobRecord>> {
-        jobs::request_cancel(self, id).await
+        self.health.note(jobs::request_cancel(self, id).await)
     }
 
     async fn delete(&self, id: Uuid) -> Result<bool> {
-        jobs::delete(self, id).await
+        self.health.note(jobs::delete(self, id).await)
     }
 
     async fn claim(&self, worker: &str, lease: Duration) -> Result<Option<Claim>> {
-        claims::claim(self, worker, lease).await
+        self.health.allow()?;
+        self.health.note(claims::claim(self, worker, lease).await)
     }
 
     async fn renew(&self, lease: &Lease, duration: Duration) -> Result<LeaseAnswer> {
-        claims::renew(self, lease, duration).await
+        self.health.note(claims::renew(self, lease, duration).await)
     }
 
     async fn append(&self, lease: &Lease, lines: &[Line], duration: Duration) -> Result<LeaseAnswer> {
-        increments::append(self, lease, lines, duration).await
+        self.health.note(increments::append(self, lease, lines, duration).await)
     }
 
     async fn finish(&self, lease: &Lease, ending: Ending) -> Result<LeaseAnswer> {
-        claims::finish(self, lease, ending).await
+        self.health.note(claims::finish(self, lease, ending).await)
     }
 
     async fn release(&self, lease: &Lease) -> Result<LeaseAnswer> {
-        claims::release(self, lease).await
+        self.health.note(claims::release(self, lease).await)
     }
 
     async fn reclaim_expired(&self) -> Result<u64> {
-        claims::reclaim_expired(self).await
+        self.health.note(claims::reclaim_expired(self).await)
+    }
+
+    async fn retire(&self, keep: Keep) -> Result<u64> {
+        self.health.allow()?;
+        self.health.note(jobs::retire(self, keep).await)
+    }
+
+    async fn shrink(&self) -> Result<bool> {
+        self.health.allow()?;
+        self.health.note(health::shrink(self).await)
+    }
+
+    async fn check(&self) -> Result<()> {
+        self.health.note(health::check(self).await)
     }
 
     async fn probe(&self) -> Result<()> {
+        self.health.allow()?;
         sqlx::query("INSERT INTO heartbeat (id, beat_at) VALUES (1, ?) ON CONFLICT (id) DO UPDATE SET beat_at = excluded.beat_at")
             .bind(now())
             .execute(&self.writer)
@@ -180,5 +219,23 @@ impl Store for SqliteStore {
     async fn close(&self) {
         self.readers.close().await;
         self.writer.close().await;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::SqliteStore;
+
+    /// What has been answered as stored survives a loss of power.
+    #[tokio::test]
+    async fn every_commit_is_synced() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let store = SqliteStore::open(&folder.path().join("jobs.db")).await.expect("a store");
+        let synchronous: i64 =
+            sqlx::query_scalar("PRAGMA synchronous").fetch_one(&store.writer).await.expect("a value");
+        assert_eq!(synchronous, 2, "FULL");
+        let journal: String =
+            sqlx::query_scalar("PRAGMA journal_mode").fetch_one(&store.writer).await.expect("a value");
+        assert_eq!(journal, "wal");
     }
 }

@@ -9,7 +9,7 @@ use sqlx::sqlite::SqliteRow;
 /// The columns [`job`] reads.
 macro_rules! job_columns {
     () => {
-        "id, task, name, status, plan, report, stop_reason, error, max_increments, last_index, attempt, max_attempts, \
+        "id, task, name, status, plan, report, stop_reason, error, max_increments, last_index, attempt, max_attempts, losses, \
          cancel_requested, created_at, started_at, ended_at, parent, parent_increment, parent_direction, \
          (SELECT count(*) FROM jobs AS child WHERE child.parent = jobs.id) AS children, \
          family, generation, explored, not_queued, \
@@ -37,6 +37,7 @@ pub(super) fn job(row: &SqliteRow) -> Result<JobRecord> {
         last_index: last_index.map(unsigned).transpose()?,
         attempt: row.try_get("attempt")?,
         max_attempts: row.try_get("max_attempts")?,
+        losses: row.try_get("losses")?,
         cancel_requested: row.try_get("cancel_requested")?,
         created_at: time(row.try_get("created_at")?)?,
         started_at: row.try_get::<Option<i64>, _>("started_at")?.map(time).transpose()?,

@@ -1,0 +1,145 @@
+//! What a path gives, made ready for the store: increments that are not stored yet, with what is stored beside them.
+
+use super::branches::Branches;
+use super::checkpoints::{Checkpoints, Clock, PutDown};
+use super::solve::SolveEnd;
+use super::solver::Place;
+use crate::judged::{JudgedIncrement, JudgedReport};
+use crate::output::json_line;
+use crate::path::{Increment, StopReason};
+use crate::store::{Claim, Line};
+use std::ops::ControlFlow;
+use std::time::Duration;
+use tokio::sync::mpsc;
+
+/// An increment that is stored and one that is computed once more are the same where they differ by no more than this,
+/// relative to the path: another version of this program may round otherwise.
+const SAME: f64 = 1e-6;
+
+/// Takes the increments of one attempt in order.
+pub struct Given<'a> {
+    claim: &'a Claim,
+    lines: &'a mpsc::Sender<Line>,
+    branches: Branches,
+    checkpoints: Checkpoints,
+    clock: Clock,
+    /// The last increment that is stored, where it can be read.
+    last: Option<JudgedIncrement>,
+    /// The path has come to what is stored, or past it.
+    has_arrived: bool,
+    why_not: Option<SolveEnd>,
+}
+
+impl<'a> Given<'a> {
+    /// From the start of the path.
+    pub fn new(claim: &'a Claim, put_down: Duration, lines: &'a mpsc::Sender<Line>) -> Self {
+        // Nothing is compared with what another version wrote otherwise.
+        let last = claim.last.as_ref().and_then(|line| serde_json::from_str::<JudgedIncrement>(&line.body).ok());
+        let mut clock = Clock::default();
+        clock.go_on_from(last.as_ref().map_or(0.0, elapsed_s));
+        Self {
+            claim,
+            lines,
+            branches: Branches::every(put_down, claim.last_branch.as_deref()),
+            checkpoints: Checkpoints::every(put_down),
+            clock,
+            last,
+            has_arrived: claim.last.is_none(),
+            why_not: None,
+        }
+    }
+
+    /// From a checkpoint.
+    pub fn go_on_from(&mut self, from: &PutDown) {
+        self.checkpoints.after(&from.at);
+        self.clock = from.clock;
+        self.clock.go_on_from(self.last.as_ref().map_or(0.0, elapsed_s));
+        self.has_arrived = self.claim.last.as_ref().is_none_or(|last| last.index <= from.at.path.index());
+    }
+
+    /// Sends an increment that is not stored; breaks where no more are wanted.
+    pub fn take(&mut self, mut judged: JudgedIncrement, place: &dyn Place) -> ControlFlow<()> {
+        let index = judged.increment.index;
+        judged.increment.diagnostics.elapsed_s = self.clock.tell(elapsed_s(&judged));
+        let stored = self.claim.last.as_ref().is_some_and(|last| index <= last.index);
+        if !self.has_arrived && !self.arrive(&judged.increment) {
+            self.why_not = Some(SolveEnd::Differs(index));
+            return ControlFlow::Break(());
+        }
+        match self.line(&judged, place, stored) {
+            Ok(None) => ControlFlow::Continue(()),
+            Ok(Some(line)) => match self.lines.blocking_send(line) {
+                Ok(()) => ControlFlow::Continue(()),
+                Err(_) => ControlFlow::Break(()),
+            },
+            Err(error) => {
+                self.why_not = Some(SolveEnd::Unwritable(error.to_string()));
+                ControlFlow::Break(())
+            }
+        }
+    }
+
+    /// Whether the path leads to the last increment that is stored.
+    fn arrive(&mut self, increment: &Increment) -> bool {
+        let claim = self.claim;
+        let Some(last) = &claim.last else { return true };
+        if increment.index < last.index {
+            return true;
+        }
+        self.has_arrived = true;
+        increment.index == last.index && self.last.as_ref().is_none_or(|last| are_same(&last.increment, increment))
+    }
+
+    fn line(&mut self, judged: &JudgedIncrement, place: &dyn Place, stored: bool) -> serde_json::Result<Option<Line>> {
+        if stored {
+            return Ok(None);
+        }
+        let body = json_line(judged)?;
+        let branch = if judged.increment.directions.is_some() {
+            let alternatives = if self.claim.explores { place.alternatives().to_vec() } else { Vec::new() };
+            self.branches.at(place, alternatives)?
+        } else {
+            None
+        };
+        let checkpoint = self.checkpoints.at(place, self.clock)?;
+        Ok(Some(Line { index: judged.increment.index, body, branch, checkpoint }))
+    }
+
+    /// How the solve ended, with the report that the path has.
+    pub fn end(self, report: Option<JudgedReport>) -> SolveEnd {
+        let Self { mut clock, why_not, has_arrived, .. } = self;
+        if let Some(why_not) = why_not {
+            return why_not;
+        }
+        let Some(mut judged) = report else { return SolveEnd::Silent };
+        match &self.claim.last {
+            Some(last) if !has_arrived && judged.report.stop_reason != StopReason::Cancelled => {
+                SolveEnd::Differs(last.index)
+            }
+            _ => {
+                judged.report.elapsed_s = clock.tell(judged.report.elapsed_s);
+                SolveEnd::Reported(Box::new(judged))
+            }
+        }
+    }
+}
+
+fn elapsed_s(judged: &JudgedIncrement) -> f64 {
+    judged.increment.diagnostics.elapsed_s
+}
+
+/// Whether two increments are the same point of the same path; where nothing moves, the load is in the arc length.
+fn are_same(one: &Increment, other: &Increment) -> bool {
+    let near = |one: f64, other: f64, size: f64| (one - other).abs() <= SAME * size;
+    let size = |increment: &Increment| {
+        increment.displacements.values().flatten().fold(0.0_f64, |size, value| size.max(value.abs()))
+    };
+    let size = size(one).max(size(other));
+    one.index == other.index
+        && one.stage == other.stage
+        && near(one.arc_length, other.arc_length, one.arc_length.abs())
+        && one.displacements.len() == other.displacements.len()
+        && one.displacements.iter().zip(&other.displacements).all(|((name, one), (other_name, other))| {
+            name == other_name && one.iter().zip(other).all(|(one, other)| near(*one, *other, size))
+        })
+}

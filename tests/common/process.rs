@@ -1,0 +1,115 @@
+//! The real program as a process of its own, which can be killed.
+
+use reqwest::{Client, Response, StatusCode};
+use serde_json::Value;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+const PATIENCE: Duration = Duration::from_secs(60);
+
+pub struct Process {
+    child: Child,
+    pub url: String,
+}
+
+impl Process {
+    /// `arcslip serve` on a port of its own, with further arguments.
+    pub fn serve(database: &Path, arguments: &[&str]) -> Self {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_arcslip"));
+        command.args(["serve", "--listen", "127.0.0.1:0", "--database"]).arg(database).args(arguments);
+        command.env("RUST_LOG", "error");
+        Self::start(command)
+    }
+
+    /// A program that prints `... listens on URL`.
+    pub fn start(mut command: Command) -> Self {
+        let mut child = command.stdout(Stdio::piped()).spawn().expect("the program starts");
+        let mut lines = BufReader::new(child.stdout.take().expect("its output")).lines();
+        let url = lines
+            .by_ref()
+            .map_while(Result::ok)
+            .find_map(|line| line.split_once(" listens on ").map(|(_, url)| url.to_owned()))
+            .expect("it says where it listens");
+        // What it still prints must not fill the pipe.
+        std::thread::spawn(move || lines.for_each(drop));
+        Self { child, url }
+    }
+
+    pub fn id(&self) -> u32 {
+        self.child.id()
+    }
+
+    /// SIGKILL: nothing is put in order.
+    pub fn kill(mut self) {
+        self.child.kill().expect("killed");
+        self.child.wait().expect("gone");
+    }
+
+    /// Waits until the process has ended by itself.
+    pub async fn gone(mut self) {
+        let began = Instant::now();
+        while self.child.try_wait().expect("its state").is_none() {
+            assert!(began.elapsed() < PATIENCE, "it still runs");
+            tokio::time::sleep(Duration::from_millis(5)).await;
+        }
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+pub fn client() -> Client {
+    Client::builder().no_proxy().timeout(PATIENCE).build().expect("a client")
+}
+
+pub async fn submit(client: &Client, url: &str, place: &str, request: &Value) -> String {
+    let answer: Response = client.post(format!("{url}{place}")).json(request).send().await.expect("an answer");
+    assert_eq!(answer.status(), StatusCode::ACCEPTED);
+    let job: Value = answer.json().await.expect("a job");
+    job["id"].as_str().expect("an id").to_owned()
+}
+
+/// `None` where nobody answers.
+pub async fn get(client: &Client, url: &str, place: &str) -> Option<Value> {
+    client.get(format!("{url}{place}")).send().await.ok()?.json().await.ok()
+}
+
+pub fn has_ended(job: &Value) -> bool {
+    !matches!(job["status"].as_str(), Some("queued" | "running"))
+}
+
+/// Waits for a job to meet a condition.
+pub async fn until(client: &Client, url: &str, place: &str, condition: impl Fn(&Value) -> bool) -> Value {
+    let began = Instant::now();
+    loop {
+        if let Some(job) = get(client, url, place).await.filter(&condition) {
+            return job;
+        }
+        assert!(began.elapsed() < PATIENCE, "{place} does not come to it");
+        tokio::time::sleep(Duration::from_millis(2)).await;
+    }
+}
+
+/// All stored increments of an ended job as text.
+pub async fn lines(client: &Client, url: &str, id: &str) -> Vec<String> {
+    let ask = client.get(format!("{url}/v1/jobs/{id}/stream")).header("accept", "application/x-ndjson");
+    let text = ask.send().await.expect("an answer").text().await.expect("a whole body");
+    text.lines().map(str::to_owned).collect()
+}
+
+/// What `arcslip solve` prints of a request.
+pub fn solved(request: &Value) -> Vec<String> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("request.json");
+    std::fs::write(&file, request.to_string()).expect("written");
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_arcslip")).arg("solve").arg(&file).output().expect("the program runs");
+    assert!(matches!(output.status.code(), Some(0 | 1)), "{output:?}");
+    String::from_utf8(output.stdout).expect("text").lines().map(str::to_owned).collect()
+}
