@@ -33,14 +33,14 @@ pub struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 3, env = "ARCSLIP_MAX_ATTEMPTS",
         value_parser = clap::value_parser!(u32).range(1..))]
     max_attempts: u32,
-    #[command(flatten)]
-    limits: limits::Arguments,
     /// Queue every built-in scene once.
     #[arg(long)]
     demo: bool,
     /// How the log is written; `RUST_LOG` says how much.
     #[arg(long, value_enum, default_value_t = LogFormat::Text, env = "ARCSLIP_LOG")]
     log: LogFormat,
+    #[command(flatten)]
+    limits: limits::Arguments,
 }
 
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]

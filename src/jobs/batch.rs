@@ -11,6 +11,8 @@ use tokio_util::sync::CancellationToken;
 
 /// Tries of one write while the store is passingly unavailable, each after twice the pause of the one before.
 const TRIES: u32 = 5;
+/// While a batch is gathered its lines are looked for so often: to be woken by every one of them costs more than they do.
+const BETWEEN_LOOKS: Duration = Duration::from_millis(2);
 const FIRST_PAUSE: Duration = Duration::from_millis(50);
 
 /// Why no more increments are stored.
@@ -124,6 +126,7 @@ async fn gather(lines: &mut mpsc::Receiver<Line>, batch: &mut Vec<Line>, setting
     }
     let deadline = Instant::now() + settings.flush_interval;
     while batch.len() < settings.flush_rows {
+        sleep_until(deadline.min(Instant::now() + BETWEEN_LOOKS)).await;
         let room = settings.flush_rows - batch.len();
         match timeout_at(deadline, lines.recv_many(batch, room)).await {
             Ok(0) => return Received::Last,

@@ -18,6 +18,9 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::{mpsc, oneshot};
 
+#[cfg(panic = "abort")]
+compile_error!("a panic in a solve would end the service: build with panic = \"unwind\"");
+
 /// Increments between solver and store: enough to solve on while a batch is written.
 const IN_FLIGHT: usize = 512;
 /// Their bytes, roughly: an increment with its branch is hardly larger than [`OF_MODEL`] times its model, so large models
@@ -105,6 +108,7 @@ fn run(
         Some(Ok(from)) => {
             let mut given = Given::new(claim, put_down, lines);
             given.go_on_from(&from);
+            tracing::info!(increment = from.at.path.index(), "goes on from its checkpoint");
             match solver.resume(&request, from.at, cancel.clone(), &mut |judged, place| given.take(judged, place)) {
                 Ok(report) => return given.end(report),
                 Err(ResumeError::Input(errors)) => return SolveEnd::Refused(errors),
