@@ -137,10 +137,10 @@ async fn what_another_version_put_down_is_traced_from_the_start_and_not_stored_t
     let folder = tempfile::tempdir().expect("a folder");
     let request = scene("three-snapping-bars");
     for (after, tamper) in [
-        (40, "UPDATE checkpoints SET body = replace(body, '\"version\":7', '\"version\":6')"),
+        (40, "UPDATE checkpoints SET body = replace(body, '\"path\":{\"version\":', '\"path\":{\"version\":9')"),
         (41, "UPDATE checkpoints SET body = '{\"of\":\"a later version\"}'"),
         (42, "INSERT INTO checkpoint_trails SELECT job, 0, 'what is this' FROM checkpoints"),
-        // Rounded otherwise, and the same path all the same.
+        // None that was stored in time.
         (43, "DELETE FROM checkpoints"),
     ] {
         let (solver, server, database, id) = put_down_and_go_on(folder.path(), &request, after, &[tamper]).await;
