@@ -88,7 +88,7 @@ pub(super) async fn renew(store: &SqliteStore, lease: &Lease, duration: Duration
 
 pub(super) async fn finish(store: &SqliteStore, lease: &Lease, ending: Ending) -> Result<LeaseAnswer> {
     let row = sqlx::query(concat!(
-        "UPDATE jobs SET status = ?5, stop_reason = ?6, report = ?7, error = ?8, worker = NULL, lease_until = NULL, \
+        "UPDATE jobs SET status = ?5, stop_reason = ?6, report = ?7, error = ?8, worker = NULL, lease_until = NULL, losses = 0, \
          ended_at = ?4, ",
         ran!(),
         held!(),
