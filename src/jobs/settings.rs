@@ -32,7 +32,7 @@ impl Default for Settings {
             max_attempts: 3,
             lease: Duration::from_secs(10),
             flush_interval: Duration::from_millis(20),
-            flush_rows: 500,
+            flush_rows: 2000,
             poll_interval: Duration::from_secs(1),
             tidy_interval: Duration::from_secs(30),
             limits: Limits::default(),

@@ -22,7 +22,7 @@ use tokio::sync::{mpsc, oneshot};
 compile_error!("a panic in a solve would end the service: build with panic = \"unwind\"");
 
 /// Increments between solver and store: enough to solve on while a batch is written.
-const IN_FLIGHT: usize = 512;
+const IN_FLIGHT: usize = 4096;
 /// Their bytes, roughly: an increment with its branch is hardly larger than [`OF_MODEL`] times its model, so large models
 /// get fewer places.
 const IN_FLIGHT_BYTES: usize = 32 << 20;
