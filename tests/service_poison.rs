@@ -9,6 +9,7 @@ use arcslip::store::{self, NewJob, Store, Submitted, Task};
 use common::process::{Process, client, get, has_ended};
 use common::service::{indices, request};
 use common::solver::{ABORTS, MadeUp};
+use reqwest::Client;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -39,14 +40,15 @@ fn serve() {
     });
 }
 
-fn start(folder: &Path) -> Process {
+/// `None`: the model ended it before it could say where it listens.
+fn start(folder: &Path) -> Option<Process> {
     let place = folder.join("place");
     std::fs::write(&place, folder.join("jobs.db").display().to_string() + "\n").expect("written");
     let mut command = Command::new(std::env::current_exe().expect("this program"));
     command.args(["--exact", "serve", "--ignored", "--nocapture"]);
     command.stdin(std::fs::File::open(place).expect("a file"));
     command.stderr(std::process::Stdio::null());
-    Process::start(command)
+    Process::try_start(command)
 }
 
 async fn queue(store: &dyn Store, request: &Value) -> String {
@@ -68,6 +70,18 @@ async fn queue(store: &dyn Store, request: &Value) -> String {
     }
 }
 
+/// Whether all of so many jobs have ended before the process does.
+async fn outlives(client: &Client, process: &Process, jobs: usize) -> bool {
+    while let Some(list) = get(client, &process.url, "/v1/jobs?limit=100").await {
+        let listed = list["jobs"].as_array().expect("jobs");
+        if listed.len() == jobs && listed.iter().all(has_ended) {
+            return true;
+        }
+        tokio::time::sleep(Duration::from_millis(5)).await;
+    }
+    false
+}
+
 #[tokio::test(flavor = "multi_thread")]
 async fn a_model_that_ends_its_process_takes_no_other_along() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -79,26 +93,17 @@ async fn a_model_that_ends_its_process_takes_no_other_along() {
         others.push((500, queue(store.as_ref(), &request(&format!("beside {number}"), 500)).await));
     }
     store.close().await;
-    let mut process = start(folder.path());
     let began = Instant::now();
-    let mut lives = 1;
-    loop {
-        tokio::time::sleep(Duration::from_millis(5)).await;
-        match get(&client, &process.url, "/v1/jobs?limit=100").await {
-            Some(list) => {
-                let jobs = list["jobs"].as_array().expect("jobs");
-                if jobs.len() == others.len() + 1 && jobs.iter().all(has_ended) {
-                    break;
-                }
-            }
-            None => {
-                process.gone().await;
-                process = start(folder.path());
-                lives += 1;
-            }
-        }
+    let mut lives = 0;
+    let process = loop {
         assert!(began.elapsed() < Duration::from_secs(60), "{lives} lives");
-    }
+        lives += 1;
+        let Some(process) = start(folder.path()) else { continue };
+        if outlives(&client, &process, others.len() + 1).await {
+            break process;
+        }
+        process.gone().await;
+    };
     let job: Value = get(&client, &process.url, &format!("/v1/jobs/{poison}")).await.expect("the job");
     assert_eq!((&job["status"], &job["attempt"], &job["losses"]), (&json!("failed"), &json!(3), &json!(3)), "{job}");
     let error = job["error"].as_str().expect("a text");

@@ -24,17 +24,25 @@ impl Process {
     }
 
     /// A program that prints `... listens on URL`.
-    pub fn start(mut command: Command) -> Self {
+    pub fn start(command: Command) -> Self {
+        Self::try_start(command).expect("it says where it listens")
+    }
+
+    /// `None`: it ended before it said so.
+    pub fn try_start(mut command: Command) -> Option<Self> {
         let mut child = command.stdout(Stdio::piped()).spawn().expect("the program starts");
         let mut lines = BufReader::new(child.stdout.take().expect("its output")).lines();
         let url = lines
             .by_ref()
             .map_while(Result::ok)
-            .find_map(|line| line.split_once(" listens on ").map(|(_, url)| url.to_owned()))
-            .expect("it says where it listens");
+            .find_map(|line| line.split_once(" listens on ").map(|(_, url)| url.to_owned()));
+        let Some(url) = url else {
+            child.wait().expect("its end");
+            return None;
+        };
         // What it still prints must not fill the pipe.
         std::thread::spawn(move || lines.for_each(drop));
-        Self { child, url }
+        Some(Self { child, url })
     }
 
     pub fn id(&self) -> u32 {
