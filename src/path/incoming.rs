@@ -1,4 +1,17 @@
 //! How a path comes to a point, and what that tells of the directions there.
+//!
+//! Where a slip ends, its speed `w` is zero and so is what its force leaves of the cone, `y`: at first order it may slip on or
+//! stick along one and the same direction. The rates of the rates obey the equations of the rates once more,
+//!
+//! ```text
+//! A (x', w') - q ṡ' + A' (x, w) - q' ṡ = (0, y'),
+//! ```
+//!
+//! in both modes. If it slipped on, `w' = -κ` (it is seen to fall through zero, `κ > 0`) and `y' = 0`; if it sticks, `w' = 0`
+//! and `y' = m κ` at the same load rate, `m` being the quotient of two principal minors of the matrix (its Schur
+//! complement). Where the directions are proven to be the only ones these are all positive (a P-matrix: R. W. Cottle,
+//! J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem*, Academic Press 1992, section 3.3): it sticks, and no trial
+//! step need tell.
 
 use super::directions::Candidate;
 use super::state::Rate;
@@ -26,10 +39,7 @@ impl<'a> Incoming<'a> {
 
     /// Whether a direction that may be taken in two modes at first order is known to be taken in the first.
     ///
-    /// It is the incoming one, and only the contact that stops is in doubt: if it slipped on, its speed would be `-κ t` after
-    /// an arc length `t`. Where the directions are proven to be the only ones, by a matrix whose principal minors are all
-    /// positive, the rates of the rates have the same matrix, and what is left of the cone if it sticks has the second
-    /// derivative `m κ`, `m` being a quotient of two such minors: it sticks.
+    /// It is the incoming one, its kind is proven to be the only one, and only the contact that stops is in doubt.
     pub(super) fn tells(&self, candidate: &Candidate, is_proven: bool) -> bool {
         let in_doubt =
             || candidate.alternatives.iter().filter(|alternatives| alternatives.len() > 1).flatten().flatten();

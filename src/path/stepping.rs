@@ -40,6 +40,7 @@ const REJECTED: f64 = 0.55;
 
 /// A step that ends before this fraction of what was tried does not let the next be longer.
 const CUT_SHORT: f64 = 0.5;
+
 /// A point reached, with the energies of the way there.
 pub(super) struct Accepted {
     pub reached: Reached,

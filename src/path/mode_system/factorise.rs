@@ -27,7 +27,7 @@ impl ModeSystem<'_> {
     }
 
     /// What closed contacts hold at their node.
-    pub(super) fn holding(&self, contacts: &[usize]) -> Holding {
+    fn holding(&self, contacts: &[usize]) -> Holding {
         let structure = self.loading.structure;
         let (dimension, unknowns) = (structure.dimension, structure.unknowns());
         let node = contacts.first().map_or(0, |contact| self.loading.contacts[*contact].node);
@@ -106,7 +106,7 @@ impl ModeSystem<'_> {
         self.factorise_dense(iterate, kind, put_last).map(SystemFactorisation::Dense)
     }
 
-    pub(super) fn factorise_dense(
+    fn factorise_dense(
         &self,
         iterate: &Iterate,
         kind: Kind,

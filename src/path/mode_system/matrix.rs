@@ -49,7 +49,7 @@ impl ModeSystem<'_> {
     }
 
     /// The columns of the load and of the contacts, and the contacts' rows.
-    pub(super) fn add_loads_and_contacts(&self, iterate: &Iterate, kind: Kind, matrix: &mut impl Sink) {
+    fn add_loads_and_contacts(&self, iterate: &Iterate, kind: Kind, matrix: &mut impl Sink) {
         let structure = self.loading.structure;
         for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
             matrix.add(unknown, structure.unknowns(), -self.loading.pattern.forces[*freedom]);
@@ -88,7 +88,7 @@ impl ModeSystem<'_> {
     }
 
     /// A row `vector·(relative motion)`.
-    pub(super) fn put_motion(&self, contact: usize, row: usize, vector: &Vector, matrix: &mut impl Sink) {
+    fn put_motion(&self, contact: usize, row: usize, vector: &Vector, matrix: &mut impl Sink) {
         let structure = self.loading.structure;
         let load = structure.unknowns();
         let first = self.loading.contacts[contact].node * structure.dimension;
@@ -102,7 +102,7 @@ impl ModeSystem<'_> {
     }
 
     /// A column of equilibrium: the negative of a force on the contact's node.
-    pub(super) fn put_force(&self, contact: usize, column: usize, force: &Vector, matrix: &mut impl Sink) {
+    fn put_force(&self, contact: usize, column: usize, force: &Vector, matrix: &mut impl Sink) {
         let structure = self.loading.structure;
         let first = self.loading.contacts[contact].node * structure.dimension;
         for (component, part) in force.iter().enumerate().take(structure.dimension) {
@@ -112,7 +112,7 @@ impl ModeSystem<'_> {
         }
     }
 
-    pub(super) fn add_stick(&self, contact: usize, matrix: &mut impl Sink) {
+    fn add_stick(&self, contact: usize, matrix: &mut impl Sink) {
         let (row, column) = (self.row_of(contact), self.column_of(contact));
         for (k, direction) in self.held_directions(contact).iter().enumerate() {
             self.put_force(contact, column + k, direction, matrix);
@@ -120,7 +120,7 @@ impl ModeSystem<'_> {
         }
     }
 
-    pub(super) fn add_slip(&self, contact: usize, iterate: &Iterate, kind: Kind, matrix: &mut impl Sink) {
+    fn add_slip(&self, contact: usize, iterate: &Iterate, kind: Kind, matrix: &mut impl Sink) {
         let structure = self.loading.structure;
         let frame = self.loading.frame(contact, &iterate.state);
         let (row, column) = (self.row_of(contact), self.column_of(contact));

@@ -116,7 +116,7 @@ impl ModeSystem<'_> {
     }
 
     /// Whether sticking leaves the node no motion at all.
-    pub(super) fn holds_node(&self, contact: usize) -> bool {
+    fn holds_node(&self, contact: usize) -> bool {
         let structure = self.loading.structure;
         let first = self.loading.contacts[contact].node * structure.dimension;
         let free = (first..first + structure.dimension).filter(|freedom| structure.unknown_of[*freedom].is_some());

@@ -88,9 +88,9 @@ impl Elimination {
         let mut entries = Vec::with_capacity(4 * nodes.iter().map(|node| node.count * node.held).sum::<usize>());
         nodes.iter().for_each(|node| node.rotate_matrix(matrix, &mut values));
         // All rows and columns are taken before any is cleared: those of neighbours have entries in each other's.
-        let rows_at = nodes.iter().map(|node| node.take_rows(matrix, &values, &mut entries)).collect();
+        let rows_at = nodes.iter().map(|node| node.take(matrix, &values, true, &mut entries)).collect();
         nodes.iter().for_each(|node| node.fold(matrix, &mut values));
-        let columns_at = nodes.iter().map(|node| node.take_columns(matrix, &values, &mut entries)).collect();
+        let columns_at = nodes.iter().map(|node| node.take(matrix, &values, false, &mut entries)).collect();
         nodes.iter().for_each(|node| node.clear(matrix, &mut values));
         (Self { nodes: all, columns_at, rows_at, entries }, values)
     }

@@ -156,21 +156,24 @@ impl HeldNode {
         }
     }
 
-    pub(super) fn take_rows(
+    /// The entries of its columns (or rows) `H`, added to those taken before, with where they are.
+    pub(super) fn take(
         &self,
         matrix: &Bordered,
         values: &[f64],
+        by_row: bool,
         taken: &mut Vec<(usize, f64)>,
     ) -> [Range<usize>; 3] {
         let pattern = &matrix.pattern;
-        let mut rows_at = [const { 0..0 }; 3];
-        for (range, row) in rows_at.iter_mut().zip(self.held()) {
-            let entry = |place: usize| (pattern.rows[place], values[pattern.mirrors[place]]);
+        let mut at = [const { 0..0 }; 3];
+        for (range, unknown) in at.iter_mut().zip(self.held()) {
+            let value = |place: usize| values[if by_row { pattern.mirrors[place] } else { place }];
+            let entry = |place: usize| (pattern.rows[place], value(place));
             let start = taken.len();
-            taken.extend(pattern.column(*row).map(entry).filter(|(_, value)| *value != 0.0));
+            taken.extend(pattern.column(*unknown).map(entry).filter(|(_, value)| *value != 0.0));
             *range = start..taken.len();
         }
-        rows_at
+        at
     }
 
     /// Rows `T` less `F R⁻¹` times rows `H`.
@@ -182,23 +185,6 @@ impl HeldNode {
                 values[places[other]] -= taken;
             }
         });
-    }
-
-    pub(super) fn take_columns(
-        &self,
-        matrix: &Bordered,
-        values: &[f64],
-        taken: &mut Vec<(usize, f64)>,
-    ) -> [Range<usize>; 3] {
-        let pattern = &matrix.pattern;
-        let mut columns_at = [const { 0..0 }; 3];
-        for (range, column) in columns_at.iter_mut().zip(self.held()) {
-            let entry = |place: usize| (pattern.rows[place], values[place]);
-            let start = taken.len();
-            taken.extend(pattern.column(*column).map(entry).filter(|(_, value)| *value != 0.0));
-            *range = start..taken.len();
-        }
-        columns_at
     }
 
     /// Leaves a one on the diagonal in the held rows and columns.
