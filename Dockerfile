@@ -9,6 +9,7 @@ RUN useradd --system --uid 10001 --no-create-home arcslip && install --directory
 COPY --from=build /arcslip/target/release/arcslip /usr/local/bin/arcslip
 USER arcslip
 VOLUME /data
+# Others reach this address: give ARCSLIP_TOKENS_FILE, or ARCSLIP_OPEN=true.
 ENV ARCSLIP_DATABASE=/data/arcslip.db ARCSLIP_LISTEN=0.0.0.0:8080
 EXPOSE 8080
 STOPSIGNAL SIGTERM

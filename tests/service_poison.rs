@@ -3,10 +3,12 @@
 
 mod common;
 
-use arcslip::http::server::Server;
+use arcslip::http::access::Access;
+use arcslip::http::server::{Front, Server};
 use arcslip::jobs::Settings;
 use arcslip::store::{self, NewJob, Store, Submitted, Task};
 use common::process::{Process, client, get, has_ended};
+use common::server::any_port;
 use common::service::{indices, request};
 use common::solver::{ABORTS, MadeUp};
 use reqwest::Client;
@@ -32,9 +34,9 @@ fn serve() {
         let store = store::open(&database).await.expect("the database opens");
         let lease = Duration::from_millis(300);
         let settings = Settings { workers: 3, lease, max_attempts: 3, ..Settings::default() };
-        let any = "127.0.0.1:0".parse().expect("an address");
         let solver = MadeUp::pausing(Duration::from_millis(1));
-        let server = Server::start(any, store, Arc::new(solver), settings).await.expect("the server starts");
+        let front = Front { listen: any_port(), connections: 100, access: Access::loopback() };
+        let server = Server::start(front, store, Arc::new(solver), settings).await.expect("the server starts");
         println!("the test's server listens on http://{}", server.address());
         std::future::pending::<()>().await;
     });
@@ -54,6 +56,7 @@ fn start(folder: &Path) -> Option<Process> {
 async fn queue(store: &dyn Store, request: &Value) -> String {
     let job = NewJob {
         task: Task::Path,
+        owner: None,
         name: None,
         request: request.to_string(),
         plan: "{}".to_owned(),

@@ -173,6 +173,7 @@ async fn a_batch_is_stored_whole_or_not_at_all() {
 async fn queue(store: &dyn store::Store, max_attempts: u32) -> uuid::Uuid {
     let job = NewJob {
         task: Task::Path,
+        owner: None,
         name: None,
         request: request("queued", 6).to_string(),
         plan: "{}".to_owned(),

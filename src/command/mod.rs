@@ -2,6 +2,8 @@
 //!
 //! Exit status: 0 done, 1 stopped or failed, 2 bad input. Called by `main` alone.
 
+mod access;
+mod backup;
 mod check;
 mod duration;
 mod health;
@@ -10,12 +12,14 @@ mod limits;
 mod openapi;
 mod scenes;
 mod serve;
+mod settings;
 mod solve;
 mod study;
+mod token;
 mod verify;
 mod written;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -39,6 +43,8 @@ enum Command {
     Scenes(scenes::Arguments),
     Verify(verify::Arguments),
     Health(health::Arguments),
+    Token(token::Arguments),
+    Backup(backup::Arguments),
     #[command(hide = true)]
     Openapi(openapi::Arguments),
 }
@@ -65,18 +71,26 @@ fn say(text: impl std::fmt::Display) -> Result<(), Failure> {
     write!(std::io::stdout(), "{text}").map_err(|error| Failure::Other(format!("standard output: {error}")))
 }
 
-/// Runs what the process was asked for.
-pub fn run() -> ExitCode {
-    let outcome = match Arguments::parse().command {
-        Command::Serve(arguments) => serve::run(&arguments),
+fn run_command() -> Outcome {
+    let matches = settings::parse(Arguments::command)?;
+    let arguments = Arguments::from_arg_matches(&matches).map_err(Failure::other)?;
+    match arguments.command {
+        Command::Serve(arguments) => serve::run(&arguments, &settings::in_force(Arguments::command(), &matches)),
         Command::Solve(arguments) => solve::run(&arguments),
         Command::Study(arguments) => study::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Scenes(arguments) => scenes::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Health(arguments) => health::run(&arguments),
+        Command::Token(arguments) => token::run(&arguments),
+        Command::Backup(arguments) => backup::run(&arguments),
         Command::Openapi(arguments) => openapi::run(&arguments),
-    };
+    }
+}
+
+/// Runs what the process was asked for.
+pub fn run() -> ExitCode {
+    let outcome = run_command();
     match outcome {
         Ok(code) => code,
         Err(Failure::Input(lines)) => {

@@ -1,7 +1,9 @@
 //! `arcslip serve`: the HTTP service and its workers.
 
-use super::{Failure, Outcome, duration, limits, say};
-use crate::http::server::Server;
+use super::settings::Setting;
+use super::{Failure, Outcome, access, duration, limits, say};
+use crate::http::access::Access;
+use crate::http::server::{Front, Server};
 use crate::jobs::{PathSolver, Settings, demonstration};
 use crate::store;
 use std::io::IsTerminal;
@@ -15,9 +17,14 @@ use tokio::signal::unix::{SignalKind, signal};
 use tracing_subscriber::EnvFilter;
 
 /// Take jobs over HTTP, solve them, keep them.
+///
+/// Settings are taken from the command line, else from the environment, else from the file, else they are the defaults.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Address and port to listen on.
+    /// A TOML file of settings: the names of these flags, without the dashes before them.
+    #[arg(long, value_name = "FILE", env = "ARCSLIP_CONFIG")]
+    config: Option<PathBuf>,
+    /// Address and port to listen on. Addresses that other machines reach need --tokens-file or --open.
     #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:8080", env = "ARCSLIP_LISTEN")]
     listen: SocketAddr,
     /// Where jobs are kept; created if it is not there.
@@ -34,11 +41,13 @@ pub struct Arguments {
         value_parser = clap::value_parser!(u32).range(1..))]
     max_attempts: u32,
     /// Queue every built-in scene once.
-    #[arg(long)]
+    #[arg(long, env = "ARCSLIP_DEMO")]
     demo: bool,
     /// How the log is written; `RUST_LOG` says how much.
     #[arg(long, value_enum, default_value_t = LogFormat::Text, env = "ARCSLIP_LOG")]
     log: LogFormat,
+    #[command(flatten)]
+    access: access::Arguments,
     #[command(flatten)]
     limits: limits::Arguments,
 }
@@ -49,38 +58,66 @@ enum LogFormat {
     Json,
 }
 
-pub fn run(arguments: &Arguments) -> Outcome {
+pub fn run(arguments: &Arguments, settings: &[Setting]) -> Outcome {
+    let access = arguments.access.access(arguments.listen)?;
     start_log(arguments.log);
-    tokio::runtime::Builder::new_multi_thread().enable_all().build().map_err(Failure::other)?.block_on(serve(arguments))
+    for Setting { name, value, from } in settings {
+        tracing::info!(name, value, from, "setting");
+    }
+    tokio::runtime::Builder::new_multi_thread()
+        .enable_all()
+        .build()
+        .map_err(Failure::other)?
+        .block_on(serve(arguments, access))
 }
 
-async fn serve(arguments: &Arguments) -> Outcome {
+async fn serve(arguments: &Arguments, access: Access) -> Outcome {
     // Heard from the start, so that a signal during start-up is not lost.
     let mut interrupt = signal(SignalKind::interrupt()).map_err(Failure::other)?;
     let mut terminate = signal(SignalKind::terminate()).map_err(Failure::other)?;
+    let mut hang_up = signal(SignalKind::hangup()).map_err(Failure::other)?;
     let store = store::open(&arguments.database).await.map_err(Failure::other)?;
     let workers =
         arguments.workers.map_or_else(|| std::thread::available_parallelism().map_or(1, NonZero::get), usize::from);
     let Arguments { lease, max_attempts, limits, .. } = *arguments;
+    let connections = usize::try_from(arguments.access.max_connections).map_err(Failure::other)?;
+    let front = Front { listen: arguments.listen, connections, access: access.clone() };
     let keep = limits.keep;
     let settings = Settings { workers, lease, max_attempts, limits: limits.limits(), keep, ..Settings::default() };
-    let server =
-        Server::start(arguments.listen, store, Arc::new(PathSolver), settings).await.map_err(Failure::other)?;
+    let server = Server::start(front, store, Arc::new(PathSolver), settings).await.map_err(Failure::other)?;
     if arguments.demo {
         demonstration::queue_scenes(server.jobs()).await.map_err(Failure::other)?;
     }
     // Where standard output is closed, the log says the same.
     let _ = say(format_args!("arcslip listens on http://{}\n", server.address()));
     tracing::info!(address = %server.address(), database = %arguments.database.display(), workers, "listening");
-    tokio::select! {
-        _ = interrupt.recv() => {}
-        _ = terminate.recv() => {}
+    loop {
+        tokio::select! {
+            _ = interrupt.recv() => break,
+            _ = terminate.recv() => break,
+            _ = hang_up.recv() => read_again(&arguments.access, &access),
+        }
     }
     tracing::info!("going down");
     if !server.stop().await {
         tracing::warn!("went down before everything had ended");
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Exchanges the tokens; where the file is none, those before hold.
+fn read_again(arguments: &access::Arguments, access: &Access) {
+    if arguments.tokens_file.is_none() {
+        return tracing::info!("SIGHUP: there is no file of tokens to be read again");
+    }
+    match arguments.tokens() {
+        Ok(tokens) => {
+            access.exchange(tokens);
+            tracing::info!("the file of tokens has been read again");
+        }
+        Err(Failure::Input(lines)) => tracing::error!(?lines, "the tokens stay as they were"),
+        Err(Failure::Other(error)) => tracing::error!(error, "the tokens stay as they were"),
+    }
 }
 
 fn start_log(format: LogFormat) {

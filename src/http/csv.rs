@@ -2,15 +2,18 @@
 
 use super::extract::JobId;
 use super::problem::Problem;
+use super::tag::Tag;
 use super::{Service, document};
+use crate::jobs::Caller;
 use crate::measure::Errors;
 use crate::output::Table;
 use crate::path::Increment;
 use crate::store::{Page, Task};
 use async_stream::try_stream;
+use axum::Extension;
 use axum::body::Body;
 use axum::extract::State;
-use axum::http::header;
+use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use std::io;
@@ -30,13 +33,23 @@ const PAGE: Page = Page { rows: 500, bytes: 1 << 20 };
     params(("id" = Uuid, Path, description = "The job's id.")),
     responses((status = 200, description = "The table.", body = String, content_type = "text/csv"))
 )]
-pub async fn path_csv(State(service): State<Service>, JobId(id): JobId) -> Result<Response, Problem> {
-    service.jobs.find(Task::Path, id).await?;
-    let headers = [
+pub async fn path_csv(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    JobId(id): JobId,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    let job = service.jobs.find(&caller, Task::Path, id).await?;
+    let own = [
         (header::CONTENT_TYPE, "text/csv; charset=utf-8".to_owned()),
         (header::CONTENT_DISPOSITION, format!("attachment; filename=\"path-{id}.csv\"")),
     ];
-    Ok((headers, Body::from_stream(rows(service, id))).into_response())
+    let make = || Ok((own, Body::from_stream(rows(service, id))).into_response());
+    if !job.status.is_ended() {
+        return make();
+    }
+    // Increments are never changed, and an ended job gets no more: who has them all has the table.
+    Tag::of(format!("{id} {:?}", job.last_index).as_bytes()).answer(&headers, make)
 }
 
 /// An increment as it is stored.

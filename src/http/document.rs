@@ -4,8 +4,9 @@ use super::problem::{Document, Kind};
 use crate::jobs::Limits;
 use std::fmt::Write;
 use utoipa::OpenApi;
-use utoipa::openapi::path::{Operation, PathItem};
-use utoipa::openapi::{ContentBuilder, Ref, RefOr, ResponseBuilder};
+use utoipa::openapi::path::{Operation, ParameterBuilder, ParameterIn, PathItem};
+use utoipa::openapi::security::{Http, HttpAuthScheme, SecurityRequirement, SecurityScheme};
+use utoipa::openapi::{ContentBuilder, Header, Object, Ref, RefOr, ResponseBuilder, Type};
 
 pub const JOBS: &str = "jobs";
 pub const INCREMENTS: &str = "increments";
@@ -20,6 +21,13 @@ A job is queued by `POST /v1/jobs`; its increments can be followed as they conve
 (`/increments`, `/path.csv`). An increment is the same bytes everywhere, and the same as `arcslip solve` prints, but for \
 `elapsed_s`.
 
+Where the service asks for tokens, send `Authorization: Bearer` and the token; `read` lets look, `submit` queue, follow, \
+cancel and delete, `admin` all that of every owner. Other owners' jobs are answered as if they were not there, and \
+idempotency keys of different owners do not meet. Too many requests of one address or token are answered 429; \
+`Retry-After` says when to come back.
+
+Finished jobs and studies, and what belongs to them, carry an `ETag`; `If-None-Match` with it is answered 304.
+
 Every answer carries an `x-request-id`; a short plain one that a request brings is kept. Bodies are `application/json`; \
 unknown members and unknown query parameters are refused. Every error is `application/problem+json` \
 (RFC 9457) with one of these types:
@@ -27,6 +35,19 @@ unknown members and unknown query parameters are refused. Every error is `applic
 | type | status | title |
 |---|---|---|
 ";
+
+/// The name of the tokens' scheme.
+const TOKEN: &str = "token";
+/// Calls whose answers carry a tag where what they tell of is finished.
+const TAGGED: [&str; 7] = [
+    "get_job",
+    "list_increments",
+    "get_path_csv",
+    "get_study",
+    "get_study_table_csv",
+    "get_study_table_txt",
+    "get_study_picture",
+];
 
 #[derive(OpenApi)]
 #[openapi(
@@ -61,10 +82,37 @@ pub fn finish(mut document: utoipa::openapi::OpenApi, limits: &Limits) -> serde_
         let problem =
             ResponseBuilder::new().description("A problem.").content("application/problem+json", content).build();
         operation.responses.responses.insert("default".to_owned(), RefOr::T(problem));
+        if operation.operation_id.as_deref().is_some_and(|id| TAGGED.contains(&id)) {
+            tagged(operation);
+        }
     }
+    let scheme = Http::builder().scheme(HttpAuthScheme::Bearer).description(Some("Of `arcslip token`.")).build();
+    let components = document.components.get_or_insert_default();
+    components.security_schemes.insert(TOKEN.to_owned(), SecurityScheme::Http(scheme).into());
+    // None, or a token: whoever runs the service says which.
+    document.security =
+        Some(vec![SecurityRequirement::default(), SecurityRequirement::new(TOKEN, Vec::<String>::new())]);
     let mut text = serde_json::to_string_pretty(&document)?;
     text.push('\n');
     Ok(text)
+}
+
+/// What tags add to a call.
+fn tagged(operation: &mut Operation) {
+    let tag =
+        Header::builder().schema(Some(Object::with_type(Type::String))).description(Some("Of a finished one.")).build();
+    if let Some(RefOr::T(found)) = operation.responses.responses.get_mut("200") {
+        found.headers.insert("ETag".to_owned(), tag.into());
+    }
+    let known = ResponseBuilder::new().description("The client has it already.").build();
+    operation.responses.responses.insert("304".to_owned(), RefOr::T(known));
+    let asked = ParameterBuilder::new()
+        .name("If-None-Match")
+        .parameter_in(ParameterIn::Header)
+        .description(Some("Tags of what the client has."))
+        .schema(Some(Object::with_type(Type::String)))
+        .build();
+    operation.parameters.get_or_insert_default().push(asked.into());
 }
 
 fn operations(item: &mut PathItem) -> impl Iterator<Item = &mut Operation> {

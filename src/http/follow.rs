@@ -5,7 +5,9 @@ use super::jobs::accepted;
 use super::problem::Problem;
 use super::view::{Job, address};
 use super::{Service, document};
+use crate::jobs::Caller;
 use crate::model::FollowRequest;
+use axum::Extension;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
@@ -31,9 +33,10 @@ use axum::response::Response;
 )]
 pub async fn follow(
     State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
     JobId(id): JobId,
     headers: HeaderMap,
     JsonText(request): JsonText,
 ) -> Result<Response, Problem> {
-    accepted::<Job>(service.jobs.follow(id, request, idempotency_key(&headers)?).await?, address)
+    accepted::<Job>(service.jobs.follow(&caller, id, request, idempotency_key(&headers)?).await?, address)
 }

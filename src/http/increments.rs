@@ -3,10 +3,13 @@
 use super::extract::{JobId, Parameters, Taken, bounded};
 use super::problem::Problem;
 use super::view::IncrementPage;
-use super::{Service, document};
+use super::{Service, document, tag};
+use crate::jobs::Caller;
 use crate::store::{Page, Task};
-use axum::Json;
+use axum::Extension;
 use axum::extract::State;
+use axum::http::HeaderMap;
+use axum::response::Response;
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
@@ -39,14 +42,16 @@ impl Taken for PageParameters {
 )]
 pub async fn page(
     State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
     JobId(id): JobId,
     Parameters(parameters): Parameters<PageParameters>,
-) -> Result<Json<IncrementPage>, Problem> {
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
     let rows = bounded("limit", parameters.limit, PAGE_DEFAULT, PAGE_LARGEST)?;
     let store = service.jobs.store();
-    service.jobs.find(Task::Path, id).await?;
+    let is_finished = service.jobs.find(&caller, Task::Path, id).await?.status.is_ended();
     let lines = store.increments(id, parameters.after, Page { rows, bytes: PAGE_BYTES }).await?;
     let next_after = lines.last().map(|line| line.index).or(parameters.after);
     let increments = lines.into_iter().map(|line| RawValue::from_string(line.body)).collect::<Result<_, _>>()?;
-    Ok(Json(IncrementPage { increments, next_after }))
+    tag::json(&headers, is_finished, &IncrementPage { increments, next_after })
 }

@@ -3,10 +3,12 @@
 use super::extract::{JobId, JsonText, Parameters, Taken, bounded, idempotency_key};
 use super::problem::Problem;
 use super::view::{Job, JobList, address};
-use super::{Service, document};
+use super::{Service, document, tag};
+use crate::jobs::Caller;
 use crate::model::JobRequest;
 use crate::path::Plan;
 use crate::store::{JobRecord, ListFilter, Status, Task};
+use axum::Extension;
 use axum::Json;
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
@@ -47,6 +49,7 @@ impl Taken for SubmitParameters {
 )]
 pub async fn submit(
     State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
     Parameters(parameters): Parameters<SubmitParameters>,
     headers: HeaderMap,
     JsonText(request): JsonText,
@@ -54,7 +57,7 @@ pub async fn submit(
     if parameters.validate {
         return Ok(Json(service.jobs.validate(request).await?).into_response());
     }
-    accepted::<Job>(service.jobs.submit(request, idempotency_key(&headers)?).await?, address)
+    accepted::<Job>(service.jobs.submit(&caller, request, idempotency_key(&headers)?).await?, address)
 }
 
 /// The answer to what has been queued: where it is, and what it is.
@@ -112,10 +115,12 @@ impl Taken for ListParameters {
 )]
 pub async fn list(
     State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
     Parameters(parameters): Parameters<ListParameters>,
 ) -> Result<Json<JobList>, Problem> {
     let ListParameters { status, parent, cursor, limit } = parameters;
-    let filter = |limit| ListFilter { task: Task::Path, status, parent, before: cursor, limit };
+    let owner = caller.seen_owner().map(str::to_owned);
+    let filter = |limit| ListFilter { task: Task::Path, owner, status, parent, before: cursor, limit };
     let (jobs, next_cursor) = page(&service, limit, filter).await?;
     Ok(Json(JobList { jobs, next_cursor }))
 }
@@ -126,9 +131,14 @@ pub async fn list(
     params(("id" = Uuid, Path, description = "The job's id.")),
     responses((status = 200, description = "The job.", body = Job))
 )]
-pub async fn get(State(service): State<Service>, JobId(id): JobId) -> Result<Json<Job>, Problem> {
-    let job = service.jobs.find(Task::Path, id).await?;
-    Ok(Json(job.try_into()?))
+pub async fn get(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    JobId(id): JobId,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    let job = service.jobs.find(&caller, Task::Path, id).await?;
+    tag::json(&headers, job.status.is_ended(), &Job::try_from(job)?)
 }
 
 /// Stop a job within one iteration; what is stored is kept. An ended job stays as it is.
@@ -137,8 +147,12 @@ pub async fn get(State(service): State<Service>, JobId(id): JobId) -> Result<Jso
     params(("id" = Uuid, Path, description = "The job's id.")),
     responses((status = 202, description = "The job; a running one ends shortly.", body = Job))
 )]
-pub async fn cancel(State(service): State<Service>, JobId(id): JobId) -> Result<(StatusCode, Json<Job>), Problem> {
-    let job = service.jobs.cancel(Task::Path, id).await?;
+pub async fn cancel(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    JobId(id): JobId,
+) -> Result<(StatusCode, Json<Job>), Problem> {
+    let job = service.jobs.cancel(&caller, Task::Path, id).await?;
     Ok((StatusCode::ACCEPTED, Json(job.try_into()?)))
 }
 
@@ -148,7 +162,11 @@ pub async fn cancel(State(service): State<Service>, JobId(id): JobId) -> Result<
     params(("id" = Uuid, Path, description = "The job's id.")),
     responses((status = 204, description = "The job is gone."))
 )]
-pub async fn delete(State(service): State<Service>, JobId(id): JobId) -> Result<StatusCode, Problem> {
-    service.jobs.delete(Task::Path, id).await?;
+pub async fn delete(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    JobId(id): JobId,
+) -> Result<StatusCode, Problem> {
+    service.jobs.delete(&caller, Task::Path, id).await?;
     Ok(StatusCode::NO_CONTENT)
 }

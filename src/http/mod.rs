@@ -1,19 +1,20 @@
 //! The service's HTTP face; version 1 of the interface.
 //!
-//! [`problem`] is the one edge where errors become answers, [`extract`] and [`accept`] read requests, [`view`] and
-//! [`view_study`] hold what is answered; [`jobs`], [`follow`], [`increments`], [`stream`], [`csv`], [`studies`], [`scenes`],
+//! [`listen`] takes connections, [`access`] says who may call, [`problem`] is the one edge where errors become answers, [`extract`] and [`accept`] read requests, [`view`] and
+//! [`view_study`] hold what is answered, [`tag`] spares it to those who have it; [`jobs`], [`follow`], [`increments`], [`stream`], [`csv`], [`studies`], [`scenes`],
 //! [`probes`] and [`pages`] are the calls,
-//! [`document`] their OpenAPI description, [`request_id`] what names each request, [`server`] listening and going down in
-//! good order.
+//! [`document`] their OpenAPI description, [`request_id`] what names each request, [`server`] all of it, and going down in good order.
 //! Called by `command`; knows `jobs` and, for reading, `store`.
 
 pub mod accept;
+pub mod access;
 pub mod csv;
 pub mod document;
 pub mod extract;
 pub mod follow;
 pub mod increments;
 pub mod jobs;
+pub mod listen;
 pub mod pages;
 pub mod probes;
 pub mod problem;
@@ -22,26 +23,34 @@ pub mod scenes;
 pub mod server;
 pub mod stream;
 pub mod studies;
+pub mod tag;
 pub mod view;
 pub mod view_study;
 
 use crate::jobs::crew::Attendance;
 use crate::jobs::{Jobs, Limits};
+use access::{Access, admission, headers};
 use axum::extract::DefaultBodyLimit;
-use axum::middleware::from_fn;
+use axum::middleware::{from_fn, from_fn_with_state};
 use axum::{Router, routing};
 use std::sync::Arc;
+use std::time::Duration;
 use tokio_util::sync::CancellationToken;
 use tower_http::catch_panic::CatchPanicLayer;
+use tower_http::timeout::RequestBodyTimeoutLayer;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use utoipa_swagger_ui::{Config, SwaggerUi};
+
+/// A body of which nothing comes for so long is given up.
+const BODY: Duration = Duration::from_secs(30);
 
 /// What every call can reach.
 #[derive(Clone)]
 pub struct Service {
     pub jobs: Jobs,
     pub attendance: Attendance,
+    pub access: Access,
     /// Cancelled when the service goes down; open streams end then.
     pub shutdown: CancellationToken,
 }
@@ -77,14 +86,22 @@ pub fn openapi_json() -> serde_json::Result<String> {
 pub fn router(service: Service) -> serde_json::Result<Router> {
     let (routes, description) = api().split_for_parts();
     let limits = service.jobs.settings.limits;
+    let access = service.access.clone();
     let description: Arc<str> = document::finish(description, &limits)?.into();
-    Ok(routes
+    let routes = routes
         .route("/", routing::get(pages::index))
         .route("/openapi.json", routing::get(move || pages::openapi(description.clone())))
         .with_state(service)
         .merge(SwaggerUi::new("/docs").config(Config::from("/openapi.json")))
         .layer(DefaultBodyLimit::max(limits.body_bytes))
+        .layer(RequestBodyTimeoutLayer::new(BODY))
+        .layer(from_fn_with_state(access.clone(), admission::admit))
         .layer(CatchPanicLayer::custom(problem::from_panic))
-        .layer(from_fn(problem::every_error))
-        .layer(from_fn(request_id::name_request)))
+        .layer(from_fn(problem::every_error));
+    // Outside of what refuses: a page that may call may also read why it was refused.
+    let routes = match access.origins().layer() {
+        Some(layer) => routes.layer(layer),
+        None => routes,
+    };
+    Ok(routes.layer(from_fn(headers::secure)).layer(from_fn(request_id::name_request)))
 }

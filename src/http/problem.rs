@@ -13,12 +13,13 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 use std::any::Any;
+use std::time::Duration;
 
 const MEDIA_TYPE: &str = "application/problem+json";
 /// When what is unavailable is worth asking for again.
-const RETRY_AFTER_SECONDS: HeaderValue = HeaderValue::from_static("2");
+const RETRY_AFTER: Duration = Duration::from_secs(2);
 /// A queue as long as it may be takes longer.
-const RETRY_WHEN_FULL_SECONDS: HeaderValue = HeaderValue::from_static("10");
+const RETRY_WHEN_FULL: Duration = Duration::from_secs(10);
 
 /// Every kind of problem: the last part of its `type`, its status, its title.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,6 +36,9 @@ pub enum Kind {
     UnsupportedMediaType,
     RequestFailed,
     QueueFull,
+    Unauthorized,
+    Forbidden,
+    RateLimited,
     Unavailable,
     StorageFull,
     StorageDamaged,
@@ -42,7 +46,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 19] = [
         Self::InvalidJson,
         Self::InvalidModel,
         Self::InvalidParameter,
@@ -55,6 +59,9 @@ impl Kind {
         Self::UnsupportedMediaType,
         Self::RequestFailed,
         Self::QueueFull,
+        Self::Unauthorized,
+        Self::Forbidden,
+        Self::RateLimited,
         Self::Unavailable,
         Self::StorageFull,
         Self::StorageDamaged,
@@ -98,6 +105,13 @@ impl Kind {
             Self::Unavailable => {
                 ("/problems/unavailable", StatusCode::SERVICE_UNAVAILABLE, "The service cannot do this now")
             }
+            Self::Unauthorized => {
+                ("/problems/unauthorized", StatusCode::UNAUTHORIZED, "A token of this service is needed")
+            }
+            Self::Forbidden => ("/problems/forbidden", StatusCode::FORBIDDEN, "This may not be done"),
+            Self::RateLimited => {
+                ("/problems/rate-limited", StatusCode::TOO_MANY_REQUESTS, "Too many requests in too short a time")
+            }
             Self::QueueFull => ("/problems/queue-full", StatusCode::TOO_MANY_REQUESTS, "Too many jobs wait already"),
             Self::StorageDamaged => {
                 ("/problems/storage-damaged", StatusCode::INTERNAL_SERVER_ERROR, "What is stored is damaged")
@@ -117,7 +131,9 @@ impl Kind {
             StatusCode::NOT_ACCEPTABLE => Self::NotAcceptable,
             StatusCode::PAYLOAD_TOO_LARGE => Self::BodyTooLarge,
             StatusCode::UNSUPPORTED_MEDIA_TYPE => Self::UnsupportedMediaType,
-            StatusCode::TOO_MANY_REQUESTS => Self::QueueFull,
+            StatusCode::UNAUTHORIZED => Self::Unauthorized,
+            StatusCode::FORBIDDEN => Self::Forbidden,
+            StatusCode::TOO_MANY_REQUESTS => Self::RateLimited,
             StatusCode::SERVICE_UNAVAILABLE => Self::Unavailable,
             status if status.is_client_error() => Self::RequestFailed,
             _ => Self::Internal,
@@ -148,11 +164,24 @@ pub struct Problem {
     kind: Kind,
     detail: String,
     errors: Vec<InputError>,
+    /// When the same request is worth sending again.
+    retry_after: Option<Duration>,
 }
 
 impl Problem {
     pub fn new(kind: Kind, detail: impl Into<String>) -> Self {
-        Self { kind, detail: detail.into(), errors: Vec::new() }
+        let retry_after = match kind {
+            Kind::Unavailable => Some(RETRY_AFTER),
+            Kind::QueueFull => Some(RETRY_WHEN_FULL),
+            _ => None,
+        };
+        Self { kind, detail: detail.into(), errors: Vec::new(), retry_after }
+    }
+
+    /// Of whom more requests have come than are answered.
+    pub fn too_often(whom: &str, wait: Duration) -> Self {
+        let detail = format!("too many requests of {whom}; the next is answered in {:.3} s", wait.as_secs_f64());
+        Self { retry_after: Some(wait), ..Self::new(Kind::RateLimited, detail) }
     }
 
     fn input(kind: Kind, errors: InputErrors) -> Self {
@@ -160,7 +189,7 @@ impl Problem {
             [only] => only.to_string(),
             several => format!("{} mistakes were found", several.len()),
         };
-        Self { kind, detail, errors: errors.0 }
+        Self { errors: errors.0, ..Self::new(kind, detail) }
     }
 
     pub fn parameter(name: &str, detail: impl std::fmt::Display) -> Self {
@@ -226,13 +255,14 @@ impl IntoResponse for Problem {
         // Five plain members: there is nothing in them that JSON cannot hold.
         let body = serde_json::to_vec(&document).unwrap_or_default();
         let mut response = (status, [(header::CONTENT_TYPE, MEDIA_TYPE)], body).into_response();
-        let retry_after = match self.kind {
-            Kind::Unavailable => Some(RETRY_AFTER_SECONDS),
-            Kind::QueueFull => Some(RETRY_WHEN_FULL_SECONDS),
-            _ => None,
-        };
-        if let Some(seconds) = retry_after {
-            response.headers_mut().insert(header::RETRY_AFTER, seconds);
+        if let Some(wait) = self.retry_after {
+            // Whole seconds (RFC 9110, section 10.2.3), and none too early.
+            response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from(wait.as_secs_f64().ceil() as u64));
+        }
+        if self.kind == Kind::Unauthorized {
+            response
+                .headers_mut()
+                .insert(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer realm=\"arcslip\""));
         }
         response
     }

@@ -3,6 +3,8 @@
 //! Going down: nothing new is accepted, streams end by themselves (a graceful shutdown would wait for them for ever),
 //! solves stop and their jobs go back to the queue, then the database is closed; all of it within a bound.
 
+use super::access::Access;
+use super::listen::listen;
 use super::{Service, router};
 use crate::jobs::{Crew, Jobs, Settings, Solver};
 use crate::store::Store;
@@ -27,32 +29,42 @@ pub enum ServerError {
     Description(#[from] serde_json::Error),
 }
 
+/// How a service is reached.
+#[derive(Debug, Clone)]
+pub struct Front {
+    /// Port 0 takes any free one.
+    pub listen: SocketAddr,
+    /// Served at a time; those past that wait.
+    pub connections: usize,
+    pub access: Access,
+}
+
 /// A service that listens and works.
 pub struct Server {
     address: SocketAddr,
     jobs: Jobs,
     crew: Crew,
-    listening: JoinHandle<std::io::Result<()>>,
+    listening: JoinHandle<()>,
     shutdown: CancellationToken,
 }
 
 impl Server {
-    /// Port 0 takes any free one.
     pub async fn start(
-        listen: SocketAddr,
+        front: Front,
         store: Arc<dyn Store>,
         solver: Arc<dyn Solver>,
         settings: Settings,
     ) -> Result<Self, ServerError> {
-        let refused = |source| ServerError::Listen { address: listen, source };
-        let listener = TcpListener::bind(listen).await.map_err(refused)?;
+        let Front { listen: place, connections, access } = front;
+        let refused = |source| ServerError::Listen { address: place, source };
+        let listener = TcpListener::bind(place).await.map_err(refused)?;
         let address = listener.local_addr().map_err(refused)?;
         let shutdown = CancellationToken::new();
         let jobs = Jobs::new(store, solver, settings);
         let crew = Crew::start(&jobs, &shutdown);
-        let service = Service { jobs: jobs.clone(), attendance: crew.attendance(), shutdown: shutdown.clone() };
-        let serve = axum::serve(listener, router(service)?).with_graceful_shutdown(shutdown.clone().cancelled_owned());
-        Ok(Self { address, jobs, crew, listening: tokio::spawn(async move { serve.await }), shutdown })
+        let service = Service { jobs: jobs.clone(), attendance: crew.attendance(), access, shutdown: shutdown.clone() };
+        let listening = tokio::spawn(listen(listener, router(service)?, connections, shutdown.clone()));
+        Ok(Self { address, jobs, crew, listening, shutdown })
     }
 
     pub fn address(&self) -> SocketAddr {

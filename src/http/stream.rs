@@ -10,9 +10,11 @@ use super::problem::{Kind, Problem};
 use super::view::Job;
 use super::view_study::StudyWithReport;
 use super::{Service, document};
+use crate::jobs::Caller;
 use crate::judged::JudgedIncrement;
 use crate::store::{JobRecord, Line, Page, StoreError, Task};
 use async_stream::stream;
+use axum::Extension;
 use axum::body::Body;
 use axum::extract::State;
 use axum::http::{HeaderMap, header};
@@ -52,15 +54,26 @@ const RETRY: Duration = Duration::from_secs(2);
         (JudgedIncrement = "application/x-ndjson")
     )))
 )]
-pub async fn stream(State(service): State<Service>, JobId(id): JobId, headers: HeaderMap) -> Result<Response, Problem> {
-    answer(service, Task::Path, id, &headers).await
+pub async fn stream(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    JobId(id): JobId,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    answer(service, &caller, Task::Path, id, &headers).await
 }
 
 /// The lines of a job of that task as they come.
-pub(super) async fn answer(service: Service, task: Task, id: Uuid, headers: &HeaderMap) -> Result<Response, Problem> {
+pub(super) async fn answer(
+    service: Service,
+    caller: &Caller,
+    task: Task,
+    id: Uuid,
+    headers: &HeaderMap,
+) -> Result<Response, Problem> {
     let format = Format::accepted(headers)?;
     let after = last_event_id(event_name(task), headers)?;
-    service.jobs.find(task, id).await?;
+    service.jobs.find(caller, task, id).await?;
     Ok(match format {
         Format::Events => Sse::new(events(service, task, id, after))
             .keep_alive(KeepAlive::new().interval(KEEP_ALIVE).text("waiting"))

@@ -4,11 +4,13 @@ use super::extract::{JobId, JsonText, Parameters, Taken, idempotency_key};
 use super::jobs::{SubmitParameters, accepted, page};
 use super::problem::Problem;
 use super::view_study::{Study, StudyList, StudyWithReport, address};
-use super::{Service, document};
+use super::{Service, document, tag};
+use crate::jobs::Caller;
 use crate::model::StudyRequest;
 use crate::picture::{self, PlotError};
 use crate::store::{ListFilter, Status, Task};
 use crate::studies::{Plan, Report, Run};
+use axum::Extension;
 use axum::Json;
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode, header};
@@ -37,6 +39,7 @@ use uuid::Uuid;
 )]
 pub async fn submit(
     State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
     Parameters(parameters): Parameters<SubmitParameters>,
     headers: HeaderMap,
     JsonText(request): JsonText,
@@ -44,7 +47,7 @@ pub async fn submit(
     if parameters.validate {
         return Ok(Json(service.jobs.validate_study(request).await?).into_response());
     }
-    accepted::<Study>(service.jobs.submit_study(request, idempotency_key(&headers)?).await?, address)
+    accepted::<Study>(service.jobs.submit_study(&caller, request, idempotency_key(&headers)?).await?, address)
 }
 
 #[derive(Debug, Deserialize, utoipa::IntoParams)]
@@ -74,10 +77,12 @@ impl Taken for ListStudies {
 )]
 pub async fn list(
     State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
     Parameters(parameters): Parameters<ListStudies>,
 ) -> Result<Json<StudyList>, Problem> {
     let ListStudies { status, cursor, limit } = parameters;
-    let filter = |limit| ListFilter { task: Task::Study, status, parent: None, before: cursor, limit };
+    let owner = caller.seen_owner().map(str::to_owned);
+    let filter = |limit| ListFilter { task: Task::Study, owner, status, parent: None, before: cursor, limit };
     let (studies, next_cursor) = page(&service, limit, filter).await?;
     Ok(Json(StudyList { studies, next_cursor }))
 }
@@ -88,13 +93,19 @@ pub async fn list(
     params(("id" = Uuid, Path, description = "The study's id.")),
     responses((status = 200, description = "The study.", body = StudyWithReport))
 )]
-pub async fn get(State(service): State<Service>, JobId(id): JobId) -> Result<Json<StudyWithReport>, Problem> {
-    let study = service.jobs.find(Task::Study, id).await?;
+pub async fn get(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    JobId(id): JobId,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    let study = service.jobs.find(&caller, Task::Study, id).await?;
+    let is_finished = study.status.is_ended();
     if study.report.is_some() {
-        return Ok(Json(study.try_into()?));
+        return tag::json(&headers, is_finished, &StudyWithReport::try_from(study)?);
     }
     let report = service.jobs.study_so_far(&study).await?;
-    Ok(Json(StudyWithReport::so_far(study, report.as_ref())?))
+    tag::json(&headers, is_finished, &StudyWithReport::so_far(study, report.as_ref())?)
 }
 
 /// Follow a study: its rows as paths are traced, then its end.
@@ -116,8 +127,13 @@ pub async fn get(State(service): State<Service>, JobId(id): JobId) -> Result<Jso
         (Run = "application/x-ndjson")
     )))
 )]
-pub async fn stream(State(service): State<Service>, JobId(id): JobId, headers: HeaderMap) -> Result<Response, Problem> {
-    super::stream::answer(service, Task::Study, id, &headers).await
+pub async fn stream(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    JobId(id): JobId,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    super::stream::answer(service, &caller, Task::Study, id, &headers).await
 }
 
 /// Stop a study within one iteration; what it has found is kept. An ended study stays as it is.
@@ -126,8 +142,12 @@ pub async fn stream(State(service): State<Service>, JobId(id): JobId, headers: H
     params(("id" = Uuid, Path, description = "The study's id.")),
     responses((status = 202, description = "The study; a running one ends shortly.", body = Study))
 )]
-pub async fn cancel(State(service): State<Service>, JobId(id): JobId) -> Result<(StatusCode, Json<Study>), Problem> {
-    let study = service.jobs.cancel(Task::Study, id).await?;
+pub async fn cancel(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    JobId(id): JobId,
+) -> Result<(StatusCode, Json<Study>), Problem> {
+    let study = service.jobs.cancel(&caller, Task::Study, id).await?;
     Ok((StatusCode::ACCEPTED, Json(study.try_into()?)))
 }
 
@@ -137,8 +157,12 @@ pub async fn cancel(State(service): State<Service>, JobId(id): JobId) -> Result<
     params(("id" = Uuid, Path, description = "The study's id.")),
     responses((status = 204, description = "The study is gone."))
 )]
-pub async fn delete(State(service): State<Service>, JobId(id): JobId) -> Result<StatusCode, Problem> {
-    service.jobs.delete(Task::Study, id).await?;
+pub async fn delete(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    JobId(id): JobId,
+) -> Result<StatusCode, Problem> {
+    service.jobs.delete(&caller, Task::Study, id).await?;
     Ok(StatusCode::NO_CONTENT)
 }
 
@@ -148,12 +172,18 @@ pub async fn delete(State(service): State<Service>, JobId(id): JobId) -> Result<
     params(("id" = Uuid, Path, description = "The study's id.")),
     responses((status = 200, description = "The table; one line a row.", body = String, content_type = "text/csv"))
 )]
-pub async fn table_csv(State(service): State<Service>, JobId(id): JobId) -> Result<Response, Problem> {
-    let headers = [
+pub async fn table_csv(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    JobId(id): JobId,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    let own = [
         (header::CONTENT_TYPE, "text/csv; charset=utf-8".to_owned()),
         (header::CONTENT_DISPOSITION, format!("attachment; filename=\"study-{id}.csv\"")),
     ];
-    Ok((headers, found(&service, id).await?.csv()?).into_response())
+    let (report, is_finished) = found(&service, &caller, id).await?;
+    tag::bytes(&headers, is_finished, own, report.csv()?)
 }
 
 /// The rows found so far, as columns of text.
@@ -162,9 +192,14 @@ pub async fn table_csv(State(service): State<Service>, JobId(id): JobId) -> Resu
     params(("id" = Uuid, Path, description = "The study's id.")),
     responses((status = 200, description = "The table, for a reader.", body = String, content_type = "text/plain"))
 )]
-pub async fn table_txt(State(service): State<Service>, JobId(id): JobId) -> Result<Response, Problem> {
-    let headers = [(header::CONTENT_TYPE, "text/plain; charset=utf-8")];
-    Ok((headers, found(&service, id).await?.text()?).into_response())
+pub async fn table_txt(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    JobId(id): JobId,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    let (report, is_finished) = found(&service, &caller, id).await?;
+    tag::bytes(&headers, is_finished, [(header::CONTENT_TYPE, "text/plain; charset=utf-8")], report.text()?)
 }
 
 /// Error against time so far, on logarithmic scales, one line a method.
@@ -175,10 +210,15 @@ pub async fn table_txt(State(service): State<Service>, JobId(id): JobId) -> Resu
     params(("id" = Uuid, Path, description = "The study's id.")),
     responses((status = 200, description = "The picture.", body = String, content_type = "image/svg+xml"))
 )]
-pub async fn picture(State(service): State<Service>, JobId(id): JobId) -> Result<Response, Problem> {
-    let report = found(&service, id).await?;
+pub async fn picture(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    JobId(id): JobId,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    let (report, is_finished) = found(&service, &caller, id).await?;
     match picture::study::svg(&report) {
-        Ok(svg) => Ok(([(header::CONTENT_TYPE, "image/svg+xml")], svg).into_response()),
+        Ok(svg) => tag::bytes(&headers, is_finished, [(header::CONTENT_TYPE, "image/svg+xml")], svg),
         Err(PlotError::Drawing(error)) => {
             tracing::error!(%error, study = %id, "a picture cannot be drawn");
             Err(Problem::new(super::problem::Kind::Internal, "the log has more under this answer's x-request-id"))
@@ -189,12 +229,13 @@ pub async fn picture(State(service): State<Service>, JobId(id): JobId) -> Result
     }
 }
 
-/// What a study has found so far; a problem before its first path.
-async fn found(service: &Service, id: Uuid) -> Result<Report, Problem> {
-    let study = service.jobs.find(Task::Study, id).await?;
+/// What a study has found so far, and whether that is all; a problem before its first path.
+async fn found(service: &Service, caller: &Caller, id: Uuid) -> Result<(Report, bool), Problem> {
+    let study = service.jobs.find(caller, Task::Study, id).await?;
     if let Some(report) = &study.report {
-        return Ok(serde_json::from_str(report)?);
+        return Ok((serde_json::from_str(report)?, study.status.is_ended()));
     }
     let report = service.jobs.study_so_far(&study).await?;
-    report.ok_or_else(|| Problem::not_found(format_args!("table of study {id}: no path of it has been traced yet")))
+    let absent = || Problem::not_found(format_args!("table of study {id}: no path of it has been traced yet"));
+    Ok((report.ok_or_else(absent)?, study.status.is_ended()))
 }

@@ -13,6 +13,8 @@ use uuid::Uuid;
 #[derive(Debug, Serialize, ToSchema)]
 pub struct Submitted {
     pub id: Uuid,
+    /// The name of the token that it was posted with; null where the service asked for none.
+    pub owner: Option<String>,
     /// The model's own name.
     pub name: Option<String>,
     pub status: Status,
@@ -38,6 +40,7 @@ impl From<&JobRecord> for Submitted {
     fn from(record: &JobRecord) -> Self {
         Self {
             id: record.id,
+            owner: record.owner.clone(),
             name: record.name.clone(),
             status: record.status,
             error: record.error.clone(),

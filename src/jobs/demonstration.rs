@@ -1,13 +1,13 @@
 //! The built-in scenes as jobs, for a first look at the service.
 
-use super::{Jobs, JobsError};
+use super::{Caller, Jobs, JobsError};
 use crate::scenes;
 
 /// Queues every built-in scene once; a database that has them already gets no second set.
 pub async fn queue_scenes(jobs: &Jobs) -> Result<(), JobsError> {
     for scene in scenes::ALL {
         let key = format!("demonstration/{}", scene.name);
-        match jobs.submit(scene.request.as_bytes().to_vec(), Some(key)).await {
+        match jobs.submit(&Caller::Anyone, scene.request.as_bytes().to_vec(), Some(key)).await {
             Ok(_) => {}
             // Queued from another version of the scene: its job stands.
             Err(JobsError::KeyReused) => tracing::info!(scene = scene.name, "already queued from an earlier version"),

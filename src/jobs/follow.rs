@@ -1,7 +1,7 @@
 //! A new job along a direction that is listed at an increment of another.
 
 use super::submission::wrong_input;
-use super::{Jobs, JobsError, branches, queued};
+use super::{Caller, Jobs, JobsError, branches, queued};
 use crate::model::{InputError, InputErrors, decode};
 use crate::path::Increment;
 use crate::store::{JobRecord, NewFollower, Page, Parent, Task};
@@ -12,6 +12,7 @@ impl Jobs {
     /// Queues a job that follows a direction of this one.
     pub async fn follow(
         &self,
+        caller: &Caller,
         id: Uuid,
         body: Vec<u8>,
         idempotency_key: Option<String>,
@@ -21,7 +22,7 @@ impl Jobs {
         if let Some(past) = asked.max_increments.and_then(|most| limits.past_increments("/max_increments", most)) {
             return Err(JobsError::Follow(InputErrors(vec![past])));
         }
-        let job = self.find(Task::Path, id).await?;
+        let job = self.find(caller, Task::Path, id).await?;
         let parent = Parent { job: id, increment: asked.increment, direction: asked.direction };
         self.check_listed(&job, asked.increment).await?;
         let Some(origin) = self.store.branch(id, asked.increment).await? else {
@@ -47,10 +48,9 @@ impl Jobs {
         .await??;
         let max_increments = Some(asked.max_increments.unwrap_or(job.max_increments));
         // Nothing to be found here any more: the parent was deleted just now.
-        let submitted = self
-            .store
-            .follow(NewFollower { parent, max_increments, idempotency_key, most_queued: limits.queued })
-            .await?;
+        let owner = caller.owner().map(str::to_owned);
+        let follower = NewFollower { parent, owner, max_increments, idempotency_key, most_queued: limits.queued };
+        let submitted = self.store.follow(follower).await?;
         queued(submitted.ok_or(JobsError::NoJob(id))?)
     }
 

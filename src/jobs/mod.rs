@@ -1,6 +1,6 @@
 //! From a request to a running solve: the queue's front (submit, cancel, delete) and the workers behind it.
 //!
-//! [`solver`] is the seam to the path tracer, [`submission`] what is done with a request before it is queued, [`solve`]
+//! [`caller`] says on whose behalf, [`solver`] is the seam to the path tracer, [`submission`] what is done with a request before it is queued, [`solve`]
 //! one solve on a thread of its own, [`batch`] its increments on their way to the store, [`worker`] the loop around both,
 //! [`given`] makes what a solve gives ready for the store, [`checkpoints`] says where it can be taken up after a loss, [`cadence`] how often,
 //! [`limits`] what is taken and how much a job may use, [`retention`] what is kept of ended jobs;
@@ -11,6 +11,7 @@
 pub mod batch;
 pub mod branches;
 pub mod cadence;
+pub mod caller;
 pub mod checkpoints;
 pub mod crew;
 pub mod demonstration;
@@ -35,6 +36,7 @@ use running::Running;
 use std::sync::Arc;
 use uuid::Uuid;
 
+pub use caller::Caller;
 pub use crew::Crew;
 pub use limits::Limits;
 pub use settings::Settings;
@@ -88,10 +90,16 @@ impl Jobs {
         Ok(self.prepare(request).await?.plan)
     }
 
-    pub async fn submit(&self, request: Vec<u8>, idempotency_key: Option<String>) -> Result<JobRecord, JobsError> {
+    pub async fn submit(
+        &self,
+        caller: &Caller,
+        request: Vec<u8>,
+        idempotency_key: Option<String>,
+    ) -> Result<JobRecord, JobsError> {
         let prepared = self.prepare(request).await?;
         let job = NewJob {
             task: Task::Path,
+            owner: caller.owner().map(str::to_owned),
             name: prepared.name,
             plan: serde_json::to_string(&prepared.plan)?,
             request: prepared.text,
@@ -105,22 +113,22 @@ impl Jobs {
         queued(self.store.submit(job).await?)
     }
 
-    /// A job of that task.
-    pub async fn find(&self, task: Task, id: Uuid) -> Result<JobRecord, JobsError> {
-        let found = self.store.job(id).await?.filter(|job| job.task == task);
+    /// A job of that task that the caller sees.
+    pub async fn find(&self, caller: &Caller, task: Task, id: Uuid) -> Result<JobRecord, JobsError> {
+        let found = self.store.job(id).await?.filter(|job| job.task == task && caller.sees(job));
         found.ok_or_else(|| absent(task, id))
     }
 
-    pub async fn cancel(&self, task: Task, id: Uuid) -> Result<JobRecord, JobsError> {
-        self.find(task, id).await?;
+    pub async fn cancel(&self, caller: &Caller, task: Task, id: Uuid) -> Result<JobRecord, JobsError> {
+        self.find(caller, task, id).await?;
         let job = self.store.request_cancel(id).await?.ok_or_else(|| absent(task, id))?;
         // A job that runs elsewhere learns of it when its lease is renewed; one that runs here need not wait.
         self.running.cancel(id);
         Ok(job)
     }
 
-    pub async fn delete(&self, task: Task, id: Uuid) -> Result<(), JobsError> {
-        self.find(task, id).await?;
+    pub async fn delete(&self, caller: &Caller, task: Task, id: Uuid) -> Result<(), JobsError> {
+        self.find(caller, task, id).await?;
         let deleted = self.store.delete(id).await?;
         self.running.cancel(id);
         if deleted { Ok(()) } else { Err(absent(task, id)) }

@@ -1,7 +1,7 @@
 //! Studies as jobs: queued, run and resumed by the same workers as paths are.
 
 use super::submission::{not_text, wrong_input};
-use super::{Jobs, JobsError, Limits, Solver, queued};
+use super::{Caller, Jobs, JobsError, Limits, Solver, queued};
 use crate::model::decode;
 use crate::store::{JobRecord, Line, NewJob, Page, Task};
 use crate::store::{Result as StoreResult, StoreError};
@@ -26,12 +26,14 @@ impl Jobs {
 
     pub async fn submit_study(
         &self,
+        caller: &Caller,
         request: Vec<u8>,
         idempotency_key: Option<String>,
     ) -> Result<JobRecord, JobsError> {
         let Prepared { text, name, plan } = self.prepare_study(request).await?;
         let job = NewJob {
             task: Task::Study,
+            owner: caller.owner().map(str::to_owned),
             name,
             plan: serde_json::to_string(&plan)?,
             request: text,

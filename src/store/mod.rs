@@ -106,6 +106,12 @@ pub trait Store: Send + Sync + 'static {
     async fn close(&self);
 }
 
+/// Copies the database in that file, as it is at one moment, to a file that is not there yet, and checks the copy. Others may
+/// write meanwhile.
+pub async fn back_up(file: &Path, copy: &Path) -> Result<()> {
+    sqlite::backup::back_up(file, copy).await
+}
+
 /// Opens (and creates, and migrates) the database in that file.
 pub async fn open(file: &Path) -> Result<Arc<dyn Store>> {
     Ok(Arc::new(sqlite::SqliteStore::open(file).await?))

@@ -76,6 +76,8 @@ impl Task {
 #[derive(Debug, Clone)]
 pub struct NewJob {
     pub task: Task,
+    /// Whose it is; keys of different owners do not meet.
+    pub owner: Option<String>,
     pub name: Option<String>,
     /// The request as posted.
     pub request: String,
@@ -104,6 +106,8 @@ pub struct Parent {
 #[derive(Debug, Clone)]
 pub struct NewFollower {
     pub parent: Parent,
+    /// The parent's, if absent.
+    pub owner: Option<String>,
     /// The parent's, if absent.
     pub max_increments: Option<u64>,
     pub idempotency_key: Option<String>,
@@ -182,6 +186,7 @@ pub enum Keep {
 pub struct JobRecord {
     pub id: Uuid,
     pub task: Task,
+    pub owner: Option<String>,
     pub name: Option<String>,
     pub status: Status,
     /// JSON.
@@ -208,9 +213,11 @@ pub struct JobRecord {
 }
 
 /// Which jobs to list.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct ListFilter {
     pub task: Task,
+    /// Only jobs of this one's.
+    pub owner: Option<String>,
     pub status: Option<Status>,
     /// Only jobs that follow this one.
     pub parent: Option<Uuid>,

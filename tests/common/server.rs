@@ -1,15 +1,18 @@
 //! The real application in this process: a port of its own, a database of the test's.
 
-use arcslip::http::server::Server;
+use arcslip::http::access::Access;
+use arcslip::http::server::{Front, Server};
 use arcslip::jobs::{Settings, Solver};
 use arcslip::store::{self, Store};
 use reqwest::{Client, Method, RequestBuilder, Response, StatusCode};
 use serde_json::Value;
+use std::net::SocketAddr;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 const PATIENCE: Duration = Duration::from_secs(30);
+const CONNECTIONS: usize = 500;
 
 pub struct TestServer {
     server: Server,
@@ -30,6 +33,11 @@ pub fn settings() -> Settings {
     Settings { workers: 2, lease: Duration::from_millis(600), ..Settings::default() }
 }
 
+/// Any free port of this machine.
+pub fn any_port() -> SocketAddr {
+    SocketAddr::from(([127, 0, 0, 1], 0))
+}
+
 impl TestServer {
     pub async fn start(database: &Path, solver: impl Solver) -> Self {
         Self::start_with(database, solver, settings()).await
@@ -41,8 +49,13 @@ impl TestServer {
     }
 
     pub async fn start_on(store: Arc<dyn Store>, solver: impl Solver, settings: Settings) -> Self {
-        let any = "127.0.0.1:0".parse().expect("an address");
-        let server = Server::start(any, store, Arc::new(solver), settings).await.expect("the server starts");
+        Self::start_for(store, solver, settings, Access::loopback()).await
+    }
+
+    pub async fn start_for(store: Arc<dyn Store>, solver: impl Solver, settings: Settings, access: Access) -> Self {
+        let front = Front { listen: any_port(), connections: CONNECTIONS, access };
+        let server = Server::start(front, store, Arc::new(solver), settings).await;
+        let server = server.expect("the server starts");
         let url = format!("http://{}", server.address());
         let client = Client::builder().no_proxy().timeout(PATIENCE).build().expect("a client");
         Self { server, url, client }
@@ -53,7 +66,7 @@ impl TestServer {
         self.server.stop().await
     }
 
-    pub fn address(&self) -> std::net::SocketAddr {
+    pub fn address(&self) -> SocketAddr {
         self.server.address()
     }
 

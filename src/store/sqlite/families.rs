@@ -58,7 +58,8 @@ async fn explore_next(store: &SqliteStore, family: Uuid) -> Result<Option<u64>> 
             }
             let parent = Parent { job, increment, direction };
             // Families have a bound of their own.
-            let follower = NewFollower { parent, max_increments: None, idempotency_key: None, most_queued: u64::MAX };
+            let follower =
+                NewFollower { parent, owner: None, max_increments: None, idempotency_key: None, most_queued: u64::MAX };
             let place = Place { family, number: queued + 1, generation: generation + 1 };
             followers::insert(&mut transaction, &follower, Some(place)).await?;
             queued += 1;

@@ -24,7 +24,7 @@ pub(super) async fn follow(store: &SqliteStore, job: NewFollower) -> Result<Opti
         return Ok(Some(Submitted::Created(record)));
     }
     let known = sqlx::query(concat!("SELECT ", job_columns!(), " FROM jobs WHERE idempotency_key = ?"))
-        .bind(&job.idempotency_key)
+        .bind(jobs::owned_key(job.owner.as_deref(), job.idempotency_key.as_deref()))
         .fetch_optional(&mut *transaction)
         .await?;
     let full: bool = sqlx::query_scalar(concat!("SELECT ", waiting!(), " >= ?1"))
@@ -52,16 +52,16 @@ pub(super) async fn insert(
     let id = Uuid::now_v7();
     let inserted = sqlx::query(concat!(
         "INSERT INTO jobs (id, name, status, priority, request, idempotency_key, plan, max_increments, max_attempts, \
-         created_at, updated_at, parent, parent_increment, parent_direction, family, family_number, generation) \
+         created_at, updated_at, parent, parent_increment, parent_direction, family, family_number, generation, owner) \
          SELECT ?2, name, 'queued', priority, request, ?3, plan, coalesce(?4, max_increments), max_attempts, \
-         ?5, ?5, id, ?6, ?7, ?8, ?9, ?10 \
+         ?5, ?5, id, ?6, ?7, ?8, ?9, ?10, coalesce(?12, owner) \
          FROM jobs WHERE id = ?11 AND EXISTS (SELECT 1 FROM branches WHERE job = ?11 AND increment_index <= ?6) AND ",
         waiting!(),
         " < ?1 ON CONFLICT (idempotency_key) DO NOTHING",
     ))
     .bind(signed(job.most_queued))
     .bind(id)
-    .bind(&job.idempotency_key)
+    .bind(jobs::owned_key(job.owner.as_deref(), job.idempotency_key.as_deref()))
     .bind(job.max_increments.map(signed))
     .bind(now())
     .bind(signed(increment))
@@ -70,6 +70,7 @@ pub(super) async fn insert(
     .bind(place.map_or(0, |place| place.number))
     .bind(place.map_or(0, |place| place.generation))
     .bind(parent)
+    .bind(&job.owner)
     .execute(&mut **transaction)
     .await?;
     if inserted.rows_affected() == 0 {

@@ -2,8 +2,8 @@
 
 use super::rows::{self, job_columns, signed};
 use super::{SqliteStore, now};
-use crate::store::{JobRecord, Keep, ListFilter, NewJob, Result, Status, Submitted};
-use sqlx::{Row, Sqlite, Transaction};
+use crate::store::{JobRecord, Keep, ListFilter, NewJob, Result, Submitted};
+use sqlx::{QueryBuilder, Row, Sqlite, Transaction};
 use uuid::Uuid;
 
 /// Ended jobs that are dropped in one go.
@@ -20,9 +20,11 @@ pub(super) use waiting;
 pub(super) async fn submit(store: &SqliteStore, job: NewJob) -> Result<Submitted> {
     let mut transaction = store.writer.begin().await?;
     let id = Uuid::now_v7();
+    let key = owned_key(job.owner.as_deref(), job.idempotency_key.as_deref());
     let inserted = sqlx::query(concat!(
         "INSERT INTO jobs (id, name, status, priority, request, idempotency_key, plan, max_increments, max_attempts, \
-         created_at, updated_at, family, task) SELECT ?2, ?3, 'queued', ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?10, ?11, ?12 WHERE ",
+         created_at, updated_at, family, task, owner) \
+         SELECT ?2, ?3, 'queued', ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?10, ?11, ?12, ?13 WHERE ",
         waiting!(),
         " < ?1 ON CONFLICT (idempotency_key) DO NOTHING",
     ))
@@ -31,13 +33,14 @@ pub(super) async fn submit(store: &SqliteStore, job: NewJob) -> Result<Submitted
     .bind(&job.name)
     .bind(job.priority)
     .bind(&job.request)
-    .bind(&job.idempotency_key)
+    .bind(&key)
     .bind(&job.plan)
     .bind(signed(job.max_increments))
     .bind(job.max_attempts)
     .bind(now())
     .bind(job.explore.map(|_| id))
     .bind(job.task.name())
+    .bind(&job.owner)
     .execute(&mut *transaction)
     .await?;
     if inserted.rows_affected() > 0 {
@@ -55,7 +58,7 @@ pub(super) async fn submit(store: &SqliteStore, job: NewJob) -> Result<Submitted
         return Ok(Submitted::Created(record));
     }
     let row = sqlx::query(concat!("SELECT request, ", job_columns!(), " FROM jobs WHERE idempotency_key = ?"))
-        .bind(&job.idempotency_key)
+        .bind(&key)
         .fetch_optional(&mut *transaction)
         .await?;
     transaction.rollback().await?;
@@ -65,6 +68,11 @@ pub(super) async fn submit(store: &SqliteStore, job: NewJob) -> Result<Submitted
     let same =
         record.task == job.task && record.parent.is_none() && row.try_get::<String, _>("request")? == job.request;
     Ok(if same { Submitted::Repeated(record) } else { Submitted::KeyReused })
+}
+
+/// As it is stored: keys that different owners send do not meet. No name of an owner and no key holds a line break.
+pub(super) fn owned_key(owner: Option<&str>, key: Option<&str>) -> Option<String> {
+    key.map(|key| owner.map_or_else(|| key.to_owned(), |owner| format!("{owner}\n{key}")))
 }
 
 /// A job that has just been stored.
@@ -85,38 +93,23 @@ pub(super) async fn get(store: &SqliteStore, id: Uuid) -> Result<Option<JobRecor
 }
 
 pub(super) async fn list(store: &SqliteStore, filter: ListFilter) -> Result<Vec<JobRecord>> {
-    // One statement for each, so that it can walk an index.
-    let query = match (filter.parent, filter.status) {
-        (Some(parent), status) => sqlx::query(concat!(
-            "SELECT ",
-            job_columns!(),
-            " FROM jobs WHERE task = ?5 AND parent = ?3 AND (?4 IS NULL OR status = ?4) AND (?1 IS NULL OR id < ?1) \
-             ORDER BY id DESC LIMIT ?2"
-        ))
-        .bind(filter.before)
-        .bind(filter.limit)
-        .bind(parent)
-        .bind(status.map(Status::name))
-        .bind(filter.task.name()),
-        (None, Some(status)) => sqlx::query(concat!(
-            "SELECT ",
-            job_columns!(),
-            " FROM jobs WHERE task = ?4 AND status = ?3 AND (?1 IS NULL OR id < ?1) ORDER BY id DESC LIMIT ?2"
-        ))
-        .bind(filter.before)
-        .bind(filter.limit)
-        .bind(status.name())
-        .bind(filter.task.name()),
-        (None, None) => sqlx::query(concat!(
-            "SELECT ",
-            job_columns!(),
-            " FROM jobs WHERE task = ?3 AND (?1 IS NULL OR id < ?1) ORDER BY id DESC LIMIT ?2"
-        ))
-        .bind(filter.before)
-        .bind(filter.limit)
-        .bind(filter.task.name()),
-    };
-    query.fetch_all(&store.readers).await?.iter().map(rows::job).collect()
+    // Only the conditions that are asked for, so that the statement can walk an index.
+    let mut query = QueryBuilder::<Sqlite>::new(concat!("SELECT ", job_columns!(), " FROM jobs WHERE task = "));
+    query.push_bind(filter.task.name());
+    if let Some(parent) = filter.parent {
+        query.push(" AND parent = ").push_bind(parent);
+    }
+    if let Some(status) = filter.status {
+        query.push(" AND status = ").push_bind(status.name());
+    }
+    if let Some(owner) = filter.owner {
+        query.push(" AND owner = ").push_bind(owner);
+    }
+    if let Some(before) = filter.before {
+        query.push(" AND id < ").push_bind(before);
+    }
+    query.push(" ORDER BY id DESC LIMIT ").push_bind(filter.limit);
+    query.build().fetch_all(&store.readers).await?.iter().map(rows::job).collect()
 }
 
 pub(super) async fn request_cancel(store: &SqliteStore, id: Uuid) -> Result<Option<JobRecord>> {

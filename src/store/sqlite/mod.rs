@@ -4,6 +4,7 @@
 //! the one connection here rather than for SQLite's lock. The log is write-ahead, and every commit is synced: what a
 //! client was told is stored survives a power loss.
 
+pub(super) mod backup;
 mod claims;
 mod families;
 mod followers;

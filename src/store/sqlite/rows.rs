@@ -9,7 +9,7 @@ use sqlx::sqlite::SqliteRow;
 /// The columns [`job`] reads.
 macro_rules! job_columns {
     () => {
-        "id, task, name, status, plan, report, stop_reason, error, max_increments, last_index, attempt, max_attempts, losses, \
+        "id, task, owner, name, status, plan, report, stop_reason, error, max_increments, last_index, attempt, max_attempts, losses, \
          cancel_requested, created_at, started_at, ended_at, parent, parent_increment, parent_direction, \
          (SELECT count(*) FROM jobs AS child WHERE child.parent = jobs.id) AS children, \
          family, generation, explored, not_queued, \
@@ -27,6 +27,7 @@ pub(super) fn job(row: &SqliteRow) -> Result<JobRecord> {
     Ok(JobRecord {
         id: row.try_get("id")?,
         task: task(row)?,
+        owner: row.try_get("owner")?,
         name: row.try_get("name")?,
         status: Status::from_name(&status).ok_or_else(|| damaged(format!("status {status:?}")))?,
         plan: row.try_get("plan")?,

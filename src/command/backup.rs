@@ -1,0 +1,35 @@
+//! `arcslip backup`: a copy of the database, while the service runs or not.
+
+use super::{Failure, Outcome, say};
+use crate::store;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Copy the database as it is at one moment, while the service runs; the copy is whole, checked and can be served.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// The database that is copied.
+    #[arg(long, value_name = "FILE", default_value = "arcslip.db", env = "ARCSLIP_DATABASE")]
+    database: PathBuf,
+    /// Where the copy goes; there must be nothing yet.
+    #[arg(value_name = "COPY")]
+    copy: PathBuf,
+}
+
+pub fn run(arguments: &Arguments) -> Outcome {
+    let Arguments { database, copy } = arguments;
+    if copy.exists() {
+        return Err(Failure::Input(vec![format!("{}: is there already; a new name would do", copy.display())]));
+    }
+    if !database.exists() {
+        return Err(Failure::Input(vec![format!("{}: there is no such database", database.display())]));
+    }
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(Failure::other)?;
+    runtime.block_on(store::back_up(database, copy)).map_err(|error| match std::error::Error::source(&error) {
+        Some(source) => Failure::Other(format!("{error}: {source}")),
+        None => Failure::other(error),
+    })?;
+    let bytes = std::fs::metadata(copy).map_err(Failure::other)?.len();
+    say(format_args!("{}: {bytes} bytes\n", copy.display()))?;
+    Ok(ExitCode::SUCCESS)
+}
