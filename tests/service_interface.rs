@@ -4,6 +4,7 @@
 mod common;
 
 use arcslip::jobs::PathSolver;
+use arcslip::model::limits;
 use common::server::TestServer;
 use common::service::{indices, request, without_elapsed};
 use common::solver::MadeUp;
@@ -32,6 +33,26 @@ async fn the_committed_description_is_the_one_that_is_served() {
     assert_eq!(schemas["JobStatus"]["enum"][0], "queued");
     let printed = arcslip().arg("openapi").output().expect("the program runs");
     assert_eq!(String::from_utf8(printed.stdout).expect("text"), committed);
+}
+
+/// The bounds that stand with the fields are those that requests are held to.
+#[test]
+fn the_description_s_bounds_are_the_model_s_limits() {
+    let document: Value = serde_json::from_str(&arcslip::http::openapi_json().expect("a document")).expect("JSON");
+    for (schema, field, bound, limit) in [
+        ("Analysis", "max_increments", "maximum", limits::MAX_INCREMENTS),
+        ("FollowRequest", "max_increments", "maximum", limits::MAX_INCREMENTS),
+        ("Analysis", "max_modes", "maximum", limits::MAX_MODES),
+        ("Explore", "depth", "maximum", limits::MAX_EXPLORE_DEPTH),
+        ("Explore", "max_jobs", "maximum", limits::MAX_EXPLORE_JOBS),
+        ("Regularised", "desired_iterations", "maximum", limits::MAX_DESIRED_ITERATIONS),
+        ("StudySettings", "repeats", "maximum", limits::MAX_STUDY_REPEATS),
+        ("StudySettings", "refinement", "maximum", limits::MAX_STUDY_REFINEMENT),
+        ("StudySettings", "arc_lengths", "maxItems", limits::MAX_STUDY_RUNGS as u64),
+    ] {
+        let found = &document["components"]["schemas"][schema]["properties"][field][bound];
+        assert_eq!(found.as_f64(), Some(limit as f64), "{schema}.{field}");
+    }
 }
 
 #[tokio::test]

@@ -13,6 +13,8 @@ use serde::de::DeserializeOwned;
 use uuid::Uuid;
 
 const LONGEST_KEY: usize = 255;
+/// Of an increment or row: the largest that can be stored.
+const LARGEST_INDEX: u64 = i64::MAX as u64;
 
 /// A JSON body as it came; who reads it says what is wrong with it.
 pub struct JsonText(pub Vec<u8>);
@@ -109,11 +111,24 @@ pub fn idempotency_key(headers: &HeaderMap) -> Result<Option<String>, Problem> {
 /// The `Last-Event-ID` header: the index of the last event the client has; `event` is its name.
 pub fn last_event_id(event: &str, headers: &HeaderMap) -> Result<Option<u64>, Problem> {
     let Some(value) = headers.get("last-event-id") else { return Ok(None) };
-    let refuse =
-        || Problem::parameter("Last-Event-ID", format_args!("the index of the last {event} received: 0 or more"));
+    let refuse = || {
+        Problem::parameter(
+            "Last-Event-ID",
+            format_args!("the index of the last {event} received, 0 to {LARGEST_INDEX}, is expected"),
+        )
+    };
     let text = value.to_str().map_err(|_| refuse())?;
-    // Browsers that have seen no event yet may send an empty one.
-    if text.is_empty() { Ok(None) } else { text.parse().map(Some).map_err(|_| refuse()) }
+    text.parse().ok().filter(|index| *index <= LARGEST_INDEX).map(Some).ok_or_else(refuse)
+}
+
+/// An index within what one can be.
+pub fn index(name: &str, given: Option<u64>) -> Result<Option<u64>, Problem> {
+    match given {
+        Some(found) if found > LARGEST_INDEX => {
+            Err(Problem::parameter(name, format_args!("{found} is not in 0 to {LARGEST_INDEX}")))
+        }
+        given => Ok(given),
+    }
 }
 
 /// A number within its bounds, or the default.

@@ -1,6 +1,6 @@
 //! Stored increments, a page at a time.
 
-use super::extract::{JobId, Parameters, Taken, bounded};
+use super::extract::{JobId, Parameters, Taken, bounded, index};
 use super::problem::Problem;
 use super::view::IncrementPage;
 use super::{Service, document, tag};
@@ -47,11 +47,12 @@ pub async fn page(
     Parameters(parameters): Parameters<PageParameters>,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
+    let after = index("after", parameters.after)?;
     let rows = bounded("limit", parameters.limit, PAGE_DEFAULT, PAGE_LARGEST)?;
     let store = service.jobs.store();
     let is_finished = service.jobs.find(&caller, Task::Path, id).await?.status.is_ended();
-    let lines = store.increments(id, parameters.after, Page { rows, bytes: PAGE_BYTES }).await?;
-    let next_after = lines.last().map(|line| line.index).or(parameters.after);
+    let lines = store.increments(id, after, Page { rows, bytes: PAGE_BYTES }).await?;
+    let next_after = lines.last().map(|line| line.index).or(after);
     let increments = lines.into_iter().map(|line| RawValue::from_string(line.body)).collect::<Result<_, _>>()?;
     tag::json(&headers, is_finished, &IncrementPage { increments, next_after })
 }

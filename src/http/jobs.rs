@@ -54,10 +54,11 @@ pub async fn submit(
     headers: HeaderMap,
     JsonText(request): JsonText,
 ) -> Result<Response, Problem> {
+    let key = idempotency_key(&headers)?;
     if parameters.validate {
         return Ok(Json(service.jobs.validate(request).await?).into_response());
     }
-    accepted::<Job>(service.jobs.submit(&caller, request, idempotency_key(&headers)?).await?, address)
+    accepted::<Job>(service.jobs.submit(&caller, request, key).await?, address)
 }
 
 /// The answer to what has been queued: where it is, and what it is.

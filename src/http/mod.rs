@@ -79,7 +79,7 @@ fn api() -> OpenApiRouter<Service> {
 
 /// The OpenAPI document as it is committed, and served where the limits are the defaults.
 pub fn openapi_json() -> serde_json::Result<String> {
-    document::finish(api().into_openapi(), &Limits::default())
+    document::finish(api().into_openapi(), &Limits::default(), false)
 }
 
 /// Every route, with what applies to all of them.
@@ -87,7 +87,7 @@ pub fn router(service: Service) -> serde_json::Result<Router> {
     let (routes, description) = api().split_for_parts();
     let limits = service.jobs.settings.limits;
     let access = service.access.clone();
-    let description: Arc<str> = document::finish(description, &limits)?.into();
+    let description: Arc<str> = document::finish(description, &limits, access.asks_tokens())?.into();
     let routes = routes
         .route("/", routing::get(pages::index))
         .route("/openapi.json", routing::get(move || pages::openapi(description.clone())))

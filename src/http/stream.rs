@@ -7,7 +7,7 @@
 use super::accept::preferred;
 use super::extract::{JobId, last_event_id};
 use super::problem::{Kind, Problem};
-use super::view::Job;
+use super::view::{Job, ServerEvent};
 use super::view_study::StudyWithReport;
 use super::{Service, document};
 use crate::jobs::Caller;
@@ -50,7 +50,7 @@ const RETRY: Duration = Duration::from_secs(2);
         ("Last-Event-ID" = Option<u64>, Header, description = "Index of the last increment received.")
     ),
     responses((status = 200, description = "Increments in order of their index.", content(
-        (String = "text/event-stream"),
+        (ServerEvent = "text/event-stream"),
         (JudgedIncrement = "application/x-ndjson")
     )))
 )]

@@ -3,6 +3,7 @@
 use super::extract::{JobId, JsonText, Parameters, Taken, idempotency_key};
 use super::jobs::{SubmitParameters, accepted, page};
 use super::problem::Problem;
+use super::view::ServerEvent;
 use super::view_study::{Study, StudyList, StudyWithReport, address};
 use super::{Service, document, tag};
 use crate::jobs::Caller;
@@ -44,10 +45,11 @@ pub async fn submit(
     headers: HeaderMap,
     JsonText(request): JsonText,
 ) -> Result<Response, Problem> {
+    let key = idempotency_key(&headers)?;
     if parameters.validate {
         return Ok(Json(service.jobs.validate_study(request).await?).into_response());
     }
-    accepted::<Study>(service.jobs.submit_study(&caller, request, idempotency_key(&headers)?).await?, address)
+    accepted::<Study>(service.jobs.submit_study(&caller, request, key).await?, address)
 }
 
 #[derive(Debug, Deserialize, utoipa::IntoParams)]
@@ -123,7 +125,7 @@ pub async fn get(
         ("Last-Event-ID" = Option<u64>, Header, description = "Index of the last row received.")
     ),
     responses((status = 200, description = "Paths in order of their index.", content(
-        (String = "text/event-stream"),
+        (ServerEvent = "text/event-stream"),
         (Run = "application/x-ndjson")
     )))
 )]

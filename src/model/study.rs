@@ -26,21 +26,27 @@ pub struct StudyRequest {
 pub struct Study {
     /// Each once. Absent: `auto`, `mpec` and `regularised`, or those that have what is varied.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "server", schema(min_items = 1))]
     pub methods: Option<Vec<Method>>,
     /// Values of `arc_length.max`, falling, 1 to 20 of them; each is `arc_length.initial` too. The default:
     /// 0.2, 0.1, 0.05, 0.025.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "server", schema(min_items = 1, max_items = 20))]
     pub arc_lengths: Option<Vec<f64>>,
     /// Values of `regularised.tolerance`, falling, 1 to 20 of them.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "server", schema(min_items = 1, max_items = 20))]
     pub tolerances: Option<Vec<f64>>,
     /// Values of `regularised.normal_penalty` and `tangential_penalty` alike, rising, 1 to 20 of them.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "server", schema(min_items = 1, max_items = 20))]
     pub penalties: Option<Vec<f64>>,
     /// Times that each path is traced to be timed, after a first time that is not; 0 to 101.
+    #[cfg_attr(feature = "server", schema(maximum = 101))]
     pub repeats: u64,
     pub reference: ReferenceChoice,
     /// The self-converged reference has the shortest arc length over this; 2 to 16.
+    #[cfg_attr(feature = "server", schema(minimum = 2, maximum = 16))]
     pub refinement: u64,
 }
 

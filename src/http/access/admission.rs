@@ -32,13 +32,17 @@ pub async fn admit(State(access): State<Access>, mut request: Request, next: Nex
 
 /// What a request needs; `None` where anyone may.
 fn needed(method: &Method, path: &str) -> Option<Scope> {
-    let public = PUBLIC.contains(&path) || PUBLIC_FOLDERS.iter().any(|folder| path.starts_with(folder));
     let reads = matches!(*method, Method::GET | Method::HEAD);
-    match (reads, public) {
+    match (reads, is_public(path)) {
         (true, true) => None,
         (true, false) => Some(Scope::Read),
         (false, _) => Some(Scope::Submit),
     }
+}
+
+/// Whether anyone may look at it.
+pub fn is_public(path: &str) -> bool {
+    PUBLIC.contains(&path) || PUBLIC_FOLDERS.iter().any(|folder| path.starts_with(folder))
 }
 
 impl Access {

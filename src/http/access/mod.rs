@@ -65,6 +65,10 @@ impl Access {
         &self.0.origins
     }
 
+    pub(super) fn asks_tokens(&self) -> bool {
+        matches!(self.0.door, Door::Tokens(_))
+    }
+
     /// `None`: no tokens are asked for.
     fn tokens(&self) -> Option<Arc<Tokens>> {
         match &self.0.door {

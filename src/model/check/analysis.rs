@@ -85,7 +85,8 @@ pub(super) fn recorded(record: &Record, model: &Model, at: &Place, mistakes: &mu
     }
 }
 
-fn regularised(regularised: &Regularised, at: &Place, mistakes: &mut Mistakes) {
+/// Each value by itself, as all of them have to be.
+pub(super) fn regularised(regularised: &Regularised, at: &Place, mistakes: &mut Mistakes) {
     let &Regularised { normal_penalty, tangential_penalty, desired_iterations, tolerance, load_weight, load_sign: _ } =
         regularised;
     numbers::positive(normal_penalty, &at.member("normal_penalty"), mistakes);
@@ -102,17 +103,8 @@ fn regularised(regularised: &Regularised, at: &Place, mistakes: &mut Mistakes) {
 }
 
 fn arc_length(arc_length: &ArcLength, at: &Place, mistakes: &mut Mistakes) {
-    let &ArcLength { initial, min, max, displacement_scale, load_scale, jump: _ } = arc_length;
-    let mut sane = true;
-    for (field, value) in [("initial", initial), ("min", min), ("max", max)] {
-        sane &= numbers::positive(value, &at.member(field), mistakes);
-    }
-    for (field, scale) in [("displacement_scale", displacement_scale), ("load_scale", load_scale)] {
-        if let Some(scale) = scale {
-            numbers::positive(scale, &at.member(field), mistakes);
-        }
-    }
-    if !sane {
+    let &ArcLength { initial, min, max, .. } = arc_length;
+    if !arc_lengths(arc_length, at, mistakes) {
         return;
     }
     if min > max {
@@ -122,4 +114,19 @@ fn arc_length(arc_length: &ArcLength, at: &Place, mistakes: &mut Mistakes) {
             format!("found {initial:?}; a number between `min`, {min:?}, and `max`, {max:?}, is expected")
         });
     }
+}
+
+/// Each value by itself, as all of them have to be; whether they are.
+pub(super) fn arc_lengths(arc_length: &ArcLength, at: &Place, mistakes: &mut Mistakes) -> bool {
+    let &ArcLength { initial, min, max, displacement_scale, load_scale, jump: _ } = arc_length;
+    let mut sane = true;
+    for (field, value) in [("initial", initial), ("min", min), ("max", max)] {
+        sane &= numbers::positive(value, &at.member(field), mistakes);
+    }
+    for (field, scale) in [("displacement_scale", displacement_scale), ("load_scale", load_scale)] {
+        if let Some(scale) = scale {
+            sane &= numbers::positive(scale, &at.member(field), mistakes);
+        }
+    }
+    sane
 }

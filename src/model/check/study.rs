@@ -30,6 +30,11 @@ pub fn study(request: &StudyRequest) -> Result<(), InputErrors> {
         mistakes.add(&at.member("refinement"), || format!("found {found}; 2 to {MAX_STUDY_REFINEMENT} is expected"));
     }
     let analysis = Place::ROOT.member("analysis");
+    // Also what gives way to the study's values has to be such.
+    super::analysis::arc_lengths(&request.analysis.arc_length, &analysis.member("arc_length"), &mut mistakes);
+    if let Some(regularised) = &request.analysis.regularised {
+        super::analysis::regularised(regularised, &analysis.member("regularised"), &mut mistakes);
+    }
     if request.analysis.explore.is_some() {
         mistakes.add(&analysis.member("explore"), || "a study follows no other directions; leave it out");
     }

@@ -1,12 +1,14 @@
-//! The OpenAPI description: collected from the calls, completed with what holds for all of them.
+//! The OpenAPI description: collected from the calls, completed with what holds for all of them; [`operations`] completes
+//! each.
 
+mod operations;
+
+use super::access::admission;
 use super::problem::{Document, Kind};
 use crate::jobs::Limits;
 use std::fmt::Write;
 use utoipa::OpenApi;
-use utoipa::openapi::path::{Operation, ParameterBuilder, ParameterIn, PathItem};
 use utoipa::openapi::security::{Http, HttpAuthScheme, SecurityRequirement, SecurityScheme};
-use utoipa::openapi::{ContentBuilder, Header, Object, Ref, RefOr, ResponseBuilder, Type};
 
 pub const JOBS: &str = "jobs";
 pub const INCREMENTS: &str = "increments";
@@ -38,16 +40,6 @@ unknown members and unknown query parameters are refused. Every error is `applic
 
 /// The name of the tokens' scheme.
 const TOKEN: &str = "token";
-/// Calls whose answers carry a tag where what they tell of is finished.
-const TAGGED: [&str; 7] = [
-    "get_job",
-    "list_increments",
-    "get_path_csv",
-    "get_study",
-    "get_study_table_csv",
-    "get_study_table_txt",
-    "get_study_picture",
-];
 
 #[derive(OpenApi)]
 #[openapi(
@@ -67,8 +59,12 @@ pub fn base() -> utoipa::openapi::OpenApi {
     Base::openapi()
 }
 
-/// The document as text, with the problems and the limits in it.
-pub fn finish(mut document: utoipa::openapi::OpenApi, limits: &Limits) -> serde_json::Result<String> {
+/// The document as text, with the problems and the limits in it; `asks_tokens`: the service takes nobody without one.
+pub fn finish(
+    mut document: utoipa::openapi::OpenApi,
+    limits: &Limits,
+    asks_tokens: bool,
+) -> serde_json::Result<String> {
     let mut description = DESCRIPTION.to_owned();
     for kind in Kind::ALL {
         let (name, status, title) = kind.parts();
@@ -77,44 +73,21 @@ pub fn finish(mut document: utoipa::openapi::OpenApi, limits: &Limits) -> serde_
     }
     let _ = write!(description, "\nThis service's limits, within those of the model's schema:\n\n{limits}");
     document.info.description = Some(description);
-    for operation in document.paths.paths.values_mut().flat_map(operations) {
-        let content = ContentBuilder::new().schema(Some(Ref::from_schema_name("Problem"))).build();
-        let problem =
-            ResponseBuilder::new().description("A problem.").content("application/problem+json", content).build();
-        operation.responses.responses.insert("default".to_owned(), RefOr::T(problem));
-        if operation.operation_id.as_deref().is_some_and(|id| TAGGED.contains(&id)) {
-            tagged(operation);
+    for (path, item) in &mut document.paths.paths {
+        for operation in [&mut item.get, &mut item.post, &mut item.delete].into_iter().flatten() {
+            operations::complete(operation)?;
+            if admission::is_public(path) {
+                operation.security = Some(Vec::new());
+            }
         }
     }
     let scheme = Http::builder().scheme(HttpAuthScheme::Bearer).description(Some("Of `arcslip token`.")).build();
     let components = document.components.get_or_insert_default();
     components.security_schemes.insert(TOKEN.to_owned(), SecurityScheme::Http(scheme).into());
-    // None, or a token: whoever runs the service says which.
-    document.security =
-        Some(vec![SecurityRequirement::default(), SecurityRequirement::new(TOKEN, Vec::<String>::new())]);
+    let token = SecurityRequirement::new(TOKEN, Vec::<String>::new());
+    // Where none is asked for, one does no harm.
+    document.security = Some(if asks_tokens { vec![token] } else { vec![SecurityRequirement::default(), token] });
     let mut text = serde_json::to_string_pretty(&document)?;
     text.push('\n');
     Ok(text)
-}
-
-/// What tags add to a call.
-fn tagged(operation: &mut Operation) {
-    let tag =
-        Header::builder().schema(Some(Object::with_type(Type::String))).description(Some("Of a finished one.")).build();
-    if let Some(RefOr::T(found)) = operation.responses.responses.get_mut("200") {
-        found.headers.insert("ETag".to_owned(), tag.into());
-    }
-    let known = ResponseBuilder::new().description("The client has it already.").build();
-    operation.responses.responses.insert("304".to_owned(), RefOr::T(known));
-    let asked = ParameterBuilder::new()
-        .name("If-None-Match")
-        .parameter_in(ParameterIn::Header)
-        .description(Some("Tags of what the client has."))
-        .schema(Some(Object::with_type(Type::String)))
-        .build();
-    operation.parameters.get_or_insert_default().push(asked.into());
-}
-
-fn operations(item: &mut PathItem) -> impl Iterator<Item = &mut Operation> {
-    [&mut item.get, &mut item.post, &mut item.delete].into_iter().flatten()
 }

@@ -1,0 +1,42 @@
+//! The types of a job request, as `POST /v1/jobs` and `arcslip solve` take them.
+//!
+//! Quantities are in any consistent set of units; the solver makes them dimensionless. Names are the user's, order is
+//! kept as written: it fixes the numbering of unknowns and with it every bit of the result.
+//!
+//! [`structure`] is what is modelled, [`analysis`] how it is traced, [`record`] what is kept of it. Bounds that a schema can
+//! express stand with the fields, for the interface's description; [`check`](super::check) holds to them and to the others.
+
+mod analysis;
+mod record;
+mod structure;
+
+use serde::{Deserialize, Serialize};
+
+pub use analysis::{Analysis, ArcLength, Events, Explore, LoadSign, Method, Regularised, Selection};
+pub use record::{ContactRange, Record, RecordedContact, RecordedContacts};
+pub use structure::{Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Strain, Until};
+
+/// A model and how to trace it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct JobRequest {
+    pub model: Model,
+    #[serde(default)]
+    pub analysis: Analysis,
+}
+
+/// A direction of another job, to be followed by a new one with the same model and analysis; it explores nothing.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct FollowRequest {
+    /// Index of a stored increment that has `directions`.
+    pub increment: u64,
+    /// Place in its `directions`, from 0.
+    pub direction: u64,
+    /// Counted over the new job; absent: the other job's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "server", schema(minimum = 1, maximum = 10_000_000))]
+    pub max_increments: Option<u64>,
+}

@@ -1,0 +1,69 @@
+//! What is kept of the increments.
+
+use serde::{Deserialize, Serialize};
+
+/// What is kept of the increments: printed, streamed and stored. Every increment is traced and judged in full before
+/// anything of it is left out, and the report is that of all of them.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct Record {
+    /// Nodes whose displacements are kept; absent: all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nodes: Option<Vec<String>>,
+    /// Contacts whose rows are kept, in the increments and in their directions, in the order of the model; absent: all,
+    /// but in models of more than 100 contacts those within reach.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contacts: Option<RecordedContacts>,
+    /// Of the regular increments, those whose index is a multiple of this are kept; 1 or more. Kept in any case: starts
+    /// and ends of the path and of its stages, contact changes, limit and bifurcation points at which something happens,
+    /// increments at which another direction first appears, and those off the measure.
+    #[cfg_attr(feature = "server", schema(minimum = 1))]
+    pub every: u64,
+    /// Whether directions are listed. Without them none can be followed.
+    pub directions: bool,
+}
+
+/// Which contacts have rows: `all`, those `in_reach` of the path, or the ones that are named.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(untagged)]
+pub enum RecordedContacts {
+    Range(ContactRange),
+    Named(Vec<RecordedContact>),
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum ContactRange {
+    /// Every contact of the model.
+    All,
+    /// Those that take part in the equations. Before the path comes near a contact it has no row; from then on it has one.
+    InReach,
+}
+
+/// A contact, by the names in the model; contacts listed twice there are meant together.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct RecordedContact {
+    pub node: String,
+    pub obstacle: String,
+}
+
+impl Record {
+    /// The contacts that are named, where some are.
+    pub fn named_contacts(&self) -> Option<&[RecordedContact]> {
+        match &self.contacts {
+            Some(RecordedContacts::Named(named)) => Some(named),
+            None | Some(RecordedContacts::Range(_)) => None,
+        }
+    }
+}
+
+impl Default for Record {
+    fn default() -> Self {
+        Self { nodes: None, contacts: None, every: 1, directions: true }
+    }
+}
