@@ -35,6 +35,7 @@ use axum::middleware::{from_fn, from_fn_with_state};
 use axum::{Router, routing};
 use std::sync::Arc;
 use std::time::Duration;
+use tokio::sync::Semaphore;
 use tokio_util::sync::CancellationToken;
 use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::timeout::RequestBodyTimeoutLayer;
@@ -51,6 +52,8 @@ pub struct Service {
     pub jobs: Jobs,
     pub attendance: Attendance,
     pub access: Access,
+    /// Streams that read the store at a time.
+    pub stream_turns: Arc<Semaphore>,
     /// Cancelled when the service goes down; open streams end then.
     pub shutdown: CancellationToken,
 }

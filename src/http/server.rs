@@ -5,6 +5,7 @@
 
 use super::access::Access;
 use super::listen::listen;
+use super::stream::READING_AT_ONCE;
 use super::{Service, router};
 use crate::jobs::{Crew, Jobs, Settings, Solver};
 use crate::store::Store;
@@ -12,6 +13,7 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::net::TcpListener;
+use tokio::sync::Semaphore;
 use tokio::task::JoinHandle;
 use tokio::time::timeout;
 use tokio_util::sync::CancellationToken;
@@ -62,7 +64,13 @@ impl Server {
         let shutdown = CancellationToken::new();
         let jobs = Jobs::new(store, solver, settings);
         let crew = Crew::start(&jobs, &shutdown);
-        let service = Service { jobs: jobs.clone(), attendance: crew.attendance(), access, shutdown: shutdown.clone() };
+        let service = Service {
+            jobs: jobs.clone(),
+            attendance: crew.attendance(),
+            access,
+            stream_turns: Arc::new(Semaphore::new(READING_AT_ONCE)),
+            shutdown: shutdown.clone(),
+        };
         let listening = tokio::spawn(listen(listener, router(service)?, connections, shutdown.clone()));
         Ok(Self { address, jobs, crew, listening, shutdown })
     }

@@ -18,11 +18,11 @@ use axum::Extension;
 use axum::body::Body;
 use axum::extract::State;
 use axum::http::{HeaderMap, header};
-use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
-use std::convert::Infallible;
 use std::io;
+use std::pin::pin;
 use std::time::Duration;
+use tokio::time::timeout;
 use tokio_stream::{Stream, StreamExt};
 use uuid::Uuid;
 
@@ -32,6 +32,8 @@ const PAGE: Page = Page { rows: 200, bytes: 1 << 20 };
 /// Jobs solved by another process give no signal here; their streams look so often.
 const LOOK_AGAIN: Duration = Duration::from_secs(1);
 const KEEP_ALIVE: Duration = Duration::from_secs(15);
+/// Streams read the store so many at a time, however many are open: half of its readers are left for the other calls.
+pub const READING_AT_ONCE: usize = 2;
 /// When a client should come back after the service went down.
 const RETRY: Duration = Duration::from_secs(2);
 
@@ -75,9 +77,10 @@ pub(super) async fn answer(
     let after = last_event_id(event_name(task), headers)?;
     service.jobs.find(caller, task, id).await?;
     Ok(match format {
-        Format::Events => Sse::new(events(service, task, id, after))
-            .keep_alive(KeepAlive::new().interval(KEEP_ALIVE).text("waiting"))
-            .into_response(),
+        Format::Events => {
+            let as_they_come = [(header::CONTENT_TYPE, EVENT_STREAM), (header::CACHE_CONTROL, "no-cache")];
+            (as_they_come, Body::from_stream(events(service, task, id, after))).into_response()
+        }
         Format::Lines => {
             ([(header::CONTENT_TYPE, NDJSON)], Body::from_stream(lines(service, task, id, after))).into_response()
         }
@@ -101,7 +104,8 @@ impl Format {
 
 /// What happens on a stream, in order; the last four end it.
 enum Happening {
-    Line(Line),
+    /// Lines that were read together.
+    Lines(Vec<Line>),
     Ended(Box<JobRecord>),
     Deleted,
     ShuttingDown,
@@ -113,69 +117,101 @@ fn follow(service: Service, id: Uuid, mut after: Option<u64>) -> impl Stream<Ite
         let store = service.jobs.store();
         let mut changes = store.job_changes(id);
         loop {
-            changes.borrow_and_update();
+            changes.mark_unchanged();
             // The job before its increments: once it has ended, all of them are there to be read.
-            let job = match store.job(id).await {
-                Ok(Some(job)) => job,
+            let standing = match in_turn(&service, store.standing(id)).await {
+                Ok(Some(standing)) => standing,
                 Ok(None) => { yield Happening::Deleted; return; }
                 Err(error) => { yield Happening::Failed(error); return; }
             };
-            loop {
-                let page = match store.increments(id, after, PAGE).await {
+            while after < standing.last_index && !service.shutdown.is_cancelled() {
+                let page = match in_turn(&service, store.increments(id, after, PAGE)).await {
                     Ok(page) => page,
                     Err(error) => { yield Happening::Failed(error); return; }
                 };
+                // Deleted meanwhile.
                 let Some(last) = page.last() else { break };
                 after = Some(last.index);
-                for line in page {
-                    yield Happening::Line(line);
-                }
-                if service.shutdown.is_cancelled() {
-                    break;
-                }
+                yield Happening::Lines(page);
             }
             if service.shutdown.is_cancelled() {
                 yield Happening::ShuttingDown;
                 return;
             }
-            if job.status.is_ended() {
-                yield Happening::Ended(Box::new(job));
+            if standing.status.is_ended() {
+                yield match store.job(id).await {
+                    Ok(Some(job)) => Happening::Ended(Box::new(job)),
+                    Ok(None) => Happening::Deleted,
+                    Err(error) => Happening::Failed(error),
+                };
                 return;
             }
-            tokio::select! {
-                () = service.shutdown.cancelled() => {}
-                _ = changes.changed() => {}
-                () = tokio::time::sleep(LOOK_AGAIN) => {}
+            // What a signal brings goes out as it is; what it does not bring is read.
+            loop {
+                tokio::select! {
+                    () = service.shutdown.cancelled() => break,
+                    () = tokio::time::sleep(LOOK_AGAIN) => break,
+                    _ = changes.changed() => {}
+                }
+                let Some(latest) = changes.borrow_and_update().latest.clone() else { break };
+                let Some(lines) = latest.beyond(after) else { break };
+                let Some(last) = lines.last() else { continue };
+                after = Some(last.index);
+                yield Happening::Lines(lines.to_vec());
             }
         }
     }
 }
 
-fn events(service: Service, task: Task, id: Uuid, after: Option<u64>) -> impl Stream<Item = Result<Event, Infallible>> {
+async fn in_turn<T>(service: &Service, reading: impl Future<Output = T>) -> T {
+    // Nobody closes it.
+    let _turn = service.stream_turns.acquire().await;
+    reading.await
+}
+
+fn events(service: Service, task: Task, id: Uuid, after: Option<u64>) -> impl Stream<Item = io::Result<String>> {
     // The request's span ends with its answer's head; what a stream has to say later still belongs to it.
     let span = tracing::Span::current();
-    follow(service, id, after).map(move |happening| {
-        let _entered = span.enter();
-        let retry = || Event::default().retry(RETRY);
-        Ok(match happening {
-            Happening::Line(line) => {
-                Event::default().event(event_name(task)).id(line.index.to_string()).data(line.body)
-            }
-            Happening::Ended(job) => match end(task, *job) {
-                Ok(job) => Event::default().event("end").data(job),
-                Err(error) => {
-                    tracing::error!(%error, job = %id, "the end cannot be written");
-                    retry().comment("the job cannot be read")
+    stream! {
+        let mut happenings = pin!(follow(service, id, after));
+        loop {
+            let happening = match timeout(KEEP_ALIVE, happenings.next()).await {
+                Ok(Some(happening)) => happening,
+                Ok(None) => return,
+                Err(_) => { yield Ok(": waiting\n\n".to_owned()); continue; }
+            };
+            yield Ok(span.in_scope(|| match happening {
+                // In one piece: each is sent for itself.
+                Happening::Lines(lines) => {
+                    let name = event_name(task);
+                    let event = |line: &Line| format!("event: {name}\nid: {}\ndata: {}\n\n", line.index, line.body);
+                    lines.iter().map(event).collect()
                 }
-            },
-            Happening::Deleted => Event::default().event("deleted").data(format!("{{\"id\":\"{id}\"}}")),
-            Happening::ShuttingDown => retry().comment("the service is going down; come back"),
-            Happening::Failed(error) => {
-                tracing::error!(%error, job = %id, "a stream broke off");
-                retry().comment("the store is not available; come back")
-            }
-        })
-    })
+                Happening::Ended(job) => last_event(task, *job),
+                Happening::Deleted => format!("event: deleted\ndata: {{\"id\":\"{id}\"}}\n\n"),
+                Happening::ShuttingDown => come_back("the service is going down; come back"),
+                Happening::Failed(error) => {
+                    tracing::error!(%error, job = %id, "a stream broke off");
+                    come_back("the store is not available; come back")
+                }
+            }));
+        }
+    }
+}
+
+fn last_event(task: Task, job: JobRecord) -> String {
+    let id = job.id;
+    match end(task, job) {
+        Ok(job) => format!("event: end\ndata: {job}\n\n"),
+        Err(error) => {
+            tracing::error!(%error, job = %id, "the end cannot be written");
+            come_back("the job cannot be read")
+        }
+    }
+}
+
+fn come_back(why: &str) -> String {
+    format!("retry: {}\n: {why}\n\n", RETRY.as_millis())
 }
 
 fn event_name(task: Task) -> &'static str {
@@ -210,7 +246,8 @@ fn lines(service: Service, task: Task, id: Uuid, after: Option<u64>) -> impl Str
     follow(service, id, after).filter_map(move |happening| {
         let _entered = span.enter();
         match happening {
-            Happening::Line(line) => Some(Ok(line.body + "\n")),
+            // In one piece: each is sent for itself.
+            Happening::Lines(lines) => Some(Ok(lines.into_iter().map(|line| line.body + "\n").collect())),
             Happening::Ended(job) => closing_line(task, *job),
             Happening::Deleted => broken("the job was deleted"),
             Happening::ShuttingDown => broken("the service is going down"),

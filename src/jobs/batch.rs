@@ -13,6 +13,8 @@ use tokio_util::sync::CancellationToken;
 const TRIES: u32 = 5;
 /// While a batch is gathered its lines are looked for so often: to be woken by every one of them costs more than they do.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(2);
+/// The first lines of a job are taken as they come: most jobs are small, and wait for nothing then.
+const TAKEN_AT_ONCE: u64 = 64;
 const FIRST_PAUSE: Duration = Duration::from_millis(50);
 
 /// Why no more increments are stored.
@@ -126,7 +128,12 @@ async fn gather(lines: &mut mpsc::Receiver<Line>, batch: &mut Vec<Line>, setting
     }
     let deadline = Instant::now() + settings.flush_interval;
     while batch.len() < settings.flush_rows {
-        sleep_until(deadline.min(Instant::now() + BETWEEN_LOOKS)).await;
+        if lines.is_closed() && lines.is_empty() {
+            return Received::Last;
+        }
+        if batch.last().is_none_or(|line| line.index >= TAKEN_AT_ONCE) {
+            sleep_until(deadline.min(Instant::now() + BETWEEN_LOOKS)).await;
+        }
         let room = settings.flush_rows - batch.len();
         match timeout_at(deadline, lines.recv_many(batch, room)).await {
             Ok(0) => return Received::Last,

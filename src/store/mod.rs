@@ -19,8 +19,10 @@ use uuid::Uuid;
 pub use error::StoreError;
 pub use record::{
     Branch, Checkpoint, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Membership, NewFollower,
-    NewJob, Origin, Page, Parent, Status, Submitted, Task,
+    NewJob, Origin, Page, Parent, Standing, Status, Submitted, Task,
 };
+
+pub use signals::Change;
 
 pub type Result<T> = std::result::Result<T, StoreError>;
 
@@ -35,6 +37,9 @@ pub trait Store: Send + Sync + 'static {
     async fn follow(&self, job: NewFollower) -> Result<Option<Submitted>>;
 
     async fn job(&self, id: Uuid) -> Result<Option<JobRecord>>;
+
+    /// How far a job has come; less to read than [`job`](Self::job).
+    async fn standing(&self, id: Uuid) -> Result<Option<Standing>>;
 
     /// A job's request, as posted.
     async fn request(&self, id: Uuid) -> Result<Option<String>>;
@@ -98,7 +103,7 @@ pub trait Store: Send + Sync + 'static {
     async fn probe(&self) -> Result<()>;
 
     /// Changes whenever something of this job was stored here. Subscribe first, then read: no change is missed.
-    fn job_changes(&self, id: Uuid) -> watch::Receiver<u64>;
+    fn job_changes(&self, id: Uuid) -> watch::Receiver<Change>;
 
     /// Changes whenever a job was put into the queue here.
     fn queue_changes(&self) -> watch::Receiver<u64>;

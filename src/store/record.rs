@@ -212,6 +212,13 @@ pub struct JobRecord {
     pub membership: Option<Membership>,
 }
 
+/// How far a job has come. What has ended has all its increments.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Standing {
+    pub status: Status,
+    pub last_index: Option<u64>,
+}
+
 /// Which jobs to list.
 #[derive(Debug, Clone)]
 pub struct ListFilter {
@@ -245,6 +252,11 @@ pub struct Line {
 }
 
 impl Line {
+    /// Without what is stored beside it.
+    pub fn alone(&self) -> Self {
+        Self { index: self.index, body: self.body.clone(), branch: None, checkpoint: None }
+    }
+
     /// Bytes for which there is a limit; a checkpoint is replaced and dropped, and does not count.
     pub fn bytes(&self) -> u64 {
         let branch =
@@ -256,7 +268,7 @@ impl Line {
 /// The right to write to a job: valid while the job still names this worker and this attempt, and until the time that it
 /// was given or last prolonged for has passed. After that nothing can be written with it, whether or not the job has been
 /// given to another meanwhile.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Lease {
     pub job: Uuid,
     pub worker: String,

@@ -1,17 +1,56 @@
-//! Wakes readers as soon as something was stored in this process.
+//! Wakes readers as soon as something was stored in this process, and hands them what it was.
 //!
-//! A signal only says "look again"; what is true is in the store. Changes made by other processes give no signal, so
-//! whoever waits also looks from time to time.
+//! A signal says "look again"; what is true is in the store. Lines that were stored last come along, so that many readers of
+//! one job do not all read the same rows. Changes made by other processes give no signal, so whoever waits also looks from
+//! time to time.
 
+use super::{Lease, Line};
 use std::collections::HashMap;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::sync::watch;
 use uuid::Uuid;
 
 #[derive(Debug)]
 pub struct Signals {
-    jobs: Mutex<HashMap<Uuid, watch::Sender<u64>>>,
+    jobs: Mutex<HashMap<Uuid, Heard>>,
     queue: watch::Sender<u64>,
+}
+
+/// Something of a job has changed.
+#[derive(Debug, Clone, Default)]
+pub struct Change {
+    /// What was stored, where it is no more than lines.
+    pub latest: Option<Arc<Latest>>,
+}
+
+/// The lines of one write.
+#[derive(Debug)]
+pub struct Latest {
+    /// The last line before them; none where they are the first of the job.
+    after: Option<u64>,
+    lines: Vec<Line>,
+}
+
+/// A job that somebody listens to.
+#[derive(Debug, Default)]
+struct Heard {
+    changes: watch::Sender<Change>,
+    holder: Option<Holder>,
+}
+
+/// Who writes a job's lines, in this process, one write after the other.
+#[derive(Debug)]
+struct Holder {
+    lease: Lease,
+    last_index: Option<u64>,
+}
+
+impl Latest {
+    /// The lines past that one, if they are all there are; they may be none.
+    pub fn beyond(&self, index: Option<u64>) -> Option<&[Line]> {
+        let known = self.lines.partition_point(|line| index.is_some_and(|index| line.index <= index));
+        (index >= self.after).then(|| &self.lines[known..])
+    }
 }
 
 impl Default for Signals {
@@ -21,11 +60,11 @@ impl Default for Signals {
 }
 
 impl Signals {
-    pub fn job_changes(&self, id: Uuid) -> watch::Receiver<u64> {
+    pub fn job_changes(&self, id: Uuid) -> watch::Receiver<Change> {
         let mut jobs = self.jobs();
         // A job nobody listens to any more is forgotten here, so that the map stays as small as the open streams.
-        jobs.retain(|_, sender| sender.receiver_count() > 0);
-        jobs.entry(id).or_insert_with(|| watch::Sender::new(0)).subscribe()
+        jobs.retain(|_, heard| heard.changes.receiver_count() > 0);
+        jobs.entry(id).or_default().changes.subscribe()
     }
 
     pub fn queue_changes(&self) -> watch::Receiver<u64> {
@@ -33,17 +72,96 @@ impl Signals {
     }
 
     pub fn job_changed(&self, id: Uuid) {
-        if let Some(sender) = self.jobs().get(&id) {
-            sender.send_modify(|count| *count += 1);
+        if let Some(heard) = self.jobs().get(&id) {
+            heard.changes.send_replace(Change::default());
         }
+    }
+
+    /// A job was taken from the queue, with lines up to that one.
+    pub fn job_claimed(&self, lease: &Lease, last_index: Option<u64>) {
+        if let Some(heard) = self.jobs().get_mut(&lease.job) {
+            heard.holder = Some(Holder { lease: lease.clone(), last_index });
+            heard.changes.send_replace(Change::default());
+        }
+    }
+
+    /// Lines were stored.
+    pub fn job_appended(&self, lease: &Lease, lines: &[Line]) {
+        let mut jobs = self.jobs();
+        let (Some(heard), Some(last)) = (jobs.get_mut(&lease.job), lines.last()) else { return };
+        // Between two writes of one lease nobody else writes; between those of two others may have.
+        let after = heard.holder.take().filter(|holder| holder.lease == *lease).map(|holder| holder.last_index);
+        heard.holder = Some(Holder { lease: lease.clone(), last_index: Some(last.index) });
+        let latest = after.map(|after| Arc::new(Latest { after, lines: lines.iter().map(Line::alone).collect() }));
+        heard.changes.send_replace(Change { latest });
     }
 
     pub fn queue_changed(&self) {
         self.queue.send_modify(|count| *count += 1);
     }
 
-    fn jobs(&self) -> MutexGuard<'_, HashMap<Uuid, watch::Sender<u64>>> {
+    fn jobs(&self) -> MutexGuard<'_, HashMap<Uuid, Heard>> {
         // The map is whole at every point where its holder could panic.
         self.jobs.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lease(attempt: u32) -> Lease {
+        Lease { job: Uuid::nil(), worker: "worker".to_owned(), attempt }
+    }
+
+    fn lines(indices: &[u64]) -> Vec<Line> {
+        indices
+            .iter()
+            .map(|index| Line { index: *index, body: "{}".to_owned(), branch: None, checkpoint: None })
+            .collect()
+    }
+
+    fn beyond(changes: &mut watch::Receiver<Change>, index: Option<u64>) -> Option<Vec<u64>> {
+        let change = changes.borrow_and_update().clone();
+        let lines = change.latest.as_ref()?.beyond(index)?;
+        Some(lines.iter().map(|line| line.index).collect())
+    }
+
+    #[test]
+    fn lines_come_along_where_none_can_be_missing() {
+        let signals = Signals::default();
+        let mut changes = signals.job_changes(Uuid::nil());
+        signals.job_claimed(&lease(1), None);
+        assert_eq!(beyond(&mut changes, None), None, "a claim brings no lines");
+        signals.job_appended(&lease(1), &lines(&[0, 5]));
+        assert_eq!(beyond(&mut changes, None), Some(vec![0, 5]));
+        assert_eq!(beyond(&mut changes, Some(0)), Some(vec![5]));
+        assert_eq!(beyond(&mut changes, Some(7)), Some(vec![]));
+        signals.job_appended(&lease(1), &lines(&[10]));
+        assert_eq!(beyond(&mut changes, Some(5)), Some(vec![10]));
+        assert_eq!(beyond(&mut changes, Some(0)), None, "5 is missing");
+        signals.job_changed(Uuid::nil());
+        assert_eq!(beyond(&mut changes, Some(5)), None);
+    }
+
+    #[test]
+    fn another_lease_begins_anew() {
+        let signals = Signals::default();
+        let mut changes = signals.job_changes(Uuid::nil());
+        // Claimed before anybody listened: what came before these is not known.
+        signals.job_appended(&lease(1), &lines(&[3]));
+        assert_eq!(beyond(&mut changes, Some(2)), None);
+        signals.job_appended(&lease(1), &lines(&[4]));
+        assert_eq!(beyond(&mut changes, Some(3)), Some(vec![4]));
+        // Another process may have written 5 to 8.
+        signals.job_appended(&lease(3), &lines(&[9]));
+        assert_eq!(beyond(&mut changes, Some(4)), None);
+        signals.job_claimed(&lease(4), Some(9));
+        signals.job_appended(&lease(4), &lines(&[10]));
+        assert_eq!(beyond(&mut changes, Some(9)), Some(vec![10]));
+        // A write of before that is told late.
+        signals.job_appended(&lease(3), &lines(&[9]));
+        signals.job_appended(&lease(4), &lines(&[11]));
+        assert_eq!(beyond(&mut changes, Some(10)), None);
     }
 }

@@ -1,8 +1,8 @@
 //! A store whose writes can be made to fail; everything else is the real one.
 
 use arcslip::store::{
-    Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, Origin, Page, Result,
-    Store, StoreError, Submitted,
+    Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, Origin, Page,
+    Result, Standing, Store, StoreError, Submitted,
 };
 use async_trait::async_trait;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -74,6 +74,10 @@ impl Store for FaultyStore {
         self.inner.job(id).await
     }
 
+    async fn standing(&self, id: Uuid) -> Result<Option<Standing>> {
+        self.inner.standing(id).await
+    }
+
     async fn jobs(&self, filter: ListFilter) -> Result<Vec<JobRecord>> {
         self.inner.jobs(filter).await
     }
@@ -143,7 +147,7 @@ impl Store for FaultyStore {
         self.inner.probe().await
     }
 
-    fn job_changes(&self, id: Uuid) -> watch::Receiver<u64> {
+    fn job_changes(&self, id: Uuid) -> watch::Receiver<Change> {
         self.inner.job_changes(id)
     }
 

@@ -6,11 +6,15 @@ pub mod bad_documents;
 #[cfg(feature = "server")]
 pub mod faulty_store;
 pub mod generators;
+#[cfg(feature = "server")]
+pub mod load;
 pub mod long_paths;
 pub mod paths;
 #[cfg(feature = "server")]
 pub mod process;
 pub mod random;
+#[cfg(feature = "server")]
+pub mod reader;
 #[cfg(feature = "server")]
 pub mod server;
 #[cfg(feature = "server")]

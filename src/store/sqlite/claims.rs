@@ -37,7 +37,7 @@ pub(super) async fn claim(store: &SqliteStore, worker: &str, lease: Duration) ->
     let row = sqlx::query(
         "UPDATE jobs SET status = 'running', worker = ?1, lease_until = ?2, attempt = attempt + 1, \
          started_at = coalesce(started_at, ?3), updated_at = ?3 \
-         WHERE id = (SELECT id FROM jobs WHERE status = 'queued' AND (losses = 0 OR NOT EXISTS \
+         WHERE id = (SELECT id FROM jobs INDEXED BY jobs_waiting WHERE status = 'queued' AND (losses = 0 OR NOT EXISTS \
          (SELECT 1 FROM jobs AS suspect WHERE suspect.status = 'running' AND suspect.losses > 0)) \
          ORDER BY priority DESC, id LIMIT 1) \
          RETURNING id, task, attempt, request, max_increments, last_index, parent, parent_increment, parent_direction, family, \
@@ -54,23 +54,29 @@ pub(super) async fn claim(store: &SqliteStore, worker: &str, lease: Duration) ->
         Some(parent) => Some((parent, followers::origin(store, job).await?)),
         None => None,
     };
+    // What is stored beside increments is there only where they are.
+    let (last, last_branch, checkpoint) = match row.try_get::<Option<i64>, _>("last_index")? {
+        Some(index) => (
+            Some(increments::stored(store, job, unsigned(index)?).await?),
+            increments::last_branch(store, job).await?,
+            increments::checkpoint(store, job).await?,
+        ),
+        None => (None, None, None),
+    };
     let claim = Claim {
         lease: Lease { job, worker: worker.to_owned(), attempt: row.try_get("attempt")? },
         task: rows::task(&row)?,
         request: row.try_get("request")?,
         max_increments: unsigned(row.try_get("max_increments")?)?,
-        last: match row.try_get::<Option<i64>, _>("last_index")? {
-            Some(index) => Some(increments::stored(store, job, unsigned(index)?).await?),
-            None => None,
-        },
-        last_branch: increments::last_branch(store, job).await?,
-        checkpoint: increments::checkpoint(store, job).await?,
+        last,
+        last_branch,
+        checkpoint,
         origin,
         explores: row.try_get::<Option<Uuid>, _>("family")?.is_some(),
         ran: Duration::from_millis(unsigned(row.try_get("ran_ms")?)?),
         stored_bytes: unsigned(row.try_get("stored_bytes")?)?,
     };
-    store.signals.job_changed(job);
+    store.signals.job_claimed(&claim.lease, claim.last.as_ref().map(|line| line.index));
     Ok(Some(claim))
 }
 

@@ -63,7 +63,7 @@ pub(super) async fn append(
     }
     put_checkpoint(&mut transaction, lease.job, lines).await?;
     transaction.commit().await?;
-    store.signals.job_changed(lease.job);
+    store.signals.job_appended(lease, lines);
     Ok(answer)
 }
 

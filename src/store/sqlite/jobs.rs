@@ -2,23 +2,23 @@
 
 use super::rows::{self, job_columns, signed};
 use super::{SqliteStore, now};
-use crate::store::{JobRecord, Keep, ListFilter, NewJob, Result, Submitted};
+use crate::store::{JobRecord, Keep, ListFilter, NewJob, Result, Standing, Submitted};
 use sqlx::{QueryBuilder, Row, Sqlite, Transaction};
 use uuid::Uuid;
 
 /// Ended jobs that are dropped in one go.
 const DROPPED_AT_ONCE: u32 = 10;
 
-/// How many jobs wait, up to so many; of a statement whose `?1` says how many.
+/// How many jobs wait.
 macro_rules! waiting {
     () => {
-        "(SELECT count(*) FROM (SELECT 1 FROM jobs WHERE status = 'queued' LIMIT ?1))"
+        "(SELECT jobs FROM tallies WHERE status = 'queued')"
     };
 }
 pub(super) use waiting;
 
-pub(super) async fn submit(store: &SqliteStore, job: NewJob) -> Result<Submitted> {
-    let mut transaction = store.writer.begin().await?;
+/// Queues a job as a part of a transaction, unless its key is known or there are enough that wait.
+pub(super) async fn insert(transaction: &mut Transaction<'_, Sqlite>, job: &NewJob) -> Result<Submitted> {
     let id = Uuid::now_v7();
     let key = owned_key(job.owner.as_deref(), job.idempotency_key.as_deref());
     let inserted = sqlx::query(concat!(
@@ -41,7 +41,7 @@ pub(super) async fn submit(store: &SqliteStore, job: NewJob) -> Result<Submitted
     .bind(job.explore.map(|_| id))
     .bind(job.task.name())
     .bind(&job.owner)
-    .execute(&mut *transaction)
+    .execute(&mut **transaction)
     .await?;
     if inserted.rows_affected() > 0 {
         if let Some(explore) = job.explore {
@@ -49,19 +49,15 @@ pub(super) async fn submit(store: &SqliteStore, job: NewJob) -> Result<Submitted
                 .bind(id)
                 .bind(signed(explore.depth))
                 .bind(signed(explore.max_jobs))
-                .execute(&mut *transaction)
+                .execute(&mut **transaction)
                 .await?;
         }
-        let record = record(&mut transaction, id).await?;
-        transaction.commit().await?;
-        store.signals.queue_changed();
-        return Ok(Submitted::Created(record));
+        return Ok(Submitted::Created(record(transaction, id).await?));
     }
     let row = sqlx::query(concat!("SELECT request, ", job_columns!(), " FROM jobs WHERE idempotency_key = ?"))
         .bind(&key)
-        .fetch_optional(&mut *transaction)
+        .fetch_optional(&mut **transaction)
         .await?;
-    transaction.rollback().await?;
     let Some(row) = row else { return Ok(Submitted::QueueFull { most: job.most_queued }) };
     let record = rows::job(&row)?;
     // A job that follows another has that one's request, and is another job.
@@ -90,6 +86,13 @@ pub(super) async fn get(store: &SqliteStore, id: Uuid) -> Result<Option<JobRecor
         .fetch_optional(&store.readers)
         .await?;
     row.as_ref().map(rows::job).transpose()
+}
+
+pub(super) async fn standing(store: &SqliteStore, id: Uuid) -> Result<Option<Standing>> {
+    let row =
+        sqlx::query("SELECT status, last_index FROM jobs WHERE id = ?").bind(id).fetch_optional(&store.readers).await?;
+    let standing = |row: &_| Ok(Standing { status: rows::status(row)?, last_index: rows::last_index(row)? });
+    row.as_ref().map(standing).transpose()
 }
 
 pub(super) async fn list(store: &SqliteStore, filter: ListFilter) -> Result<Vec<JobRecord>> {

@@ -10,16 +10,18 @@ mod families;
 mod followers;
 mod health;
 mod increments;
+mod intake;
 mod jobs;
 mod rows;
 
 use super::signals::Signals;
 use super::{
-    Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, Origin, Page, Result,
-    Store, StoreError, Submitted,
+    Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, Origin, Page,
+    Result, Standing, Store, StoreError, Submitted,
 };
 use async_trait::async_trait;
 use health::Health;
+use intake::Intake;
 use jiff::Timestamp;
 use sqlx::Connection;
 use sqlx::sqlite::{
@@ -42,6 +44,7 @@ pub struct SqliteStore {
     writer: SqlitePool,
     readers: SqlitePool,
     signals: Signals,
+    intake: Intake,
     health: Health,
 }
 
@@ -53,6 +56,8 @@ impl SqliteStore {
             .acquire_timeout(ACQUIRE_TIMEOUT)
             .idle_timeout(None)
             .max_lifetime(None)
+            // A ping before every use finds nothing in a file, and costs as much as a statement.
+            .test_before_acquire(false)
             // Where SQLite itself has rolled back, as it does on a full disk, the connection still counts a transaction, and the
             // next one would only be a part of it: told as stored, and lost. Such a connection is closed.
             .after_release(|connection, _| {
@@ -77,11 +82,12 @@ impl SqliteStore {
         let readers = SqlitePoolOptions::new()
             .max_connections(READERS)
             .acquire_timeout(ACQUIRE_TIMEOUT)
+            .test_before_acquire(false)
             .connect_with(options.read_only(true))
             .await
             .map_err(|error| StoreError::Open(Box::new(error)))?;
         let health = Health::of(&writer).await?;
-        Ok(Self { writer, readers, signals: Signals::default(), health })
+        Ok(Self { writer, readers, signals: Signals::default(), intake: Intake::default(), health })
     }
 }
 
@@ -120,7 +126,7 @@ impl From<sqlx::Error> for StoreError {
 impl Store for SqliteStore {
     async fn submit(&self, job: NewJob) -> Result<Submitted> {
         self.health.allow()?;
-        self.health.note(jobs::submit(self, job).await)
+        self.health.note(intake::submit(self, job).await)
     }
 
     async fn follow(&self, job: NewFollower) -> Result<Option<Submitted>> {
@@ -130,6 +136,10 @@ impl Store for SqliteStore {
 
     async fn job(&self, id: Uuid) -> Result<Option<JobRecord>> {
         self.health.note(jobs::get(self, id).await)
+    }
+
+    async fn standing(&self, id: Uuid) -> Result<Option<Standing>> {
+        self.health.note(jobs::standing(self, id).await)
     }
 
     async fn request(&self, id: Uuid) -> Result<Option<String>> {
@@ -209,7 +219,7 @@ impl Store for SqliteStore {
         Ok(())
     }
 
-    fn job_changes(&self, id: Uuid) -> watch::Receiver<u64> {
+    fn job_changes(&self, id: Uuid) -> watch::Receiver<Change> {
         self.signals.job_changes(id)
     }
 

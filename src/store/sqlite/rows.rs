@@ -22,20 +22,18 @@ macro_rules! job_columns {
 pub(super) use job_columns;
 
 pub(super) fn job(row: &SqliteRow) -> Result<JobRecord> {
-    let status: String = row.try_get("status")?;
-    let last_index: Option<i64> = row.try_get("last_index")?;
     Ok(JobRecord {
         id: row.try_get("id")?,
         task: task(row)?,
         owner: row.try_get("owner")?,
         name: row.try_get("name")?,
-        status: Status::from_name(&status).ok_or_else(|| damaged(format!("status {status:?}")))?,
+        status: status(row)?,
         plan: row.try_get("plan")?,
         report: row.try_get("report")?,
         stop_reason: row.try_get("stop_reason")?,
         error: row.try_get("error")?,
         max_increments: unsigned(row.try_get("max_increments")?)?,
-        last_index: last_index.map(unsigned).transpose()?,
+        last_index: last_index(row)?,
         attempt: row.try_get("attempt")?,
         max_attempts: row.try_get("max_attempts")?,
         losses: row.try_get("losses")?,
@@ -47,6 +45,17 @@ pub(super) fn job(row: &SqliteRow) -> Result<JobRecord> {
         children: unsigned(row.try_get("children")?)?,
         membership: membership(row)?,
     })
+}
+
+/// Of a row with the column `status`.
+pub(super) fn status(row: &SqliteRow) -> Result<Status> {
+    let name: String = row.try_get("status")?;
+    Status::from_name(&name).ok_or_else(|| damaged(format!("status {name:?}")))
+}
+
+/// Of a row with the column `last_index`.
+pub(super) fn last_index(row: &SqliteRow) -> Result<Option<u64>> {
+    row.try_get::<Option<i64>, _>("last_index")?.map(unsigned).transpose()
 }
 
 /// Of a row with the column `task`.
