@@ -87,3 +87,23 @@ fn the_python_client_says_where_a_request_is_wrong() {
     let said = String::from_utf8(output.stderr).expect("text");
     assert!(said.contains("/model/contacts/0/friction"), "{said}");
 }
+
+#[test]
+fn the_python_client_shows_its_token_where_one_is_asked_for() {
+    let Some(mut python) = python() else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let (tokens, file) = (folder.path().join("tokens"), folder.path().join("request.json"));
+    let made = Command::new(env!("CARGO_BIN_EXE_arcslip")).args(["token", "ann"]).output().expect("it runs");
+    std::fs::write(&tokens, &made.stdout).expect("written");
+    std::fs::write(&file, scene("klarbring").to_string()).expect("written");
+    let tokens = tokens.to_str().expect("a name");
+    let server = Process::serve(&folder.path().join("jobs.db"), &["--tokens-file", tokens]);
+    python.arg(CLIENT).arg(&server.url).arg(&file);
+    let refused = python.output().expect("it runs");
+    assert_eq!(refused.status.code(), Some(2), "{refused:?}");
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("Authorization: Bearer"), "{refused:?}");
+    let token = String::from_utf8(made.stderr).expect("text");
+    let taken = python.env("ARCSLIP_TOKEN", token.trim()).output().expect("it runs");
+    assert_eq!(taken.status.code(), Some(0), "{taken:?}");
+    assert!(String::from_utf8_lossy(&taken.stdout).trim_end().ends_with("completed stages_completed"), "{taken:?}");
+}

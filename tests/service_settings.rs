@@ -141,10 +141,6 @@ async fn a_token_made_on_the_command_line_opens_the_door_until_it_is_struck_out(
         ask.send().await.expect("an answer").status()
     };
     assert_eq!((asked(&token).await, asked(&other).await), (StatusCode::OK, StatusCode::UNAUTHORIZED));
-    let hang_up = || {
-        let id = process.id().to_string();
-        assert!(Command::new("kill").args(["-HUP", &id]).status().expect("kill runs").success());
-    };
     let until = async |token: &str, status: StatusCode| {
         let began = Instant::now();
         while asked(token).await != status {
@@ -153,12 +149,12 @@ async fn a_token_made_on_the_command_line_opens_the_door_until_it_is_struck_out(
         }
     };
     std::fs::write(&tokens, &bob).expect("written");
-    hang_up();
+    process.hang_up();
     until(&other, StatusCode::OK).await;
     assert_eq!(asked(&token).await, StatusCode::UNAUTHORIZED);
     // A file that is none changes nothing.
     std::fs::write(&tokens, "bob").expect("written");
-    hang_up();
+    process.hang_up();
     let began = Instant::now();
     while !std::fs::read_to_string(folder.path().join("log")).expect("a log").contains("the tokens stay as they were") {
         assert!(began.elapsed() < Duration::from_secs(20));

@@ -2,6 +2,8 @@
 
     python3 tests/clients/arcslip.py http://127.0.0.1:8080 model.json
 
+Where the service asks for a token, it is taken from the environment: ARCSLIP_TOKEN.
+
 One line an increment: its index, the load factor, and what happened there. Exit status 0 where the path was completed or
 stopped, 1 where the job failed or was cancelled, 2 where the request was refused.
 
@@ -11,6 +13,7 @@ the service is full or away; and reading on after the last increment received wh
 
 import http.client
 import json
+import os
 import sys
 import time
 import urllib.error
@@ -95,7 +98,7 @@ class Arcslip:
 def main(url, file):
     with open(file, "rb") as model:
         request = model.read()
-    arcslip = Arcslip(url)
+    arcslip = Arcslip(url, os.environ.get("ARCSLIP_TOKEN"))
     try:
         job = arcslip.submit(request)
     except Refused as refused:

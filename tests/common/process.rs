@@ -66,6 +66,24 @@ impl Process {
         self.signal(Signal::CONT);
     }
 
+    /// SIGHUP: it reads again what it reads at its start.
+    pub fn hang_up(&self) {
+        self.signal(Signal::HUP);
+    }
+
+    /// SIGTERM: it puts everything in order and ends; answers its exit status and how long that took.
+    pub async fn terminated(mut self) -> (Option<i32>, Duration) {
+        let began = Instant::now();
+        self.signal(Signal::TERM);
+        loop {
+            if let Some(status) = self.child.try_wait().expect("its state") {
+                return (status.code(), began.elapsed());
+            }
+            assert!(began.elapsed() < PATIENCE, "it still runs");
+            tokio::time::sleep(Duration::from_millis(5)).await;
+        }
+    }
+
     fn signal(&self, signal: Signal) {
         let id = i32::try_from(self.id()).ok().and_then(Pid::from_raw).expect("a process");
         kill_process(id, signal).expect("signalled");
