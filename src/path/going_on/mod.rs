@@ -14,7 +14,12 @@
 //! sign of the load's power has one ray (see `sole::proof`); or the slips are few, and their matrix is formed (see
 //! `rates::parametric`).
 //!
+//! [`many`] are the sparse matrices, [`response`] condenses the dense ones.
+//!
 //! `None` is returned where anything is not so, or by less than a wide margin: then `directions` looks everywhere.
+
+mod many;
+mod response;
 
 use super::decide::{Choice, Rules, mark_retrace, potential_rate, sign_of};
 use super::directions::is_mechanism;
@@ -24,9 +29,8 @@ use super::standing::Standing;
 use super::state::{Rate, State};
 use crate::contact::vector::{Vector, add, dot};
 use crate::contact::{Mode, Reaction};
-use crate::linear_algebra::sparse::{Bordered, Holdings, SparseFactorisation};
-use crate::linear_algebra::{Factorisation, Sink};
 use nalgebra::{DMatrix, DVector};
+use response::Response;
 
 /// What is not zero by this much (rates of unit arc length; forces against the largest of them) leaves no doubt.
 const MARGIN: f64 = 1e-7;
@@ -271,100 +275,6 @@ impl<'a> Reduced<'a> {
         (0..self.is_slip.len()).filter(|unknown| self.is_slip[*unknown] == slips).collect()
     }
 
-    /// The same with sparse matrices: where the whole is definite, or is so across the load (see `sole`).
-    fn stuck_among_many(&self, incoming: &Rate) -> Option<Rate> {
-        let structure = self.loading.structure;
-        let layout = structure.layout()?;
-        let pattern = &layout.pattern;
-        let size = pattern.size();
-        let place_of: Vec<usize> =
-            self.freedom_of.iter().map(|freedom| structure.unknown_of[*freedom]).collect::<Option<_>>()?;
-        // The equations of the other unknowns alone.
-        let mut held = Bordered::new(pattern.clone(), 0);
-        let (mut symmetric, mut load) = (Bordered::new(pattern.clone(), 1), DVector::zeros(size));
-        let mut is_outside = false;
-        self.each_entry(&mut |row, column, value| match column {
-            Some(column) => {
-                let (own, transposed) = (place_of[row], place_of[column]);
-                match (pattern.place(own, transposed), pattern.place(transposed, own)) {
-                    (Some(place), Some(mirror)) => {
-                        symmetric.add_at(place, 0.5 * value);
-                        symmetric.add_at(mirror, 0.5 * value);
-                        if !self.is_slip[row] && !self.is_slip[column] {
-                            held.add_at(place, value);
-                        }
-                    }
-                    _ => is_outside = true,
-                }
-            }
-            None => load[place_of[row]] -= value,
-        });
-        let (mut is_used, mut is_slip) = (vec![false; size], vec![false; size]);
-        for (place, slips) in place_of.iter().zip(&self.is_slip) {
-            (is_used[*place], is_slip[*place]) = (true, *slips);
-        }
-        for unknown in 0..size {
-            let place = pattern.place(unknown, unknown)?;
-            if !is_used[unknown] {
-                symmetric.add_at(place, 1.0);
-            }
-            if !is_used[unknown] || is_slip[unknown] {
-                held.add_at(place, 1.0);
-            }
-        }
-        if is_outside {
-            return None;
-        }
-        let inertia = symmetric.inertia(DEFINITE)?;
-        let by_power = match (inertia.negative, inertia.zero) {
-            (0, 0) if incoming.load.abs() > RESTING => false,
-            (1, 0) => {
-                for (unknown, load) in load.iter().enumerate() {
-                    symmetric.add(unknown, size, *load);
-                    symmetric.add(size, unknown, *load);
-                }
-                // One negative eigenvalue of the whole, not two.
-                let bordered = SparseFactorisation::new(symmetric, &Holdings::default())?;
-                if bordered.determinant_sign() > 0.0 || bordered.pivot_ratio() <= DEFINITE {
-                    return None;
-                }
-                true
-            }
-            _ => return None,
-        };
-        let others = self.unknowns(false);
-        let mut values = DVector::from_fn(size, |unknown, _| if is_slip[unknown] { 0.0 } else { load[unknown] });
-        if !others.is_empty() && !SparseFactorisation::new(held, &Holdings::default())?.solve(&mut values) {
-            return None;
-        }
-        let response = DVector::from_iterator(others.len(), others.iter().map(|other| values[place_of[*other]]));
-        if !by_power {
-            return self.stuck_rate(&others, &response, -incoming.load.signum());
-        }
-        // One direction for each sign of the power; the load alone changes where no other motion has any.
-        let power = |motion: &dyn Fn(usize) -> f64, slips: bool| -> f64 {
-            let unknowns = (0..self.is_slip.len()).filter(|unknown| slips || !self.is_slip[*unknown]);
-            unknowns.map(|unknown| load[place_of[unknown]] * motion(unknown)).sum()
-        };
-        let mut columns = vec![0.0; self.is_slip.len()];
-        for (freedom, velocity) in incoming.displacement.iter().enumerate() {
-            self.parts_of(freedom).iter().for_each(|part| columns[part.unknown] += part.motion * velocity);
-        }
-        let largest = load.amax();
-        let own = power(&|unknown| columns[unknown], true);
-        if own.abs() <= MARGIN * largest {
-            return None;
-        }
-        if others.iter().all(|other| load[place_of[*other]] == 0.0) {
-            return [1.0, -1.0].into_iter().find_map(|sign| self.stuck_rate(&others, &response, sign));
-        }
-        let of_stuck = power(&|unknown| values[place_of[unknown]], false);
-        if of_stuck.abs() <= MARGIN * largest * response.norm() {
-            return None;
-        }
-        self.stuck_rate(&others, &response, -own.signum() * of_stuck.signum())
-    }
-
     /// The rate at which nothing slips, of unit arc length; `None` where some contact would not stay within its cone by a
     /// wide margin.
     fn stuck_rate(&self, others: &[usize], response: &DVector<f64>, load: f64) -> Option<Rate> {
@@ -400,100 +310,5 @@ impl<'a> Reduced<'a> {
     }
 }
 
-/// How the other unknowns follow the load rate with all slips held.
-struct Response {
-    factorisation: Option<Factorisation>,
-    load: DVector<f64>,
-}
-
-impl Response {
-    fn new(matrix: &DMatrix<f64>, load: &DVector<f64>, others: &[usize]) -> Option<Self> {
-        if others.is_empty() {
-            return Some(Self { factorisation: None, load: DVector::zeros(0) });
-        }
-        let block = DMatrix::from_fn(others.len(), others.len(), |row, column| matrix[(others[row], others[column])]);
-        let factorisation = Factorisation::new(block)?;
-        let mut response = DVector::from_fn(others.len(), |row, _| -load[others[row]]);
-        factorisation.solve(&mut response).then_some(Self { factorisation: Some(factorisation), load: response })
-    }
-
-    /// `M` and `q` of the slips alone.
-    fn condensed(
-        &self,
-        matrix: &DMatrix<f64>,
-        load: &DVector<f64>,
-        others: &[usize],
-        slips: &[usize],
-    ) -> Option<(DMatrix<f64>, DVector<f64>)> {
-        let along = |row: usize, motion: &DVector<f64>| -> f64 {
-            others.iter().zip(motion.iter()).map(|(other, value)| matrix[(slips[row], *other)] * value).sum()
-        };
-        let mut own = DMatrix::from_fn(slips.len(), slips.len(), |row, column| matrix[(slips[row], slips[column])]);
-        let by_load = DVector::from_fn(slips.len(), |row, _| load[slips[row]] + along(row, &self.load));
-        if let Some(factorisation) = &self.factorisation {
-            for (index, slip) in slips.iter().enumerate() {
-                let mut motion = DVector::from_fn(others.len(), |row, _| -matrix[(others[row], *slip)]);
-                if !factorisation.solve(&mut motion) {
-                    return None;
-                }
-                (0..slips.len()).for_each(|row| own[(row, index)] += along(row, &motion));
-            }
-        }
-        Some((own, by_load))
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::cancel::CancelFlag;
-    use crate::path::decide::{self, Before};
-    use crate::path::incoming::Incoming;
-    use crate::path::{Path, Scene};
-    use crate::scenes;
-
-    /// At every point of the built-in scenes: what is found at once is what the search everywhere lists.
-    #[test]
-    fn what_is_found_at_once_is_what_is_found_everywhere() {
-        let mut found = 0;
-        for built_in in scenes::ALL {
-            let request = crate::model::decode::decode(built_in.request.as_bytes()).expect("a request");
-            let mut scene = Scene::new(&request).expect("a scene");
-            // Both dense matrices and sparse ones.
-            for sparse in [false, true] {
-                scene.structure.set_sparse(sparse);
-                let mut path = Path::new(&scene, CancelFlag::default());
-                while let Some(increment) = path.next() {
-                    let here = &path.at.here;
-                    let (Some(incoming), true) = (&here.rate, increment.index > 0) else { continue };
-                    let standings = path.standings(&here.state);
-                    let (loading, rules) = (path.loading(), path.rules());
-                    let Some(at_once) =
-                        directions_going_on(loading, &here.state, &standings, &here.modes, incoming, rules)
-                    else {
-                        continue;
-                    };
-                    let before = Before::Incoming(Incoming::along(incoming));
-                    let (everywhere, rest) = decide::list(loading, &here.state, &standings, before, rules);
-                    let place = format!("{} {}", built_in.name, increment.index);
-                    assert_eq!((rest.unexplored, rest.degenerate), (0, false), "{place}");
-                    assert_eq!(at_once.len(), everywhere.len(), "{place}");
-                    for (one, other) in at_once.iter().zip(&everywhere) {
-                        assert_eq!(one.modes, other.modes, "{place}");
-                        assert_eq!(one.load_sign, other.load_sign, "{place}");
-                        let mut difference = one.rate.clone();
-                        difference.add(&other.rate, -1.0);
-                        assert!(difference.size() < 1e-9, "{place}: {one:?} {other:?}");
-                        let forces = 1e-9 * (1.0 + one.rate.largest_reaction());
-                        assert!(difference.largest_reaction() < forces, "{place}: {difference:?}");
-                        assert_eq!((one.retrace, one.mechanism), (other.retrace, other.mechanism), "{place}");
-                        assert!((one.dissipation - other.dissipation).abs() < 1e-9, "{place}");
-                        assert!((one.potential_rate - other.potential_rate).abs() < 1e-9, "{place}");
-                    }
-                    found += 1;
-                }
-            }
-        }
-        assert!(found > 500, "{found}");
-    }
-}
+mod tests;
