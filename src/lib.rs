@@ -50,6 +50,8 @@ pub mod http;
 #[cfg(feature = "server")]
 pub mod jobs;
 #[cfg(feature = "server")]
+pub mod metrics;
+#[cfg(feature = "server")]
 pub mod picture;
 #[cfg(feature = "server")]
 pub mod store;
