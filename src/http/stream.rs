@@ -118,7 +118,7 @@ fn follow(service: Service, id: Uuid, mut after: Option<u64>) -> impl Stream<Ite
         let streams = &service.jobs.metrics().streams;
         let _open = streams.open();
         // When what has still to be read was stored, if that is known.
-        let mut stored = None;
+        let mut stored: Option<Instant> = None;
         let mut changes = store.job_changes(id);
         loop {
             changes.mark_unchanged();
@@ -136,7 +136,9 @@ fn follow(service: Service, id: Uuid, mut after: Option<u64>) -> impl Stream<Ite
                 // Deleted meanwhile.
                 let Some(last) = page.last() else { break };
                 after = Some(last.index);
-                stored.take().map(|at: Instant| at.elapsed()).into_iter().for_each(|lag| streams.sent_after(lag));
+                if let Some(at) = stored.take() {
+                    streams.sent_after(at.elapsed());
+                }
                 yield Happening::Lines(page);
             }
             if service.shutdown.is_cancelled() {
@@ -153,6 +155,7 @@ fn follow(service: Service, id: Uuid, mut after: Option<u64>) -> impl Stream<Ite
             }
             // What a signal brings goes out as it is; what it does not bring is read.
             loop {
+                stored = None;
                 tokio::select! {
                     () = service.shutdown.cancelled() => break,
                     () = tokio::time::sleep(LOOK_AGAIN) => break,
@@ -164,7 +167,9 @@ fn follow(service: Service, id: Uuid, mut after: Option<u64>) -> impl Stream<Ite
                 let Some(lines) = latest.beyond(after) else { break };
                 let Some(last) = lines.last() else { continue };
                 after = Some(last.index);
-                stored.take().map(|at| at.elapsed()).into_iter().for_each(|lag| streams.sent_after(lag));
+                if let Some(at) = stored.take() {
+                    streams.sent_after(at.elapsed());
+                }
                 yield Happening::Lines(lines.to_vec());
             }
         }

@@ -21,7 +21,9 @@ pub async fn work(jobs: Jobs, name: String, shutdown: CancellationToken) {
         queue.borrow_and_update();
         match jobs.metrics.work.timed(Write::Claim, jobs.store.claim(&name, jobs.settings.lease)).await {
             Ok(Some(claim)) => {
-                claim.waited.into_iter().for_each(|wait| jobs.metrics.work.started_after(wait));
+                if let Some(wait) = claim.waited {
+                    jobs.metrics.work.started_after(wait);
+                }
                 let span =
                     tracing::info_span!("job", job = %claim.lease.job, attempt = claim.lease.attempt, worker = name);
                 guarded(&jobs, claim, &shutdown).instrument(span).await;
