@@ -11,7 +11,7 @@
 //! model (JSON, checked) -> structure -> contact -> mpec -> path -> judged -> jobs -> store -> http
 //! ```
 //!
-//! `linear_algebra` stands below all of them, [`measure`] beside the solver that it judges ([`judged`] brings both
+//! `metrics` counts and times what `jobs` and `http` do, and knows neither. `linear_algebra` stands below all of them, [`measure`] beside the solver that it judges ([`judged`] brings both
 //! together), [`scenes`] holds the built-in models with their exact solutions, [`studies`] sets the errors of paths against
 //! their times. Everything up to [`judged`], and these, builds without the `server` feature and knows neither HTTP nor SQL.
 //!
@@ -49,6 +49,8 @@ pub mod command;
 pub mod http;
 #[cfg(feature = "server")]
 pub mod jobs;
+#[cfg(feature = "server")]
+pub mod metrics;
 #[cfg(feature = "server")]
 pub mod picture;
 #[cfg(feature = "server")]

@@ -2,7 +2,7 @@
 //!
 //! [`listen`] takes connections, [`access`] says who may call, [`problem`] is the one edge where errors become answers, [`extract`] and [`accept`] read requests, [`view`] and
 //! [`view_study`] hold what is answered, [`tag`] spares it to those who have it; [`jobs`], [`follow`], [`increments`], [`stream`], [`csv`], [`studies`], [`scenes`],
-//! [`probes`] and [`pages`] are the calls,
+//! [`probes`], [`metrics`] and [`pages`] are the calls,
 //! [`document`] their OpenAPI description, [`request_id`] what names each request, [`server`] all of it, and going down in good order.
 //! Called by `command`; knows `jobs` and, for reading, `store`.
 
@@ -15,6 +15,7 @@ pub mod follow;
 pub mod increments;
 pub mod jobs;
 pub mod listen;
+pub mod metrics;
 pub mod pages;
 pub mod probes;
 pub mod problem;
@@ -78,6 +79,7 @@ fn api() -> OpenApiRouter<Service> {
         .routes(routes!(scenes::get))
         .routes(routes!(probes::alive))
         .routes(routes!(probes::ready))
+        .routes(routes!(metrics::metrics))
 }
 
 /// The OpenAPI document as it is committed, and served where the limits are the defaults.
@@ -89,7 +91,7 @@ pub fn openapi_json() -> serde_json::Result<String> {
 pub fn router(service: Service) -> serde_json::Result<Router> {
     let (routes, description) = api().split_for_parts();
     let limits = service.jobs.settings.limits;
-    let access = service.access.clone();
+    let (access, jobs) = (service.access.clone(), service.jobs.clone());
     let description: Arc<str> = document::finish(description, &limits, access.asks_tokens())?.into();
     let routes = routes
         .route("/", routing::get(pages::index))
@@ -106,5 +108,8 @@ pub fn router(service: Service) -> serde_json::Result<Router> {
         Some(layer) => routes.layer(layer),
         None => routes,
     };
-    Ok(routes.layer(from_fn(headers::secure)).layer(from_fn(request_id::name_request)))
+    Ok(routes
+        .layer(from_fn_with_state(jobs, metrics::observe))
+        .layer(from_fn(headers::secure))
+        .layer(from_fn(request_id::name_request)))
 }

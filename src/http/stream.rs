@@ -21,7 +21,7 @@ use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
 use std::io;
 use std::pin::pin;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tokio::time::timeout;
 use tokio_stream::{Stream, StreamExt};
 use uuid::Uuid;
@@ -115,6 +115,10 @@ enum Happening {
 fn follow(service: Service, id: Uuid, mut after: Option<u64>) -> impl Stream<Item = Happening> {
     stream! {
         let store = service.jobs.store();
+        let streams = &service.jobs.metrics().streams;
+        let _open = streams.open();
+        // When what has still to be read was stored, if that is known.
+        let mut stored: Option<Instant> = None;
         let mut changes = store.job_changes(id);
         loop {
             changes.mark_unchanged();
@@ -132,6 +136,9 @@ fn follow(service: Service, id: Uuid, mut after: Option<u64>) -> impl Stream<Ite
                 // Deleted meanwhile.
                 let Some(last) = page.last() else { break };
                 after = Some(last.index);
+                if let Some(at) = stored.take() {
+                    streams.sent_after(at.elapsed());
+                }
                 yield Happening::Lines(page);
             }
             if service.shutdown.is_cancelled() {
@@ -148,15 +155,21 @@ fn follow(service: Service, id: Uuid, mut after: Option<u64>) -> impl Stream<Ite
             }
             // What a signal brings goes out as it is; what it does not bring is read.
             loop {
+                stored = None;
                 tokio::select! {
                     () = service.shutdown.cancelled() => break,
                     () = tokio::time::sleep(LOOK_AGAIN) => break,
                     _ = changes.changed() => {}
                 }
-                let Some(latest) = changes.borrow_and_update().latest.clone() else { break };
+                let change = changes.borrow_and_update().clone();
+                stored = change.at;
+                let Some(latest) = change.latest else { break };
                 let Some(lines) = latest.beyond(after) else { break };
                 let Some(last) = lines.last() else { continue };
                 after = Some(last.index);
+                if let Some(at) = stored.take() {
+                    streams.sent_after(at.elapsed());
+                }
                 yield Happening::Lines(lines.to_vec());
             }
         }

@@ -1,9 +1,10 @@
 //! Increments on their way to the store: gathered for a moment, then appended in one transaction.
 
-use super::Settings;
 use super::limits::Reached;
+use super::{Jobs, Settings};
 use crate::cancel::CancelFlag;
-use crate::store::{Claim, Lease, LeaseAnswer, Line, Store, StoreError};
+use crate::metrics::Write;
+use crate::store::{Claim, Lease, LeaseAnswer, Line, StoreError};
 use std::time::Duration;
 use tokio::sync::mpsc;
 use tokio::time::{Instant, MissedTickBehavior, interval_at, sleep_until, timeout_at};
@@ -65,13 +66,13 @@ impl Allowance {
 
 /// Stores increments until the solver ends or one of the reasons above stops it; the lease is prolonged on the way.
 pub async fn drain(
-    store: &dyn Store,
-    settings: &Settings,
+    jobs: &Jobs,
     claim: &Claim,
     lines: &mut mpsc::Receiver<Line>,
     cancel: &CancelFlag,
     shutdown: &CancellationToken,
 ) -> Drained {
+    let settings = &jobs.settings;
     let (lease, mut allowance) = (&claim.lease, Allowance::of(settings, claim));
     let heartbeat = settings.lease / 3;
     let mut beats = interval_at(Instant::now() + heartbeat, heartbeat.max(Duration::from_millis(1)));
@@ -96,7 +97,7 @@ pub async fn drain(
         if allowance.take(&mut batch) {
             reached = Some(Reached::Storage);
         }
-        match append(store, settings, lease, &batch).await {
+        match append(jobs, lease, &batch).await {
             Ok(LeaseAnswer::Held { cancel_requested }) => {
                 if cancel_requested {
                     cancel.cancel();
@@ -144,13 +145,14 @@ async fn gather(lines: &mut mpsc::Receiver<Line>, batch: &mut Vec<Line>, setting
     Received::Some
 }
 
-async fn append(
-    store: &dyn Store,
-    settings: &Settings,
-    lease: &Lease,
-    batch: &[Line],
-) -> Result<LeaseAnswer, StoreError> {
-    retry(|| store.append(lease, batch, settings.lease)).await
+async fn append(jobs: &Jobs, lease: &Lease, batch: &[Line]) -> Result<LeaseAnswer, StoreError> {
+    let write = if batch.is_empty() { Write::Renew } else { Write::Append };
+    let append = || jobs.metrics.work.timed(write, jobs.store.append(lease, batch, jobs.settings.lease));
+    let answer = retry(append).await?;
+    if let LeaseAnswer::Held { .. } = answer {
+        jobs.metrics.work.stored(batch.len());
+    }
+    Ok(answer)
 }
 
 /// Repeats a write that failed for a passing reason.

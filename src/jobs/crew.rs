@@ -30,8 +30,12 @@ impl Attendance {
         self.alive.load(Ordering::Relaxed)
     }
 
+    pub fn expected(&self) -> usize {
+        self.expected
+    }
+
     pub fn is_complete(&self) -> bool {
-        self.alive() >= self.expected
+        self.alive() >= self.expected()
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::submission::wrong_input;
 use super::{Caller, Jobs, JobsError, branches, queued};
+use crate::metrics::Write;
 use crate::model::{InputError, InputErrors, decode};
 use crate::path::Increment;
 use crate::store::{JobRecord, NewFollower, Page, Parent, Task};
@@ -50,7 +51,7 @@ impl Jobs {
         // Nothing to be found here any more: the parent was deleted just now.
         let owner = caller.owner().map(str::to_owned);
         let follower = NewFollower { parent, owner, max_increments, idempotency_key, most_queued: limits.queued };
-        let submitted = self.store.follow(follower).await?;
+        let submitted = self.metrics.work.timed(Write::Submit, self.store.follow(follower)).await?;
         queued(submitted.ok_or(JobsError::NoJob(id))?)
     }
 

@@ -1,15 +1,18 @@
 //! What a path gives, made ready for the store: increments that are not stored yet, with what is stored beside them.
 
+use super::Jobs;
 use super::branches::Branches;
 use super::checkpoints::{Checkpoints, Clock, PutDown};
 use super::solve::SolveEnd;
 use super::solver::Place;
 use crate::judged::{JudgedIncrement, JudgedReport};
+use crate::metrics::{Solved, Work};
 use crate::output::json_line;
+use crate::path::increment::Diagnostics;
 use crate::path::{Increment, StopReason};
 use crate::store::{Claim, Line};
 use std::ops::ControlFlow;
-use std::time::Duration;
+use std::time::Instant;
 use tokio::sync::mpsc;
 
 /// An increment that is stored and one that is computed once more are the same where they differ by no more than this,
@@ -20,6 +23,11 @@ const SAME: f64 = 1e-6;
 pub struct Given<'a> {
     claim: &'a Claim,
     lines: &'a mpsc::Sender<Line>,
+    work: &'a Work,
+    /// When the solver was given back the path.
+    since: Instant,
+    /// The path's totals that have been counted; none where they begin with those of another attempt or job.
+    counted: Option<Diagnostics>,
     branches: Branches,
     checkpoints: Checkpoints,
     clock: Clock,
@@ -32,7 +40,8 @@ pub struct Given<'a> {
 
 impl<'a> Given<'a> {
     /// From the start of the path.
-    pub fn new(claim: &'a Claim, put_down: Duration, lines: &'a mpsc::Sender<Line>) -> Self {
+    pub fn new(jobs: &'a Jobs, claim: &'a Claim, lines: &'a mpsc::Sender<Line>) -> Self {
+        let put_down = jobs.settings.flush_interval;
         // Nothing is compared with what another version wrote otherwise.
         let last = claim.last.as_ref().and_then(|line| serde_json::from_str::<JudgedIncrement>(&line.body).ok());
         let mut clock = Clock::default();
@@ -40,6 +49,9 @@ impl<'a> Given<'a> {
         Self {
             claim,
             lines,
+            work: &jobs.metrics.work,
+            since: Instant::now(),
+            counted: claim.origin.is_none().then(Diagnostics::default),
             branches: Branches::every(put_down, claim.last_branch.as_deref()),
             checkpoints: Checkpoints::every(put_down),
             clock,
@@ -52,13 +64,30 @@ impl<'a> Given<'a> {
     /// From a checkpoint.
     pub fn go_on_from(&mut self, from: &PutDown) {
         self.checkpoints.after(&from.at);
+        self.counted = None;
         self.clock = from.clock;
         self.clock.go_on_from(self.last.as_ref().map_or(0.0, elapsed_s));
         self.has_arrived = self.claim.last.as_ref().is_none_or(|last| last.index <= from.at.path.index());
     }
 
+    /// Counts what an increment took, and sends it on.
+    pub fn take(&mut self, judged: JudgedIncrement, place: &dyn Place) -> ControlFlow<()> {
+        let (time, totals) = (self.since.elapsed(), judged.increment.diagnostics);
+        let before = self.counted.replace(totals).unwrap_or(totals);
+        self.work.solved(Solved {
+            time,
+            factorisations: totals.factorisations.saturating_sub(before.factorisations),
+            newton_iterations: totals.newton_iterations.saturating_sub(before.newton_iterations),
+            qp_solves: totals.qp_solves.saturating_sub(before.qp_solves),
+            mpec_solves: totals.mpec_solves.saturating_sub(before.mpec_solves),
+        });
+        let flow = self.send(judged, place);
+        self.since = Instant::now();
+        flow
+    }
+
     /// Sends an increment that is not stored; breaks where no more are wanted.
-    pub fn take(&mut self, mut judged: JudgedIncrement, place: &dyn Place) -> ControlFlow<()> {
+    fn send(&mut self, mut judged: JudgedIncrement, place: &dyn Place) -> ControlFlow<()> {
         let index = judged.increment.index;
         judged.increment.diagnostics.elapsed_s = self.clock.tell(elapsed_s(&judged));
         let stored = self.claim.last.as_ref().is_some_and(|last| index <= last.index);

@@ -6,7 +6,8 @@
 //! [`limits`] what is taken and how much a job may use, [`retention`] what is kept of ended jobs;
 //! [`trail`] how the states that it has passed are stored once; [`crew`] all workers of a process, [`demonstration`] the built-in scenes as jobs; [`follow`] jobs that follow a direction
 //! of another, [`branches`] the points they begin from, [`explore`] which of them are queued unasked; [`studies`] are jobs of
-//! another task. Called by `http` and `command`; knows `store`, `judged`, `studies`, `path` and `model`.
+//! another task. Called by `http` and `command`; knows `store`, `judged`, `studies`, `path`, `model`
+//! and, for what is counted and timed, `metrics`.
 
 pub mod batch;
 pub mod branches;
@@ -29,6 +30,7 @@ pub mod submission;
 pub mod trail;
 pub mod worker;
 
+use crate::metrics::{Metrics, Write};
 use crate::model::InputErrors;
 use crate::path::Plan;
 use crate::store::{JobRecord, NewJob, Store, StoreError, Submitted, Task};
@@ -74,15 +76,20 @@ pub struct Jobs {
     pub(crate) solver: Arc<dyn Solver>,
     pub(crate) settings: Settings,
     pub(crate) running: Running,
+    pub(crate) metrics: Arc<Metrics>,
 }
 
 impl Jobs {
     pub fn new(store: Arc<dyn Store>, solver: Arc<dyn Solver>, settings: Settings) -> Self {
-        Self { store, solver, settings, running: Running::default() }
+        Self { store, solver, settings, running: Running::default(), metrics: Arc::default() }
     }
 
     pub fn store(&self) -> &dyn Store {
         self.store.as_ref()
+    }
+
+    pub fn metrics(&self) -> &Metrics {
+        &self.metrics
     }
 
     /// The plan of a request; nothing is queued.
@@ -110,7 +117,7 @@ impl Jobs {
             idempotency_key,
             explore: prepared.explore,
         };
-        queued(self.store.submit(job).await?)
+        queued(self.metrics.work.timed(Write::Submit, self.store.submit(job)).await?)
     }
 
     /// A job of that task that the caller sees.

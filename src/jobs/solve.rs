@@ -6,7 +6,7 @@
 use super::checkpoints::PutDown;
 use super::given::Given;
 use super::solver::ResumeError;
-use super::{Solver, branches};
+use super::{Jobs, Solver, branches};
 use crate::cancel::CancelFlag;
 use crate::judged::JudgedReport;
 use crate::model::{InputErrors, decode};
@@ -14,8 +14,6 @@ use crate::store::{Claim, Line, Task};
 use crate::studies::{self, Run};
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Arc;
-use std::time::Duration;
 use tokio::sync::{mpsc, oneshot};
 
 #[cfg(panic = "abort")]
@@ -30,6 +28,9 @@ const OF_MODEL: usize = 4;
 const FEWEST_IN_FLIGHT: usize = 8;
 /// Recursion over a model is shallow, but the main thread's stack is what the solver is tested with.
 const STACK_BYTES: usize = 8 << 20;
+/// Solvers take what time calls and writes leave: with more of them than processors, those would wait for each in turn.
+#[cfg(target_os = "linux")]
+const NICER: i32 = 5;
 
 /// How a solve ended.
 #[derive(Debug)]
@@ -59,24 +60,19 @@ pub struct Solve {
 
 /// Starts the thread. A path goes on from its checkpoint, or, where there is none that can be read, from its start;
 /// increments up to `claim.last` are stored already and not sent again. A study goes on from `stored`, the lines of its
-/// finished runs. Checkpoints are made no sooner than `put_down` after one another.
-pub fn start(
-    solver: Arc<dyn Solver>,
-    claim: &Claim,
-    stored: Vec<Line>,
-    put_down: Duration,
-    cancel: CancelFlag,
-) -> std::io::Result<Solve> {
+/// finished runs. Checkpoints are made no sooner than the flush interval after one another.
+pub fn start(jobs: &Jobs, claim: &Claim, stored: Vec<Line>, cancel: CancelFlag) -> std::io::Result<Solve> {
     let (line_sender, lines) = mpsc::channel(places(claim.request.len()));
     let (end_sender, end) = oneshot::channel();
-    let claim_of_thread = claim.clone();
+    let (jobs, claim_of_thread) = (jobs.clone(), claim.clone());
     let span = tracing::Span::current();
     std::thread::Builder::new().name(format!("solve-{}", claim.lease.job)).stack_size(STACK_BYTES).spawn(
         move || {
             let _entered = span.enter();
+            make_way();
             let ended = catch_unwind(AssertUnwindSafe(|| match claim_of_thread.task {
-                Task::Path => run(solver.as_ref(), &claim_of_thread, put_down, cancel, &line_sender),
-                Task::Study => study(solver.as_ref(), &claim_of_thread, &stored, &cancel, &line_sender),
+                Task::Path => run(&jobs, &claim_of_thread, cancel, &line_sender),
+                Task::Study => study(jobs.solver.as_ref(), &claim_of_thread, &stored, &cancel, &line_sender),
             }))
             .unwrap_or_else(|panic| SolveEnd::Panicked(panic_text(panic.as_ref())));
             // Nobody waits for the end when the runtime is going down.
@@ -86,17 +82,20 @@ pub fn start(
     Ok(Solve { lines, end })
 }
 
+/// Lowers the priority of this thread. Elsewhere than on Linux that would be the whole process'.
+fn make_way() {
+    #[cfg(target_os = "linux")]
+    if let Err(error) = rustix::process::nice(NICER) {
+        tracing::debug!(%error, "a solver's thread keeps its priority");
+    }
+}
+
 fn places(model_bytes: usize) -> usize {
     (IN_FLIGHT_BYTES / OF_MODEL / model_bytes.max(1)).clamp(FEWEST_IN_FLIGHT, IN_FLIGHT)
 }
 
-fn run(
-    solver: &dyn Solver,
-    claim: &Claim,
-    put_down: Duration,
-    cancel: CancelFlag,
-    lines: &mpsc::Sender<Line>,
-) -> SolveEnd {
+fn run(jobs: &Jobs, claim: &Claim, cancel: CancelFlag, lines: &mpsc::Sender<Line>) -> SolveEnd {
+    let solver = jobs.solver.as_ref();
     let mut request = match decode::decode(claim.request.as_bytes()) {
         Ok(request) => request,
         Err(errors) => return SolveEnd::Refused(errors),
@@ -106,7 +105,7 @@ fn run(
     let anew = |why: &dyn std::error::Error| tracing::warn!(%why, "the path is traced from its start once more");
     match claim.checkpoint.as_ref().map(PutDown::read) {
         Some(Ok(from)) => {
-            let mut given = Given::new(claim, put_down, lines);
+            let mut given = Given::new(jobs, claim, lines);
             given.go_on_from(&from);
             tracing::info!(increment = from.at.path.index(), "goes on from its checkpoint");
             match solver.resume(&request, from.at, cancel.clone(), &mut |judged, place| given.take(judged, place)) {
@@ -123,7 +122,7 @@ fn run(
         Ok(beginning) => beginning,
         Err(error) => return SolveEnd::Unreadable(error.to_string()),
     };
-    let mut given = Given::new(claim, put_down, lines);
+    let mut given = Given::new(jobs, claim, lines);
     match solver.solve(&request, beginning, cancel.clone(), &mut |judged, place| given.take(judged, place)) {
         Ok(report) => given.end(report),
         // On the way to the point where it begins.

@@ -2,6 +2,7 @@
 
 use super::submission::{not_text, wrong_input};
 use super::{Caller, Jobs, JobsError, Limits, Solver, queued};
+use crate::metrics::Write;
 use crate::model::decode;
 use crate::store::{JobRecord, Line, NewJob, Page, Task};
 use crate::store::{Result as StoreResult, StoreError};
@@ -44,7 +45,7 @@ impl Jobs {
             idempotency_key,
             explore: None,
         };
-        queued(self.store.submit(job).await?)
+        queued(self.metrics.work.timed(Write::Submit, self.store.submit(job)).await?)
     }
 
     async fn prepare_study(&self, request: Vec<u8>) -> Result<Prepared, JobsError> {

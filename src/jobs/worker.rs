@@ -5,8 +5,9 @@ use super::solve::{self, Solve, SolveEnd};
 use super::{Jobs, running};
 use crate::cancel::CancelFlag;
 use crate::judged::JudgedReport;
+use crate::metrics::Write;
 use crate::path::{Outcome, StopReason};
-use crate::store::{Claim, Ending, LeaseAnswer, Status, StoreError, Task};
+use crate::store::{Claim, Ending, Lease, LeaseAnswer, Status, StoreError, Task};
 use crate::studies;
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::AbortOnDropHandle;
@@ -18,8 +19,11 @@ pub async fn work(jobs: Jobs, name: String, shutdown: CancellationToken) {
     while !shutdown.is_cancelled() {
         // Marked as seen before looking, so that a job queued in between wakes us at once.
         queue.borrow_and_update();
-        match jobs.store.claim(&name, jobs.settings.lease).await {
+        match jobs.metrics.work.timed(Write::Claim, jobs.store.claim(&name, jobs.settings.lease)).await {
             Ok(Some(claim)) => {
+                if let Some(wait) = claim.waited {
+                    jobs.metrics.work.started_after(wait);
+                }
                 let span =
                     tracing::info_span!("job", job = %claim.lease.job, attempt = claim.lease.attempt, worker = name);
                 guarded(&jobs, claim, &shutdown).instrument(span).await;
@@ -46,7 +50,7 @@ async fn guarded(jobs: &Jobs, claim: Claim, shutdown: &CancellationToken) {
     };
     let Err(error) = AbortOnDropHandle::new(task).await else { return };
     let ending = Ending::failed(format!("the service has a defect: {error}"));
-    match batch::retry(|| jobs.store.finish(&lease, ending.clone())).await {
+    match finish(jobs, &lease, &ending).await {
         Ok(_) => tracing::error!(%error, "a worker panicked; the job failed"),
         Err(unstored) => tracing::error!(%error, %unstored, "a worker panicked, and the end was not stored"),
     }
@@ -85,15 +89,14 @@ async fn trace(jobs: &Jobs, claim: &Claim, shutdown: &CancellationToken) -> Resu
         Task::Path => Vec::new(),
         Task::Study => batch::retry(|| jobs.stored(lease.job)).await?,
     };
-    let mut solve = match solve::start(jobs.solver.clone(), claim, stored, jobs.settings.flush_interval, cancel.clone())
-    {
+    let mut solve = match solve::start(jobs, claim, stored, cancel.clone()) {
         Ok(solve) => solve,
         Err(error) => {
             return end(jobs, claim, Ending::failed(format!("no thread could be started: {error}")), shutdown).await;
         }
     };
     let store = jobs.store.as_ref();
-    match batch::drain(store, &jobs.settings, claim, &mut solve.lines, &cancel, shutdown).await {
+    match batch::drain(jobs, claim, &mut solve.lines, &cancel, shutdown).await {
         Drained::Complete => {
             let ending = ending(solve.end.await.unwrap_or(SolveEnd::Silent));
             end(jobs, claim, ending, shutdown).await
@@ -149,7 +152,7 @@ async fn stop(solve: Solve) {
 async fn end(jobs: &Jobs, claim: &Claim, ending: Ending, shutdown: &CancellationToken) -> Result<Finished, StoreError> {
     let status = ending.status;
     loop {
-        match batch::retry(|| jobs.store.finish(&claim.lease, ending.clone())).await {
+        match finish(jobs, &claim.lease, &ending).await {
             Ok(LeaseAnswer::Held { .. }) => return Ok(Finished::Ended(status)),
             Ok(LeaseAnswer::Lost) => return Ok(Finished::Lost),
             Err(error @ StoreError::Full(_)) => {
@@ -162,6 +165,10 @@ async fn end(jobs: &Jobs, claim: &Claim, ending: Ending, shutdown: &Cancellation
             Err(error) => return Err(error),
         }
     }
+}
+
+async fn finish(jobs: &Jobs, lease: &Lease, ending: &Ending) -> Result<LeaseAnswer, StoreError> {
+    batch::retry(|| jobs.metrics.work.timed(Write::Finish, jobs.store.finish(lease, ending.clone()))).await
 }
 
 fn ending(end: SolveEnd) -> Ending {

@@ -55,6 +55,9 @@ pub trait Store: Send + Sync + 'static {
     /// Jobs of one task, newest first.
     async fn jobs(&self, filter: ListFilter) -> Result<Vec<JobRecord>>;
 
+    /// How many jobs have each status; told without counting them.
+    async fn tally(&self) -> Result<Vec<(Status, u64)>>;
+
     /// Increments with an index above `after`, in order; at most `page.rows` of them and, past the first, at most about
     /// `page.bytes`. Empty exactly when there are no more.
     async fn increments(&self, id: Uuid, after: Option<u64>, page: Page) -> Result<Vec<Line>>;

@@ -292,6 +292,8 @@ pub struct Claim {
     pub origin: Option<(Parent, Origin)>,
     /// Its alternatives are to be followed by jobs of their own.
     pub explores: bool,
+    /// How long it waited in the queue, if this is its first start.
+    pub waited: Option<Duration>,
     /// How long its attempts before this one ran.
     pub ran: Duration,
     /// Bytes that they stored: see [`Line::bytes`].

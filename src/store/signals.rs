@@ -7,6 +7,7 @@
 use super::{Lease, Line};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 use tokio::sync::watch;
 use uuid::Uuid;
 
@@ -21,6 +22,8 @@ pub struct Signals {
 pub struct Change {
     /// What was stored, where it is no more than lines.
     pub latest: Option<Arc<Latest>>,
+    /// When lines were stored.
+    pub at: Option<Instant>,
 }
 
 /// The lines of one write.
@@ -93,7 +96,7 @@ impl Signals {
         let after = heard.holder.take().filter(|holder| holder.lease == *lease).map(|holder| holder.last_index);
         heard.holder = Some(Holder { lease: lease.clone(), last_index: Some(last.index) });
         let latest = after.map(|after| Arc::new(Latest { after, lines: lines.iter().map(Line::alone).collect() }));
-        heard.changes.send_replace(Change { latest });
+        heard.changes.send_replace(Change { latest, at: Some(Instant::now()) });
     }
 
     pub fn queue_changed(&self) {

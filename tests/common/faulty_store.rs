@@ -2,7 +2,7 @@
 
 use arcslip::store::{
     Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, Origin, Page,
-    Result, Standing, Store, StoreError, Submitted,
+    Result, Standing, Status, Store, StoreError, Submitted,
 };
 use async_trait::async_trait;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -19,7 +19,7 @@ pub struct FaultyStore {
     pub panicking_appends: AtomicU32,
     /// Appends and submissions fail as if the disk were full.
     pub full: AtomicBool,
-    /// Probes fail.
+    /// Probes and tallies fail.
     pub down: AtomicBool,
     /// Indices in the order in which they were stored.
     pub stored: Mutex<Vec<u64>>,
@@ -80,6 +80,13 @@ impl Store for FaultyStore {
 
     async fn jobs(&self, filter: ListFilter) -> Result<Vec<JobRecord>> {
         self.inner.jobs(filter).await
+    }
+
+    async fn tally(&self) -> Result<Vec<(Status, u64)>> {
+        if self.down.load(Ordering::Relaxed) {
+            return Err(StoreError::Unavailable("disk I/O error".into()));
+        }
+        self.inner.tally().await
     }
 
     async fn increments(&self, id: Uuid, after: Option<u64>, page: Page) -> Result<Vec<Line>> {

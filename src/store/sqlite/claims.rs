@@ -41,7 +41,7 @@ pub(super) async fn claim(store: &SqliteStore, worker: &str, lease: Duration) ->
          (SELECT 1 FROM jobs AS suspect WHERE suspect.status = 'running' AND suspect.losses > 0)) \
          ORDER BY priority DESC, id LIMIT 1) \
          RETURNING id, task, attempt, request, max_increments, last_index, parent, parent_increment, parent_direction, family, \
-         ran_ms, stored_bytes",
+         ran_ms, stored_bytes, started_at - created_at AS waited, started_at = ?3 AS is_first",
     )
     .bind(worker)
     .bind(after(lease))
@@ -73,11 +73,21 @@ pub(super) async fn claim(store: &SqliteStore, worker: &str, lease: Duration) ->
         checkpoint,
         origin,
         explores: row.try_get::<Option<Uuid>, _>("family")?.is_some(),
-        ran: Duration::from_millis(unsigned(row.try_get("ran_ms")?)?),
+        // A clock that was set back meanwhile makes no wait shorter than none.
+        waited: if row.try_get("is_first")? {
+            Some(milliseconds(row.try_get::<i64, _>("waited")?.max(0))?)
+        } else {
+            None
+        },
+        ran: milliseconds(row.try_get("ran_ms")?)?,
         stored_bytes: unsigned(row.try_get("stored_bytes")?)?,
     };
     store.signals.job_claimed(&claim.lease, claim.last.as_ref().map(|line| line.index));
     Ok(Some(claim))
+}
+
+fn milliseconds(count: i64) -> Result<Duration> {
+    Ok(Duration::from_millis(unsigned(count)?))
 }
 
 pub(super) async fn renew(store: &SqliteStore, lease: &Lease, duration: Duration) -> Result<LeaseAnswer> {

@@ -2,7 +2,7 @@
 
 use super::rows::{self, job_columns, signed};
 use super::{SqliteStore, now};
-use crate::store::{JobRecord, Keep, ListFilter, NewJob, Result, Standing, Submitted};
+use crate::store::{JobRecord, Keep, ListFilter, NewJob, Result, Standing, Status, Submitted};
 use sqlx::{QueryBuilder, Row, Sqlite, Transaction};
 use uuid::Uuid;
 
@@ -113,6 +113,11 @@ pub(super) async fn list(store: &SqliteStore, filter: ListFilter) -> Result<Vec<
     }
     query.push(" ORDER BY id DESC LIMIT ").push_bind(filter.limit);
     query.build().fetch_all(&store.readers).await?.iter().map(rows::job).collect()
+}
+
+pub(super) async fn tally(store: &SqliteStore) -> Result<Vec<(Status, u64)>> {
+    let rows = sqlx::query("SELECT status, jobs FROM tallies").fetch_all(&store.readers).await?;
+    rows.iter().map(|row| Ok((rows::status(row)?, rows::unsigned(row.try_get("jobs")?)?))).collect()
 }
 
 pub(super) async fn request_cancel(store: &SqliteStore, id: Uuid) -> Result<Option<JobRecord>> {

@@ -17,7 +17,7 @@ mod rows;
 use super::signals::Signals;
 use super::{
     Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, Origin, Page,
-    Result, Standing, Store, StoreError, Submitted,
+    Result, Standing, Status, Store, StoreError, Submitted,
 };
 use async_trait::async_trait;
 use health::Health;
@@ -157,6 +157,10 @@ impl Store for SqliteStore {
 
     async fn jobs(&self, filter: ListFilter) -> Result<Vec<JobRecord>> {
         self.health.note(jobs::list(self, filter).await)
+    }
+
+    async fn tally(&self) -> Result<Vec<(Status, u64)>> {
+        self.health.note(jobs::tally(self).await)
     }
 
     async fn increments(&self, id: Uuid, after: Option<u64>, page: Page) -> Result<Vec<Line>> {
