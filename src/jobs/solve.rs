@@ -28,9 +28,6 @@ const OF_MODEL: usize = 4;
 const FEWEST_IN_FLIGHT: usize = 8;
 /// Recursion over a model is shallow, but the main thread's stack is what the solver is tested with.
 const STACK_BYTES: usize = 8 << 20;
-/// Solvers take what time calls and writes leave: with more of them than processors, those would wait for each in turn.
-#[cfg(target_os = "linux")]
-const NICER: i32 = 5;
 
 /// How a solve ended.
 #[derive(Debug)]
@@ -69,7 +66,6 @@ pub fn start(jobs: &Jobs, claim: &Claim, stored: Vec<Line>, cancel: CancelFlag) 
     std::thread::Builder::new().name(format!("solve-{}", claim.lease.job)).stack_size(STACK_BYTES).spawn(
         move || {
             let _entered = span.enter();
-            make_way();
             let ended = catch_unwind(AssertUnwindSafe(|| match claim_of_thread.task {
                 Task::Path => run(&jobs, &claim_of_thread, cancel, &line_sender),
                 Task::Study => study(jobs.solver.as_ref(), &claim_of_thread, &stored, &cancel, &line_sender),
@@ -80,14 +76,6 @@ pub fn start(jobs: &Jobs, claim: &Claim, stored: Vec<Line>, cancel: CancelFlag) 
         },
     )?;
     Ok(Solve { lines, end })
-}
-
-/// Lowers the priority of this thread. Elsewhere than on Linux that would be the whole process'.
-fn make_way() {
-    #[cfg(target_os = "linux")]
-    if let Err(error) = rustix::process::nice(NICER) {
-        tracing::debug!(%error, "a solver's thread keeps its priority");
-    }
 }
 
 fn places(model_bytes: usize) -> usize {
