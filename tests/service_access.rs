@@ -8,7 +8,7 @@ use arcslip::http::access::rates::Rates;
 use arcslip::http::access::tokens::{self, Tokens};
 use arcslip::http::access::{Access, Door};
 use arcslip::store;
-use common::server::{TestServer, settings};
+use common::server::{EventStream, TestServer, settings};
 use common::service::request;
 use common::solver::MadeUp;
 use reqwest::{Method, Response};
@@ -183,6 +183,30 @@ async fn tokens_are_exchanged_while_the_service_runs() {
     problem(ask(&server, &before.ann, Method::GET, "/v1/jobs").await, 401, "unauthorized").await;
     // Jobs belong to the name, not to the token.
     assert_eq!(ask(&server, &after.ann, Method::GET, &format!("/v1/jobs/{id}")).await.status(), 200);
+}
+
+/// Also what has been open since before: it can be resumed by whoever shows a token that holds.
+#[tokio::test]
+async fn streams_of_tokens_that_hold_no_more_end() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let people = People::new();
+    let access = people.access();
+    let store = store::open(&folder.path().join("jobs.db")).await.expect("a store");
+    let solver = MadeUp::holding_at(3);
+    let server = TestServer::start_for(store, solver.clone(), settings(), access.clone()).await;
+    let id = id_of(submit(&server, &people.ann, "held", &request("held", 6)).await).await;
+    let place = format!("/v1/jobs/{id}/stream");
+    let mut stream = EventStream::of(ask(&server, &people.ann, Method::GET, &place).await);
+    for _ in 0..3 {
+        assert_eq!(stream.next().await.expect("an event").event, "increment");
+    }
+    access.exchange(people.tokens());
+    let rest = stream.rest().await;
+    assert!(rest.len() == 1 && rest[0].event.is_empty() && !rest[0].retry.is_empty(), "{rest:?}");
+    solver.let_go();
+    let resumed = server.ask(Method::GET, &place).bearer_auth(&people.ann).header("last-event-id", "2");
+    let events = EventStream::of(resumed.send().await.expect("an answer")).rest().await;
+    assert_eq!(events.iter().map(|event| event.id.as_str()).collect::<Vec<_>>(), ["3", "4", "5", ""]);
 }
 
 #[tokio::test]

@@ -5,8 +5,13 @@ mod common;
 
 use common::process::{Process, client, get, has_ended, lines, solved, submit, until};
 use common::service::{in_short_steps, indices, without_elapsed};
+use sqlx::SqlitePool;
+use sqlx::sqlite::SqliteConnectOptions;
+use std::fs::Permissions;
+use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::{Command, Output};
+use std::time::Duration;
 
 fn backup(database: &Path, copy: &Path) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_arcslip"));
@@ -64,4 +69,48 @@ fn a_copy_takes_nothing_s_place_and_is_of_something() {
     let copy = folder.path().join("other.db");
     let refused = backup(&nothing, &copy);
     assert_eq!(refused.status.code(), Some(1), "{refused:?}");
+    // An empty file is a database to SQLite, and none of jobs.
+    std::fs::write(&nothing, "").expect("written");
+    let refused = backup(&nothing, &copy);
+    assert_eq!(refused.status.code(), Some(1), "{refused:?}");
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("no jobs of this program"), "{refused:?}");
+    let mut left: Vec<_> =
+        std::fs::read_dir(folder.path()).expect("a folder").flatten().map(|file| file.file_name()).collect();
+    left.sort();
+    assert_eq!(left, ["copy.db", "nothing.db"], "nothing is left of what failed");
+}
+
+/// What is broken off has never the copy's name, stands in nobody's way, and is for the same readers as the original.
+#[tokio::test]
+async fn a_copy_that_is_broken_off_is_none() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (database, copy) = (folder.path().join("jobs.db"), folder.path().join("copy.db"));
+    let client = client();
+    let server = Process::serve(&database, &[]);
+    let id = submit(&client, &server.url, "/v1/jobs", &in_short_steps("one-bar-truss", 5000, 5000)).await;
+    until(&client, &server.url, &format!("/v1/jobs/{id}"), has_ended).await;
+    std::fs::set_permissions(&database, Permissions::from_mode(0o600)).expect("set");
+    for milliseconds in [1, 3, 6, 10, 15, 20, 30] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_arcslip"));
+        let mut child = command.arg("backup").arg("--database").arg(&database).arg(&copy).spawn().expect("it runs");
+        tokio::time::sleep(Duration::from_millis(milliseconds)).await;
+        child.kill().expect("killed");
+        child.wait().expect("its end");
+        if copy.exists() {
+            assert!(whole(&copy).await, "{milliseconds} ms");
+            std::fs::remove_file(&copy).expect("removed");
+        }
+    }
+    let made = backup(&database, &copy);
+    assert!(made.status.success(), "{made:?}");
+    assert!(whole(&copy).await);
+    assert_eq!(std::fs::metadata(&copy).expect("a file").permissions().mode() & 0o777, 0o600);
+    assert!(!folder.path().join("copy.db.partial").exists());
+}
+
+async fn whole(copy: &Path) -> bool {
+    let pool = SqlitePool::connect_with(SqliteConnectOptions::new().filename(copy)).await.expect("a pool");
+    let count: i64 = sqlx::query_scalar("SELECT count(*) FROM increments").fetch_one(&pool).await.expect("a number");
+    pool.close().await;
+    count == 5001
 }

@@ -32,6 +32,25 @@ fn on_a_small_disk(megabytes: u32, arguments: &[&str]) -> Option<(Process, PathB
     Some((process, seen, folder))
 }
 
+/// What would be written to a file that has no name any more would be lost with the process.
+#[tokio::test]
+async fn a_database_that_has_been_removed_takes_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let database = folder.path().join("jobs.db");
+    let server = TestServer::start(&database, PathSolver).await;
+    let id = server.submit(&scene("klarbring")).await;
+    server.ended(&id).await;
+    std::fs::rename(&database, folder.path().join("elsewhere.db")).expect("moved");
+    for _ in 0..2 {
+        assert_eq!(server.get("/readyz").await.status(), StatusCode::SERVICE_UNAVAILABLE);
+        assert_eq!(server.post("/v1/jobs", &scene("klarbring")).await.status(), StatusCode::SERVICE_UNAVAILABLE);
+        std::fs::write(&database, "another file").expect("written");
+    }
+    std::fs::rename(folder.path().join("elsewhere.db"), &database).expect("moved back");
+    assert_eq!(server.get("/readyz").await.status(), StatusCode::OK);
+    assert_eq!(server.get_json(&format!("/v1/jobs/{id}")).await["status"], "completed");
+}
+
 #[tokio::test(flavor = "multi_thread")]
 async fn a_full_disk_keeps_what_is_stored_and_takes_up_again_when_there_is_room() {
     let Some((process, disk, _folder)) = on_a_small_disk(48, &["--workers", "2", "--lease", "1s"]) else {

@@ -40,6 +40,33 @@ async fn problem(ask: RequestBuilder, status: u16, kind: &str) -> Value {
     problem
 }
 
+/// What somebody meant by a parameter that there is not would not be done.
+#[tokio::test]
+async fn parameters_that_a_call_does_not_have_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let server = TestServer::start(&folder.path().join("jobs.db"), MadeUp::default()).await;
+    let id = server.submit(&request("one", 3)).await;
+    let place = format!("/v1/jobs/{id}");
+    for (method, path, told) in [
+        (Method::DELETE, format!("{place}?dry_run=true"), "there is no parameter `dry_run`; this call has none"),
+        (Method::POST, format!("{place}/follow?validate=true"), "there is no parameter `validate`"),
+        (Method::POST, format!("{place}/cancel?x"), "there is no parameter `x`"),
+        (Method::GET, format!("{place}/path.csv?limit=2"), "there is no parameter `limit`"),
+        (Method::GET, format!("{place}/increments?afer=2"), "did you mean `after`?"),
+        (Method::GET, "/v1/scenes?foo=1".to_owned(), "there is no parameter `foo`"),
+        (Method::GET, "/healthz?foo=1".to_owned(), "there is no parameter `foo`"),
+        (Method::GET, "/v1/jobs?parent=nonsense".to_owned(), "parent: found `nonsense`"),
+    ] {
+        let answer = server.ask(method, &path).send().await.expect("an answer");
+        assert_eq!(answer.status(), 400, "{path}");
+        let problem: Value = answer.json().await.expect("a problem");
+        assert_eq!(problem["type"], "/problems/invalid-parameter", "{path}");
+        assert!(problem["detail"].as_str().expect("a text").contains(told), "{path}: {problem}");
+    }
+    assert_eq!(server.get(&place).await.status(), 200, "nothing was deleted");
+    assert_eq!(server.get(&format!("{place}?")).await.status(), 200);
+}
+
 #[tokio::test]
 async fn addresses_and_methods() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -80,7 +107,7 @@ async fn parameters_and_headers() {
         ("cursor=%26", "cursor: found `&`; the `next_cursor`"),
         ("stauts=queued", "there is no parameter `stauts`; did you mean `status`?"),
         ("limit=1&limit=2", "limit: it stands twice"),
-        ("=", "there is no parameter ``; known: `status`, `cursor`, `limit`"),
+        ("=", "there is no parameter ``; known: `status`, `parent`, `cursor`, `limit`"),
     ] {
         let problem = problem(server.ask(Method::GET, &format!("/v1/jobs?{query}")), 400, "invalid-parameter").await;
         assert!(problem["detail"].as_str().expect("text").starts_with(told), "{query}: {problem}");

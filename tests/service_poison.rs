@@ -8,7 +8,7 @@ use arcslip::http::server::{Front, Server};
 use arcslip::jobs::Settings;
 use arcslip::store::{self, NewJob, Store, Submitted, Task};
 use common::process::{Process, client, get, has_ended};
-use common::server::any_port;
+use common::server::{CONNECTIONS, any_port};
 use common::service::{indices, request};
 use common::solver::{ABORTS, MadeUp};
 use reqwest::Client;
@@ -35,7 +35,7 @@ fn serve() {
         let lease = Duration::from_millis(300);
         let settings = Settings { workers: 3, lease, max_attempts: 3, ..Settings::default() };
         let solver = MadeUp::pausing(Duration::from_millis(1));
-        let front = Front { listen: any_port(), connections: 100, access: Access::loopback() };
+        let front = Front { listen: any_port(), connections: CONNECTIONS, access: Access::loopback() };
         let server = Server::start(front, store, Arc::new(solver), settings).await.expect("the server starts");
         println!("the test's server listens on http://{}", server.address());
         std::future::pending::<()>().await;

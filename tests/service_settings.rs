@@ -3,10 +3,12 @@
 
 mod common;
 
-use common::process::{Process, client, get};
+use common::process::{Process, client, get, has_ended, submit, until};
+use common::service::in_short_steps;
 use reqwest::StatusCode;
 use serde_json::Value;
 use std::fs::File;
+use std::net::TcpStream;
 use std::path::Path;
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
@@ -75,6 +77,27 @@ async fn the_command_line_goes_before_the_environment_that_before_the_file_and_t
     assert!(document["info"]["description"].as_str().expect("text").contains("| jobs and studies that wait | 30 |"));
     let jobs = get(&client, &process.url, "/v1/jobs").await.expect("a list");
     assert!(!jobs["jobs"].as_array().expect("jobs").is_empty(), "the demonstration is queued");
+}
+
+/// Connections leave the files that the database needs.
+#[tokio::test(flavor = "multi_thread")]
+async fn where_few_files_may_be_open_fewer_connections_are_served_and_jobs_go_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut command = Command::new("sh");
+    let line =
+        format!("ulimit -n 128; exec {} serve --listen 127.0.0.1:0 --database jobs.db", env!("CARGO_BIN_EXE_arcslip"));
+    command.args(["-c", &line]);
+    let process = serve(folder.path(), command);
+    let client = client();
+    let id = submit(&client, &process.url, "/v1/jobs", &in_short_steps("one-bar-truss", 3000, 3000)).await;
+    let address = process.url.strip_prefix("http://").expect("an address");
+    let idle: Vec<TcpStream> = (0..200).map(|_| TcpStream::connect(address).expect("connected")).collect();
+    tokio::time::sleep(Duration::from_millis(500)).await;
+    drop(idle);
+    let job = until(&client, &process.url, &format!("/v1/jobs/{id}"), has_ended).await;
+    assert_eq!(job["status"], "completed", "{job}");
+    let log = std::fs::read_to_string(folder.path().join("log")).expect("a log");
+    assert!(log.contains("fewer connections are served"), "{log}");
 }
 
 #[test]

@@ -5,10 +5,14 @@ use crate::http::access::origins::Origins;
 use crate::http::access::rates::Rates;
 use crate::http::access::tokens::Tokens;
 use crate::http::access::{Access, Door};
+use crate::http::listen::Connections;
+use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use std::net::SocketAddr;
 use std::num::NonZeroU32;
 use std::path::PathBuf;
 
+/// Files besides connections: the database's, the log, what a backup or a sort takes.
+const OTHER_FILES: u64 = 64;
 /// Requests a second of one address, and of one token, where others than this machine reach the service.
 const RATE: u32 = 100;
 
@@ -34,7 +38,11 @@ pub struct Arguments {
     /// Connections served at a time; those past that wait. Each takes a file descriptor (`ulimit -n`).
     #[arg(long, value_name = "N", default_value_t = 800, env = "ARCSLIP_MAX_CONNECTIONS",
         value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    pub max_connections: u32,
+    max_connections: u32,
+    /// Connections of one address, 0 for as many as come; those past that are closed. This machine's own addresses, which a
+    /// proxy has, may have any number.
+    #[arg(long, value_name = "N", default_value_t = 100, env = "ARCSLIP_ADDRESS_CONNECTIONS")]
+    address_connections: u32,
 }
 
 impl Arguments {
@@ -58,9 +66,27 @@ impl Arguments {
         };
         let usual = if loopback { 0 } else { RATE };
         let rate = |given: Option<u32>| NonZeroU32::new(given.unwrap_or(usual));
+        let told = |given: Option<u32>| rate(given).map_or(0, NonZeroU32::get);
+        tracing::info!(
+            of_an_address = told(self.address_rate),
+            of_a_token = told(self.token_rate),
+            "requests a second"
+        );
         let origins = Origins::read(self.allow_origin.iter().map(String::as_str))
             .map_err(|detail| bad(format!("--allow-origin: {detail}")))?;
         Ok(Access::new(door, Rates::new(rate(self.address_rate), rate(self.token_rate)), origins))
+    }
+
+    /// As many as are asked for, or as the process may open files for.
+    pub fn connections(&self) -> Connections {
+        let files = open_files();
+        let room = files.saturating_sub(OTHER_FILES).max(1);
+        let asked = u64::from(self.max_connections);
+        if asked > room {
+            tracing::warn!(asked, served = room, files, "fewer connections are served: each takes a file (ulimit -n)");
+        }
+        let all = usize::try_from(asked.min(room)).unwrap_or(usize::MAX);
+        Connections { all, an_address: NonZeroU32::new(self.address_connections) }
     }
 
     /// The tokens as the file has them now.
@@ -71,6 +97,14 @@ impl Arguments {
         let file = self.tokens_file.as_deref().ok_or_else(|| bad("no file of tokens is named".to_owned()))?;
         Tokens::of_file(file).map_err(|error| bad(format!("--tokens-file: {error}")))
     }
+}
+
+/// How many files the process may open, after asking for as many as it may have.
+fn open_files() -> u64 {
+    let limit = getrlimit(Resource::Nofile);
+    let raised = Rlimit { current: limit.maximum, maximum: limit.maximum };
+    let current = if setrlimit(Resource::Nofile, raised).is_ok() { limit.maximum } else { limit.current };
+    current.unwrap_or(u64::MAX)
 }
 
 fn bad(text: String) -> Failure {

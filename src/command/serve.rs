@@ -59,11 +59,11 @@ enum LogFormat {
 }
 
 pub fn run(arguments: &Arguments, settings: &[Setting]) -> Outcome {
-    let access = arguments.access.access(arguments.listen)?;
     start_log(arguments.log);
     for Setting { name, value, from } in settings {
         tracing::info!(name, value, from, "setting");
     }
+    let access = arguments.access.access(arguments.listen)?;
     tokio::runtime::Builder::new_multi_thread()
         .enable_all()
         .build()
@@ -80,7 +80,7 @@ async fn serve(arguments: &Arguments, access: Access) -> Outcome {
     let workers =
         arguments.workers.map_or_else(|| std::thread::available_parallelism().map_or(1, NonZero::get), usize::from);
     let Arguments { lease, max_attempts, limits, .. } = *arguments;
-    let connections = usize::try_from(arguments.access.max_connections).map_err(Failure::other)?;
+    let connections = arguments.access.connections();
     let front = Front { listen: arguments.listen, connections, access: access.clone() };
     let keep = limits.keep;
     let settings = Settings { workers, lease, max_attempts, limits: limits.limits(), keep, ..Settings::default() };

@@ -38,7 +38,7 @@ pub fn parse(command: fn() -> Command) -> Result<ArgMatches, Failure> {
     with_defaults(command(), values).try_get_matches().map_err(|error| bad(error.to_string()))
 }
 
-/// Every setting of `serve` that has a value, by name.
+/// Every setting of `serve`, by name.
 pub fn in_force(mut command: Command, matches: &ArgMatches) -> Vec<Setting> {
     let Some(serve) = matches.subcommand_matches(SERVE) else { return Vec::new() };
     // Only then flags without a value have their default.
@@ -48,7 +48,10 @@ pub fn in_force(mut command: Command, matches: &ArgMatches) -> Vec<Setting> {
         .iter()
         .filter_map(|argument| {
             let id = argument.get_id().as_str();
-            let values = serve.get_raw(id)?;
+            let name = argument.get_long()?.to_owned();
+            let Some(values) = serve.get_raw(id) else {
+                return Some(Setting { name, value: "not set".to_owned(), from: "default" });
+            };
             let value = values.map(|value| value.to_string_lossy()).collect::<Vec<_>>().join(",");
             let from = match serve.value_source(id)? {
                 ValueSource::CommandLine => "the command line",
@@ -58,7 +61,7 @@ pub fn in_force(mut command: Command, matches: &ArgMatches) -> Vec<Setting> {
                 }
                 _ => "the file",
             };
-            Some(Setting { name: argument.get_long()?.to_owned(), value, from })
+            Some(Setting { name, value, from })
         })
         .collect();
     settings.sort_by(|one, other| one.name.cmp(&other.name));

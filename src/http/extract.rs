@@ -3,21 +3,31 @@
 use super::Service;
 use super::problem::{Kind, Problem};
 use crate::model::names::{quoted, suggestion};
-use axum::body::Bytes;
+use axum::body::{Bytes, HttpBody};
 use axum::extract::rejection::BytesRejection;
 use axum::extract::{FromRequest, FromRequestParts, Path, Query, Request};
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, StatusCode, Uri, header};
 use axum::response::IntoResponse;
 use serde::de::DeserializeOwned;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::sync::OwnedSemaphorePermit;
+use tokio::time::timeout;
 use uuid::Uuid;
 
+/// A body has to come within so long.
+const BODY: Duration = Duration::from_secs(60);
+/// Room for bodies is counted in so many bytes ...
+const BODY_UNIT: usize = 4096;
+/// ... and there is so much of it: 256 MiB for all that are being read.
+pub const BODIES: u32 = 65_536;
 const LONGEST_KEY: usize = 255;
 /// Of an increment or row: the largest that can be stored.
 const LARGEST_INDEX: u64 = i64::MAX as u64;
 
-/// A JSON body as it came; who reads it says what is wrong with it.
-pub struct JsonText(pub Vec<u8>);
+/// A JSON body as it came, and its room among those that are held; who reads it says what is wrong with it.
+pub struct JsonText(pub Vec<u8>, pub OwnedSemaphorePermit);
 
 impl FromRequest<Service> for JsonText {
     type Rejection = Problem;
@@ -27,8 +37,22 @@ impl FromRequest<Service> for JsonText {
             return Err(Problem::new(Kind::UnsupportedMediaType, "send the header Content-Type: application/json"));
         }
         let most = state.jobs.settings.limits.body_bytes;
-        Ok(Self(Bytes::from_request(request, state).await.map_err(|rejection| refused_body(rejection, most))?.into()))
+        let told = request.body().size_hint().exact().and_then(|bytes| usize::try_from(bytes).ok());
+        let bytes = told.unwrap_or(most).min(most);
+        let late = |_| Problem::new(Kind::RequestFailed, format!("the body did not come within {} s", BODY.as_secs()));
+        // The clock runs while it waits for room, too: who is slow takes it from nobody for longer than that.
+        let taken = timeout(BODY, async {
+            let room = u32::try_from(bytes.div_ceil(BODY_UNIT)).unwrap_or(u32::MAX).min(BODIES);
+            let room = Arc::clone(&state.bodies).acquire_many_owned(room).await.map_err(|_| gone_down())?;
+            let body = Bytes::from_request(request, state).await.map_err(|rejection| refused_body(rejection, most))?;
+            Ok(Self(body.into(), room))
+        });
+        taken.await.map_err(late)?
     }
+}
+
+fn gone_down() -> Problem {
+    Problem::new(Kind::Unavailable, "the service is going down")
 }
 
 fn is_json(headers: &HeaderMap) -> bool {

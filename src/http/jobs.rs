@@ -52,7 +52,7 @@ pub async fn submit(
     Extension(caller): Extension<Caller>,
     Parameters(parameters): Parameters<SubmitParameters>,
     headers: HeaderMap,
-    JsonText(request): JsonText,
+    JsonText(request, _room): JsonText,
 ) -> Result<Response, Problem> {
     let key = idempotency_key(&headers)?;
     if parameters.validate {
@@ -104,6 +104,7 @@ pub struct ListParameters {
 impl Taken for ListParameters {
     const TAKEN: &'static [(&'static str, &'static str)] = &[
         ("status", "`queued`, `running`, `completed`, `stopped`, `cancelled` or `failed`"),
+        ("parent", "the id of a job, a UUID,"),
         ("cursor", "the `next_cursor` of the page before, a UUID,"),
         ("limit", "a whole number from 1 to 200"),
     ];

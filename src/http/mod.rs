@@ -1,6 +1,6 @@
 //! The service's HTTP face; version 1 of the interface.
 //!
-//! [`listen`] takes connections, [`access`] says who may call, [`problem`] is the one edge where errors become answers, [`extract`] and [`accept`] read requests, [`view`] and
+//! [`listen`] takes connections, [`access`] says who may call, [`problem`] is the one edge where errors become answers, [`extract`], [`parameters`] and [`accept`] read requests, [`view`] and
 //! [`view_study`] hold what is answered, [`tag`] spares it to those who have it; [`jobs`], [`follow`], [`increments`], [`stream`], [`csv`], [`studies`], [`scenes`],
 //! [`probes`], [`metrics`] and [`pages`] are the calls,
 //! [`document`] their OpenAPI description, [`request_id`] what names each request, [`server`] all of it, and going down in good order.
@@ -17,6 +17,7 @@ pub mod jobs;
 pub mod listen;
 pub mod metrics;
 pub mod pages;
+pub mod parameters;
 pub mod probes;
 pub mod problem;
 pub mod request_id;
@@ -34,18 +35,14 @@ use access::{Access, admission, headers};
 use axum::extract::DefaultBodyLimit;
 use axum::middleware::{from_fn, from_fn_with_state};
 use axum::{Router, routing};
+use parameters::Without;
 use std::sync::Arc;
-use std::time::Duration;
 use tokio::sync::Semaphore;
 use tokio_util::sync::CancellationToken;
 use tower_http::catch_panic::CatchPanicLayer;
-use tower_http::timeout::RequestBodyTimeoutLayer;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use utoipa_swagger_ui::{Config, SwaggerUi};
-
-/// A body of which nothing comes for so long is given up.
-const BODY: Duration = Duration::from_secs(30);
 
 /// What every call can reach.
 #[derive(Clone)]
@@ -53,6 +50,8 @@ pub struct Service {
     pub jobs: Jobs,
     pub attendance: Attendance,
     pub access: Access,
+    /// Room for bodies that are being read.
+    pub bodies: Arc<Semaphore>,
     /// Streams that read the store at a time.
     pub stream_turns: Arc<Semaphore>,
     /// Cancelled when the service goes down; open streams end then.
@@ -92,14 +91,15 @@ pub fn router(service: Service) -> serde_json::Result<Router> {
     let (routes, description) = api().split_for_parts();
     let limits = service.jobs.settings.limits;
     let (access, jobs) = (service.access.clone(), service.jobs.clone());
+    let without = Without::of(&description);
     let description: Arc<str> = document::finish(description, &limits, access.asks_tokens())?.into();
     let routes = routes
+        .route_layer(from_fn_with_state(without, parameters::refuse_unknown))
         .route("/", routing::get(pages::index))
         .route("/openapi.json", routing::get(move || pages::openapi(description.clone())))
         .with_state(service)
         .merge(SwaggerUi::new("/docs").config(Config::from("/openapi.json")))
         .layer(DefaultBodyLimit::max(limits.body_bytes))
-        .layer(RequestBodyTimeoutLayer::new(BODY))
         .layer(from_fn_with_state(access.clone(), admission::admit))
         .layer(CatchPanicLayer::custom(problem::from_panic))
         .layer(from_fn(problem::every_error));

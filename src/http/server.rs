@@ -4,7 +4,8 @@
 //! solves stop and their jobs go back to the queue, then the database is closed; all of it within a bound.
 
 use super::access::Access;
-use super::listen::listen;
+use super::extract::BODIES;
+use super::listen::{Connections, listen};
 use super::stream::READING_AT_ONCE;
 use super::{Service, router};
 use crate::jobs::{Crew, Jobs, Settings, Solver};
@@ -36,8 +37,7 @@ pub enum ServerError {
 pub struct Front {
     /// Port 0 takes any free one.
     pub listen: SocketAddr,
-    /// Served at a time; those past that wait.
-    pub connections: usize,
+    pub connections: Connections,
     pub access: Access,
 }
 
@@ -68,6 +68,7 @@ impl Server {
             jobs: jobs.clone(),
             attendance: crew.attendance(),
             access,
+            bodies: Arc::new(Semaphore::new(BODIES as usize)),
             stream_turns: Arc::new(Semaphore::new(READING_AT_ONCE)),
             shutdown: shutdown.clone(),
         };

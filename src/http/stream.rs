@@ -24,6 +24,7 @@ use std::pin::pin;
 use std::time::{Duration, Instant};
 use tokio::time::timeout;
 use tokio_stream::{Stream, StreamExt};
+use tokio_util::sync::CancellationToken;
 use uuid::Uuid;
 
 const NDJSON: &str = "application/x-ndjson";
@@ -75,16 +76,36 @@ pub(super) async fn answer(
 ) -> Result<Response, Problem> {
     let format = Format::accepted(headers)?;
     let after = last_event_id(event_name(task), headers)?;
+    let until = Until { shutdown: service.shutdown.clone(), exchange: service.access.next_exchange() };
     service.jobs.find(caller, task, id).await?;
     Ok(match format {
         Format::Events => {
             let as_they_come = [(header::CONTENT_TYPE, EVENT_STREAM), (header::CACHE_CONTROL, "no-cache")];
-            (as_they_come, Body::from_stream(events(service, task, id, after))).into_response()
+            (as_they_come, Body::from_stream(events(service, until, task, id, after))).into_response()
         }
-        Format::Lines => {
-            ([(header::CONTENT_TYPE, NDJSON)], Body::from_stream(lines(service, task, id, after))).into_response()
-        }
+        Format::Lines => ([(header::CONTENT_TYPE, NDJSON)], Body::from_stream(lines(service, until, task, id, after)))
+            .into_response(),
     })
+}
+
+/// When a stream ends before its job: the service goes down, or the tokens are exchanged, after which whoever comes back
+/// shows one that holds.
+struct Until {
+    shutdown: CancellationToken,
+    exchange: CancellationToken,
+}
+
+impl Until {
+    fn is_over(&self) -> bool {
+        self.shutdown.is_cancelled() || self.exchange.is_cancelled()
+    }
+
+    async fn over(&self) {
+        tokio::select! {
+            () = self.shutdown.cancelled() => {}
+            () = self.exchange.cancelled() => {}
+        }
+    }
 }
 
 enum Format {
@@ -108,11 +129,11 @@ enum Happening {
     Lines(Vec<Line>),
     Ended(Box<JobRecord>),
     Deleted,
-    ShuttingDown,
+    Interrupted,
     Failed(StoreError),
 }
 
-fn follow(service: Service, id: Uuid, mut after: Option<u64>) -> impl Stream<Item = Happening> {
+fn follow(service: Service, until: Until, id: Uuid, mut after: Option<u64>) -> impl Stream<Item = Happening> {
     stream! {
         let store = service.jobs.store();
         let streams = &service.jobs.metrics().streams;
@@ -128,7 +149,7 @@ fn follow(service: Service, id: Uuid, mut after: Option<u64>) -> impl Stream<Ite
                 Ok(None) => { yield Happening::Deleted; return; }
                 Err(error) => { yield Happening::Failed(error); return; }
             };
-            while after < standing.last_index && !service.shutdown.is_cancelled() {
+            while after < standing.last_index && !until.is_over() {
                 let page = match in_turn(&service, store.increments(id, after, PAGE)).await {
                     Ok(page) => page,
                     Err(error) => { yield Happening::Failed(error); return; }
@@ -141,8 +162,8 @@ fn follow(service: Service, id: Uuid, mut after: Option<u64>) -> impl Stream<Ite
                 }
                 yield Happening::Lines(page);
             }
-            if service.shutdown.is_cancelled() {
-                yield Happening::ShuttingDown;
+            if until.is_over() {
+                yield Happening::Interrupted;
                 return;
             }
             if standing.status.is_ended() {
@@ -157,7 +178,7 @@ fn follow(service: Service, id: Uuid, mut after: Option<u64>) -> impl Stream<Ite
             loop {
                 stored = None;
                 tokio::select! {
-                    () = service.shutdown.cancelled() => break,
+                    () = until.over() => break,
                     () = tokio::time::sleep(LOOK_AGAIN) => break,
                     _ = changes.changed() => {}
                 }
@@ -182,11 +203,17 @@ async fn in_turn<T>(service: &Service, reading: impl Future<Output = T>) -> T {
     reading.await
 }
 
-fn events(service: Service, task: Task, id: Uuid, after: Option<u64>) -> impl Stream<Item = io::Result<String>> {
+fn events(
+    service: Service,
+    until: Until,
+    task: Task,
+    id: Uuid,
+    after: Option<u64>,
+) -> impl Stream<Item = io::Result<String>> {
     // The request's span ends with its answer's head; what a stream has to say later still belongs to it.
     let span = tracing::Span::current();
     stream! {
-        let mut happenings = pin!(follow(service, id, after));
+        let mut happenings = pin!(follow(service, until, id, after));
         loop {
             let happening = match timeout(KEEP_ALIVE, happenings.next()).await {
                 Ok(Some(happening)) => happening,
@@ -202,7 +229,7 @@ fn events(service: Service, task: Task, id: Uuid, after: Option<u64>) -> impl St
                 }
                 Happening::Ended(job) => last_event(task, *job),
                 Happening::Deleted => format!("event: deleted\ndata: {{\"id\":\"{id}\"}}\n\n"),
-                Happening::ShuttingDown => come_back("the service is going down; come back"),
+                Happening::Interrupted => come_back("the service goes down or its tokens have changed; come back"),
                 Happening::Failed(error) => {
                     tracing::error!(%error, job = %id, "a stream broke off");
                     come_back("the store is not available; come back")
@@ -252,18 +279,24 @@ fn closing_line(task: Task, job: JobRecord) -> Option<io::Result<String>> {
     }
 }
 
-fn lines(service: Service, task: Task, id: Uuid, after: Option<u64>) -> impl Stream<Item = io::Result<String>> {
+fn lines(
+    service: Service,
+    until: Until,
+    task: Task,
+    id: Uuid,
+    after: Option<u64>,
+) -> impl Stream<Item = io::Result<String>> {
     // An error breaks the body off, so that a client can tell a whole path from a part of one.
     let broken = |why: &str| Some(Err(io::Error::other(why.to_owned())));
     let span = tracing::Span::current();
-    follow(service, id, after).filter_map(move |happening| {
+    follow(service, until, id, after).filter_map(move |happening| {
         let _entered = span.enter();
         match happening {
             // In one piece: each is sent for itself.
             Happening::Lines(lines) => Some(Ok(lines.into_iter().map(|line| line.body + "\n").collect())),
             Happening::Ended(job) => closing_line(task, *job),
             Happening::Deleted => broken("the job was deleted"),
-            Happening::ShuttingDown => broken("the service is going down"),
+            Happening::Interrupted => broken("the service goes down or its tokens have changed"),
             Happening::Failed(error) => {
                 tracing::error!(%error, job = %id, "a stream broke off");
                 broken("the store is not available")

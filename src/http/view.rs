@@ -72,7 +72,7 @@ pub struct Job {
     pub report: Option<Box<RawValue>>,
     /// The direction of another job that this one follows; null for a job that starts at rest.
     pub parent: Option<Parent>,
-    /// Jobs that follow a direction of this one; `GET /v1/jobs?parent=` lists them.
+    /// Jobs of the same owner that follow a direction of this one; `GET /v1/jobs?parent=` lists them.
     pub children: u64,
     /// Of jobs whose analysis says `explore`, and of those queued for it.
     pub explore: Option<Exploration>,

@@ -22,6 +22,18 @@ pub enum StoreError {
 }
 
 impl StoreError {
+    /// The same for another who waited for the same.
+    pub fn told_again(&self) -> Self {
+        let why = || std::error::Error::source(self).map_or_else(|| self.to_string(), ToString::to_string).into();
+        match self {
+            Self::Unavailable(_) => Self::Unavailable(why()),
+            Self::Full(_) => Self::Full(why()),
+            Self::Damaged(_) => Self::Damaged(why()),
+            Self::Open(source) => Self::Open(source.to_string().into()),
+            Self::Refused(_) => Self::Refused(why()),
+        }
+    }
+
     /// Worth another try of the same call.
     pub fn is_passing(&self) -> bool {
         match self {

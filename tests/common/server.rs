@@ -1,6 +1,7 @@
 //! The real application in this process: a port of its own, a database of the test's.
 
 use arcslip::http::access::Access;
+use arcslip::http::listen::Connections;
 use arcslip::http::server::{Front, Server};
 use arcslip::jobs::{Settings, Solver};
 use arcslip::store::{self, Store};
@@ -12,7 +13,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 const PATIENCE: Duration = Duration::from_secs(30);
-const CONNECTIONS: usize = 500;
+pub const CONNECTIONS: Connections = Connections { all: 500, an_address: None };
 
 pub struct TestServer {
     server: Server,

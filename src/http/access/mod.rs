@@ -14,6 +14,7 @@ use origins::Origins;
 use rates::Rates;
 use std::sync::{Arc, PoisonError, RwLock};
 use tokens::Tokens;
+use tokio_util::sync::CancellationToken;
 
 /// Who may call.
 #[derive(Debug)]
@@ -37,6 +38,8 @@ struct Rules {
     door: Door,
     rates: Rates,
     origins: Origins,
+    /// Cancelled, and replaced, when the tokens are exchanged.
+    exchange: RwLock<CancellationToken>,
 }
 
 /// The rules of one service; cheap to clone.
@@ -45,7 +48,7 @@ pub struct Access(Arc<Rules>);
 
 impl Access {
     pub fn new(door: Door, rates: Rates, origins: Origins) -> Self {
-        Self(Arc::new(Rules { door, rates, origins }))
+        Self(Arc::new(Rules { door, rates, origins, exchange: RwLock::default() }))
     }
 
     /// For a service that only its own machine reaches.
@@ -58,11 +61,18 @@ impl Access {
         if let Door::Tokens(current) = &self.0.door {
             // What is behind the lock is replaced whole.
             *current.write().unwrap_or_else(PoisonError::into_inner) = Arc::new(tokens);
+            // After the tokens: who is sent away because of them finds the new ones.
+            std::mem::take(&mut *self.0.exchange.write().unwrap_or_else(PoisonError::into_inner)).cancel();
         }
     }
 
     pub(super) fn origins(&self) -> &Origins {
         &self.0.origins
+    }
+
+    /// Cancelled when the tokens are exchanged the next time.
+    pub(super) fn next_exchange(&self) -> CancellationToken {
+        self.0.exchange.read().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     pub(super) fn asks_tokens(&self) -> bool {

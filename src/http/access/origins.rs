@@ -68,8 +68,9 @@ fn origin(text: &str) -> Result<HeaderValue, String> {
 /// Whether the request names this machine by an address or as `localhost`, and not by a name that somebody may have given
 /// it.
 pub fn names_this_machine(headers: &HeaderMap) -> bool {
-    let Some(host) = headers.get(header::HOST) else { return true };
-    let host: Option<Uri> = host.to_str().ok().and_then(|host| host.parse().ok());
+    let mut hosts = headers.get_all(header::HOST).iter();
+    let (Some(host), None) = (hosts.next(), hosts.next()) else { return headers.get(header::HOST).is_none() };
+    let host = host.to_str().ok().filter(|host| !host.contains('@')).and_then(|host| host.parse::<Uri>().ok());
     host.as_ref().and_then(Uri::host).is_some_and(|host| {
         let bare = host.trim_start_matches('[').trim_end_matches(']');
         host.eq_ignore_ascii_case("localhost") || bare.parse::<IpAddr>().is_ok()
@@ -112,7 +113,14 @@ mod tests {
         for this in ["127.0.0.1", "127.0.0.1:8080", "localhost:8080", "LOCALHOST", "[::1]:8080", "[::1]"] {
             assert!(named(this), "{this}");
         }
-        for other in ["evil.example", "evil.example:8080", "127.0.0.1.evil.example", "localhost.evil.example", ""] {
+        for other in [
+            "evil.example",
+            "evil.example:8080",
+            "127.0.0.1.evil.example",
+            "localhost.evil.example",
+            "",
+            "evil@localhost",
+        ] {
             assert!(!named(other), "{other}");
         }
         assert!(names_this_machine(&headers(&[])));

@@ -40,7 +40,7 @@ impl Rates {
 }
 
 /// Whoever has one address of an IPv6 network has all of them.
-fn subscriber(address: IpAddr) -> IpAddr {
+pub fn subscriber(address: IpAddr) -> IpAddr {
     match address.to_canonical() {
         IpAddr::V6(address) => IpAddr::V6(address & SUBSCRIBER),
         address => address,

@@ -1,29 +1,84 @@
 //! A copy of a database that others may be writing to.
 //!
-//! `VACUUM INTO` reads in one transaction, so that the copy is of one moment, and writes no page that is not needed.
+//! `VACUUM INTO` reads in one transaction, so that the copy is of one moment, and writes no page that is not needed. Until it
+//! is whole and checked the copy has another name: nothing that is broken off is ever taken for a copy.
 
 use crate::store::{Result, StoreError};
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection};
 use sqlx::{ConnectOptions, Connection};
-use std::path::Path;
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 const BUSY_TIMEOUT: Duration = Duration::from_secs(30);
+/// What the name of an unfinished copy ends with.
+const PARTIAL: &str = ".partial";
 
 pub(in crate::store) async fn back_up(file: &Path, copy: &Path) -> Result<()> {
-    let open = |error| StoreError::Open(Box::new(error));
-    let copied = SqliteConnectOptions::new().filename(file).busy_timeout(BUSY_TIMEOUT);
-    let mut original = copied.connect().await.map_err(open)?;
-    let into = copy.to_str().ok_or_else(|| StoreError::Open("the copy's name is not UTF-8".into()))?;
-    sqlx::query("VACUUM INTO ?").bind(into).execute(&mut original).await?;
+    let partial = PathBuf::from([copy.as_os_str(), PARTIAL.as_ref()].join("".as_ref()));
+    remove(&partial)?;
+    let made = write(file, &partial).await.and_then(|()| keep(&partial, copy).map_err(unwritten));
+    if made.is_err() {
+        // Why it could not be made counts for more.
+        let _ = remove(&partial);
+    }
+    made
+}
+
+async fn write(file: &Path, partial: &Path) -> Result<()> {
+    let mut original =
+        SqliteConnectOptions::new().filename(file).busy_timeout(BUSY_TIMEOUT).connect().await.map_err(open)?;
+    let ours =
+        "SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name IN ('jobs', 'increments', 'heartbeat')";
+    let tables: i64 = sqlx::query_scalar(ours).fetch_one(&mut original).await?;
+    if tables != 3 {
+        return Err(StoreError::Open("it holds no jobs of this program".into()));
+    }
+    let into = partial.to_str().ok_or_else(|| StoreError::Open("the copy's name is not UTF-8".into()))?;
+    // For whoever may read the original, and nobody else, from the first byte on.
+    let made = File::create_new(partial).and_then(|made| made.set_permissions(fs::metadata(file)?.permissions()));
+    made.map_err(unwritten)?;
+    sqlx::query("VACUUM INTO ?").bind(into).execute(&mut original).await.map_err(|error| match error.into() {
+        StoreError::Full(source) => StoreError::Open(format!("there is no room for the copy: {source}").into()),
+        other => other,
+    })?;
     original.close().await?;
-    // Where the copy can be lost by a power loss yet, whoever takes it is told nothing.
-    std::fs::File::open(copy).and_then(|copy| copy.sync_all()).map_err(|error| StoreError::Open(Box::new(error)))?;
-    let copied = SqliteConnectOptions::new().filename(copy).read_only(true);
+    let copied = SqliteConnectOptions::new().filename(partial).read_only(true);
     check(&mut copied.connect().await.map_err(open)?).await
 }
 
 async fn check(copy: &mut SqliteConnection) -> Result<()> {
     let found: String = sqlx::query_scalar("PRAGMA integrity_check(1)").fetch_one(copy).await?;
     if found == "ok" { Ok(()) } else { Err(StoreError::Damaged(found.into())) }
+}
+
+/// Gives the finished copy its name, so that it has it after a power loss, too.
+fn keep(partial: &Path, copy: &Path) -> io::Result<()> {
+    File::open(partial)?.sync_all()?;
+    // A link takes nothing's place, where renaming would.
+    fs::hard_link(partial, copy)?;
+    fs::remove_file(partial)?;
+    let folder = copy.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    File::open(folder)?.sync_all()
+}
+
+/// What an earlier one left that was broken off, and what SQLite had beside it.
+fn remove(partial: &Path) -> Result<()> {
+    for beside in ["", "-journal", "-wal", "-shm"] {
+        let name = PathBuf::from([partial.as_os_str(), beside.as_ref()].join("".as_ref()));
+        match fs::remove_file(name) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(unwritten(error)),
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+fn open(error: sqlx::Error) -> StoreError {
+    StoreError::Open(Box::new(error))
+}
+
+fn unwritten(error: io::Error) -> StoreError {
+    StoreError::Open(format!("the copy cannot be written: {error}").into())
 }

@@ -6,6 +6,7 @@
 use super::SqliteStore;
 use crate::store::{Result, StoreError};
 use sqlx::sqlite::SqlitePool;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// As `PRAGMA auto_vacuum` names it.
@@ -19,10 +20,27 @@ const PAGES_AT_ONCE: i64 = 1024;
 pub(super) struct Health {
     damaged: AtomicBool,
     shrinks: bool,
+    file: PathBuf,
+    identity: Identity,
+}
+
+/// Which file it is, whatever its name.
+type Identity = Option<(u64, u64)>;
+
+fn identity(file: &Path) -> Identity {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        std::fs::metadata(file).ok().map(|found| (found.dev(), found.ino()))
+    }
+    #[cfg(not(unix))]
+    {
+        std::fs::metadata(file).ok().map(|_| (0, 0))
+    }
 }
 
 impl Health {
-    pub async fn of(writer: &SqlitePool) -> Result<Self> {
+    pub async fn of(writer: &SqlitePool, file: &Path) -> Result<Self> {
         let mode: i64 = sqlx::query_scalar("PRAGMA auto_vacuum").fetch_one(writer).await?;
         let shrinks = mode == INCREMENTAL;
         if !shrinks {
@@ -31,14 +49,17 @@ impl Health {
                  sqlite3 FILE 'PRAGMA auto_vacuum = INCREMENTAL; VACUUM'"
             );
         }
-        Ok(Self { damaged: AtomicBool::new(false), shrinks })
+        Ok(Self { damaged: AtomicBool::new(false), shrinks, file: file.to_owned(), identity: identity(file) })
     }
 
     /// # Errors
-    /// Damage was met before.
+    /// Damage was met before, or the file is not where it was: what is written now would be lost with it.
     pub fn allow(&self) -> Result<()> {
         if self.damaged.load(Ordering::Relaxed) {
             return Err(StoreError::Damaged("damage was met before; nothing is written".into()));
+        }
+        if identity(&self.file) != self.identity {
+            return Err(StoreError::Unavailable("the database's file has been removed or replaced".into()));
         }
         Ok(())
     }

@@ -47,9 +47,9 @@ async fn take_in(writer: SqlitePool, intake: Intake) {
         match begun {
             Ok(transaction) => store_together(&writer, transaction, together).await,
             Err(error) => {
-                let why = error.to_string();
+                let error = StoreError::from(error);
                 for waiting in together {
-                    waiting.tell(Err(StoreError::Unavailable(why.clone().into())));
+                    waiting.tell(Err(error.told_again()));
                 }
             }
         }

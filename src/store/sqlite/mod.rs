@@ -50,6 +50,8 @@ pub struct SqliteStore {
 
 impl SqliteStore {
     pub async fn open(file: &Path) -> Result<Self> {
+        // A file in any case: names such as `:memory:` mean something else to SQLite.
+        let file = &std::path::absolute(file).map_err(|error| StoreError::Open(Box::new(error)))?;
         let options = SqliteConnectOptions::new().filename(file).busy_timeout(BUSY_TIMEOUT).foreign_keys(true);
         let writer = SqlitePoolOptions::new()
             .max_connections(1)
@@ -86,7 +88,7 @@ impl SqliteStore {
             .connect_with(options.read_only(true))
             .await
             .map_err(|error| StoreError::Open(Box::new(error)))?;
-        let health = Health::of(&writer).await?;
+        let health = Health::of(&writer, file).await?;
         Ok(Self { writer, readers, signals: Signals::default(), intake: Intake::default(), health })
     }
 }

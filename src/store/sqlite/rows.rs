@@ -11,7 +11,7 @@ macro_rules! job_columns {
     () => {
         "id, task, owner, name, status, plan, report, stop_reason, error, max_increments, last_index, attempt, max_attempts, losses, \
          cancel_requested, created_at, started_at, ended_at, parent, parent_increment, parent_direction, \
-         (SELECT count(*) FROM jobs AS child WHERE child.parent = jobs.id) AS children, \
+         (SELECT count(*) FROM jobs AS child WHERE child.parent = jobs.id AND child.owner IS jobs.owner) AS children, \
          family, generation, explored, not_queued, \
          (SELECT depth FROM families WHERE families.id = jobs.family) AS depth, \
          (SELECT max_jobs FROM families WHERE families.id = jobs.family) AS max_jobs, \
