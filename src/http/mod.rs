@@ -1,14 +1,16 @@
 //! The service's HTTP face; version 1 of the interface.
 //!
 //! [`listen`] takes connections, [`access`] says who may call, [`problem`] is the one edge where errors become answers, [`extract`] and [`accept`] read requests, [`view`] and
-//! [`view_study`] hold what is answered, [`tag`] spares it to those who have it; [`jobs`], [`follow`], [`increments`], [`stream`], [`csv`], [`studies`], [`scenes`],
-//! [`probes`] and [`pages`] are the calls,
+//! [`view_study`] hold what is answered, [`tag`] spares it to those who have it; [`jobs`], [`request`], [`follow`], [`increments`], [`columns`], [`stream`], [`csv`], [`studies`], [`scenes`],
+//! [`probes`] and [`pages`] are the calls, [`dashboard`] what a browser sees,
 //! [`document`] their OpenAPI description, [`request_id`] what names each request, [`server`] all of it, and going down in good order.
 //! Called by `command`; knows `jobs` and, for reading, `store`.
 
 pub mod accept;
 pub mod access;
+pub mod columns;
 pub mod csv;
+pub mod dashboard;
 pub mod document;
 pub mod extract;
 pub mod follow;
@@ -18,6 +20,7 @@ pub mod listen;
 pub mod pages;
 pub mod probes;
 pub mod problem;
+pub mod request;
 pub mod request_id;
 pub mod scenes;
 pub mod server;
@@ -63,8 +66,10 @@ fn api() -> OpenApiRouter<Service> {
         .routes(routes!(jobs::submit, jobs::list))
         .routes(routes!(jobs::get, jobs::delete))
         .routes(routes!(jobs::cancel))
+        .routes(routes!(request::request))
         .routes(routes!(follow::follow))
         .routes(routes!(increments::page))
+        .routes(routes!(columns::columns))
         .routes(routes!(stream::stream))
         .routes(routes!(csv::path_csv))
         .routes(routes!(studies::submit, studies::list))
@@ -92,7 +97,8 @@ pub fn router(service: Service) -> serde_json::Result<Router> {
     let access = service.access.clone();
     let description: Arc<str> = document::finish(description, &limits, access.asks_tokens())?.into();
     let routes = routes
-        .route("/", routing::get(pages::index))
+        .route("/", routing::get(dashboard::index))
+        .route("/assets/{*name}", routing::get(dashboard::asset))
         .route("/openapi.json", routing::get(move || pages::openapi(description.clone())))
         .with_state(service)
         .merge(SwaggerUi::new("/docs").config(Config::from("/openapi.json")))
