@@ -138,3 +138,35 @@ async fn a_jobs_request_can_be_posted_again() {
         StatusCode::NOT_FOUND
     );
 }
+
+#[tokio::test]
+async fn the_exact_path_is_given_where_one_is_known() {
+    let (_folder, server) = server().await;
+    let id = server.submit(&scene("klarbring")).await;
+    server.ended(&id).await;
+    let exact = server.get_json(&format!("/v1/jobs/{id}/exact?load=3&displacement=7")).await;
+    let stages = exact["stages"].as_array().expect("a list");
+    let names: Vec<_> = stages.iter().map(|stage| stage["name"].as_str().expect("text")).collect();
+    assert_eq!((exact["name"].is_string(), names), (true, vec!["press", "pull"]));
+    let numbers = |values: &Value| -> Vec<f64> {
+        values.as_array().expect("a list").iter().map(|value| value.as_f64().expect("a number")).collect()
+    };
+    let (loads, along) = (numbers(&stages[1]["load_factor"]), numbers(&stages[1]["displacements"]["node"][0]));
+    assert_eq!(loads.len(), along.len());
+    // It sticks up to a load of 1.5, slips back to 1.25 and comes off: the events that the computed path is named by.
+    for (load, index) in [(1.5, 3), (1.25, 10)] {
+        let line = server.get_json(&format!("/v1/jobs/{id}/increments?after={}&limit=1", index - 1)).await;
+        let computed = &line["increments"][0];
+        let x = computed["displacements"]["node"][0].as_f64().expect("a number");
+        assert!((computed["load_factor"].as_f64().expect("a number") - load).abs() < 1e-12);
+        let is_there = |(&found, &place): (&f64, &f64)| (found - load).abs() < 1e-12 && (place - x).abs() < 1e-12;
+        assert!(loads.iter().zip(&along).any(is_there), "{load} at {x}");
+    }
+    let id = server.submit(&scene("two-snapping-bars")).await;
+    let unknown = server.get_json(&format!("/v1/jobs/{id}/exact")).await;
+    assert_eq!((&unknown["name"], unknown["stages"].as_array().map(Vec::len)), (&Value::Null, Some(0)));
+    for wrong in ["load=0", "displacement=-1", "load=x"] {
+        let answer = server.get(&format!("/v1/jobs/{id}/exact?{wrong}")).await;
+        assert_eq!(answer.status(), StatusCode::BAD_REQUEST, "{wrong}");
+    }
+}

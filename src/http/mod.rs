@@ -1,7 +1,7 @@
 //! The service's HTTP face; version 1 of the interface.
 //!
 //! [`listen`] takes connections, [`access`] says who may call, [`problem`] is the one edge where errors become answers, [`extract`] and [`accept`] read requests, [`view`] and
-//! [`view_study`] hold what is answered, [`tag`] spares it to those who have it; [`jobs`], [`request`], [`follow`], [`increments`], [`columns`], [`stream`], [`csv`], [`studies`], [`scenes`],
+//! [`view_study`] hold what is answered, [`tag`] spares it to those who have it; [`jobs`], [`request`], [`follow`], [`increments`], [`columns`], [`exact`], [`stream`], [`csv`], [`studies`], [`scenes`],
 //! [`probes`] and [`pages`] are the calls, [`dashboard`] what a browser sees,
 //! [`document`] their OpenAPI description, [`request_id`] what names each request, [`server`] all of it, and going down in good order.
 //! Called by `command`; knows `jobs` and, for reading, `store`.
@@ -12,6 +12,7 @@ pub mod columns;
 pub mod csv;
 pub mod dashboard;
 pub mod document;
+pub mod exact;
 pub mod extract;
 pub mod follow;
 pub mod increments;
@@ -70,6 +71,7 @@ fn api() -> OpenApiRouter<Service> {
         .routes(routes!(follow::follow))
         .routes(routes!(increments::page))
         .routes(routes!(columns::columns))
+        .routes(routes!(exact::exact))
         .routes(routes!(stream::stream))
         .routes(routes!(csv::path_csv))
         .routes(routes!(studies::submit, studies::list))

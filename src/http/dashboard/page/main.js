@@ -130,8 +130,24 @@ async function drawAll() {
   await pathPlot.draw(shown, abscissa, state().at);
   performance.mark("painted");
   await structurePlot.show(first, state().at);
+  layExact(first);
   directions.choose(first, state().at);
   diagnostics.show(first);
+}
+
+/** Lays the exact path over the computed one once that is whole; the picture does not wait for it. */
+async function layExact(path) {
+  if (isGoingOn(path.job)) return;
+  const before = path.exact;
+  try {
+    await path.exactPath();
+  } catch (problem) {
+    if (problem.name !== "AbortError") say(problem.message);
+    return;
+  }
+  if (path.exact !== before && path.exact.path && paths()[0] === path) {
+    await pathPlot.draw(paths(), state().abscissa ?? path.ownAbscissa(), state().at);
+  }
 }
 
 function hold() {

@@ -116,6 +116,22 @@ export class PathData {
     return -1;
   }
 
+  /** The path in closed form, as far as the computed one goes; null where none is known. */
+  async exactPath() {
+    const span = (name) => {
+      const most = (this.columns.get(name) ?? []).reduce((sum, value) => Math.max(sum, Math.abs(value ?? 0)), 0);
+      return most > 0 ? most : 1;
+    };
+    const own = [...this.columns.keys()].filter((name) => name.startsWith("/displacements/"));
+    const reach = `load=${span("load_factor")}&displacement=${Math.max(...own.map(span), 1e-300)}`;
+    const key = `${this.index.length} ${reach}`;
+    if (this.exact?.key !== key) {
+      const found = await get(`/v1/jobs/${this.id}/exact?${reach}`, this.given.signal);
+      this.exact = { key, path: found.stages.length > 0 ? found : null };
+    }
+    return this.exact.path;
+  }
+
   last() {
     return this.index.at(-1) ?? null;
   }

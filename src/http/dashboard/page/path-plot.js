@@ -45,10 +45,12 @@ export class PathPlot {
       ];
     });
     this.drawn = paths.map((path) => path.index.length);
+    const exact = this.exact();
     traces.push({
       ...this.mark(), type: "scatter", mode: "markers", hoverinfo: "skip",
       marker: { size: 13, symbol: "circle-open", color: fromSheet("--text"), line: { width: 2 } },
     });
+    if (exact) traces.push(exact);
     const words = paths[0]?.abscissae().find(([name]) => name === abscissa)?.[1] ?? abscissa;
     const isNew = !this.place.classList.contains("js-plotly-plot");
     await Plotly.react(this.place, traces, layout({
@@ -106,6 +108,25 @@ export class PathPlot {
           bifurcation ? "diamond" : kind === "contact_change" ? "square" : "circle"),
       },
       textfont: { color: colour, size: 14 }, cliponaxis: false,
+    };
+  }
+
+  /** The first path in closed form, laid over all. */
+  exact() {
+    const [path] = this.paths;
+    const steps = this.abscissa.split("/");
+    const found = path?.exact?.path;
+    if (!found || steps[1] !== "displacements") return null;
+    const node = steps[2].replaceAll("~2", ",").replaceAll("~1", "/").replaceAll("~0", "~");
+    const x = [];
+    const y = [];
+    for (const stage of found.stages) {
+      x.push(...(stage.displacements[node]?.[Number(steps[3])] ?? []), null);
+      y.push(...stage.load_factor, null);
+    }
+    return {
+      x, y, type: "scatter", mode: "lines", name: "exact", hoverinfo: "skip",
+      line: { color: fromSheet("--text"), width: 1, dash: "dash" },
     };
   }
 
@@ -170,7 +191,9 @@ export class PathPlot {
     const several = this.paths.length > 1;
     fill(this.legend, several ? this.paths.map(({ job }, place) =>
       element("li", {}, element("span", { class: "swatch", style: `background:${colourOf(place)}` }), job.name,
-        job.parent ? ` from increment ${job.parent.increment}, direction ${job.parent.direction}` : "")) : []);
+        job.parent ? ` from increment ${job.parent.increment}, direction ${job.parent.direction}` : "")) : [],
+    path.exact?.path ? element("li", { title: path.exact.path.formula },
+      element("span", { class: "swatch dashed" }), `exact (${path.exact.path.name})`) : null);
   }
 
   names() {
