@@ -1,15 +1,19 @@
 //! The service's HTTP face; version 1 of the interface.
 //!
-//! [`listen`] takes connections, [`access`] says who may call, [`problem`] is the one edge where errors become answers, [`extract`], [`parameters`] and [`accept`] read requests, [`view`] and
-//! [`view_study`] hold what is answered, [`tag`] spares it to those who have it; [`jobs`], [`follow`], [`increments`], [`stream`], [`csv`], [`studies`], [`scenes`],
-//! [`probes`], [`metrics`] and [`pages`] are the calls,
+//! [`listen`] takes connections, [`access`] says who may call, [`problem`] is the one edge where errors become answers,
+//! [`extract`], [`parameters`] and [`accept`] read requests, [`view`] and [`view_study`] hold what is answered, [`tag`] spares it
+//! to those who have it; [`jobs`], [`request`], [`follow`], [`increments`], [`columns`], [`exact`], [`stream`], [`csv`],
+//! [`studies`], [`scenes`], [`probes`], [`metrics`] and [`pages`] are the calls, [`dashboard`] what a browser sees,
 //! [`document`] their OpenAPI description, [`request_id`] what names each request, [`server`] all of it, and going down in good order.
 //! Called by `command`; knows `jobs` and, for reading, `store`.
 
 pub mod accept;
 pub mod access;
+pub mod columns;
 pub mod csv;
+pub mod dashboard;
 pub mod document;
+pub mod exact;
 pub mod extract;
 pub mod follow;
 pub mod increments;
@@ -20,6 +24,7 @@ pub mod pages;
 pub mod parameters;
 pub mod probes;
 pub mod problem;
+pub mod request;
 pub mod request_id;
 pub mod scenes;
 pub mod server;
@@ -63,8 +68,11 @@ fn api() -> OpenApiRouter<Service> {
         .routes(routes!(jobs::submit, jobs::list))
         .routes(routes!(jobs::get, jobs::delete))
         .routes(routes!(jobs::cancel))
+        .routes(routes!(request::request))
         .routes(routes!(follow::follow))
         .routes(routes!(increments::page))
+        .routes(routes!(columns::columns))
+        .routes(routes!(exact::exact))
         .routes(routes!(stream::stream))
         .routes(routes!(csv::path_csv))
         .routes(routes!(studies::submit, studies::list))
@@ -95,7 +103,8 @@ pub fn router(service: Service) -> serde_json::Result<Router> {
     let description: Arc<str> = document::finish(description, &limits, access.asks_tokens())?.into();
     let routes = routes
         .route_layer(from_fn_with_state(without, parameters::refuse_unknown))
-        .route("/", routing::get(pages::index))
+        .route("/", routing::get(dashboard::index))
+        .route("/assets/{*name}", routing::get(dashboard::asset))
         .route("/openapi.json", routing::get(move || pages::openapi(description.clone())))
         .with_state(service)
         .merge(SwaggerUi::new("/docs").config(Config::from("/openapi.json")))

@@ -4,6 +4,8 @@
 
 pub mod bad_documents;
 #[cfg(feature = "server")]
+pub mod browser;
+#[cfg(feature = "server")]
 pub mod faulty_store;
 pub mod generators;
 #[cfg(feature = "server")]

@@ -14,7 +14,7 @@ use std::net::SocketAddr;
 
 /// Pages without anybody's data, and probes.
 const PUBLIC: [&str; 5] = ["/", "/docs", "/openapi.json", "/healthz", "/readyz"];
-const PUBLIC_FOLDERS: [&str; 1] = ["/docs/"];
+const PUBLIC_FOLDERS: [&str; 2] = ["/docs/", "/assets/"];
 
 /// Lets a request through with its [`Caller`], if it has one, or answers why not.
 pub async fn admit(State(access): State<Access>, mut request: Request, next: Next) -> Response {
@@ -97,11 +97,13 @@ mod tests {
 
     #[test]
     fn what_is_not_public_needs_a_token() {
-        for public in ["/", "/docs", "/docs/", "/docs/swagger-ui.css", "/openapi.json", "/healthz", "/readyz"] {
+        for public in
+            ["/", "/assets/main.js", "/docs", "/docs/", "/docs/swagger-ui.css", "/openapi.json", "/healthz", "/readyz"]
+        {
             assert_eq!(needed(&Method::GET, public), None, "{public}");
             assert_eq!(needed(&Method::POST, public), Some(Scope::Submit), "{public}");
         }
-        for path in ["/v1/jobs", "/metrics", "//", "/docsx", "/v1/docs/", "/nothing", "/healthz/", ""] {
+        for path in ["/v1/jobs", "/metrics", "//", "/docsx", "/assets", "/v1/docs/", "/nothing", "/healthz/", ""] {
             assert_eq!(needed(&Method::GET, path), Some(Scope::Read), "{path}");
         }
         for method in [Method::POST, Method::DELETE, Method::PUT, Method::PATCH, Method::OPTIONS] {

@@ -7,10 +7,11 @@ use axum::middleware::Next;
 use axum::response::Response;
 
 const ALWAYS: [(HeaderName, &str); 6] = [
-    // The pages bring their own scripts and nothing from elsewhere; Swagger's has styles and pictures inline.
+    // The pages bring their own scripts and nothing from elsewhere; Swagger's has styles and pictures inline, and Plotly
+    // makes the picture that a reader saves from a blob.
     (
         header::CONTENT_SECURITY_POLICY,
-        "default-src 'self'; img-src 'self' data:; style-src 'self' 'unsafe-inline'; object-src 'none'; base-uri 'none'; \
+        "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; object-src 'none'; base-uri 'none'; \
          form-action 'none'; frame-ancestors 'none'",
     ),
     (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),

@@ -8,9 +8,12 @@ use utoipa::openapi::schema::SchemaType;
 use utoipa::openapi::{ContentBuilder, Header, Object, Ref, RefOr, ResponseBuilder, Schema, Type};
 
 /// Calls whose answers carry a tag where what they tell of is finished.
-const TAGGED: [&str; 7] = [
+const TAGGED: [&str; 10] = [
     "get_job",
+    "get_request",
     "list_increments",
+    "get_columns",
+    "get_exact_path",
     "get_path_csv",
     "get_study",
     "get_study_table_csv",
@@ -18,8 +21,18 @@ const TAGGED: [&str; 7] = [
     "get_study_picture",
 ];
 /// What can be asked of a job that has been queued, by its id; of a study likewise.
-const OF_A_JOB: [&str; 7] =
-    ["get_job", "list_increments", "get_path_csv", "stream_increments", "follow_direction", "cancel_job", "delete_job"];
+const OF_A_JOB: [&str; 10] = [
+    "get_job",
+    "get_request",
+    "list_increments",
+    "get_columns",
+    "get_exact_path",
+    "get_path_csv",
+    "stream_increments",
+    "follow_direction",
+    "cancel_job",
+    "delete_job",
+];
 const OF_A_STUDY: [&str; 7] = [
     "get_study",
     "stream_study",

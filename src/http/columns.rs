@@ -1,0 +1,283 @@
+//! Chosen numbers of a path's increments as arrays: what a plot needs of a long path, without all the rest.
+
+use super::extract::{JobId, Parameters, Taken, bounded, index};
+use super::problem::Problem;
+use super::{Service, document, tag};
+use crate::jobs::Caller;
+use crate::path::increment::Point;
+use crate::store::{Page, Task};
+use axum::Extension;
+use axum::extract::State;
+use axum::http::HeaderMap;
+use axum::response::Response;
+use indexmap::IndexMap;
+use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Serialize};
+use serde_json::value::RawValue;
+use std::borrow::Cow;
+use std::fmt;
+use utoipa::ToSchema;
+
+const ROWS: u32 = 10_000;
+const COLUMNS: usize = 32;
+/// Read from the store at a time.
+const PART: usize = 1 << 20;
+
+#[derive(Debug, Deserialize, utoipa::IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub struct ColumnParameters {
+    /// Up to 32 members of an increment with commas between: the name of a member, or a JSON Pointer (RFC 6901) such as
+    /// `/displacements/tip/0`, in which `~2` stands for a comma.
+    #[param(example = "load_factor,arc_length")]
+    of: Option<String>,
+    /// Only increments with a larger index: `next_after` of the page before.
+    after: Option<u64>,
+    /// Increments at most.
+    #[param(minimum = 1, maximum = 10_000, default = 10_000)]
+    limit: Option<u32>,
+}
+
+impl Taken for ColumnParameters {
+    const TAKEN: &'static [(&'static str, &'static str)] = &[
+        ("of", "names of an increment's members with commas between"),
+        ("after", "the index of an increment, 0 or more,"),
+        ("limit", "a whole number from 1 to 10000"),
+    ];
+}
+
+/// Members of increments, one array each, in the order of the increments.
+#[derive(Debug, Default, Serialize, ToSchema)]
+pub struct Columns {
+    /// Of the increments that the arrays are of.
+    pub index: Vec<u64>,
+    /// By the names that were asked for: each value as it is stored, null where an increment has none.
+    #[schema(value_type = std::collections::HashMap<String, Vec<serde_json::Value>>)]
+    pub columns: IndexMap<String, Vec<Option<Box<RawValue>>>>,
+    /// The points among them that are not `regular`.
+    pub points: Vec<PointAt>,
+    /// Pass it as `after` for the next page: the last index of this one, or what was asked for when it is empty.
+    pub next_after: Option<u64>,
+}
+
+/// A point that is not `regular`, with its increment's index.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct PointAt {
+    pub index: u64,
+    /// The increment's `point`, as it is stored.
+    #[schema(value_type = Point)]
+    pub point: Box<RawValue>,
+}
+
+/// Chosen members of the stored increments, as arrays.
+#[utoipa::path(
+    get, path = "/v1/jobs/{id}/columns", tag = document::INCREMENTS, operation_id = "get_columns",
+    params(("id" = Uuid, Path, description = "The job's id."), ColumnParameters),
+    responses((status = 200, description = "The arrays, empty when there are no more increments for now.", body = Columns))
+)]
+pub async fn columns(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    JobId(id): JobId,
+    Parameters(parameters): Parameters<ColumnParameters>,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    let members = members(parameters.of.as_deref().unwrap_or_default())?;
+    let mut after = index("after", parameters.after)?;
+    let mut left = bounded("limit", parameters.limit, ROWS, ROWS)?;
+    let is_finished = service.jobs.find(&caller, Task::Path, id).await?.status.is_ended();
+    let names = members.iter().map(|member| (member.name.to_owned(), Vec::new()));
+    let mut found = Columns { columns: names.collect(), ..Columns::default() };
+    while left > 0 {
+        let lines = service.jobs.store().increments(id, after, Page { rows: left, bytes: PART }).await?;
+        let Some(last) = lines.last() else { break };
+        after = Some(last.index);
+        left = left.saturating_sub(u32::try_from(lines.len()).unwrap_or(u32::MAX));
+        for line in &lines {
+            found.take(line.index, &line.body, &members)?;
+        }
+    }
+    found.next_after = after;
+    tag::json(&headers, is_finished, &found)
+}
+
+/// A member of an increment: the steps to it.
+struct Member<'a> {
+    name: &'a str,
+    steps: Vec<String>,
+}
+
+fn members(of: &str) -> Result<Vec<Member<'_>>, Problem> {
+    let mut members: Vec<Member> = Vec::new();
+    for name in of.split(',').filter(|name| !name.is_empty()) {
+        if members.iter().any(|known| known.name == name) {
+            return Err(Problem::parameter("of", format_args!("`{name}` stands twice; once would do")));
+        }
+        let steps = name.strip_prefix('/').unwrap_or(name).split('/');
+        members.push(Member { name, steps: steps.map(unescaped).collect() });
+    }
+    match members.len() {
+        found if found > COLUMNS => {
+            Err(Problem::parameter("of", format_args!("{found} names; at most {COLUMNS} are taken")))
+        }
+        _ => Ok(members),
+    }
+}
+
+fn unescaped(step: &str) -> String {
+    step.replace("~2", ",").replace("~1", "/").replace("~0", "~")
+}
+
+impl Columns {
+    fn take(&mut self, index: u64, body: &str, members: &[Member]) -> serde_json::Result<()> {
+        // Looked through once; what is asked for of it is looked through again.
+        let Top(top) = serde_json::from_str(body)?;
+        self.index.push(index);
+        for (member, column) in members.iter().zip(self.columns.values_mut()) {
+            let mut steps = member.steps.iter();
+            let first = steps.next().and_then(|name| top.iter().find(|(known, _)| known == name));
+            let mut value = first.map(|(_, value)| *value);
+            for step in steps {
+                let Some(within) = value else { break };
+                value = Step(step).deserialize(&mut serde_json::Deserializer::from_str(within.get()))?;
+            }
+            column.push(value.filter(|value| value.get() != "null").map(ToOwned::to_owned));
+        }
+        if let Some((_, point)) = top.iter().find(|(name, _)| name == "point") {
+            #[derive(Deserialize)]
+            struct Kind<'a> {
+                #[serde(borrow)]
+                kind: Cow<'a, str>,
+                #[serde(default)]
+                bifurcation: bool,
+            }
+            let found: Kind = serde_json::from_str(point.get())?;
+            if found.kind != "regular" || found.bifurcation {
+                self.points.push(PointAt { index, point: (*point).to_owned() });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The members of an object, as they are written.
+struct Top<'a>(Vec<(Cow<'a, str>, &'a RawValue)>);
+
+impl<'de> Deserialize<'de> for Top<'de> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Members;
+        impl<'de> Visitor<'de> for Members {
+            type Value = Top<'de>;
+
+            fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+                formatter.write_str("an object")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+                let mut members = Vec::new();
+                while let Some(entry) = map.next_entry()? {
+                    members.push(entry);
+                }
+                Ok(Top(members))
+            }
+        }
+        deserializer.deserialize_map(Members)
+    }
+}
+
+/// One step of a JSON Pointer: a member of an object, or an element of an array; `None` where there is none.
+struct Step<'a>(&'a str);
+
+impl<'de> DeserializeSeed<'de> for Step<'_> {
+    type Value = Option<&'de RawValue>;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
+        deserializer.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Step<'_> {
+    type Value = Option<&'de RawValue>;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.write_str("a value")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+        let mut found = None;
+        while let Some(name) = map.next_key::<Cow<str>>()? {
+            if name == self.0 {
+                found = Some(map.next_value()?);
+            } else {
+                map.next_value::<IgnoredAny>()?;
+            }
+        }
+        Ok(found)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut sequence: A) -> Result<Self::Value, A::Error> {
+        let wanted = self.0.parse::<usize>().ok();
+        let mut found = None;
+        let mut place = 0;
+        while let Some(element) = sequence.next_element::<&RawValue>()? {
+            if wanted == Some(place) {
+                found = Some(element);
+            }
+            place += 1;
+        }
+        Ok(found)
+    }
+
+    fn visit_unit<E>(self) -> Result<Self::Value, E> {
+        Ok(None)
+    }
+
+    fn visit_bool<E>(self, _: bool) -> Result<Self::Value, E> {
+        Ok(None)
+    }
+
+    fn visit_i64<E>(self, _: i64) -> Result<Self::Value, E> {
+        Ok(None)
+    }
+
+    fn visit_u64<E>(self, _: u64) -> Result<Self::Value, E> {
+        Ok(None)
+    }
+
+    fn visit_f64<E>(self, _: f64) -> Result<Self::Value, E> {
+        Ok(None)
+    }
+
+    fn visit_str<E>(self, _: &str) -> Result<Self::Value, E> {
+        Ok(None)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn members_are_taken_as_they_are_written() {
+        let body = r#"{"load_factor":-0.10,"displacements":{"a,b":[1.50,2e-3],"c/d":[7]},"stage":"push","point":{"kind":"end","bifurcation":false}}"#;
+        let of = "load_factor,/displacements/a~2b/1,/displacements/c~1d/0,/displacements/c~1d/1,/stage/x,step,/stage";
+        let members = members(of).unwrap();
+        let names = members.iter().map(|member| (member.name.to_owned(), Vec::new()));
+        let mut found = Columns { columns: names.collect(), ..Columns::default() };
+        found.take(4, body, &members).unwrap();
+        let written = serde_json::to_string(&found).unwrap();
+        assert_eq!(
+            written,
+            r#"{"index":[4],"columns":{"load_factor":[-0.10],"/displacements/a~2b/1":[2e-3],"/displacements/c~1d/0":[7],"/displacements/c~1d/1":[null],"/stage/x":[null],"step":[null],"/stage":["push"]},"points":[{"index":4,"point":{"kind":"end","bifurcation":false}}],"next_after":null}"#
+        );
+    }
+
+    #[test]
+    fn too_many_names_and_names_that_stand_twice_are_refused() {
+        assert!(members("a,b,a").is_err());
+        let many: Vec<String> = (0..=COLUMNS).map(|number| format!("m{number}")).collect();
+        assert!(members(&many.join(",")).is_err());
+        assert_eq!(members(&many[1..].join(",")).unwrap_or_default().len(), COLUMNS);
+        assert!(members("").unwrap_or_default().is_empty());
+    }
+}

@@ -1,0 +1,86 @@
+// How well and how fast: errors against run time, work, events, settings.
+
+import { analysisDefaults } from "./api.js";
+import { element, fill } from "./dom.js";
+import { axis, colourOf, CONFIGURATION, layout } from "./plot-style.js";
+import { settingsSentences, short } from "./words.js";
+
+const ERRORS = [
+  ["residual", "residual"], ["complementarity", "complementarity"], ["energy_error", "energy balance"],
+  ["error_estimate", "error estimate"],
+];
+const WORK = [
+  ["factorisations", "factorisations"], ["newton_iterations", "Newton iterations"], ["qp_solves", "quadratic programs"],
+  ["mpec_solves", "MPECs"],
+];
+const of = (name) => `/diagnostics/${name}`;
+/** Below this it is nothing, and a logarithm has no place for it. */
+const NOTHING = 1e-20;
+const ROWS = 500;
+
+export class Diagnostics {
+  constructor(panel) {
+    this.path = null;
+    this.place = element("div", { class: "plot", id: "diagnostics-plot" });
+    this.work = element("div", { class: "wide" });
+    this.events = element("div", { class: "wide" });
+    this.settings = element("div", {});
+    this.whole = element("details", { ontoggle: () => this.draw() },
+      element("summary", {}, element("h2", {}, "Diagnostics")), this.place,
+      element("p", { class: "quiet" }, "Errors that are exactly zero have no place on this axis."), this.work, this.settings, this.events);
+    fill(panel, this.whole);
+  }
+
+  show(path) {
+    this.path = path;
+    return this.draw();
+  }
+
+  async draw() {
+    const { path } = this;
+    if (!this.whole.open || !path) return;
+    let defaults;
+    try {
+      defaults = await analysisDefaults();
+      await path.need([of("elapsed_s"), ...ERRORS.concat(WORK).map(([name]) => of(name))]);
+    } catch (problem) {
+      if (problem.name !== "AbortError") fill(this.work, element("p", { class: "bad" }, problem.message));
+      return;
+    }
+    if (path !== this.path) return;
+    const seconds = path.columns.get(of("elapsed_s"));
+    const traces = ERRORS.map(([name, words], place) => ({
+      type: "scatter", mode: seconds.length > 300 ? "lines" : "lines+markers", name: words, x: seconds,
+      y: path.columns.get(of(name)).map((value) => (Math.abs(value) > NOTHING ? Math.abs(value) : null)),
+      customdata: path.index, line: { color: colourOf(place), width: 1.5 }, marker: { size: 4 },
+      hovertemplate: `${words} %{y:.2e}<br>increment %{customdata}<extra></extra>`,
+    }));
+    await Plotly.react(this.place, traces, layout({
+      xaxis: axis("run time, s"), yaxis: { ...axis("error"), type: "log", dtick: 1 }, showlegend: true,
+      legend: { orientation: "h", y: 1.12 }, uirevision: path.id,
+    }), CONFIGURATION);
+    this.tables(defaults);
+  }
+
+  tables(defaults) {
+    const { path } = this;
+    const many = path.index.length || 1;
+    fill(this.work, element("h3", {}, "Work"), element("table", {}, element("thead", {}, element("tr", {},
+      ["", "in all", "an increment"].map((words) => element("th", {}, words)))), element("tbody", {},
+      WORK.map(([name, words]) => {
+        // Counted from the start of the job.
+        const sum = path.job.report?.[name] ?? path.columns.get(of(name)).at(-1) ?? 0;
+        return element("tr", {}, element("td", {}, words), element("td", { class: "number" }, String(sum)),
+          element("td", { class: "number" }, short(sum / many)));
+      }))));
+    const told = path.points.filter(({ point }) => point.event);
+    fill(this.events, element("h3", {}, "Events"), told.length === 0 ? element("p", { class: "quiet" }, "None so far.")
+      : element("table", {}, element("tbody", {}, told.slice(0, ROWS).map(({ index, point }) => element("tr", {},
+        element("td", { class: "number" }, String(index)), element("td", {}, point.event))))),
+    told.length > ROWS ? element("p", { class: "quiet" }, `and ${told.length - ROWS} more`) : null);
+    const { left_out: leftOut = [] } = path.job.plan ?? {};
+    fill(this.settings, element("h3", {}, "Settings"), element("ul", {},
+      settingsSentences(path.request, path.job.plan, defaults).map((words) => element("li", {}, words)),
+      leftOut.map(({ what, why }) => element("li", {}, `Left out: ${what}, because ${why}.`))));
+  }
+}

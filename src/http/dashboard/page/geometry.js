@@ -1,0 +1,68 @@
+// Places and forces of a structure at an increment, in the model's own coordinates.
+
+const plus = (a, b, factor = 1) => a.map((value, place) => value + factor * (b[place] ?? 0));
+const times = (a, factor) => a.map((value) => value * factor);
+const dot = (a, b) => a.reduce((sum, value, place) => sum + value * b[place], 0);
+const length = (a) => Math.hypot(...a);
+const unit = (a) => times(a, 1 / (length(a) || 1));
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+
+export const vector = { plus, times, dot, length, unit, cross };
+
+/** Node name to place; nodes that are not recorded stay where they are. */
+export function places(model, increment) {
+  return new Map(Object.entries(model.nodes).map(([name, place]) =>
+    [name, plus(place, increment?.displacements[name] ?? [])]));
+}
+
+/** How far each obstacle has moved: what earlier stages reached, and the running one's pattern times its load factor. */
+export function motions(model, increment, reached) {
+  const moved = new Map();
+  for (const stage of model.stages) {
+    const isRunning = stage.name === increment.stage;
+    const factor = isRunning ? increment.load_factor : reached.get(stage.name) ?? 0;
+    for (const [name, motion] of Object.entries(stage.obstacle_motion ?? {})) {
+      moved.set(name, plus(moved.get(name) ?? times(motion, 0), motion, factor));
+    }
+    if (isRunning) break;
+  }
+  return moved;
+}
+
+/** An obstacle's normal into the free side at a place, and its tangents as the reactions are written along them. */
+export function frame(obstacle, place, moved = []) {
+  let normal;
+  if (obstacle.kind === "plane") normal = unit(obstacle.normal);
+  else {
+    const out = unit(plus(place, plus(obstacle.center, moved), -1));
+    normal = obstacle.side === "inside" ? times(out, -1) : out;
+  }
+  if (normal.length === 2) return { normal, tangents: [[normal[1], -normal[0]]] };
+  let least = 0;
+  normal.forEach((value, axis) => { if (Math.abs(value) < Math.abs(normal[least])) least = axis; });
+  const along = [0, 0, 0].map((_, axis) => (axis === least ? 1 : 0));
+  const first = unit(plus(along, normal, -dot(along, normal)));
+  return { normal, tangents: [first, cross(normal, first)] };
+}
+
+/** Tension of a bar, by its strain measure. */
+export function tension(bar, from, to, referenceFrom, referenceTo) {
+  const reference = bar.rest_length ?? length(plus(referenceTo, referenceFrom, -1));
+  const stretch = length(plus(to, from, -1)) / reference;
+  const stiffness = bar.axial_stiffness;
+  const prestress = bar.prestress ?? 0;
+  switch (bar.strain ?? "engineering") {
+    case "green": return (stiffness * (stretch * stretch - 1) / 2) * stretch + prestress;
+    case "log": return (stiffness * Math.log(stretch)) / stretch + prestress;
+    default: return stiffness * (stretch - 1) + prestress;
+  }
+}
+
+/** From space to the plane of the picture, seen from an azimuth and an elevation (degrees). A plane's places stay. */
+export function projection(dimension, { azimuth, elevation }) {
+  if (dimension === 2) return (place) => place;
+  const [a, e] = [azimuth, elevation].map((degrees) => (degrees * Math.PI) / 180);
+  const right = [-Math.sin(a), Math.cos(a), 0];
+  const up = [-Math.sin(e) * Math.cos(a), -Math.sin(e) * Math.sin(a), Math.cos(e)];
+  return (place) => [dot(place, right), dot(place, up)];
+}

@@ -1,0 +1,92 @@
+// Where in a JSON text the value stands that a JSON Pointer (RFC 6901) names: the service says which value is wrong, the
+// reader wants to see the line.
+
+/** `{line, start, end}` of the value, or of the nearest one around it that is there. */
+export function placeIn(text, { pointer = "", detail = "" }) {
+  const told = /line (\d+)(?:,? column (\d+))?/.exec(detail);
+  if (!pointer && told) {
+    const line = Number(told[1]);
+    const start = text.split("\n").slice(0, line - 1).reduce((sum, row) => sum + row.length + 1, 0);
+    const column = Math.max(0, Number(told[2] ?? 1) - 1);
+    return { line, start: start + column, end: start + column + 1 };
+  }
+  const steps = pointer.split("/").slice(1).map((step) => step.replaceAll("~1", "/").replaceAll("~0", "~"));
+  let found = { start: 0, end: 1 };
+  try {
+    const reader = new Reader(text);
+    reader.value(steps, (start, end) => { found = { start, end }; });
+  } catch {
+    // A text that is no JSON has no such place; the best that was found stands.
+  }
+  return { ...found, line: text.slice(0, found.start).split("\n").length };
+}
+
+class Reader {
+  constructor(text) {
+    this.text = text;
+    this.at = 0;
+  }
+
+  space() {
+    while (/\s/.test(this.text[this.at] ?? "")) this.at++;
+  }
+
+  expect(character) {
+    this.space();
+    if (this.text[this.at] !== character) throw new SyntaxError(`${character} at ${this.at}`);
+    this.at++;
+  }
+
+  string() {
+    this.space();
+    const start = this.at;
+    this.expect("\"");
+    while (this.text[this.at] !== "\"") {
+      if (this.at >= this.text.length) throw new SyntaxError("a text without end");
+      this.at += this.text[this.at] === "\\" ? 2 : 1;
+    }
+    this.at++;
+    return JSON.parse(this.text.slice(start, this.at));
+  }
+
+  /** Reads a value; tells the place of each one on the way of the steps, which are null where the way is elsewhere. */
+  value(steps, tell) {
+    this.space();
+    const start = this.at;
+    const opening = this.text[this.at];
+    if (opening === "{" || opening === "[") this.members(opening, steps, tell);
+    else if (opening === "\"") this.string();
+    else {
+      const plain = /^[^\s,\]}]+/.exec(this.text.slice(this.at, this.at + 400));
+      if (!plain) throw new SyntaxError(`a value at ${this.at}`);
+      this.at += plain[0].length;
+    }
+    if (steps?.length === 0) tell(start, this.at);
+  }
+
+  members(opening, steps, tell) {
+    const closing = opening === "{" ? "}" : "]";
+    this.at++;
+    this.space();
+    if (this.text[this.at] === closing) {
+      this.at++;
+      return;
+    }
+    for (let place = 0; ; place++) {
+      this.space();
+      const start = this.at;
+      let name = String(place);
+      if (opening === "{") {
+        name = this.string();
+        this.expect(":");
+      }
+      const isOnTheWay = steps?.length > 0 && steps[0] === name;
+      if (isOnTheWay) tell(start, start + Math.max(1, name.length + 2));
+      this.value(isOnTheWay ? steps.slice(1) : null, tell);
+      this.space();
+      if (this.text[this.at] !== ",") break;
+      this.at++;
+    }
+    this.expect(closing);
+  }
+}

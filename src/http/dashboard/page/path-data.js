@@ -1,0 +1,199 @@
+// What is held of a job: the job, its request, columns of its increments, the points that are not regular, and whole
+// increments where a view has asked for them.
+
+import { call, get } from "./api.js";
+import { follow } from "./stream.js";
+
+/** Increments that are fetched together when one of them is looked at. */
+const WHOLE = 64;
+const ALWAYS = ["stage", "load_factor", "arc_length"];
+const escaped = (name) => name.replaceAll("~", "~0").replaceAll("/", "~1").replaceAll(",", "~2");
+
+export const displacement = (node, component) => `/displacements/${escaped(node)}/${component}`;
+
+export class PathData {
+  constructor(id, told) {
+    this.id = id;
+    this.told = told;
+    this.job = null;
+    this.request = null;
+    this.index = [];
+    this.columns = new Map();
+    this.points = [];
+    this.whole = new Map();
+    this.problem = null;
+    this.isConnected = true;
+    this.stop = () => {};
+    this.given = new AbortController();
+  }
+
+  /** Reads what is stored, and goes on with what comes. */
+  async load(abscissa) {
+    const place = `/v1/jobs/${this.id}`;
+    const { signal } = this.given;
+    [this.job, this.request] = await Promise.all([get(place, signal), get(`${place}/request`, signal)]);
+    const wanted = [...new Set([...ALWAYS, abscissa ?? this.ownAbscissa()])];
+    for (const name of wanted) this.columns.set(name, []);
+    let after = null;
+    for (;;) {
+      const page = await this.page(wanted, after);
+      this.append(page.index, wanted.map((name) => page.columns[name]), wanted, page.points);
+      if (page.index.length === 0 || page.next_after === this.job.progress.last_index) break;
+      after = page.next_after;
+    }
+    this.told("loaded", this);
+    if (signal.aborted || !["queued", "running"].includes(this.job.status)) return;
+    this.stop = follow(this.id, this.index.at(-1) ?? null, {
+      increments: (come) => this.take(come),
+      end: (job) => { this.job = job; this.told("ended", this); },
+      deleted: () => { this.problem = "This job has been deleted."; this.told("ended", this); },
+      connected: (yes) => { this.isConnected = yes; this.told("connection", this); },
+    });
+  }
+
+  page(names, after) {
+    const of = encodeURIComponent(names.join(","));
+    return get(`/v1/jobs/${this.id}/columns?of=${of}${after === null ? "" : `&after=${after}`}`, this.given.signal);
+  }
+
+  append(index, values, names, points) {
+    for (const number of index) this.index.push(number);
+    names.forEach((name, place) => {
+      const column = this.columns.get(name);
+      for (const value of values[place]) column.push(value);
+    });
+    for (const point of points) this.points.push(point);
+  }
+
+  take(increments) {
+    for (const increment of increments) {
+      this.index.push(increment.index);
+      for (const [name, column] of this.columns) column.push(pick(increment, name));
+      const { point } = increment;
+      if (point.kind !== "regular" || point.bifurcation) this.points.push({ index: increment.index, point });
+      if (this.whole.size < 20000) this.whole.set(increment.index, increment);
+    }
+    this.told("grown", this);
+  }
+
+  /** Columns that are not held yet, up to what is held of the others. */
+  async need(names) {
+    const missing = names.filter((name) => !this.columns.has(name));
+    if (missing.length === 0) return;
+    const found = missing.map(() => []);
+    let after = null;
+    while (found[0].length < this.index.length) {
+      const page = await this.page(missing, after);
+      if (page.index.length === 0) break;
+      missing.forEach((name, place) => { for (const value of page.columns[name]) found[place].push(value); });
+      after = page.next_after;
+    }
+    missing.forEach((name, place) => {
+      found[place].length = this.index.length;
+      this.columns.set(name, found[place]);
+    });
+  }
+
+  /** An increment as it is stored; null where there is none. */
+  async increment(index) {
+    if (this.whole.has(index)) return this.whole.get(index);
+    const from = Math.max(-1, index - WHOLE / 2 - 1);
+    const after = from < 0 ? "" : `&after=${from}`;
+    const { increments } = await get(`/v1/jobs/${this.id}/increments?limit=${WHOLE}${after}`, this.given.signal);
+    for (const found of increments) this.whole.set(found.index, found);
+    return this.whole.get(index) ?? null;
+  }
+
+  /** Where an increment stands in the columns; -1 where it is not among them (not every increment need be kept). */
+  placeOf(index) {
+    let [low, high] = [0, this.index.length - 1];
+    while (low <= high) {
+      const middle = (low + high) >> 1;
+      if (this.index[middle] === index) return middle;
+      if (this.index[middle] < index) low = middle + 1;
+      else high = middle - 1;
+    }
+    return -1;
+  }
+
+  /** The path in closed form, as far as the computed one goes; null where none is known. */
+  async exactPath() {
+    const span = (name) => {
+      const most = (this.columns.get(name) ?? []).reduce((sum, value) => Math.max(sum, Math.abs(value ?? 0)), 0);
+      return most > 0 ? most : 1;
+    };
+    const own = [...this.columns.keys()].filter((name) => name.startsWith("/displacements/"));
+    const reach = `load=${span("load_factor")}&displacement=${Math.max(...own.map(span), 1e-300)}`;
+    const key = `${this.index.length} ${reach}`;
+    if (this.exact?.key !== key) {
+      const found = await get(`/v1/jobs/${this.id}/exact?${reach}`, this.given.signal);
+      this.exact = { key, path: found.stages.length > 0 ? found : null };
+    }
+    return this.exact.path;
+  }
+
+  last() {
+    return this.index.at(-1) ?? null;
+  }
+
+  /** The displacement that the last stage is about: what ends it, or else what is loaded. */
+  ownAbscissa() {
+    const { model } = this.request;
+    const recorded = this.request.analysis?.record?.nodes;
+    const isRecorded = (node) => !Array.isArray(recorded) || recorded.includes(node);
+    const stages = [...model.stages].reverse();
+    for (const { until } of stages) {
+      const watched = until?.displacement;
+      if (watched && isRecorded(watched.node)) return displacement(watched.node, "xyz".indexOf(watched.component));
+    }
+    for (const stage of stages) {
+      for (const [node, force] of Object.entries({ ...stage.forces, ...stage.displacements })) {
+        const component = Array.isArray(force) ? force.findIndex((value) => value !== 0) : -1;
+        if (component >= 0 && isRecorded(node)) return displacement(node, component);
+      }
+    }
+    return "arc_length";
+  }
+
+  /** What can be drawn against: [name, words]. */
+  abscissae() {
+    const recorded = this.request.analysis?.record?.nodes;
+    const nodes = Array.isArray(recorded) ? recorded : Object.keys(this.request.model.nodes);
+    const components = "xyz".slice(0, this.request.model.dimension);
+    return [["arc_length", "arc length"], ...nodes.flatMap((node) =>
+      [...components].map((letter, component) => [displacement(node, component), `displacement of ${node}, ${letter}`]))];
+  }
+
+  close() {
+    this.given.abort();
+    this.stop();
+  }
+}
+
+/** A member of an increment by its name or JSON Pointer. */
+export function pick(increment, name) {
+  const steps = name.startsWith("/") ? name.slice(1).split("/") : [name];
+  let value = increment;
+  for (const step of steps) {
+    value = value?.[step.replaceAll("~2", ",").replaceAll("~1", "/").replaceAll("~0", "~")];
+  }
+  return value ?? null;
+}
+
+/** Every increment that is stored, as JSON, a page after the other. */
+export async function everyIncrement(id) {
+  const parts = [];
+  let after = "";
+  for (;;) {
+    const page = await get(`/v1/jobs/${id}/increments?limit=10000${after}`);
+    if (page.increments.length === 0) break;
+    parts.push(...page.increments.map((increment) => JSON.stringify(increment)));
+    after = `&after=${page.next_after}`;
+  }
+  return new Blob([`{"increments": [\n${parts.join(",\n")}\n]}\n`], { type: "application/json" });
+}
+
+export async function act(id, what) {
+  if (what === "delete") await call(`/v1/jobs/${id}`, { method: "DELETE" });
+  else await call(`/v1/jobs/${id}/cancel`, { method: "POST" });
+}

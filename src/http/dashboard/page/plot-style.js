@@ -1,0 +1,33 @@
+// What all plots have in common: colours of the page, fonts, margins, how Plotly behaves.
+
+const dark = matchMedia("(prefers-color-scheme: dark)");
+const COLOURS = ["#3486cc", "#d2691e", "#2e9a5b", "#a44fb0", "#c23b4e", "#7f7a1f", "#1f9aa3", "#7a6a5d"];
+
+export const colourOf = (place) => COLOURS[place % COLOURS.length];
+export const onThemeChange = (listener) => dark.addEventListener("change", listener);
+
+/** A colour of the style sheet. */
+export const fromSheet = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+export const CONFIGURATION = {
+  displaylogo: false, responsive: true, modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"],
+  toImageButtonOptions: { format: "svg" },
+};
+
+export function axis(title) {
+  return {
+    title: { text: title, standoff: 8 }, gridcolor: fromSheet("--grid"), zerolinecolor: fromSheet("--zero"),
+    linecolor: fromSheet("--zero"), automargin: true, exponentformat: "power",
+  };
+}
+
+export function layout(more) {
+  return {
+    paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
+    font: { family: "system-ui, sans-serif", size: 13, color: fromSheet("--text") },
+    margin: { l: 56, r: 12, t: 30, b: 44 }, hovermode: "closest", showlegend: false, dragmode: "pan",
+    modebar: { bgcolor: "rgba(0,0,0,0)", color: fromSheet("--faint"), activecolor: fromSheet("--accent") },
+    hoverlabel: { bgcolor: fromSheet("--panel"), bordercolor: fromSheet("--zero"), font: { color: fromSheet("--text") } },
+    ...more,
+  };
+}

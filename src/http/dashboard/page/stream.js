@@ -1,0 +1,89 @@
+// Follows a job over server-sent events read by fetch (an EventSource sends no token): resumes after the last index that
+// came, without gap or repeat, whatever ends the connection.
+
+import { call, Problem } from "./api.js";
+
+const SOON = 500;
+const LATEST = 8000;
+/** The service says that it is there every 15 s. */
+const SILENCE = 40000;
+
+/**
+ * `after`: the last index that is held, or null. Tells `increments(list)`, `end(job)`, `deleted()`, `connected(yes)`.
+ * Answers a function that gives the stream up.
+ */
+export function follow(id, after, { increments, end, deleted, connected }) {
+  let given = new AbortController();
+  let isOver = false;
+  let last = after;
+  let wait = SOON;
+
+  async function once() {
+    given = new AbortController();
+    let silence = setTimeout(() => given.abort(), SILENCE);
+    try {
+      const headers = { Accept: "text/event-stream" };
+      if (last !== null) headers["Last-Event-ID"] = String(last);
+      const answer = await call(`/v1/jobs/${id}/stream`, { headers, signal: given.signal });
+      connected(true);
+      wait = SOON;
+      const reader = answer.body.pipeThrough(new TextDecoderStream()).getReader();
+      let text = "";
+      for (;;) {
+        const { value, done } = await reader.read();
+        if (done || isOver) return;
+        clearTimeout(silence);
+        silence = setTimeout(() => given.abort(), SILENCE);
+        const whole = (text + value).split("\n\n");
+        text = whole.pop();
+        take(whole.map(read));
+        if (isOver) return;
+      }
+    } finally {
+      clearTimeout(silence);
+    }
+  }
+
+  function take(events) {
+    const come = events.filter(({ event }) => event === "increment").map(({ data }) => JSON.parse(data))
+      .filter(({ index }) => last === null || index > last);
+    if (come.length) {
+      last = come.at(-1).index;
+      increments(come);
+    }
+    const closing = events.find(({ event }) => event === "end" || event === "deleted");
+    if (!closing) return;
+    isOver = true;
+    if (closing.event === "end") end(JSON.parse(closing.data));
+    else deleted();
+  }
+
+  (async () => {
+    while (!isOver) {
+      try {
+        await once();
+      } catch (problem) {
+        if (problem instanceof Problem && problem.status === 404) {
+          isOver = true;
+          deleted();
+        }
+      }
+      if (isOver) return;
+      connected(false);
+      await new Promise((resume) => setTimeout(resume, wait));
+      wait = Math.min(2 * wait, LATEST);
+    }
+  })();
+
+  return () => { isOver = true; given.abort(); };
+}
+
+function read(text) {
+  const found = { event: "", data: "" };
+  for (const line of text.split("\n")) {
+    const colon = line.indexOf(":");
+    const name = line.slice(0, colon);
+    if (name in found) found[name] += line.slice(colon + 1).trimStart();
+  }
+  return found;
+}

@@ -1,0 +1,66 @@
+// What the service says in symbols, in sentences.
+
+const STOPPED = {
+  stages_completed: "Every stage reached its end.",
+  max_increments: "It has as many increments as it was allowed.",
+  mechanism: "The structure has become a mechanism: it moves without resistance.",
+  no_direction: "There is no direction in which the path goes on.",
+  cycle: "The path has come back to where it was.",
+  step_underflow: "Even the shortest step does not converge.",
+  time_limit: "It has run as long as a job may; what is stored stands.",
+  storage_limit: "It has stored as much as a job may; what is stored stands.",
+};
+const STATUS = {
+  queued: "waits in the queue", running: "is running", completed: "completed", stopped: "stopped: the path cannot go on",
+  cancelled: "cancelled", failed: "failed",
+};
+const KINDS = {
+  start: "start", regular: "regular point", smooth_limit: "limit point", nonsmooth_limit: "limit point at a contact change",
+  smooth_bifurcation: "bifurcation point", contact_change: "contact change", bifurcation: "bifurcation point", end: "end",
+};
+
+export const statusWords = (status) => STATUS[status] ?? status;
+export const kindWords = (kind) => KINDS[kind] ?? kind.replaceAll("_", " ");
+/** A named point: what it is, and whether the path could go another way there. */
+export const pointWords = ({ kind, bifurcation }) =>
+  `${kindWords(kind)}${bifurcation && !kind.includes("bifurcation") ? " and bifurcation" : ""}`;
+export const isGoingOn = (job) => job.status === "queued" || job.status === "running";
+
+export function stopSentence(job) {
+  if (job.error) return `It failed: ${job.error}.`;
+  const told = job.report?.sentence;
+  if (told) return `${told[0].toUpperCase()}${told.slice(1)}.`;
+  return job.stop_reason ? STOPPED[job.stop_reason] ?? job.stop_reason.replaceAll("_", " ") : "";
+}
+
+/** Settings as they are, the defaults said as such. */
+export function settingsSentences(request, plan, defaults) {
+  const given = request.analysis ?? {};
+  const of = (from, otherwise, name) => {
+    const value = from?.[name];
+    return value === undefined || value === null ? `${words(otherwise?.[name])} (default)` : words(value);
+  };
+  const setting = (name) => of(given, defaults, name);
+  const arc = (name) => of(given.arc_length, defaults.arc_length, name);
+  const count = (number, one) => `${number} ${one}${number === 1 ? "" : "s"}`;
+  return [
+    `Increments are found by the method: ${setting("method")}.`,
+    `Where there is a choice of directions, the path takes the one of: ${setting("selection")}.`,
+    `Contact changes become points of their own: ${setting("events")}.`,
+    `It ends after so many increments at the latest: ${setting("max_increments")}.`,
+    `Arc length of an increment: first ${arc("initial")}, at least ${arc("min")}, at most ${arc("max")}.`,
+    plan ? `${count(plan.unknowns, "unknown")}, ${count(plan.contacts, "contact")}, ${count(plan.stages, "stage")}; displacements are measured by ${short(plan.displacement_scale)}, forces by ${short(plan.force_scale)}.` : null,
+  ].filter(Boolean);
+}
+
+const words = (value) => String(value ?? "computed from the scene").replaceAll("_", " ");
+
+export const short = (value) => (typeof value === "number" ? Number(value.toPrecision(5)).toString() : "–");
+
+export function ago(time) {
+  const seconds = Math.max(0, (Date.now() - Date.parse(time)) / 1000);
+  if (seconds < 60) return "just now";
+  if (seconds < 3600) return `${Math.floor(seconds / 60)} min ago`;
+  if (seconds < 86400) return `${Math.floor(seconds / 3600)} h ago`;
+  return new Date(time).toLocaleDateString();
+}

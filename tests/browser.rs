@@ -1,0 +1,144 @@
+//! The dashboard in a browser, served by the real program.
+//!
+//! Where there is no chromedriver these tests say that they are skipped; with `ARCSLIP_BROWSER=required` they fail there.
+#![cfg(feature = "server")]
+
+mod common;
+
+use common::browser::Browser;
+use common::process::{self, Process};
+use common::service::{in_short_steps, indices, scene};
+use serde_json::{Value, json};
+use std::net::TcpListener;
+use std::path::Path;
+use std::process::Command;
+
+/// The named points of the path that is drawn first.
+const NAMED: &str = "document.getElementById('path-plot').data?.[1]";
+const STATUS: &str = "document.getElementById('status')?.textContent";
+
+fn numbers(values: &Value) -> Vec<f64> {
+    values.as_array().expect("a list").iter().map(|value| value.as_f64().expect("a number")).collect()
+}
+
+#[tokio::test]
+async fn a_scene_is_run_and_its_limit_points_are_drawn_and_named() {
+    let Some(browser) = Browser::open().await else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let service = Process::serve(&folder.path().join("jobs.db"), &[]);
+    browser.page.goto(&format!("{}/?run&scene=one-bar-truss", service.url)).await.expect("a page");
+    browser.until("document.getElementById('queue')?.disabled === false").await;
+    let plan = browser.ask("document.getElementById('verdict').textContent").await;
+    assert!(plan.as_str().is_some_and(|plan| plan.contains("Left out: second-order cones")), "{plan}");
+    browser.ask("document.getElementById('queue').click()").await;
+    browser.until(&format!("{STATUS} === 'stopped'")).await;
+    browser.until(&format!("{NAMED}?.x.length === 2")).await;
+    let drawn = browser.ask(NAMED).await;
+    assert_eq!(drawn["text"], json!(["A", "B"]));
+    let client = process::client();
+    let jobs = process::get(&client, &service.url, "/v1/jobs").await.expect("a list");
+    let id = jobs["jobs"][0]["id"].as_str().expect("an id").to_owned();
+    let lines = process::lines(&client, &service.url, &id).await;
+    let stored: Vec<Value> = lines.iter().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+    let limits: Vec<&Value> = stored.iter().filter(|line| line["point"]["kind"] == "smooth_limit").collect();
+    assert_eq!(limits.len(), 2);
+    for (place, limit) in limits.iter().enumerate() {
+        assert_eq!(drawn["y"][place], limit["load_factor"]);
+        assert_eq!(drawn["x"][place], limit["displacements"]["tip"][0]);
+    }
+    let line = browser.ask("document.getElementById('path-plot').data[0]").await;
+    let largest = numbers(&line["y"]).into_iter().fold(f64::NEG_INFINITY, f64::max);
+    assert_eq!(Some(largest), drawn["y"][0].as_f64(), "the first is the load that the structure bears");
+    // The address alone shows the same again.
+    let address = browser.page.current_url().await.expect("an address").to_string();
+    assert!(address.contains(&id), "{address}");
+    browser.page.goto(&address).await.expect("a page");
+    browser.until(&format!("{NAMED}?.x.length === 2")).await;
+    browser.until("document.querySelector('#structure-plot .main-svg') !== null").await;
+    browser.is_content().await;
+    assert!(browser.asked_nobody_but(&service.url).await > 10);
+    browser.close().await;
+}
+
+#[tokio::test]
+async fn a_broken_model_is_refused_at_its_line() {
+    let Some(browser) = Browser::open().await else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let service = Process::serve(&folder.path().join("jobs.db"), &[]);
+    browser.page.goto(&format!("{}/?run&scene=one-bar-truss", service.url)).await.expect("a page");
+    browser.until("document.getElementById('queue')?.disabled === false").await;
+    let mut broken = scene("one-bar-truss");
+    broken["model"]["contacts"][0]["node"] = json!("top");
+    let text = serde_json::to_string_pretty(&broken).expect("JSON");
+    let line = text.lines().position(|line| line.contains("\"top\"")).expect("it is there") + 1;
+    let put = "const place = document.getElementById('request'); place.value = arguments[0]; \
+               place.dispatchEvent(new Event('input'));";
+    browser.page.execute(put, vec![json!(text)]).await.expect("it runs");
+    let told = browser.until("document.querySelector('#verdict .mistakes')?.textContent").await;
+    let told = told.as_str().expect("text");
+    assert!(told.contains(&format!("Line {line} ")) && told.contains("`top`") && told.contains("`tip`"), "{told}");
+    assert_eq!(browser.ask("document.getElementById('queue').disabled").await, true);
+    browser.page.execute(put, vec![json!("{\n  \"model\": {,}\n}")]).await.expect("it runs");
+    browser.until("document.querySelector('#verdict .mistakes')?.textContent.includes('Line 2')").await;
+    browser.close().await;
+}
+
+#[tokio::test]
+async fn another_direction_is_followed_and_drawn_beside_the_path() {
+    let Some(browser) = Browser::open().await else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let service = Process::serve(&folder.path().join("jobs.db"), &[]);
+    let client = process::client();
+    let id = process::submit(&client, &service.url, "/v1/jobs", &scene("klarbring")).await;
+    process::until(&client, &service.url, &format!("/v1/jobs/{id}"), process::has_ended).await;
+    browser.page.goto(&format!("{}/?jobs={id}&at=7", service.url)).await.expect("a page");
+    browser.until("document.querySelector('#directions button') !== null").await;
+    browser.ask("document.querySelector('#directions button').click()").await;
+    browser.until("document.querySelectorAll('#path .legend li').length >= 2").await;
+    browser.until("document.getElementById('path-plot').data[2].customdata?.length > 1").await;
+    let branch = process::get(&client, &service.url, &format!("/v1/jobs?parent={id}")).await.expect("a list");
+    assert_eq!(branch["jobs"].as_array().map(Vec::len), Some(1));
+    let begins = browser.ask("(({data: [line, , branch]}) => [line.y[line.customdata.indexOf(7)], branch.y[0]])(document.getElementById('path-plot'))").await;
+    assert_eq!(begins[0], begins[1], "it begins where it leaves the other");
+    browser.is_content().await;
+    browser.close().await;
+}
+
+/// The program on that port.
+fn serve_on(port: u16, database: &Path) -> Process {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_arcslip"));
+    command.args(["serve", "--listen", &format!("127.0.0.1:{port}"), "--database"]).arg(database);
+    command.env("RUST_LOG", "error");
+    Process::start(command)
+}
+
+#[tokio::test]
+async fn a_path_goes_on_growing_without_a_gap_after_a_restart() {
+    let Some(browser) = Browser::open().await else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let database = folder.path().join("jobs.db");
+    let port = TcpListener::bind("127.0.0.1:0").and_then(|listener| listener.local_addr()).expect("a port").port();
+    let service = serve_on(port, &database);
+    let client = process::client();
+    let url = service.url.clone();
+    // Long enough to be under way when the program goes down.
+    let mut request = in_short_steps("one-bar-truss", 400_000, 250_000);
+    request["analysis"]["record"] = json!({"every": 200, "directions": false});
+    let id = process::submit(&client, &url, "/v1/jobs", &request).await;
+    browser.page.goto(&format!("{url}/?jobs={id}")).await.expect("a page");
+    browser.until("document.getElementById('path-plot').data?.[0].x.length > 20").await;
+    service.terminated().await;
+    browser.until("document.getElementById('connection').textContent.startsWith('Disconnected')").await;
+    let before = browser.ask("document.getElementById('path-plot').data[0].x.length").await;
+    let again = serve_on(port, &database);
+    browser.until("document.getElementById('connection').textContent === ''").await;
+    process::until(&client, &again.url, &format!("/v1/jobs/{id}"), process::has_ended).await;
+    browser.until(&format!("['stopped', 'completed'].includes({STATUS})")).await;
+    let drawn = browser.ask("document.getElementById('path-plot').data[0].customdata.filter(Number.isInteger)").await;
+    let drawn = numbers(&drawn);
+    let lines = process::lines(&client, &again.url, &id).await;
+    let stored: Vec<f64> = indices(lines.iter().map(String::as_str)).into_iter().map(|index| index as f64).collect();
+    assert!(before.as_u64().is_some_and(|before| before < stored.len() as u64), "it was cut: {before}");
+    assert!(drawn == stored, "without gap or repeat: {} of {}", drawn.len(), stored.len());
+    browser.close().await;
+}
