@@ -64,11 +64,11 @@ pub fn run(arguments: &Arguments, settings: &[Setting]) -> Outcome {
         tracing::info!(name, value, from, "setting");
     }
     let access = arguments.access.access(arguments.listen)?;
-    tokio::runtime::Builder::new_multi_thread()
-        .enable_all()
-        .build()
-        .map_err(Failure::other)?
-        .block_on(serve(arguments, access))
+    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build().map_err(Failure::other)?;
+    let outcome = runtime.block_on(serve(arguments, access));
+    // Models that are being checked for clients who have gone are not waited for.
+    runtime.shutdown_background();
+    outcome
 }
 
 async fn serve(arguments: &Arguments, access: Access) -> Outcome {

@@ -43,7 +43,7 @@ pub async fn submit(
     Extension(caller): Extension<Caller>,
     Parameters(parameters): Parameters<SubmitParameters>,
     headers: HeaderMap,
-    JsonText(request, _room): JsonText,
+    JsonText(request): JsonText,
 ) -> Result<Response, Problem> {
     let key = idempotency_key(&headers)?;
     if parameters.validate {

@@ -73,8 +73,7 @@ impl<'a> Given<'a> {
 
     /// Counts what a step took, and sends its increment on; where that is not recorded, a checkpoint now and then.
     pub fn take(&mut self, step: Step, place: &dyn Place) -> ControlFlow<()> {
-        let Some(judged) = step.given else { return self.put_down(place) };
-        let (time, totals) = (self.since.elapsed(), judged.increment.diagnostics);
+        let (time, totals) = (self.since.elapsed(), step.diagnostics);
         let before = self.counted.replace(totals).unwrap_or(totals);
         self.work.solved(Solved {
             time,
@@ -83,7 +82,10 @@ impl<'a> Given<'a> {
             qp_solves: totals.qp_solves.saturating_sub(before.qp_solves),
             mpec_solves: totals.mpec_solves.saturating_sub(before.mpec_solves),
         });
-        let flow = self.send(judged, place);
+        let flow = match step.given {
+            Some(judged) => self.send(judged, place),
+            None => self.put_down(place),
+        };
         self.since = Instant::now();
         flow
     }
