@@ -1,13 +1,22 @@
 // What is held of a job: the job, its request, columns of its increments, the points that are not regular, and whole
 // increments where a view has asked for them.
 
-import { call, get } from "./api.js";
+import { get } from "./api.js";
 import { follow } from "./stream.js";
+import { isGoingOn } from "./words.js";
 
 /** Increments that are fetched together when one of them is looked at. */
 const WHOLE = 64;
+/** Increments that are held whole as they stream in; those past it are fetched again where they are looked at. */
+const HELD = 20000;
 const ALWAYS = ["stage", "load_factor", "arc_length"];
 const escaped = (name) => name.replaceAll("~", "~0").replaceAll("/", "~1").replaceAll(",", "~2");
+
+/** What can be drawn over the path: [name, words]. */
+export const ORDINATES = [
+  ["load_factor", "load factor"], ["/energy/dissipated", "dissipated energy"], ["/energy/strain", "strain energy"],
+  ["/energy/external_work", "external work"],
+];
 
 export const displacement = (node, component) => `/displacements/${escaped(node)}/${component}`;
 
@@ -27,12 +36,12 @@ export class PathData {
     this.given = new AbortController();
   }
 
-  /** Reads what is stored, and goes on with what comes. */
-  async load(abscissa) {
+  /** Reads what is stored, with these columns, and goes on with what comes. */
+  async load(columns) {
     const place = `/v1/jobs/${this.id}`;
     const { signal } = this.given;
     [this.job, this.request] = await Promise.all([get(place, signal), get(`${place}/request`, signal)]);
-    const wanted = [...new Set([...ALWAYS, abscissa ?? this.ownAbscissa()])];
+    const wanted = [...new Set([...ALWAYS, ...columns, ...(columns.length ? [] : [this.ownAbscissa()])])];
     for (const name of wanted) this.columns.set(name, []);
     let after = null;
     for (;;) {
@@ -42,9 +51,9 @@ export class PathData {
       after = page.next_after;
     }
     this.told("loaded", this);
-    if (signal.aborted || !["queued", "running"].includes(this.job.status)) return;
-    this.stop = follow(this.id, this.index.at(-1) ?? null, {
-      increments: (come) => this.take(come),
+    if (signal.aborted || !isGoingOn(this.job)) return;
+    this.stop = follow(place, this.index.at(-1) ?? null, {
+      come: (increments) => this.take(increments),
       end: (job) => { this.job = job; this.told("ended", this); },
       deleted: () => { this.problem = "This job has been deleted."; this.told("ended", this); },
       connected: (yes) => { this.isConnected = yes; this.told("connection", this); },
@@ -71,7 +80,7 @@ export class PathData {
       for (const [name, column] of this.columns) column.push(pick(increment, name));
       const { point } = increment;
       if (point.kind !== "regular" || point.bifurcation) this.points.push({ index: increment.index, point });
-      if (this.whole.size < 20000) this.whole.set(increment.index, increment);
+      if (this.whole.size < HELD) this.whole.set(increment.index, increment);
     }
     this.told("grown", this);
   }
@@ -136,6 +145,11 @@ export class PathData {
     return this.index.at(-1) ?? null;
   }
 
+  /** Index of the last bifurcation point that has been found; null before the first. */
+  lastBifurcation() {
+    return this.points.findLast(({ point }) => point.bifurcation)?.index ?? null;
+  }
+
   /** The displacement that the last stage is about: what ends it, or else what is loaded. */
   ownAbscissa() {
     const { model } = this.request;
@@ -178,22 +192,4 @@ export function pick(increment, name) {
     value = value?.[step.replaceAll("~2", ",").replaceAll("~1", "/").replaceAll("~0", "~")];
   }
   return value ?? null;
-}
-
-/** Every increment that is stored, as JSON, a page after the other. */
-export async function everyIncrement(id) {
-  const parts = [];
-  let after = "";
-  for (;;) {
-    const page = await get(`/v1/jobs/${id}/increments?limit=10000${after}`);
-    if (page.increments.length === 0) break;
-    parts.push(...page.increments.map((increment) => JSON.stringify(increment)));
-    after = `&after=${page.next_after}`;
-  }
-  return new Blob([`{"increments": [\n${parts.join(",\n")}\n]}\n`], { type: "application/json" });
-}
-
-export async function act(id, what) {
-  if (what === "delete") await call(`/v1/jobs/${id}`, { method: "DELETE" });
-  else await call(`/v1/jobs/${id}/cancel`, { method: "POST" });
 }

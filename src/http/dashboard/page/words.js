@@ -19,8 +19,10 @@ const KINDS = {
   smooth_bifurcation: "bifurcation point", contact_change: "contact change", bifurcation: "bifurcation point", end: "end",
 };
 
+/** A name of the interface as words. */
+export const plainWords = (name) => String(name).replaceAll("_", " ");
 export const statusWords = (status) => STATUS[status] ?? status;
-export const kindWords = (kind) => KINDS[kind] ?? kind.replaceAll("_", " ");
+export const kindWords = (kind) => KINDS[kind] ?? plainWords(kind);
 /** A named point: what it is, and whether the path could go another way there. */
 export const pointWords = ({ kind, bifurcation }) =>
   `${kindWords(kind)}${bifurcation && !kind.includes("bifurcation") ? " and bifurcation" : ""}`;
@@ -30,7 +32,7 @@ export function stopSentence(job) {
   if (job.error) return `It failed: ${job.error}.`;
   const told = job.report?.sentence;
   if (told) return `${told[0].toUpperCase()}${told.slice(1)}.`;
-  return job.stop_reason ? STOPPED[job.stop_reason] ?? job.stop_reason.replaceAll("_", " ") : "";
+  return job.stop_reason ? STOPPED[job.stop_reason] ?? plainWords(job.stop_reason) : "";
 }
 
 /** Settings as they are, the defaults said as such. */
@@ -53,7 +55,7 @@ export function settingsSentences(request, plan, defaults) {
   ].filter(Boolean);
 }
 
-const words = (value) => String(value ?? "computed from the scene").replaceAll("_", " ");
+const words = (value) => plainWords(value ?? "computed from the scene");
 
 export const short = (value) => (typeof value === "number" ? Number(value.toPrecision(5)).toString() : "–");
 
