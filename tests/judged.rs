@@ -6,7 +6,7 @@ use arcslip::cancel::CancelFlag;
 use arcslip::judged::{JudgedCheckpoint, JudgedCheckpointError, JudgedIncrement, JudgedPath, JudgedReport};
 use arcslip::measure::{Errors, HistoryError};
 use arcslip::model::JobRequest;
-use arcslip::model::request::{Method, Regularised};
+use arcslip::model::request::{Method, Record, Regularised};
 use arcslip::path::Scene;
 use common::paths::{judge, scene, scene_file};
 
@@ -112,6 +112,40 @@ fn a_path_that_is_taken_up_again_is_judged_to_the_same_bits() {
             let rest: Vec<JudgedIncrement> = resumed.by_ref().map(without_time).collect();
             assert!(rest == increments[place..], "{name}, cut at {place}");
             assert_eq!(resumed.report().expect("a report").measure, report.measure, "{name}, cut at {place}");
+        }
+    }
+}
+
+/// Put down at increments that are not recorded, the last ones of the path among them.
+#[test]
+fn a_path_of_which_little_is_recorded_is_taken_up_between_its_rows() {
+    for (name, every) in CUT {
+        let mut request = scene(name);
+        request.analysis.record = Some(Record { every: 1_000_000, ..Record::default() });
+        let scene = Scene::new(&request).expect("a scene");
+        let whole = JudgedPath::new(&request, &scene, CancelFlag::default()).count() as u64;
+        // One more than the events: an increment that is recorded as it is the last.
+        request.analysis.max_increments = request.analysis.max_increments.min(whole + every + 1);
+        let scene = Scene::new(&request).expect("a scene");
+        let mut path = JudgedPath::new(&request, &scene, CancelFlag::default());
+        let (mut increments, mut cuts) = (Vec::new(), Vec::new());
+        while let Some(step) = path.step() {
+            if step.given.is_none() {
+                cuts.push((increments.len(), stored(&path), path.open_directions()));
+            }
+            increments.extend(step.given.map(without_time));
+        }
+        assert!(cuts.len() > 3, "{name}");
+        let last = (path.checkpoint().expect("a checkpoint").path.index(), path.open_directions());
+        let report = path.report().expect("a report");
+        for (place, checkpoint, open) in cuts {
+            let mut resumed = JudgedPath::resume(&request, &scene, checkpoint, CancelFlag::default()).expect("resumed");
+            assert_eq!(resumed.open_directions(), open, "{name}");
+            let rest: Vec<JudgedIncrement> = resumed.by_ref().map(without_time).collect();
+            assert!(rest == increments[place..], "{name}, cut after {place} rows");
+            assert_eq!(resumed.report().expect("a report").measure, report.measure, "{name}, cut after {place} rows");
+            let end = (resumed.checkpoint().expect("a checkpoint").path.index(), resumed.open_directions());
+            assert_eq!(end, last, "{name}");
         }
     }
 }

@@ -3,6 +3,7 @@
 
 mod common;
 
+use arcslip::jobs::Settings;
 use arcslip::store;
 use common::faulty_store::FaultyStore;
 use common::server::{TestServer, settings};
@@ -12,6 +13,7 @@ use serde_json::Value;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
+use std::time::Duration;
 
 async fn start(folder: &Path, solver: MadeUp) -> (Arc<FaultyStore>, TestServer) {
     let store = FaultyStore::around(store::open(&folder.join("jobs.db")).await.expect("a store"));
@@ -28,6 +30,38 @@ async fn a_database_that_is_locked_for_a_moment_costs_nothing() {
     let job = server.ended(&id).await;
     assert_eq!(job["status"], "completed", "{job}");
     assert_eq!(job["attempt"], 1);
+    assert_eq!(*store.stored.lock().expect("a list"), (0..600).collect::<Vec<_>>());
+}
+
+/// For seconds, and less than the lease: no attempt is lost and nothing fails.
+#[tokio::test]
+async fn a_database_that_is_away_for_some_time_costs_that_time_alone() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let store = FaultyStore::around(store::open(&folder.path().join("jobs.db")).await.expect("a store"));
+    let long = Settings { lease: Duration::from_secs(30), ..settings() };
+    let server = TestServer::start_on(store.clone(), MadeUp::default(), long).await;
+    store.locked_appends.store(u32::MAX, Ordering::Relaxed);
+    let id = server.submit(&request("delayed", 600)).await;
+    tokio::time::sleep(Duration::from_secs(2)).await;
+    let job = server.get_json(&format!("/v1/jobs/{id}")).await;
+    assert_eq!(job["status"], "running", "{job}");
+    store.locked_appends.store(0, Ordering::Relaxed);
+    let job = server.ended(&id).await;
+    assert_eq!((&job["status"], &job["attempt"]), (&Value::from("completed"), &Value::from(1)), "{job}");
+    assert_eq!(*store.stored.lock().expect("a list"), (0..600).collect::<Vec<_>>());
+}
+
+/// Longer than the lease: the job goes back to the queue.
+#[tokio::test]
+async fn a_database_that_is_away_past_the_lease_fails_no_job() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (store, server) = start(folder.path(), MadeUp::default()).await;
+    store.locked_appends.store(u32::MAX, Ordering::Relaxed);
+    let id = server.submit(&request("delayed", 600)).await;
+    server.until(&id, |job| job["attempt"] == 2).await;
+    store.locked_appends.store(0, Ordering::Relaxed);
+    let job = server.ended(&id).await;
+    assert_eq!(job["status"], "completed", "{job}");
     assert_eq!(*store.stored.lock().expect("a list"), (0..600).collect::<Vec<_>>());
 }
 

@@ -146,11 +146,9 @@ async fn a_follower_stands_on_its_own_and_is_taken_up_by_another_process() {
     let lost = store::open(&database).await.expect("a store");
     let claim = lost.claim("lost", Duration::from_secs(5)).await.expect("a claim").expect("a job");
     assert_eq!(claim.lease.job.to_string(), name(&queued));
-    let stored: Vec<Line> = (0..4)
-        .zip(&expected)
-        .map(|(index, body)| Line { index, body: body.clone(), branch: None, checkpoint: None })
-        .collect();
-    let answer = lost.append(&claim.lease, &stored, Duration::from_millis(50)).await.expect("stored");
+    let stored: Vec<Line> =
+        (0..4).zip(&expected).map(|(index, body)| Line { index, body: body.clone(), branch: None }).collect();
+    let answer = lost.append(&claim.lease, &stored.into(), Duration::from_millis(50)).await.expect("stored");
     assert_eq!(answer, LeaseAnswer::Held { cancel_requested: false });
 
     let server = TestServer::start(&database, PathSolver).await;

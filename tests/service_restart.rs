@@ -3,7 +3,7 @@
 
 mod common;
 
-use arcslip::store::{self, Ending, LeaseAnswer, Line, NewJob, Page, Status, Submitted, Task};
+use arcslip::store::{self, Batch, Ending, LeaseAnswer, Line, NewJob, Page, Status, Submitted, Task};
 use common::server::TestServer;
 use common::service::{indices, request, without_elapsed};
 use common::solver::MadeUp;
@@ -61,7 +61,7 @@ async fn a_lost_workers_job_is_taken_over_and_its_late_writes_are_refused() {
     let id = queue(lost.as_ref(), 3).await;
     let claim = lost.claim("lost", Duration::from_secs(5)).await.expect("a claim").expect("a job");
     let before = [line(0, "{\"index\":0,\"elapsed_s\":0}"), line(1, "{\"index\":1,\"elapsed_s\":0}")];
-    lost.append(&claim.lease, &before, Duration::from_millis(50)).await.expect("stored");
+    lost.append(&claim.lease, &batch(&before), Duration::from_millis(50)).await.expect("stored");
 
     let server = TestServer::start(&database, MadeUp::default()).await;
     let job = server.ended(&id.to_string()).await;
@@ -73,7 +73,7 @@ async fn a_lost_workers_job_is_taken_over_and_its_late_writes_are_refused() {
 
     let late = [line(6, "{}")];
     let minute = Duration::from_secs(60);
-    assert_eq!(lost.append(&claim.lease, &late, minute).await.expect("an answer"), LeaseAnswer::Lost);
+    assert_eq!(lost.append(&claim.lease, &batch(&late), minute).await.expect("an answer"), LeaseAnswer::Lost);
     assert_eq!(lost.renew(&claim.lease, minute).await.expect("an answer"), LeaseAnswer::Lost);
     assert_eq!(lost.release(&claim.lease).await.expect("an answer"), LeaseAnswer::Lost);
     assert_eq!(lost.finish(&claim.lease, Ending::failed("late")).await.expect("an answer"), LeaseAnswer::Lost);
@@ -92,8 +92,8 @@ async fn a_lease_that_has_run_out_writes_nothing_even_if_nobody_has_taken_the_jo
     let stopped = store.claim("stopped", short).await.expect("a claim").expect("a job").lease;
     tokio::time::sleep(2 * short).await;
     let lines = [line(0, "{}")];
-    assert_eq!(store.append(&stopped, &lines, minute).await.expect("an answer"), LeaseAnswer::Lost);
-    assert_eq!(store.append(&stopped, &[], minute).await.expect("an answer"), LeaseAnswer::Lost);
+    assert_eq!(store.append(&stopped, &batch(&lines), minute).await.expect("an answer"), LeaseAnswer::Lost);
+    assert_eq!(store.append(&stopped, &batch(&[]), minute).await.expect("an answer"), LeaseAnswer::Lost);
     assert_eq!(store.renew(&stopped, minute).await.expect("an answer"), LeaseAnswer::Lost);
     assert_eq!(store.release(&stopped).await.expect("an answer"), LeaseAnswer::Lost);
     assert_eq!(store.finish(&stopped, Ending::failed("late")).await.expect("an answer"), LeaseAnswer::Lost);
@@ -101,9 +101,9 @@ async fn a_lease_that_has_run_out_writes_nothing_even_if_nobody_has_taken_the_jo
     assert_eq!((job.status, job.last_index, job.attempt), (Status::Running, None, 1), "nothing was written");
     assert_eq!(store.reclaim_expired().await.expect("an answer"), 1);
     let next = store.claim("next", minute).await.expect("a claim").expect("a job").lease;
-    assert_eq!(store.append(&stopped, &lines, minute).await.expect("an answer"), LeaseAnswer::Lost);
+    assert_eq!(store.append(&stopped, &batch(&lines), minute).await.expect("an answer"), LeaseAnswer::Lost);
     assert_eq!(
-        store.append(&next, &lines, minute).await.expect("an answer"),
+        store.append(&next, &batch(&lines), minute).await.expect("an answer"),
         LeaseAnswer::Held { cancel_requested: false }
     );
     assert_eq!(
@@ -130,7 +130,7 @@ async fn of_the_jobs_that_may_have_ended_their_process_one_is_tried_at_a_time() 
     assert_eq!(suspect.job, first);
     assert_eq!(taken().await.map(|lease| lease.job), Some(third), "one without a loss goes beside it");
     assert!(taken().await.is_none(), "the other suspect waits");
-    store.append(&suspect, &[line(0, "{}")], minute).await.expect("stored");
+    store.append(&suspect, &batch(&[line(0, "{}")]), minute).await.expect("stored");
     assert_eq!(taken().await.map(|lease| lease.job), Some(second), "what has stored something is none any more");
 }
 
@@ -159,9 +159,9 @@ async fn a_batch_is_stored_whole_or_not_at_all() {
     let minute = Duration::from_secs(60);
     let claim = store.claim("worker", minute).await.expect("a claim").expect("a job");
     let first: Vec<Line> = (0..1200).map(|index| line(index, "{}")).collect();
-    store.append(&claim.lease, &first, minute).await.expect("stored");
+    store.append(&claim.lease, &batch(&first), minute).await.expect("stored");
     let with_repeat = [line(1200, "{}"), line(1199, "{}")];
-    assert!(store.append(&claim.lease, &with_repeat, minute).await.is_err());
+    assert!(store.append(&claim.lease, &batch(&with_repeat), minute).await.is_err());
     let stored = store.increments(id, Some(1000), ALL).await.expect("increments");
     assert_eq!(stored.len(), 199);
     assert_eq!(store.job(id).await.expect("an answer").expect("a job").last_index, Some(1199));
@@ -191,5 +191,9 @@ async fn queue(store: &dyn store::Store, max_attempts: u32) -> uuid::Uuid {
 }
 
 fn line(index: u64, body: &str) -> Line {
-    Line { index, body: body.to_owned(), branch: None, checkpoint: None }
+    Line { index, body: body.to_owned(), branch: None }
+}
+
+fn batch(lines: &[Line]) -> Batch {
+    Batch::from(lines.to_vec())
 }

@@ -70,11 +70,12 @@ async fn put_down_and_go_on(
     tamper: &[&'static str],
 ) -> (Watched, TestServer, std::path::PathBuf, String) {
     let database = folder.join(format!("{after}.db"));
+    // At a row.
+    let after = after.next_multiple_of(request["analysis"]["record"]["every"].as_u64().unwrap_or(1));
     let solver = Watched::holding_after(after);
     let server = TestServer::start(&database, solver.clone()).await;
     let id = server.submit(request).await;
-    let every = request["analysis"]["record"]["every"].as_u64().unwrap_or(1);
-    server.until(&id, |job| job["progress"]["last_index"].as_u64() >= Some(after.div_ceil(every) * every)).await;
+    server.until(&id, |job| job["progress"]["last_index"].as_u64() >= Some(after)).await;
     assert!(server.stop().await);
     let pool = SqlitePool::connect_with(SqliteConnectOptions::new().filename(&database)).await.expect("a pool");
     for statement in tamper {
@@ -171,6 +172,52 @@ async fn a_path_that_comes_out_otherwise_is_not_patched_up() {
     let error = job["error"].as_str().expect("a text");
     assert!(error.contains("increment 20") && error.contains("post the job anew"), "{error}");
     assert_eq!(server.lines(&id).await.len(), 21, "what is stored stands");
+}
+
+/// Between two rows there may be days.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_path_of_which_little_is_recorded_is_put_down_between_its_rows() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut request = in_short_steps("one-bar-truss", 200, 60);
+    request["analysis"]["record"] = json!({"every": 1_000_000});
+    let expected = {
+        let database = folder.path().join("undisturbed.db");
+        let server = TestServer::start(&database, Watched::default()).await;
+        let id = server.submit(&request).await;
+        stored(&server, &database, &id).await
+    };
+    let rows: Vec<u64> = expected
+        .lines
+        .iter()
+        .map(|line| serde_json::from_str::<Value>(&line.replace(":?", ":0")).expect("JSON")["index"].as_u64())
+        .collect::<Option<_>>()
+        .expect("indices");
+    let between = rows.windows(2).map(|pair| (pair[0], pair[1])).find(|(one, next)| next - one > 8);
+    let (before, next) = between.expect("a long way between two rows");
+
+    let database = folder.path().join("jobs.db");
+    let solver = Watched::holding_after(before + 5);
+    let server = TestServer::start(&database, solver.clone()).await;
+    let id = server.submit(&request).await;
+    let pool = SqlitePool::connect_with(SqliteConnectOptions::new().filename(&database)).await.expect("a pool");
+    loop {
+        let at: Option<i64> = sqlx::query_scalar("SELECT max(increment_index) FROM checkpoints")
+            .fetch_one(&pool)
+            .await
+            .expect("an index");
+        if at >= Some(before as i64 + 5) {
+            break;
+        }
+        tokio::time::sleep(std::time::Duration::from_millis(10)).await;
+    }
+    pool.close().await;
+    assert_eq!(server.get_json(&format!("/v1/jobs/{id}")).await["progress"]["last_index"], before);
+    assert!(server.stop().await);
+    solver.let_go();
+    let server = TestServer::start(&database, solver.clone()).await;
+    assert!(stored(&server, &database, &id).await == expected);
+    let at = solver.seen().resumed[0];
+    assert!((before + 5..next).contains(&at), "taken up at {at}, the rows being {before} and {next}");
 }
 
 /// Nobody can put this method's paths down: they are traced once more, and `elapsed_s` counts both times.

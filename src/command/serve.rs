@@ -76,7 +76,9 @@ async fn serve(arguments: &Arguments, access: Access) -> Outcome {
     let mut interrupt = signal(SignalKind::interrupt()).map_err(Failure::other)?;
     let mut terminate = signal(SignalKind::terminate()).map_err(Failure::other)?;
     let mut hang_up = signal(SignalKind::hangup()).map_err(Failure::other)?;
-    let store = store::open(&arguments.database).await.map_err(Failure::other)?;
+    let store = store::open(&arguments.database)
+        .await
+        .map_err(|error| Failure::Other(format!("--database {}: {error}", arguments.database.display())))?;
     let workers =
         arguments.workers.map_or_else(|| std::thread::available_parallelism().map_or(1, NonZero::get), usize::from);
     let Arguments { lease, max_attempts, limits, .. } = *arguments;

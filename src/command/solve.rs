@@ -55,8 +55,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let progress = progress_bar(request.analysis.max_increments, !is_standard_output(&arguments.out));
     let mut unwritten = None;
     let report = PathSolver
-        .solve(&request, None, CancelFlag::default(), &mut |judged, _| {
-            progress.set_position(judged.increment.index + 1);
+        .solve(&request, None, CancelFlag::default(), &mut |step, _| {
+            progress.set_position(step.index + 1);
+            let Some(judged) = step.given else { return ControlFlow::Continue(()) };
             match writer.write(&judged) {
                 Ok(()) => {
                     if let Some(picture) = &mut picture {

@@ -1,22 +1,23 @@
 //! Increments on their way to the store: gathered for a moment, then appended in one transaction.
 
 use super::limits::Reached;
+use super::solve::Sent;
 use super::{Jobs, Settings};
 use crate::cancel::CancelFlag;
 use crate::metrics::Write;
-use crate::store::{Claim, Lease, LeaseAnswer, Line, StoreError};
+use crate::store::{Batch, Claim, Lease, LeaseAnswer, StoreError};
 use std::time::Duration;
 use tokio::sync::mpsc;
 use tokio::time::{Instant, MissedTickBehavior, interval_at, sleep_until, timeout_at};
 use tokio_util::sync::CancellationToken;
 
-/// Tries of one write while the store is passingly unavailable, each after twice the pause of the one before.
-const TRIES: u32 = 5;
 /// While a batch is gathered its lines are looked for so often: to be woken by every one of them costs more than they do.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(2);
 /// The first lines of a job are taken as they come: most jobs are small, and wait for nothing then.
 const TAKEN_AT_ONCE: u64 = 64;
+/// Before a write is repeated; twice as long each time, up to the longest.
 const FIRST_PAUSE: Duration = Duration::from_millis(50);
+const LONGEST_PAUSE: Duration = Duration::from_secs(1);
 
 /// Why no more increments are stored.
 #[derive(Debug)]
@@ -25,7 +26,7 @@ pub enum Drained {
     Complete,
     /// The service is going down; what is not stored yet is computed again by the next attempt.
     ShuttingDown,
-    /// The job is gone or another's.
+    /// The job is gone or another's, or nothing could be written for as long as the lease was held.
     LeaseLost,
     Failed(StoreError),
     /// The job has used up what it may use; what is stored is within the limit.
@@ -51,15 +52,18 @@ impl Allowance {
     }
 
     /// Takes the lines' bytes; cuts off what is too much, and answers whether there was such.
-    fn take(&mut self, batch: &mut Vec<Line>) -> bool {
-        let fits = batch.iter().position(|line| match self.bytes.checked_sub(line.bytes()) {
-            Some(left) => {
-                self.bytes = left;
-                false
-            }
-            None => true,
+    fn take(&mut self, gathered: &mut Vec<Sent>) -> bool {
+        let fits = gathered.iter().position(|sent| match sent {
+            Sent::Checkpoint(_) => false,
+            Sent::Line(line) => match self.bytes.checked_sub(line.bytes()) {
+                Some(left) => {
+                    self.bytes = left;
+                    false
+                }
+                None => true,
+            },
         });
-        batch.truncate(fits.unwrap_or(batch.len()));
+        gathered.truncate(fits.unwrap_or(gathered.len()));
         fits.is_some()
     }
 }
@@ -68,7 +72,7 @@ impl Allowance {
 pub async fn drain(
     jobs: &Jobs,
     claim: &Claim,
-    lines: &mut mpsc::Receiver<Line>,
+    sent: &mut mpsc::Receiver<Sent>,
     cancel: &CancelFlag,
     shutdown: &CancellationToken,
 ) -> Drained {
@@ -77,7 +81,7 @@ pub async fn drain(
     let heartbeat = settings.lease / 3;
     let mut beats = interval_at(Instant::now() + heartbeat, heartbeat.max(Duration::from_millis(1)));
     beats.set_missed_tick_behavior(MissedTickBehavior::Delay);
-    let mut batch = Vec::new();
+    let mut gathered = Vec::new();
     loop {
         let (mut complete, mut reached) = (false, None);
         let time_is_up = async {
@@ -91,22 +95,26 @@ pub async fn drain(
             () = shutdown.cancelled() => return Drained::ShuttingDown,
             () = time_is_up => reached = Some(Reached::Time),
             _ = beats.tick() => {}
-            received = gather(lines, &mut batch, settings) => complete = received == Received::Last,
+            received = gather(sent, &mut gathered, settings) => complete = received == Received::Last,
         }
-        // A cancelled gather leaves what it had in the batch, so a beat stores it too.
-        if allowance.take(&mut batch) {
+        // A cancelled gather leaves what it had where it was, so a beat stores it too.
+        if allowance.take(&mut gathered) {
             reached = Some(Reached::Storage);
         }
-        match append(jobs, lease, &batch).await {
+        match append(jobs, lease, &batch(&mut gathered), shutdown).await {
             Ok(LeaseAnswer::Held { cancel_requested }) => {
                 if cancel_requested {
                     cancel.cancel();
                 }
             }
             Ok(LeaseAnswer::Lost) => return Drained::LeaseLost,
+            Err(error) if error.is_passing() && shutdown.is_cancelled() => return Drained::ShuttingDown,
+            Err(error) if error.is_passing() => {
+                tracing::error!(%error, source = ?std::error::Error::source(&error), "nothing could be stored while the lease was held");
+                return Drained::LeaseLost;
+            }
             Err(error) => return Drained::Failed(error),
         }
-        batch.clear();
         if let Some(reached) = reached {
             return Drained::Reached(reached);
         }
@@ -123,20 +131,20 @@ enum Received {
 }
 
 /// Waits for one increment, then a moment for those that follow it closely.
-async fn gather(lines: &mut mpsc::Receiver<Line>, batch: &mut Vec<Line>, settings: &Settings) -> Received {
-    if batch.is_empty() && lines.recv_many(batch, settings.flush_rows).await == 0 {
+async fn gather(sent: &mut mpsc::Receiver<Sent>, gathered: &mut Vec<Sent>, settings: &Settings) -> Received {
+    if gathered.is_empty() && sent.recv_many(gathered, settings.flush_rows).await == 0 {
         return Received::Last;
     }
     let deadline = Instant::now() + settings.flush_interval;
-    while batch.len() < settings.flush_rows {
-        if lines.is_closed() && lines.is_empty() {
+    while gathered.len() < settings.flush_rows {
+        if sent.is_closed() && sent.is_empty() {
             return Received::Last;
         }
-        if batch.last().is_none_or(|line| line.index >= TAKEN_AT_ONCE) {
+        if gathered.last().is_none_or(|last| last.index() >= TAKEN_AT_ONCE) {
             sleep_until(deadline.min(Instant::now() + BETWEEN_LOOKS)).await;
         }
-        let room = settings.flush_rows - batch.len();
-        match timeout_at(deadline, lines.recv_many(batch, room)).await {
+        let room = settings.flush_rows - gathered.len();
+        match timeout_at(deadline, sent.recv_many(gathered, room)).await {
             Ok(0) => return Received::Last,
             Ok(_) => {}
             Err(_) => return Received::Some,
@@ -145,31 +153,55 @@ async fn gather(lines: &mut mpsc::Receiver<Line>, batch: &mut Vec<Line>, setting
     Received::Some
 }
 
-async fn append(jobs: &Jobs, lease: &Lease, batch: &[Line]) -> Result<LeaseAnswer, StoreError> {
+fn batch(gathered: &mut Vec<Sent>) -> Batch {
+    let mut batch = Batch::default();
+    for sent in gathered.drain(..) {
+        match sent {
+            Sent::Line(line) => batch.lines.push(line),
+            Sent::Checkpoint(checkpoint) => batch.checkpoints.push(checkpoint),
+        }
+    }
+    batch
+}
+
+async fn append(
+    jobs: &Jobs,
+    lease: &Lease,
+    batch: &Batch,
+    shutdown: &CancellationToken,
+) -> Result<LeaseAnswer, StoreError> {
+    let duration = jobs.settings.lease;
     let write = if batch.is_empty() { Write::Renew } else { Write::Append };
-    let append = || jobs.metrics.work.timed(write, jobs.store.append(lease, batch, jobs.settings.lease));
-    let answer = retry(append).await?;
+    let append = || jobs.metrics.work.timed(write, jobs.store.append(lease, batch, duration));
+    let answer = retry(duration, shutdown, append).await?;
     if let LeaseAnswer::Held { .. } = answer {
-        jobs.metrics.work.stored(batch.len());
+        jobs.metrics.work.stored(batch.lines.len());
     }
     Ok(answer)
 }
 
-/// Repeats a write that failed for a passing reason.
-pub async fn retry<T, F>(mut write: impl FnMut() -> F) -> Result<T, StoreError>
+/// Repeats a call that failed for a passing reason, for so long or until `shutdown`.
+pub async fn retry<T, F>(
+    patience: Duration,
+    shutdown: &CancellationToken,
+    mut call: impl FnMut() -> F,
+) -> Result<T, StoreError>
 where
     F: Future<Output = Result<T, StoreError>>,
 {
+    let began = Instant::now();
     let mut pause = FIRST_PAUSE;
-    for _ in 1..TRIES {
-        match write().await {
-            Err(error) if error.is_passing() => {
-                tracing::warn!(%error, "a write is repeated");
-                tokio::time::sleep(pause).await;
-                pause *= 2;
+    loop {
+        match call().await {
+            Err(error) if error.is_passing() && began.elapsed() + pause < patience && !shutdown.is_cancelled() => {
+                tracing::warn!(%error, "a call of the database is repeated");
+                tokio::select! {
+                    () = shutdown.cancelled() => {}
+                    () = tokio::time::sleep(pause) => {}
+                }
+                pause = (2 * pause).min(LONGEST_PAUSE);
             }
             answer => return answer,
         }
     }
-    write().await
 }

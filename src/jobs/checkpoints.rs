@@ -1,7 +1,7 @@
 //! Where a running job can be taken up again.
 //!
-//! On the solver's thread the path is put down now and then ([`Cadence`]), and what that gives is stored in the transaction
-//! of its increment. What was computed after the last one stored is computed again.
+//! On the solver's thread the path is put down now and then ([`Cadence`]), and what that gives is stored with or after
+//! its increment. What was computed after the last one stored is computed again.
 
 use super::cadence::Cadence;
 use super::solver::Place;
@@ -61,18 +61,21 @@ impl PutDown {
 #[derive(Debug)]
 pub struct Checkpoints {
     written: Written,
+    /// None has been made of this path yet, and what may be stored of its trail is of no use.
+    begins: bool,
     cadence: Cadence,
 }
 
 impl Checkpoints {
     /// None sooner than `least` after another.
     pub fn every(least: Duration) -> Self {
-        Self { written: Written::default(), cadence: Cadence::after(least) }
+        Self { written: Written::default(), begins: true, cadence: Cadence::after(least) }
     }
 
     /// Of a path that is taken up: what is stored of its trail stands.
     pub fn after(&mut self, checkpoint: &JudgedCheckpoint) {
         self.written = Written::up_to(&checkpoint.path);
+        self.begins = false;
     }
 
     /// The checkpoint at a place, if one is due and the path can be put down there.
@@ -85,6 +88,7 @@ impl Checkpoints {
             self.cadence.done(began);
             return Ok(None);
         };
+        let index = at.path.index();
         let mut written = self.written;
         let part = written.part(&mut at.path)?;
         let body = serde_json::to_string(&PutDown { at, clock })?;
@@ -100,6 +104,7 @@ impl Checkpoints {
         }
         self.written = written;
         self.cadence.done(began);
-        Ok(Some(Checkpoint { body, trail: part.text, begins_trail: part.is_first }))
+        let begins = std::mem::take(&mut self.begins);
+        Ok(Some(Checkpoint { index, body, trail: part.text, begins_trail: part.is_first || begins }))
     }
 }

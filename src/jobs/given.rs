@@ -3,9 +3,9 @@
 use super::Jobs;
 use super::branches::Branches;
 use super::checkpoints::{Checkpoints, Clock, PutDown};
-use super::solve::SolveEnd;
+use super::solve::{Sent, SolveEnd};
 use super::solver::Place;
-use crate::judged::{JudgedIncrement, JudgedReport};
+use crate::judged::{JudgedIncrement, JudgedReport, Step};
 use crate::metrics::{Solved, Work};
 use crate::output::json_line;
 use crate::path::increment::Diagnostics;
@@ -22,7 +22,7 @@ const SAME: f64 = 1e-6;
 /// Takes the increments of one attempt in order.
 pub struct Given<'a> {
     claim: &'a Claim,
-    lines: &'a mpsc::Sender<Line>,
+    sender: &'a mpsc::Sender<Sent>,
     work: &'a Work,
     /// When the solver was given back the path.
     since: Instant,
@@ -40,7 +40,7 @@ pub struct Given<'a> {
 
 impl<'a> Given<'a> {
     /// From the start of the path.
-    pub fn new(jobs: &'a Jobs, claim: &'a Claim, lines: &'a mpsc::Sender<Line>) -> Self {
+    pub fn new(jobs: &'a Jobs, claim: &'a Claim, sender: &'a mpsc::Sender<Sent>) -> Self {
         let put_down = jobs.settings.flush_interval;
         // Nothing is compared with what another version wrote otherwise.
         let last = claim.last.as_ref().and_then(|line| serde_json::from_str::<JudgedIncrement>(&line.body).ok());
@@ -48,7 +48,7 @@ impl<'a> Given<'a> {
         clock.go_on_from(last.as_ref().map_or(0.0, elapsed_s));
         Self {
             claim,
-            lines,
+            sender,
             work: &jobs.metrics.work,
             since: Instant::now(),
             counted: claim.origin.is_none().then(Diagnostics::default),
@@ -70,8 +70,9 @@ impl<'a> Given<'a> {
         self.has_arrived = self.claim.last.as_ref().is_none_or(|last| last.index <= from.at.path.index());
     }
 
-    /// Counts what an increment took, and sends it on.
-    pub fn take(&mut self, judged: JudgedIncrement, place: &dyn Place) -> ControlFlow<()> {
+    /// Counts what a step took, and sends its increment on; where that is not recorded, a checkpoint now and then.
+    pub fn take(&mut self, step: Step, place: &dyn Place) -> ControlFlow<()> {
+        let Some(judged) = step.given else { return self.put_down(place) };
         let (time, totals) = (self.since.elapsed(), judged.increment.diagnostics);
         let before = self.counted.replace(totals).unwrap_or(totals);
         self.work.solved(Solved {
@@ -95,17 +96,38 @@ impl<'a> Given<'a> {
             self.why_not = Some(SolveEnd::Differs(index));
             return ControlFlow::Break(());
         }
-        match self.line(&judged, place, stored) {
-            Ok(None) => ControlFlow::Continue(()),
-            Ok(Some(line)) => match self.lines.blocking_send(line) {
-                Ok(()) => ControlFlow::Continue(()),
-                Err(_) => ControlFlow::Break(()),
-            },
-            Err(error) => {
-                self.why_not = Some(SolveEnd::Unwritable(error.to_string()));
-                ControlFlow::Break(())
-            }
+        if stored {
+            return ControlFlow::Continue(());
         }
+        match self.line(&judged, place) {
+            Ok(line) => self.pass(Sent::Line(line))?,
+            Err(error) => return self.unwritable(&error),
+        }
+        self.put_down(place)
+    }
+
+    /// Sends a checkpoint where one is due; none where the path has still to come to what is stored.
+    fn put_down(&mut self, place: &dyn Place) -> ControlFlow<()> {
+        if !self.has_arrived {
+            return ControlFlow::Continue(());
+        }
+        match self.checkpoints.at(place, self.clock) {
+            Ok(None) => ControlFlow::Continue(()),
+            Ok(Some(checkpoint)) => self.pass(Sent::Checkpoint(checkpoint)),
+            Err(error) => self.unwritable(&error),
+        }
+    }
+
+    fn pass(&self, sent: Sent) -> ControlFlow<()> {
+        match self.sender.blocking_send(sent) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(_) => ControlFlow::Break(()),
+        }
+    }
+
+    fn unwritable(&mut self, error: &serde_json::Error) -> ControlFlow<()> {
+        self.why_not = Some(SolveEnd::Unwritable(error.to_string()));
+        ControlFlow::Break(())
     }
 
     /// Whether the path leads to the last increment that is stored.
@@ -119,10 +141,7 @@ impl<'a> Given<'a> {
         increment.index == last.index && self.last.as_ref().is_none_or(|last| are_same(&last.increment, increment))
     }
 
-    fn line(&mut self, judged: &JudgedIncrement, place: &dyn Place, stored: bool) -> serde_json::Result<Option<Line>> {
-        if stored {
-            return Ok(None);
-        }
+    fn line(&mut self, judged: &JudgedIncrement, place: &dyn Place) -> serde_json::Result<Line> {
         let body = json_line(judged)?;
         let branch = if judged.increment.directions.is_some() {
             let alternatives = if self.claim.explores { place.alternatives().to_vec() } else { Vec::new() };
@@ -130,8 +149,7 @@ impl<'a> Given<'a> {
         } else {
             None
         };
-        let checkpoint = self.checkpoints.at(place, self.clock)?;
-        Ok(Some(Line { index: judged.increment.index, body, branch, checkpoint }))
+        Ok(Line { index: judged.increment.index, body, branch })
     }
 
     /// How the solve ended, with the report that the path has.

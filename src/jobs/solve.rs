@@ -10,7 +10,7 @@ use super::{Jobs, Solver, branches};
 use crate::cancel::CancelFlag;
 use crate::judged::JudgedReport;
 use crate::model::{InputErrors, decode};
-use crate::store::{Claim, Line, Task};
+use crate::store::{Checkpoint, Claim, Line, Task};
 use crate::studies::{self, Run};
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -49,9 +49,25 @@ pub enum SolveEnd {
     Silent,
 }
 
+/// What leaves a solve, in the order in which it is to be stored.
+#[derive(Debug)]
+pub enum Sent {
+    Line(Line),
+    Checkpoint(Checkpoint),
+}
+
+impl Sent {
+    pub fn index(&self) -> u64 {
+        match self {
+            Self::Line(line) => line.index,
+            Self::Checkpoint(checkpoint) => checkpoint.index,
+        }
+    }
+}
+
 /// A solve under way.
 pub struct Solve {
-    pub lines: mpsc::Receiver<Line>,
+    pub sent: mpsc::Receiver<Sent>,
     pub end: oneshot::Receiver<SolveEnd>,
 }
 
@@ -59,7 +75,7 @@ pub struct Solve {
 /// increments up to `claim.last` are stored already and not sent again. A study goes on from `stored`, the lines of its
 /// finished runs. Checkpoints are made no sooner than the flush interval after one another.
 pub fn start(jobs: &Jobs, claim: &Claim, stored: Vec<Line>, cancel: CancelFlag) -> std::io::Result<Solve> {
-    let (line_sender, lines) = mpsc::channel(places(claim.request.len()));
+    let (sender, sent) = mpsc::channel(places(claim.request.len()));
     let (end_sender, end) = oneshot::channel();
     let (jobs, claim_of_thread) = (jobs.clone(), claim.clone());
     let span = tracing::Span::current();
@@ -67,22 +83,22 @@ pub fn start(jobs: &Jobs, claim: &Claim, stored: Vec<Line>, cancel: CancelFlag) 
         move || {
             let _entered = span.enter();
             let ended = catch_unwind(AssertUnwindSafe(|| match claim_of_thread.task {
-                Task::Path => run(&jobs, &claim_of_thread, cancel, &line_sender),
-                Task::Study => study(jobs.solver.as_ref(), &claim_of_thread, &stored, &cancel, &line_sender),
+                Task::Path => run(&jobs, &claim_of_thread, cancel, &sender),
+                Task::Study => study(jobs.solver.as_ref(), &claim_of_thread, &stored, &cancel, &sender),
             }))
             .unwrap_or_else(|panic| SolveEnd::Panicked(panic_text(panic.as_ref())));
             // Nobody waits for the end when the runtime is going down.
             let _ = end_sender.send(ended);
         },
     )?;
-    Ok(Solve { lines, end })
+    Ok(Solve { sent, end })
 }
 
 fn places(model_bytes: usize) -> usize {
     (IN_FLIGHT_BYTES / OF_MODEL / model_bytes.max(1)).clamp(FEWEST_IN_FLIGHT, IN_FLIGHT)
 }
 
-fn run(jobs: &Jobs, claim: &Claim, cancel: CancelFlag, lines: &mpsc::Sender<Line>) -> SolveEnd {
+fn run(jobs: &Jobs, claim: &Claim, cancel: CancelFlag, sender: &mpsc::Sender<Sent>) -> SolveEnd {
     let solver = jobs.solver.as_ref();
     let mut request = match decode::decode(claim.request.as_bytes()) {
         Ok(request) => request,
@@ -93,10 +109,10 @@ fn run(jobs: &Jobs, claim: &Claim, cancel: CancelFlag, lines: &mpsc::Sender<Line
     let anew = |why: &dyn std::error::Error| tracing::warn!(%why, "the path is traced from its start once more");
     match claim.checkpoint.as_ref().map(PutDown::read) {
         Some(Ok(from)) => {
-            let mut given = Given::new(jobs, claim, lines);
+            let mut given = Given::new(jobs, claim, sender);
             given.go_on_from(&from);
             tracing::info!(increment = from.at.path.index(), "goes on from its checkpoint");
-            match solver.resume(&request, from.at, cancel.clone(), &mut |judged, place| given.take(judged, place)) {
+            match solver.resume(&request, from.at, cancel.clone(), &mut |step, place| given.take(step, place)) {
                 Ok(report) => return given.end(report),
                 Err(ResumeError::Input(errors)) => return SolveEnd::Refused(errors),
                 Err(ResumeError::Checkpoint(error)) => anew(&error),
@@ -110,8 +126,8 @@ fn run(jobs: &Jobs, claim: &Claim, cancel: CancelFlag, lines: &mpsc::Sender<Line
         Ok(beginning) => beginning,
         Err(error) => return SolveEnd::Unreadable(error.to_string()),
     };
-    let mut given = Given::new(jobs, claim, lines);
-    match solver.solve(&request, beginning, cancel.clone(), &mut |judged, place| given.take(judged, place)) {
+    let mut given = Given::new(jobs, claim, sender);
+    match solver.solve(&request, beginning, cancel.clone(), &mut |step, place| given.take(step, place)) {
         Ok(report) => given.end(report),
         // On the way to the point where it begins.
         Err(_) if cancel.is_cancelled() => SolveEnd::Cancelled,
@@ -124,7 +140,7 @@ fn study(
     claim: &Claim,
     stored: &[Line],
     cancel: &CancelFlag,
-    lines: &mpsc::Sender<Line>,
+    sender: &mpsc::Sender<Sent>,
 ) -> SolveEnd {
     let request = match decode::study(claim.request.as_bytes()) {
         Ok(request) => request,
@@ -136,7 +152,7 @@ fn study(
     };
     let mut unwritable = None;
     let reported = solver.study(&request, done, cancel, &mut |run| match serde_json::to_string(run) {
-        Ok(body) => match lines.blocking_send(Line { index: run.index, body, branch: None, checkpoint: None }) {
+        Ok(body) => match sender.blocking_send(Sent::Line(Line { index: run.index, body, branch: None })) {
             Ok(()) => ControlFlow::Continue(()),
             Err(_) => ControlFlow::Break(()),
         },

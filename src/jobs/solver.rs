@@ -1,7 +1,7 @@
 //! The seam between whoever runs a solve and the path tracer, so that tests can put a solver of their own in its place.
 
 use crate::cancel::CancelFlag;
-use crate::judged::{JudgedCheckpoint, JudgedCheckpointError, JudgedIncrement, JudgedPath, JudgedReport};
+use crate::judged::{JudgedCheckpoint, JudgedCheckpointError, JudgedIncrement, JudgedPath, JudgedReport, Step};
 use crate::model::{InputError, InputErrors, JobRequest, StudyRequest};
 use crate::path::{CheckpointError, Plan, Scene};
 use crate::studies::{self, Run};
@@ -18,7 +18,7 @@ pub struct Beginning {
     pub event: String,
 }
 
-/// A path at the increment that it has just given.
+/// A path at the end of a step.
 pub trait Place {
     /// Of the directions listed here those that appear here first: see [`crate::judged::Alternatives`].
     fn alternatives(&self) -> &[u64];
@@ -27,8 +27,8 @@ pub trait Place {
     fn checkpoint(&self) -> Option<JudgedCheckpoint>;
 }
 
-/// Takes an increment and the place where the path is.
-pub type Accept<'a> = &'a mut dyn FnMut(JudgedIncrement, &dyn Place) -> ControlFlow<()>;
+/// Takes a step of the path and the place to which it led.
+pub type Accept<'a> = &'a mut dyn FnMut(Step, &dyn Place) -> ControlFlow<()>;
 
 /// Why a path was not taken up.
 #[derive(Debug, thiserror::Error)]
@@ -47,7 +47,7 @@ pub trait Solver: Send + Sync + 'static {
     /// Refuses a beginning from which there is no path; pointers are those of a [`crate::model::FollowRequest`].
     fn check_beginning(&self, request: &JobRequest, beginning: Beginning) -> Result<(), InputErrors>;
 
-    /// Traces the path, from its start or from a beginning; every increment goes to `accept`, which breaks when nobody wants more.
+    /// Traces the path, from its start or from a beginning; every step goes to `accept`, which breaks when nobody wants more.
     /// `None`: the solver ended without saying why, which is a defect, or `accept` broke.
     fn solve(
         &self,
@@ -121,12 +121,14 @@ impl Solver for PathSolver {
 
 fn trace(mut path: JudgedPath<'_>, accept: Accept<'_>) -> Option<JudgedReport> {
     let mut off_measure = false;
-    while let Some(increment) = path.next() {
+    while let Some(step) = path.step() {
         // The first one only: a path that is off once may be off at every point after. The report counts them.
-        if path.is_off_measure() && !std::mem::replace(&mut off_measure, true) {
-            warn_off_measure(&increment);
+        if let Some(judged) = step.given.as_ref().filter(|_| path.is_off_measure())
+            && !std::mem::replace(&mut off_measure, true)
+        {
+            warn_off_measure(judged);
         }
-        if accept(increment, &path).is_break() {
+        if accept(step, &path).is_break() {
             return None;
         }
     }

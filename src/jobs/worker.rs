@@ -9,9 +9,13 @@ use crate::metrics::Write;
 use crate::path::{Outcome, StopReason};
 use crate::store::{Claim, Ending, Lease, LeaseAnswer, Status, StoreError, Task};
 use crate::studies;
+use std::time::Duration;
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::AbortOnDropHandle;
 use tracing::Instrument;
+
+/// A job is tried to be handed back for so long while the database is not available; then its lease runs out.
+const TO_HAND_BACK: Duration = Duration::from_secs(1);
 
 /// Works until `shutdown`; a job under way then goes back to the queue.
 pub async fn work(jobs: Jobs, name: String, shutdown: CancellationToken) {
@@ -50,7 +54,7 @@ async fn guarded(jobs: &Jobs, claim: Claim, shutdown: &CancellationToken) {
     };
     let Err(error) = AbortOnDropHandle::new(task).await else { return };
     let ending = Ending::failed(format!("the service has a defect: {error}"));
-    match finish(jobs, &lease, &ending).await {
+    match finish(jobs, &lease, &ending, shutdown).await {
         Ok(_) => tracing::error!(%error, "a worker panicked; the job failed"),
         Err(unstored) => tracing::error!(%error, %unstored, "a worker panicked, and the end was not stored"),
     }
@@ -82,12 +86,13 @@ async fn trace(jobs: &Jobs, claim: &Claim, shutdown: &CancellationToken) -> Resu
     let lease = &claim.lease;
     let (cancel, _entry): (CancelFlag, running::Entry) = jobs.running.enter(lease);
     // A cancel between the claim and the line above found no flag to set.
-    if jobs.store.job(lease.job).await?.is_none_or(|job| job.cancel_requested) {
+    let job = batch::retry(jobs.settings.lease, shutdown, || jobs.store.job(lease.job)).await?;
+    if job.is_none_or(|job| job.cancel_requested) {
         cancel.cancel();
     }
     let stored = match claim.task {
         Task::Path => Vec::new(),
-        Task::Study => batch::retry(|| jobs.stored(lease.job)).await?,
+        Task::Study => batch::retry(jobs.settings.lease, shutdown, || jobs.stored(lease.job)).await?,
     };
     let mut solve = match solve::start(jobs, claim, stored, cancel.clone()) {
         Ok(solve) => solve,
@@ -96,7 +101,7 @@ async fn trace(jobs: &Jobs, claim: &Claim, shutdown: &CancellationToken) -> Resu
         }
     };
     let store = jobs.store.as_ref();
-    match batch::drain(jobs, claim, &mut solve.lines, &cancel, shutdown).await {
+    match batch::drain(jobs, claim, &mut solve.sent, &cancel, shutdown).await {
         Drained::Complete => {
             let ending = ending(solve.end.await.unwrap_or(SolveEnd::Silent));
             end(jobs, claim, ending, shutdown).await
@@ -104,8 +109,10 @@ async fn trace(jobs: &Jobs, claim: &Claim, shutdown: &CancellationToken) -> Resu
         Drained::ShuttingDown => {
             cancel.cancel();
             // Closed before the solver can see the flag's effect: nothing it sends after a stop may be stored.
-            solve.lines.close();
-            let answer = batch::retry(|| store.release(lease)).await;
+            solve.sent.close();
+            // Not until the lease runs out: the service wants to go.
+            let going = CancellationToken::new();
+            let answer = batch::retry(TO_HAND_BACK, &going, || store.release(lease)).await;
             stop(solve).await;
             Ok(match answer? {
                 LeaseAnswer::Held { .. } => Finished::Released,
@@ -115,7 +122,7 @@ async fn trace(jobs: &Jobs, claim: &Claim, shutdown: &CancellationToken) -> Resu
         Drained::Reached(reached) => {
             cancel.cancel();
             // Nothing that it still sends may be stored; the end is told before the thread has come to its own.
-            solve.lines.close();
+            solve.sent.close();
             let ending = Ending {
                 status: Status::Stopped,
                 stop_reason: Some(reached.name().to_owned()),
@@ -142,17 +149,17 @@ async fn trace(jobs: &Jobs, claim: &Claim, shutdown: &CancellationToken) -> Resu
 
 /// Waits for the thread; what it still sends is dropped.
 async fn stop(solve: Solve) {
-    drop(solve.lines);
+    drop(solve.sent);
     // Without an answer the thread has ended too.
     let _ = solve.end.await;
 }
 
-/// Stores how a job ended. On a full disk that waits for room: if there is some before the lease has run out, the end is
-/// stored, and otherwise the job is taken up again from its last checkpoint.
+/// Stores how a job ended. On a full disk that waits for room, and otherwise for as long as the lease may be held: if the end
+/// is not stored until then, the job is taken up again from its last checkpoint.
 async fn end(jobs: &Jobs, claim: &Claim, ending: Ending, shutdown: &CancellationToken) -> Result<Finished, StoreError> {
     let status = ending.status;
     loop {
-        match finish(jobs, &claim.lease, &ending).await {
+        match finish(jobs, &claim.lease, &ending, shutdown).await {
             Ok(LeaseAnswer::Held { .. }) => return Ok(Finished::Ended(status)),
             Ok(LeaseAnswer::Lost) => return Ok(Finished::Lost),
             Err(error @ StoreError::Full(_)) => {
@@ -167,8 +174,14 @@ async fn end(jobs: &Jobs, claim: &Claim, ending: Ending, shutdown: &Cancellation
     }
 }
 
-async fn finish(jobs: &Jobs, lease: &Lease, ending: &Ending) -> Result<LeaseAnswer, StoreError> {
-    batch::retry(|| jobs.metrics.work.timed(Write::Finish, jobs.store.finish(lease, ending.clone()))).await
+async fn finish(
+    jobs: &Jobs,
+    lease: &Lease,
+    ending: &Ending,
+    shutdown: &CancellationToken,
+) -> Result<LeaseAnswer, StoreError> {
+    let finish = || jobs.metrics.work.timed(Write::Finish, jobs.store.finish(lease, ending.clone()));
+    batch::retry(jobs.settings.lease, shutdown, finish).await
 }
 
 fn ending(end: SolveEnd) -> Ending {

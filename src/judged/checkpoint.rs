@@ -1,6 +1,7 @@
 //! A path put down at a point together with what its judge remembers.
 
 use super::alternatives::Alternatives;
+use super::increment::JudgedIncrement;
 use super::report::MeasureReport;
 use crate::measure::{History, HistoryError};
 use crate::path::{Checkpoint, CheckpointError};
@@ -17,6 +18,9 @@ pub struct JudgedCheckpoint {
     /// By what the directions are known that are not new at the next increment.
     #[serde(default, skip_serializing_if = "Alternatives::is_fresh")]
     pub alternatives: Alternatives,
+    /// The increment at which the path is, where it is not recorded: it is given after all if it proves to be the last.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub left_out: Option<Box<JudgedIncrement>>,
 }
 
 /// Why a judged path cannot be taken up, or a direction of it not followed.

@@ -6,7 +6,7 @@
 //!
 //! | file | what it does |
 //! |---|---|
-//! | `path` | the iterator: traces, judges, goes on from a checkpoint |
+//! | `path` | step by step, or as an iterator of what is recorded: traces, judges, goes on from a checkpoint |
 //! | `increment`, `report` | what it gives |
 //! | `record` | what of an increment is kept, after it has been judged |
 //! | `alternatives` | which directions are new at an increment |
@@ -25,5 +25,5 @@ mod schema;
 pub use alternatives::Alternatives;
 pub use checkpoint::{JudgedCheckpoint, JudgedCheckpointError};
 pub use increment::JudgedIncrement;
-pub use path::JudgedPath;
+pub use path::{JudgedPath, Step};
 pub use report::{JudgedReport, MeasureReport, OFF_MEASURE};

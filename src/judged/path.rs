@@ -28,6 +28,13 @@ pub struct JudgedPath<'a> {
     put_down: Option<Option<Place>>,
 }
 
+/// An increment of the path, and the increment itself where it is recorded.
+#[derive(Debug)]
+pub struct Step {
+    pub index: u64,
+    pub given: Option<JudgedIncrement>,
+}
+
 /// An increment not given yet.
 struct LeftOut {
     judged: JudgedIncrement,
@@ -73,7 +80,7 @@ impl<'a> JudgedPath<'a> {
         event: String,
         cancel: CancelFlag,
     ) -> Result<Self, JudgedCheckpointError> {
-        let JudgedCheckpoint { path, history, measure: _, alternatives: _ } = checkpoint;
+        let JudgedCheckpoint { path, history, measure: _, alternatives: _, left_out: _ } = checkpoint;
         let path = Path::follow(scene, path, direction, event, cancel)?;
         let judge = judge(request, scene).taking_up(history)?;
         let mut followed = Self::of(request, TracedPath::Exact(Box::new(path)), judge, fresh(request));
@@ -92,18 +99,47 @@ impl<'a> JudgedPath<'a> {
         checkpoint: JudgedCheckpoint,
         cancel: CancelFlag,
     ) -> Result<Self, JudgedCheckpointError> {
-        let JudgedCheckpoint { path, history, measure, alternatives } = checkpoint;
+        let JudgedCheckpoint { path, history, measure, alternatives, left_out } = checkpoint;
         let path = Path::resume(scene, path, cancel)?;
         let judge = judge(request, scene).taking_up(history)?;
-        Ok(Self { alternatives, ..Self::of(request, TracedPath::Exact(Box::new(path)), judge, measure) })
+        let path = TracedPath::Exact(Box::new(path));
+        let mut resumed = Self { alternatives, ..Self::of(request, path, judge, measure) };
+        resumed.left_out = left_out.map(|judged| LeftOut { judged: *judged, place: resumed.place() });
+        Ok(resumed)
     }
 
-    /// The path at the last increment; `None` by a method whose paths cannot be put down.
+    /// The path at the last step; `None` by a method whose paths cannot be put down.
     pub fn checkpoint(&self) -> Option<JudgedCheckpoint> {
         match &self.put_down {
             Some(place) => place.as_ref().map(|place| place.checkpoint.clone()),
-            None => self.present(),
+            None => {
+                let left_out = self.left_out.as_ref().map(|left_out| Box::new(left_out.judged.clone()));
+                self.present().map(|checkpoint| JudgedCheckpoint { left_out, ..checkpoint })
+            }
         }
+    }
+
+    /// Traces and judges one increment more; the last of a path is given though it was left out before.
+    pub fn step(&mut self) -> Option<Step> {
+        self.put_down = None;
+        let Some(increment) = self.path.next() else {
+            let LeftOut { judged, place } = self.left_out.take()?;
+            self.put_down = Some(place);
+            self.off_measure = false;
+            return Some(Step { index: judged.increment.index, given: Some(judged) });
+        };
+        let index = increment.index;
+        let measure = self.judge.judge(&increment);
+        self.off_measure = self.measure.include(index, &measure);
+        self.found = self.alternatives.at(&increment, &self.open());
+        let kept = self.off_measure || !self.found.is_empty() || self.record.keeps(&increment);
+        let judged = JudgedIncrement { increment: self.record.cut(increment), measure };
+        if kept {
+            self.left_out = None;
+            return Some(Step { index, given: Some(judged) });
+        }
+        self.left_out = Some(LeftOut { judged, place: self.place() });
+        Some(Step { index, given: None })
     }
 
     fn present(&self) -> Option<JudgedCheckpoint> {
@@ -114,7 +150,14 @@ impl<'a> JudgedPath<'a> {
             history: self.judge.history(),
             measure: self.measure,
             alternatives,
+            left_out: None,
         })
+    }
+
+    /// Put down here where directions are listed: what comes next may not lead to a point, and leave another state behind.
+    fn place(&self) -> Option<Place> {
+        let open = self.open_directions();
+        if open.is_empty() { None } else { self.present().map(|checkpoint| Place { checkpoint, open }) }
     }
 
     /// For each direction listed with the last increment, whether a path goes along it; empty where there is one way on,
@@ -164,26 +207,10 @@ impl Iterator for JudgedPath<'_> {
     type Item = JudgedIncrement;
 
     fn next(&mut self) -> Option<JudgedIncrement> {
-        self.put_down = None;
-        while let Some(increment) = self.path.next() {
-            let measure = self.judge.judge(&increment);
-            self.off_measure = self.measure.include(increment.index, &measure);
-            self.found = self.alternatives.at(&increment, &self.open());
-            let kept = self.off_measure || !self.found.is_empty() || self.record.keeps(&increment);
-            let judged = JudgedIncrement { increment: self.record.cut(increment), measure };
-            if kept {
-                self.left_out = None;
+        loop {
+            if let Some(judged) = self.step()?.given {
                 return Some(judged);
             }
-            // What comes next may not lead to a point, and leave another state behind.
-            let open = self.open_directions();
-            let place =
-                if open.is_empty() { None } else { self.present().map(|checkpoint| Place { checkpoint, open }) };
-            self.left_out = Some(LeftOut { judged, place });
         }
-        let LeftOut { judged, place } = self.left_out.take()?;
-        self.put_down = Some(place);
-        self.off_measure = false;
-        Some(judged)
     }
 }

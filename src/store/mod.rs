@@ -18,8 +18,8 @@ use uuid::Uuid;
 
 pub use error::StoreError;
 pub use record::{
-    Branch, Checkpoint, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Membership, NewFollower,
-    NewJob, Origin, Page, Parent, Standing, Status, Submitted, Task,
+    Batch, Branch, Checkpoint, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Membership,
+    NewFollower, NewJob, Origin, Page, Parent, Standing, Status, Submitted, Task,
 };
 
 pub use signals::Change;
@@ -76,7 +76,7 @@ pub trait Store: Send + Sync + 'static {
     async fn renew(&self, lease: &Lease, duration: Duration) -> Result<LeaseAnswer>;
 
     /// Appends increments with what is stored beside them, moves the job's progress and prolongs the lease, all or nothing.
-    async fn append(&self, lease: &Lease, lines: &[Line], duration: Duration) -> Result<LeaseAnswer>;
+    async fn append(&self, lease: &Lease, batch: &Batch, duration: Duration) -> Result<LeaseAnswer>;
 
     /// Ends a job.
     async fn finish(&self, lease: &Lease, ending: Ending) -> Result<LeaseAnswer>;

@@ -136,6 +136,8 @@ pub struct Origin {
 /// What it takes to go on with a job from an increment of its own; opaque here. Of a job the newest is kept, until it ends.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Checkpoint {
+    /// Of the increment, which need not be stored itself, where few are; those up to it are.
+    pub index: u64,
     pub body: String,
     /// One line: what is new since the checkpoint before.
     pub trail: Option<String>,
@@ -247,21 +249,40 @@ pub struct Line {
     pub body: String,
     /// Stored beside the increment, and not read back with it.
     pub branch: Option<Branch>,
-    /// Likewise.
-    pub checkpoint: Option<Checkpoint>,
 }
 
 impl Line {
     /// Without what is stored beside it.
     pub fn alone(&self) -> Self {
-        Self { index: self.index, body: self.body.clone(), branch: None, checkpoint: None }
+        Self { index: self.index, body: self.body.clone(), branch: None }
     }
 
-    /// Bytes for which there is a limit; a checkpoint is replaced and dropped, and does not count.
+    /// Bytes for which there is a limit; checkpoints are replaced and dropped, and do not count.
     pub fn bytes(&self) -> u64 {
         let branch =
             self.branch.as_ref().map_or(0, |branch| branch.body.len() + branch.trail.as_ref().map_or(0, String::len));
         (self.body.len() + branch) as u64
+    }
+}
+
+/// What a worker stores at once.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Batch {
+    /// In order.
+    pub lines: Vec<Line>,
+    /// In order; none before lines up to its increment that are not stored.
+    pub checkpoints: Vec<Checkpoint>,
+}
+
+impl Batch {
+    pub fn is_empty(&self) -> bool {
+        self.lines.is_empty() && self.checkpoints.is_empty()
+    }
+}
+
+impl From<Vec<Line>> for Batch {
+    fn from(lines: Vec<Line>) -> Self {
+        Self { lines, checkpoints: Vec::new() }
     }
 }
 
@@ -286,7 +307,7 @@ pub struct Claim {
     pub last: Option<Line>,
     /// The body of the last branch that an earlier attempt stored.
     pub last_branch: Option<String>,
-    /// The newest checkpoint of an earlier attempt, at the last increment or before it.
+    /// The newest checkpoint of an earlier attempt.
     pub checkpoint: Option<Origin>,
     /// Where the job begins, if it follows another.
     pub origin: Option<(Parent, Origin)>,

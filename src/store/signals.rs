@@ -118,10 +118,7 @@ mod tests {
     }
 
     fn lines(indices: &[u64]) -> Vec<Line> {
-        indices
-            .iter()
-            .map(|index| Line { index: *index, body: "{}".to_owned(), branch: None, checkpoint: None })
-            .collect()
+        indices.iter().map(|index| Line { index: *index, body: "{}".to_owned(), branch: None }).collect()
     }
 
     fn beyond(changes: &mut watch::Receiver<Change>, index: Option<u64>) -> Option<Vec<u64>> {

@@ -1,8 +1,8 @@
 //! A store whose writes can be made to fail; everything else is the real one.
 
 use arcslip::store::{
-    Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, Origin, Page,
-    Result, Standing, Status, Store, StoreError, Submitted,
+    Batch, Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, Origin,
+    Page, Result, Standing, Status, Store, StoreError, Submitted,
 };
 use async_trait::async_trait;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -109,7 +109,7 @@ impl Store for FaultyStore {
         self.inner.renew(lease, duration).await
     }
 
-    async fn append(&self, lease: &Lease, lines: &[Line], duration: Duration) -> Result<LeaseAnswer> {
+    async fn append(&self, lease: &Lease, batch: &Batch, duration: Duration) -> Result<LeaseAnswer> {
         self.room()?;
         let one_of = |faults: &AtomicU32| {
             faults.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1)).is_ok()
@@ -118,8 +118,8 @@ impl Store for FaultyStore {
         if one_of(&self.locked_appends) {
             return Err(StoreError::Unavailable("locked".into()));
         }
-        let answer = self.inner.append(lease, lines, duration).await?;
-        self.stored.lock().expect("no panic under the lock").extend(lines.iter().map(|line| line.index));
+        let answer = self.inner.append(lease, batch, duration).await?;
+        self.stored.lock().expect("no panic under the lock").extend(batch.lines.iter().map(|line| line.index));
         Ok(answer)
     }
 

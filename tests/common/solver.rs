@@ -3,7 +3,7 @@
 use arcslip::cancel::CancelFlag;
 use arcslip::jobs::Solver;
 use arcslip::jobs::solver::{Accept, Beginning, Place, ResumeError};
-use arcslip::judged::{JudgedCheckpoint, JudgedIncrement, JudgedReport, MeasureReport};
+use arcslip::judged::{JudgedCheckpoint, JudgedIncrement, JudgedReport, MeasureReport, Step};
 use arcslip::measure::{Errors, Maxima};
 use arcslip::model::{InputErrors, JobRequest};
 use arcslip::path::increment::{ContactState, Diagnostics, Energy, Point, PointKind, Status};
@@ -88,7 +88,8 @@ impl Solver for MadeUp {
             }
             assert!(!(request.model.name.as_deref() == Some(PANICS) && index == 3), "a made-up defect");
             increments += 1;
-            if accept(judged(index, run), &Nowhere).is_break() {
+            let step = Step { index, given: Some(judged(index, run)) };
+            if accept(step, &Nowhere).is_break() {
                 return Ok(None);
             }
         }

@@ -3,7 +3,7 @@
 use arcslip::cancel::CancelFlag;
 use arcslip::jobs::solver::{Accept, Beginning, Place, ResumeError};
 use arcslip::jobs::{PathSolver, Solver};
-use arcslip::judged::{JudgedCheckpoint, JudgedIncrement, JudgedReport};
+use arcslip::judged::{JudgedCheckpoint, JudgedReport, Step};
 use arcslip::model::{InputErrors, JobRequest};
 use arcslip::path::Plan;
 use std::ops::ControlFlow;
@@ -50,21 +50,15 @@ impl Watched {
         self.seen.lock().expect("a lock")
     }
 
-    fn watch(
-        &self,
-        judged: JudgedIncrement,
-        place: &dyn Place,
-        cancel: &CancelFlag,
-        accept: Accept<'_>,
-    ) -> ControlFlow<()> {
-        let index = judged.increment.index;
+    fn watch(&self, step: Step, place: &dyn Place, cancel: &CancelFlag, accept: Accept<'_>) -> ControlFlow<()> {
+        let index = step.index;
         self.seen().computed.push(index);
         let held = || self.hold_after.lock().expect("a lock").is_some_and(|hold| index >= hold);
         if !held() {
-            return accept(judged, place);
+            return accept(step, place);
         }
         std::thread::sleep(UNTIL_PUT_DOWN);
-        accept(judged, place)?;
+        accept(step, place)?;
         while held() && !cancel.is_cancelled() {
             std::thread::sleep(Duration::from_millis(1));
         }
@@ -90,8 +84,7 @@ impl Solver for Watched {
     ) -> Result<Option<JudgedReport>, InputErrors> {
         self.seen().begun += 1;
         let flag = cancel.clone();
-        PathSolver
-            .solve(request, beginning, cancel, &mut |judged, place| self.watch(judged, place, &flag, &mut *accept))
+        PathSolver.solve(request, beginning, cancel, &mut |step, place| self.watch(step, place, &flag, &mut *accept))
     }
 
     fn resume(
@@ -104,7 +97,7 @@ impl Solver for Watched {
         let index = checkpoint.path.index();
         let flag = cancel.clone();
         let answer = PathSolver
-            .resume(request, checkpoint, cancel, &mut |judged, place| self.watch(judged, place, &flag, &mut *accept));
+            .resume(request, checkpoint, cancel, &mut |step, place| self.watch(step, place, &flag, &mut *accept));
         if answer.is_ok() {
             self.seen().resumed.push(index);
         }

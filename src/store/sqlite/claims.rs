@@ -55,15 +55,15 @@ pub(super) async fn claim(store: &SqliteStore, worker: &str, lease: Duration) ->
         Some(parent) => Some((parent, followers::origin(store, job).await?)),
         None => None,
     };
-    // What is stored beside increments is there only where they are.
-    let (last, last_branch, checkpoint) = match row.try_get::<Option<i64>, _>("last_index")? {
-        Some(index) => (
-            Some(increments::stored(store, job, unsigned(index)?).await?),
-            increments::last_branch(store, job).await?,
-            increments::checkpoint(store, job).await?,
-        ),
-        None => (None, None, None),
+    let is_first: bool = row.try_get("is_first")?;
+    // A branch is stored beside an increment; a checkpoint may be there before the first.
+    let (last, last_branch) = match row.try_get::<Option<i64>, _>("last_index")? {
+        Some(index) => {
+            (Some(increments::stored(store, job, unsigned(index)?).await?), increments::last_branch(store, job).await?)
+        }
+        None => (None, None),
     };
+    let checkpoint = if is_first { None } else { increments::checkpoint(store, job).await? };
     let claim = Claim {
         lease: Lease { job, worker: worker.to_owned(), attempt: row.try_get("attempt")? },
         task: rows::task(&row)?,
@@ -75,11 +75,7 @@ pub(super) async fn claim(store: &SqliteStore, worker: &str, lease: Duration) ->
         origin,
         explores: row.try_get::<Option<Uuid>, _>("family")?.is_some(),
         // A clock that was set back meanwhile makes no wait shorter than none.
-        waited: if row.try_get("is_first")? {
-            Some(milliseconds(row.try_get::<i64, _>("waited")?.max(0))?)
-        } else {
-            None
-        },
+        waited: if is_first { Some(milliseconds(row.try_get::<i64, _>("waited")?.max(0))?) } else { None },
         ran: milliseconds(row.try_get("ran_ms")?)?,
         stored_bytes: unsigned(row.try_get("stored_bytes")?)?,
     };

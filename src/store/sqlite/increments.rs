@@ -4,7 +4,7 @@ use super::claims::{self, held, ran};
 use super::followers;
 use super::rows::{self, signed, unsigned};
 use super::{SqliteStore, after, now};
-use crate::store::{Lease, LeaseAnswer, Line, Origin, Page, Result};
+use crate::store::{Batch, Checkpoint, Lease, LeaseAnswer, Line, Origin, Page, Result};
 use sqlx::types::Json;
 use sqlx::{QueryBuilder, Row, Sqlite, Transaction};
 use std::time::Duration;
@@ -17,13 +17,16 @@ const ROWS_A_STATEMENT: usize = 500;
 pub(super) async fn append(
     store: &SqliteStore,
     lease: &Lease,
-    lines: &[Line],
+    batch: &Batch,
     duration: Duration,
 ) -> Result<LeaseAnswer> {
-    let Some(last) = lines.last() else { return claims::renew(store, lease, duration).await };
+    if batch.is_empty() {
+        return claims::renew(store, lease, duration).await;
+    }
+    let lines = batch.lines.as_slice();
     let mut transaction = store.writer.begin().await?;
     let row = sqlx::query(concat!(
-        "UPDATE jobs SET last_index = ?5, lease_until = ?6, losses = 0, stored_bytes = stored_bytes + ?7, ",
+        "UPDATE jobs SET last_index = coalesce(?5, last_index), lease_until = ?6, losses = 0, stored_bytes = stored_bytes + ?7, ",
         ran!(),
         held!(),
         "RETURNING cancel_requested"
@@ -32,7 +35,7 @@ pub(super) async fn append(
     .bind(&lease.worker)
     .bind(lease.attempt)
     .bind(now())
-    .bind(signed(last.index))
+    .bind(lines.last().map(|line| signed(line.index)))
     .bind(after(duration))
     .bind(signed(lines.iter().map(Line::bytes).sum()))
     .fetch_optional(&mut *transaction)
@@ -61,37 +64,41 @@ pub(super) async fn append(
         });
         insert.build().execute(&mut *transaction).await?;
     }
-    put_checkpoint(&mut transaction, lease.job, lines).await?;
+    put_checkpoint(&mut transaction, lease.job, &batch.checkpoints).await?;
     transaction.commit().await?;
-    store.signals.job_appended(lease, lines);
+    if !lines.is_empty() {
+        store.signals.job_appended(lease, lines);
+    }
     Ok(answer)
 }
 
 /// The newest checkpoint takes the place of the one before; trails are of all of them.
-async fn put_checkpoint(transaction: &mut Transaction<'_, Sqlite>, job: Uuid, lines: &[Line]) -> Result<()> {
-    let mut newest = None;
-    for (index, checkpoint) in lines.iter().filter_map(|line| Some((line.index, line.checkpoint.as_ref()?))) {
+async fn put_checkpoint(
+    transaction: &mut Transaction<'_, Sqlite>,
+    job: Uuid,
+    checkpoints: &[Checkpoint],
+) -> Result<()> {
+    for checkpoint in checkpoints {
         if checkpoint.begins_trail {
             sqlx::query("DELETE FROM checkpoint_trails WHERE job = ?").bind(job).execute(&mut **transaction).await?;
         }
         if let Some(trail) = &checkpoint.trail {
             sqlx::query("INSERT INTO checkpoint_trails (job, increment_index, trail) VALUES (?1, ?2, ?3)")
                 .bind(job)
-                .bind(signed(index))
+                .bind(signed(checkpoint.index))
                 .bind(trail)
                 .execute(&mut **transaction)
                 .await?;
         }
-        newest = Some((index, &checkpoint.body));
     }
-    if let Some((index, body)) = newest {
+    if let Some(newest) = checkpoints.last() {
         sqlx::query(
             "INSERT INTO checkpoints (job, increment_index, body) VALUES (?1, ?2, ?3) ON CONFLICT (job) \
              DO UPDATE SET increment_index = excluded.increment_index, body = excluded.body",
         )
         .bind(job)
-        .bind(signed(index))
-        .bind(body)
+        .bind(signed(newest.index))
+        .bind(&newest.body)
         .execute(&mut **transaction)
         .await?;
     }
@@ -126,7 +133,7 @@ pub(super) async fn stored(store: &SqliteStore, job: Uuid, index: u64) -> Result
             .fetch_optional(&store.writer)
             .await?;
     let body = body.ok_or_else(|| rows::damaged(format!("increment {index} of job {job} is missing")))?;
-    Ok(Line { index, body, branch: None, checkpoint: None })
+    Ok(Line { index, body, branch: None })
 }
 
 pub(super) async fn read(store: &SqliteStore, id: Uuid, after: Option<u64>, page: Page) -> Result<Vec<Line>> {
@@ -145,7 +152,7 @@ pub(super) async fn read(store: &SqliteStore, id: Uuid, after: Option<u64>, page
         let body: String = row.try_get("body")?;
         bytes += body.len();
         let index = unsigned(row.try_get("increment_index")?)?;
-        lines.push(Line { index, body, branch: None, checkpoint: None });
+        lines.push(Line { index, body, branch: None });
         if bytes >= page.bytes {
             break;
         }

@@ -16,8 +16,8 @@ mod rows;
 
 use super::signals::Signals;
 use super::{
-    Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, Origin, Page,
-    Result, Standing, Status, Store, StoreError, Submitted,
+    Batch, Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, Origin,
+    Page, Result, Standing, Status, Store, StoreError, Submitted,
 };
 use async_trait::async_trait;
 use health::Health;
@@ -186,8 +186,8 @@ impl Store for SqliteStore {
         self.health.note(claims::renew(self, lease, duration).await)
     }
 
-    async fn append(&self, lease: &Lease, lines: &[Line], duration: Duration) -> Result<LeaseAnswer> {
-        self.health.note(increments::append(self, lease, lines, duration).await)
+    async fn append(&self, lease: &Lease, batch: &Batch, duration: Duration) -> Result<LeaseAnswer> {
+        self.health.note(increments::append(self, lease, batch, duration).await)
     }
 
     async fn finish(&self, lease: &Lease, ending: Ending) -> Result<LeaseAnswer> {
