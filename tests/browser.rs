@@ -122,7 +122,7 @@ async fn a_path_goes_on_growing_without_a_gap_after_a_restart() {
     request["analysis"]["record"] = json!({"every": 200, "directions": false});
     let id = process::submit(&client, &url, "/v1/jobs", &request).await;
     browser.page.goto(&format!("{url}/?jobs={id}")).await.expect("a page");
-    browser.until("document.getElementById('path-plot').data?.[0].x.length > 20").await;
+    browser.until("document.getElementById('path-plot').data?.[0]?.x.length > 20").await;
     service.terminated().await;
     browser.until("document.getElementById('connection').textContent.startsWith('Disconnected')").await;
     let before = browser.ask("document.getElementById('path-plot').data[0].x.length").await;

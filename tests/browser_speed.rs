@@ -65,7 +65,7 @@ const WATCH: &str = "(() => {
 })()";
 const LONGEST: &str =
     "['long', 'gaps'].map((kind) => window.frames_watched[kind].reduce((most, one) => Math.max(most, one)))";
-const DRAWN: &str = "document.getElementById('path-plot').data?.[0].x.length";
+const DRAWN: &str = "document.getElementById('path-plot').data?.[0]?.x.length";
 
 /// Increments that are streamed: ten seconds of them and more.
 const STREAMED: u64 = 2_400;
