@@ -36,8 +36,9 @@ async fn the_readmes_pictures_show_what_the_page_shows() {
         ("branch.png", "light", format!("/?jobs={},{branch}&at=45", ids[1]), 4),
         ("space.png", "dark", format!("/?jobs={}&at=24", ids[0]), 2),
     ] {
-        let window = json!({"width": 1280, "height": 1000, "deviceScaleFactor": 1, "mobile": false});
+        let window = json!({"width": 1240, "height": 1040, "deviceScaleFactor": 1, "mobile": false});
         browser.devtools("Emulation.setDeviceMetricsOverride", window).await;
+        browser.devtools("Emulation.setScrollbarsHidden", json!({"hidden": true})).await;
         let scheme = json!({"features": [{"name": "prefers-color-scheme", "value": scheme}]});
         browser.devtools("Emulation.setEmulatedMedia", scheme).await;
         browser.visit(&format!("{}{address}", service.url)).await;

@@ -121,8 +121,7 @@ async fn the_last_bifurcation_is_shown_where_none_is_chosen_and_energies_are_dra
     let drawn: Vec<_> = drawn.as_array().expect("a list").iter().map(Value::as_f64).collect();
     let stored: Vec<_> = increments.iter().map(|line| line["energy"]["dissipated"].as_f64()).collect();
     assert_eq!(drawn, stored);
-    let address = browser.page.current_url().await.expect("an address").to_string();
-    assert!(address.contains("ordinate=%2Fenergy%2Fdissipated"), "{address}");
+    browser.until("location.search.includes('ordinate=%2Fenergy%2Fdissipated')").await;
     browser.close(served.url(), &[]).await;
 }
 
@@ -142,6 +141,7 @@ async fn structure_and_path_point_at_each_other_and_space_is_turned_by_dragging(
     browser.drag(&[(x, y), (x + 40.0, y + 10.0), (x + 80.0, y + 20.0)], true).await;
     browser.until(&format!("{places}.join() !== '{}'", join(&before))).await;
     assert_ne!(browser.ask("document.getElementById('azimuth').value").await, "-60", "the slider goes along");
+    browser.until("/[?&]turn=-?[0-9]+,[0-9]+/.test(location.search)").await;
     // Over a point of the path its structure is shown.
     let place = "(({left, top}, {_fullLayout: {xaxis, yaxis}, data: [line]}) => [left + xaxis._offset + xaxis.c2p(line.x[9]), \
                  top + yaxis._offset + yaxis.c2p(line.y[9])])(document.getElementById('path-plot').getBoundingClientRect(), document.getElementById('path-plot'))";

@@ -20,13 +20,14 @@ const NOTHING = 1e-20;
 const ROWS = 500;
 
 export class Diagnostics {
-  constructor(panel) {
+  /** Tells `opened(yes)`. */
+  constructor(panel, told, isOpen) {
     this.path = null;
     this.place = element("div", { class: "plot", id: "diagnostics-plot" });
     this.work = element("div", {});
     this.events = element("div", {});
     this.settings = element("div", {});
-    this.whole = element("details", { ontoggle: () => this.draw() },
+    this.whole = element("details", { open: isOpen, ontoggle: () => { told.opened(this.whole.open); this.draw(); } },
       element("summary", {}, element("h2", {}, "Diagnostics")), this.place,
       element("p", { class: "quiet" }, "Errors that are exactly zero have no place on this axis."), this.work, this.settings, this.events);
     fill(panel, this.whole);

@@ -23,6 +23,8 @@ export class Directions {
       increment = index === null ? null : await path.increment(index);
     } catch {
       // What cannot be fetched is told of where the structure is drawn.
+      this.panel.hidden = true;
+      return;
     }
     if (wanted !== this.wanted) return;
     this.shown = wanted;

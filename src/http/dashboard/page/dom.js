@@ -70,10 +70,22 @@ export function onceAFrame(work) {
   };
 }
 
-/** Calls a function at most once in so many milliseconds, and after the last time that it was asked for. */
+/** Pauses are at least so many times as long as what is done between them. */
+const REST = 3;
+
+/** Calls a function at most once in so many milliseconds, less often where it takes long, and after the last time that it was
+ *  asked for. */
 export function atMostEvery(milliseconds, work) {
-  let waits = null;
+  let waits = false;
+  let pause = milliseconds;
   return () => {
-    waits ??= setTimeout(() => { waits = null; work(); }, milliseconds);
+    if (waits) return;
+    waits = true;
+    setTimeout(async () => {
+      waits = false;
+      const began = performance.now();
+      await work();
+      pause = Math.max(milliseconds, REST * (performance.now() - began));
+    }, pause);
   };
 }

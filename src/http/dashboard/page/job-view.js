@@ -36,18 +36,21 @@ export class JobView {
       left: () => this.structure.choose(state().at),
       axes: (axes) => change(axes),
     });
-    this.structure = new StructurePlot(byId("structure"), { chosen, pointedAt: (yes) => this.pathPlot.pointAt(yes) });
+    this.structure = new StructurePlot(byId("structure"), {
+      chosen, pointedAt: (yes) => this.pathPlot.pointAt(yes), turned: (turn) => change({ turn }),
+    }, state().turn);
     this.directions = new Directions(byId("directions"), {
       chosen,
       followed: (job) => { told.changed(); change({ jobs: [...state().jobs, job.id] }); },
     });
-    this.diagnostics = new Diagnostics(byId("diagnostics"));
+    this.diagnostics = new Diagnostics(byId("diagnostics"), { opened: (figures) => change({ figures }) }, state().figures);
     this.structureLater = atMostEvery(STRUCTURE, () => {
-      if (state().at === null && this.first) this.structure.choose(null);
+      if (state().at === null && this.first) return this.structure.choose(null);
+      return null;
     });
     this.figuresLater = atMostEvery(FIGURES, () => {
-      this.diagnostics.draw();
       if (state().at === null && this.first) this.directions.choose(this.first, null);
+      return this.diagnostics.draw();
     });
     this.grown = onceAFrame(() => {
       this.pathPlot.grow();
@@ -64,7 +67,7 @@ export class JobView {
   }
 
   paths() {
-    return state().jobs.map((id) => this.held.get(id)).filter((path) => path?.request && path.columns.size > 0);
+    return state().jobs.map((id) => this.held.get(id)).filter((path) => path?.isLoaded);
   }
 
   get isConnected() {
@@ -162,7 +165,7 @@ export class JobView {
     section.hidden = false;
     section.classList.remove("loading");
     const shown = this.paths();
-    const axes = { abscissa: state().abscissa ?? first.ownAbscissa(), ordinate: state().ordinate ?? "load_factor" };
+    const axes = axesOf(first);
     this.heading();
     try {
       await Promise.all([plotlyLoaded(), ...shown.map((path) => path.need([axes.abscissa, axes.ordinate]))]);
@@ -178,13 +181,13 @@ export class JobView {
     await frame();
     await this.structure.show(first, state().at);
     await frame();
-    this.layExact(first, axes);
+    this.layExact(first);
     this.directions.choose(first, state().at);
     this.diagnostics.show(first);
   }
 
   /** Lays the exact path over the computed one once that is whole; the picture does not wait for it. */
-  async layExact(path, axes) {
+  async layExact(path) {
     if (isGoingOn(path.job)) return;
     const before = path.exact;
     try {
@@ -193,17 +196,18 @@ export class JobView {
       if (!isGivenUp(problem)) this.told.said(problem.message);
       return;
     }
-    if (path.exact !== before && path.exact.path && this.first === path) await this.pathPlot.draw(this.paths(), axes, state().at);
+    if (path.exact !== before && path.exact.path && this.first === path) await this.pathPlot.draw(this.paths(), axesOf(path), state().at);
   }
 
   heading() {
     const { first } = this;
     if (!first) return;
     const { job } = first;
-    const many = first.index.length;
+    const kept = first.index.length;
+    const all = (first.last() ?? -1) + 1;
     fill(this.summary, element("div", { class: "bar" }, element("h2", {}, job.name),
       element("span", { class: `status ${job.status}`, id: "status" }, job.status)),
-    element("p", { id: "stop" }, `${many} increments. `, isGoingOn(job) ? `The job ${statusWords(job.status)}.` : stopSentence(job),
+    element("p", { id: "stop" }, kept === all ? `${all} increments. ` : `${all} increments, ${kept} of them kept. `, isGoingOn(job) ? `The job ${statusWords(job.status)}.` : stopSentence(job),
       job.parent ? element("span", {}, " It follows ", element("a", { href: addressOfJob(job.parent.job, job.id), "data-key": "parent" },
         "another job"), ` from increment ${job.parent.increment} in direction ${job.parent.direction}.`) : null),
     first.problem ? element("p", { class: "bad", role: "alert" }, first.problem) : null);
@@ -218,6 +222,8 @@ export class JobView {
     fill(this.actions, job ? jobActions(job, this.told.changed, (problem) => this.told.said(problem.message)) : null);
   }
 }
+
+const axesOf = (path) => ({ abscissa: state().abscissa ?? path.ownAbscissa(), ordinate: state().ordinate ?? "load_factor" });
 
 const frame = () => new Promise((resume) => requestAnimationFrame(() => setTimeout(resume)));
 

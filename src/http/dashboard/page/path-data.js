@@ -31,6 +31,7 @@ export class PathData {
     this.points = [];
     this.whole = new Map();
     this.problem = null;
+    this.isLoaded = false;
     this.isConnected = true;
     this.stop = () => {};
     this.given = new AbortController();
@@ -50,6 +51,7 @@ export class PathData {
       if (page.index.length === 0 || page.next_after === this.job.progress.last_index) break;
       after = page.next_after;
     }
+    this.isLoaded = true;
     this.told("loaded", this);
     if (signal.aborted || !isGoingOn(this.job)) return;
     this.stop = follow(place, this.index.at(-1) ?? null, {
@@ -160,11 +162,19 @@ export class PathData {
       const watched = until?.displacement;
       if (watched && isRecorded(watched.node)) return displacement(watched.node, "xyz".indexOf(watched.component));
     }
-    for (const stage of stages) {
-      for (const [node, force] of Object.entries({ ...stage.forces, ...stage.displacements })) {
-        const component = Array.isArray(force) ? force.findIndex((value) => value !== 0) : -1;
+    const loaded = (places) => {
+      for (const [node, amount] of Object.entries(places)) {
+        const component = Array.isArray(amount) ? largest(amount) : -1;
         if (component >= 0 && isRecorded(node)) return displacement(node, component);
       }
+      return null;
+    };
+    for (const { forces, displacements, obstacle_motion: motion } of stages) {
+      // An obstacle that moves takes along what is on it.
+      const taken = (model.contacts ?? []).filter(({ obstacle }) => motion?.[obstacle])
+        .map(({ node, obstacle }) => [node, motion[obstacle]]);
+      const found = loaded({ ...forces, ...displacements }) ?? loaded(Object.fromEntries(taken));
+      if (found) return found;
     }
     return "arc_length";
   }
@@ -175,13 +185,19 @@ export class PathData {
     const nodes = Array.isArray(recorded) ? recorded : Object.keys(this.request.model.nodes);
     const components = "xyz".slice(0, this.request.model.dimension);
     return [["arc_length", "arc length"], ...nodes.flatMap((node) =>
-      [...components].map((letter, component) => [displacement(node, component), `displacement of ${node}, ${letter}`]))];
+      [...components].map((letter, component) => [displacement(node, component), `${letter} of ${node}`]))];
   }
 
   close() {
     this.given.abort();
     this.stop();
   }
+}
+
+/** Place of the largest component; -1 where all are zero. */
+function largest(components) {
+  const most = Math.max(...components.map(Math.abs));
+  return most > 0 ? components.findIndex((value) => Math.abs(value) === most) : -1;
 }
 
 /** A member of an increment by its name or JSON Pointer. */

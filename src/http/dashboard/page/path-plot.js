@@ -57,7 +57,7 @@ export class PathPlot {
       ];
     });
     this.drawn = paths.map((path) => path.index.length);
-    this.shownPoints = paths.map((path) => path.points.length);
+    this.drawnPoints = paths.map((path) => named(path).length);
     traces.push({
       ...this.mark(), type: "scatter", mode: "markers", hoverinfo: "skip",
       marker: { size: MARK.plain, symbol: "circle-open", color: fromSheet("--text"), line: { width: 2 } },
@@ -65,8 +65,9 @@ export class PathPlot {
     const exact = this.exact();
     if (exact) traces.push(exact);
     const words = (known, name) => known.find(([one]) => one === name)?.[1] ?? name;
+    const kind = axes.abscissa.startsWith("/displacements/") ? "displacement " : "";
     await Plotly.react(this.place, traces, layout({
-      xaxis: axis(words(paths[0]?.abscissae() ?? [], axes.abscissa)), yaxis: axis(words(ORDINATES, axes.ordinate)),
+      xaxis: axis(`${kind}${words(paths[0].abscissae(), axes.abscissa)}`), yaxis: axis(words(ORDINATES, axes.ordinate)),
       uirevision: `${paths.map(({ id }) => id)} ${axes.abscissa} ${axes.ordinate}`,
     }), CONFIGURATION);
     this.listen();
@@ -189,7 +190,7 @@ export class PathPlot {
 
   async extend() {
     const isOther = (path, place) => mode(path) !== this.place.data?.[place * OF_A_JOB]?.mode
-      || path.points.length !== this.shownPoints[place];
+      || named(path).length !== this.drawnPoints[place];
     if (this.paths.some(isOther)) {
       await this.draw(this.paths, this.axes, this.at);
       return;

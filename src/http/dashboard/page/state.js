@@ -2,10 +2,16 @@
 //
 // jobs: ids drawn in the path plot; the first is the one whose structure and figures are shown. study: the id of a study that
 // is shown in their place. abscissa and ordinate: a member of the increments or a JSON Pointer to one; null for the job's own
-// choice. at: the chosen increment, null for the last. status: the lists' filter. run: the form for a new run is open; scene:
-// what is in it; as: "study" where it queues one.
+// choice. at: the chosen increment, null for the last. turn: azimuth and elevation (degrees) from which a structure in space
+// is seen, null for the usual ones. figures: the diagnostics are open. status: the lists' filter. run: the form for a new run is
+// open; scene: what is in it; as: "study" where it queues one.
 
-const EMPTY = { jobs: [], study: null, abscissa: null, ordinate: null, at: null, status: "", run: false, scene: "", as: "" };
+const EMPTY = {
+  jobs: [], study: null, abscissa: null, ordinate: null, at: null, turn: null, figures: false, status: "", run: false, scene: "",
+  as: "",
+};
+/** Milliseconds between changes of the address that are no steps: browsers take no more of them than so many. */
+const PAUSE = 250;
 const ID = /^[0-9a-f-]{36}$/i;
 const listeners = new Set();
 
@@ -19,11 +25,18 @@ function ofAddress() {
     abscissa: given.get("abscissa"),
     ordinate: given.get("ordinate"),
     at: Number.isSafeInteger(at) && at >= 0 ? at : null,
+    turn: angles(given.get("turn") ?? ""),
+    figures: given.has("figures"),
     status: given.get("status") ?? "",
     run: given.has("run"),
     scene: given.get("scene") ?? "",
     as: given.get("as") === "study" ? "study" : "",
   };
+}
+
+function angles(text) {
+  const found = text.split(",").map(Number);
+  return text && found.length === 2 && found.every(Number.isFinite) ? found : null;
 }
 
 function address(state) {
@@ -33,6 +46,8 @@ function address(state) {
   if (state.abscissa) parts.push(`abscissa=${encodeURIComponent(state.abscissa)}`);
   if (state.ordinate) parts.push(`ordinate=${encodeURIComponent(state.ordinate)}`);
   if (state.at !== null) parts.push(`at=${state.at}`);
+  if (state.turn) parts.push(`turn=${state.turn.map(Math.round).join(",")}`);
+  if (state.figures) parts.push("figures");
   if (state.status) parts.push(`status=${encodeURIComponent(state.status)}`);
   if (state.run) parts.push("run");
   if (state.run && state.scene) parts.push(`scene=${encodeURIComponent(state.scene)}`);
@@ -41,6 +56,20 @@ function address(state) {
 }
 
 let now = { ...EMPTY, ...ofAddress() };
+let written = -PAUSE;
+let later = null;
+
+/** Puts the state into the address: at once, or when the pause since the last time is over. */
+function write() {
+  clearTimeout(later);
+  const wait = written + PAUSE - performance.now();
+  if (wait > 0) {
+    later = setTimeout(write, wait);
+    return;
+  }
+  written = performance.now();
+  history.replaceState(null, "", address(now));
+}
 
 export const state = () => now;
 /** Whether both show the same, their form, filter and chosen point aside. */
@@ -50,8 +79,13 @@ export const isSameView = (a, b) => a.jobs.join() === b.jobs.join() && a.run ===
 export function change(changes) {
   const before = now;
   now = { ...now, ...changes };
-  const isStep = !isSameView(before, now);
-  if (address(now) !== address(before)) history[isStep ? "pushState" : "replaceState"](null, "", address(now));
+  if (!isSameView(before, now)) {
+    clearTimeout(later);
+    history.replaceState(null, "", address(before));
+    history.pushState(null, "", address(now));
+  } else if (address(now) !== address(before)) {
+    write();
+  }
   for (const listener of listeners) listener(before);
 }
 
@@ -72,6 +106,7 @@ export function onChange(listener) {
 }
 
 addEventListener("popstate", () => {
+  clearTimeout(later);
   const before = now;
   now = { ...EMPTY, ...ofAddress() };
   for (const listener of listeners) listener(before);

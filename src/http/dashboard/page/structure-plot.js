@@ -16,15 +16,18 @@ const PLAYED = 300;
 /** The half of the picture's side, as a part of the structure's extent. */
 const HALF = { 2: 0.62, 3: 0.74 };
 const ANGLES = { azimuth: 180, elevation: 90 };
+/** Azimuth and elevation where none are asked for. */
+const USUAL = [-60, 25];
 /** Degrees that dragging over a pixel turns. */
 const TURN = 0.5;
 
 export class StructurePlot {
-  /** Tells `chosen(index)` and `pointedAt(yes)`. */
-  constructor(panel, told) {
+  /** Tells `chosen(index)`, `pointedAt(yes)` and `turned([azimuth, elevation])`; `turn`: from where it is seen, or null. */
+  constructor(panel, told, turn) {
     this.told = told;
     this.path = null;
-    this.view = { azimuth: -60, elevation: 25 };
+    const [azimuth, elevation] = turn ?? USUAL;
+    this.view = { azimuth, elevation };
     this.largest = 0;
     this.slider = element("input", {
       type: "range", min: 0, max: 0, value: 0, id: "increment", "aria-label": "increment", oninput: () => this.slid(),
@@ -138,6 +141,7 @@ export class StructurePlot {
       const slider = this.turns.querySelector(`#${angle}`);
       if (slider) slider.value = this.view[angle];
     }
+    this.told.turned([this.view.azimuth, this.view.elevation]);
     this.again();
   }
 

@@ -1,7 +1,7 @@
 // The lists of jobs and of studies beside the view: progress, filter, which paths are drawn together.
 
 import { choice, element, fill } from "./dom.js";
-import { addressOfJob, addressOfStudy, change, openJob, openStudy, state } from "./state.js";
+import { addressOfJob, addressOfStudy, change, isSameView, openJob, openStudy, state } from "./state.js";
 import { TaskList } from "./task-list.js";
 import { ago, isGoingOn } from "./words.js";
 
@@ -32,13 +32,13 @@ export class TaskLists {
   /** The view has changed. */
   changed(before) {
     const { status } = state();
-    if (before.status === status) {
+    if (before.status !== status) {
+      this.drawFilter();
+      this.load();
+    } else if (!isSameView(before, state())) {
       this.jobs.draw();
       this.studies.draw();
-      return;
     }
-    this.drawFilter();
-    this.load();
   }
 
   drawFilter() {
