@@ -29,7 +29,8 @@ export class Diagnostics {
     this.settings = element("div", {});
     this.whole = element("details", { open: isOpen, ontoggle: () => { told.opened(this.whole.open); this.draw(); } },
       element("summary", {}, element("h2", {}, "Diagnostics")), this.place,
-      element("p", { class: "quiet" }, "Errors that are exactly zero have no place on this axis."), this.work, this.settings, this.events);
+      element("p", { class: "quiet" }, "Errors that are exactly zero have no place on this axis."), this.work,
+      this.settings, this.events);
     fill(panel, this.whole);
   }
 

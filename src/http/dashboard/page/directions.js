@@ -67,7 +67,8 @@ export class Directions {
     const where = at === null ? [` at increment ${index}, the last bifurcation of the path`] : [` at increment ${index}`];
     fill(this.panel, element("h2", {}, "Directions", where),
       element("p", { class: "quiet" }, "Each is a way in which the path can go on from this point, in both senses of the load. ",
-        at === null ? button("Show the structure there", () => this.told.chosen(index), { class: "plain", "data-key": "there" }) : null),
+        at !== null ? null
+          : button("Show the structure there", () => this.told.chosen(index), { class: "plain", "data-key": "there" })),
       table(["", "contacts", "load rate", "dissipation rate", ""], rows), problem);
   }
 }

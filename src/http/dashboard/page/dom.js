@@ -43,7 +43,8 @@ export function askingButton(words, question, act, attributes = {}) {
   };
   const ask = () => {
     const no = button("No", () => rest(true));
-    fill(place, element("span", { role: "alert" }, question), button("Yes", () => { rest(true); act(); }, { class: "danger" }), no);
+    const yes = button("Yes", () => { rest(true); act(); }, { class: "danger" });
+    fill(place, element("span", { role: "alert" }, question), yes, no);
     no.focus();
   };
   place.addEventListener("keydown", (event) => { if (event.key === "Escape") rest(true); });

@@ -196,7 +196,8 @@ export class JobView {
       if (!isGivenUp(problem)) this.told.said(problem.message);
       return;
     }
-    if (path.exact !== before && path.exact.path && this.first === path) await this.pathPlot.draw(this.paths(), axesOf(path), state().at);
+    if (path.exact === before || !path.exact.path || this.first !== path) return;
+    await this.pathPlot.draw(this.paths(), axesOf(path), state().at);
   }
 
   heading() {
@@ -205,11 +206,13 @@ export class JobView {
     const { job } = first;
     const kept = first.index.length;
     const all = (first.last() ?? -1) + 1;
+    const many = kept === all ? `${all} increments. ` : `${all} increments, ${kept} of them kept. `;
     fill(this.summary, element("div", { class: "bar" }, element("h2", {}, job.name),
       element("span", { class: `status ${job.status}`, id: "status" }, job.status)),
-    element("p", { id: "stop" }, kept === all ? `${all} increments. ` : `${all} increments, ${kept} of them kept. `, isGoingOn(job) ? `The job ${statusWords(job.status)}.` : stopSentence(job),
-      job.parent ? element("span", {}, " It follows ", element("a", { href: addressOfJob(job.parent.job, job.id), "data-key": "parent" },
-        "another job"), ` from increment ${job.parent.increment} in direction ${job.parent.direction}.`) : null),
+    element("p", { id: "stop" }, many, isGoingOn(job) ? `The job ${statusWords(job.status)}.` : stopSentence(job),
+      job.parent ? element("span", {}, " It follows ", element("a", {
+        href: addressOfJob(job.parent.job, job.id), "data-key": "parent",
+      }, "another job"), ` from increment ${job.parent.increment} in direction ${job.parent.direction}.`) : null),
     first.problem ? element("p", { class: "bad", role: "alert" }, first.problem) : null);
     this.drawActions(job);
   }

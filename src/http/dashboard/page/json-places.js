@@ -42,7 +42,8 @@ function indented(value) {
 }
 
 /** Line breaks within JSON's texts are escaped, so that those found are the layout's. */
-const onOneLine = (value) => JSON.stringify(value, null, 1).replace(/([{[])\n\s*/g, "$1").replace(/\n\s*([}\]])/g, "$1").replace(/\n\s*/g, " ");
+const onOneLine = (value) => JSON.stringify(value, null, 1)
+  .replace(/([{[])\n\s*/g, "$1").replace(/\n\s*([}\]])/g, "$1").replace(/\n\s*/g, " ");
 
 class Reader {
   constructor(text) {

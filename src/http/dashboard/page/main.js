@@ -29,7 +29,9 @@ tokenPrompt(byId("token"));
 const lists = new TaskLists(byId("lists"));
 const changed = () => lists.load();
 const jobView = new JobView({ said: say, changed, connection });
-const studyView = new StudyView(byId("study"), { failed: (problem) => say(problem.message), shown: () => say(""), changed, connection });
+const studyView = new StudyView(byId("study"), {
+  failed: (problem) => say(problem.message), shown: () => say(""), changed, connection,
+});
 const runForm = new RunForm(byId("run"), {
   queued: (job) => { changed(); openJob(job.id); },
   queuedStudy: (study) => { changed(); openStudy(study.id); },

@@ -28,7 +28,7 @@ export async function warmPlotlyUp() {
   await plotlyLoaded();
   const idle = window.requestIdleCallback ?? setTimeout;
   idle(async () => {
-    const place = element("div", { class: "plot", style: "position:absolute;visibility:hidden;width:300px", "aria-hidden": "true" });
+    const place = element("div", { class: "plot unseen", "aria-hidden": "true" });
     document.body.append(place);
     await Plotly.newPlot(place, [
       { type: "scatter", mode: "lines", x: [0, 1], y: [0, 1] },

@@ -36,10 +36,13 @@ export class RunForm {
     this.kinds = element("label", {});
     this.shows = element("p", { class: "quiet" });
     this.settings = element("div", { id: "settings" });
-    const file = element("input", { type: "file", accept: ".json,application/json", onchange: (event) => this.take(event.target.files) });
+    const file = element("input", {
+      type: "file", accept: ".json,application/json", onchange: (event) => this.take(event.target.files),
+    });
+    const others = element("label", {}, "Or paste a model, drop a file here, or choose one: ", file);
     fill(panel, element("h2", {}, "New run"), element("div", { class: "choices" }, this.scenes, this.kinds), this.shows,
       element("div", { class: "sides" },
-        element("div", {}, element("p", { class: "quiet" }, element("label", {}, "Or paste a model, drop a file here, or choose one: ", file)),
+        element("div", {}, element("p", { class: "quiet" }, others),
           element("div", { class: "editor" }, this.lines, this.text),
           element("div", { class: "actions" }, this.button, button("Close", () => change({ run: false }))), this.verdict),
         element("div", {}, element("h3", {}, "Settings"), this.settings)));
@@ -62,14 +65,18 @@ export class RunForm {
       this.known ??= (await get("/v1/scenes")).scenes;
       await this.drawSettings();
       const wanted = state().scene || this.known[0].name;
-      fill(this.scenes, "Scene ", choice({ id: "scene", "data-key": "scene", onchange: (event) => change({ scene: event.target.value }) },
-        [...(wanted.startsWith("job:") ? [[wanted, "the model of a job"]] : []),
-          ...this.known.map(({ name }) => [name, name])], wanted));
-      fill(this.kinds, "Trace ", choice({ id: "kind", "data-key": "kind", onchange: (event) => change({ as: event.target.value }) },
-        KINDS, state().as));
+      fill(this.scenes, "Scene ", choice({
+        id: "scene", "data-key": "scene", onchange: (event) => change({ scene: event.target.value }),
+      }, [
+        ...(wanted.startsWith("job:") ? [[wanted, "the model of a job"]] : []), ...this.known.map(({ name }) => [name, name]),
+      ], wanted));
+      fill(this.kinds, "Trace ", choice({
+        id: "kind", "data-key": "kind", onchange: (event) => change({ as: event.target.value }),
+      }, KINDS, state().as));
       this.shows.textContent = this.known.find(({ name }) => name === wanted)?.shows ?? "";
       if (this.scene !== wanted) {
-        const place = wanted.startsWith("job:") ? `/v1/jobs/${wanted.slice(4)}/request` : `/v1/scenes/${encodeURIComponent(wanted)}`;
+        const place = wanted.startsWith("job:") ? `/v1/jobs/${wanted.slice(4)}/request`
+          : `/v1/scenes/${encodeURIComponent(wanted)}`;
         // As it is written: who wrote it has put on one line what belongs together.
         this.text.value = await (await call(place)).text();
         this.scene = wanted;

@@ -61,8 +61,14 @@ export class SettingsFields {
       return input;
     };
     if (schema.enum) {
-      const input = choice({}, [["", words], ...schema.enum.filter((one) => one !== standard).map((one) => [one, plainWords(one)])], "");
-      return field(input, (value) => { input.value = value === undefined || value === standard ? "" : value; }, () => input.value || undefined);
+      const others = schema.enum.filter((one) => one !== standard);
+      const input = choice({}, [["", words], ...others.map((one) => [one, plainWords(one)])], "");
+      return field(input, (value) => { input.value = others.includes(value) ? value : ""; }, () => input.value || undefined);
+    }
+    if (types.includes("boolean") && types.includes("null")) {
+      // What holds where nothing is said may depend on other settings: the words beside it say on which.
+      const input = choice({}, [["", "by default"], ["true", "yes"], ["false", "no"]], "");
+      return field(input, (value) => { input.value = value ?? ""; }, () => (input.value ? input.value === "true" : undefined));
     }
     if (types.includes("boolean")) {
       const input = element("input", { type: "checkbox" });
@@ -71,10 +77,11 @@ export class SettingsFields {
     }
     if (types.includes("integer") || types.includes("number")) {
       const input = element("input", {
-        type: "number", step: types.includes("integer") ? 1 : "any", min: schema.minimum ?? (schema.exclusiveMinimum === 0 ? 0 : null),
+        type: "number", step: types.includes("integer") ? 1 : "any", min: schema.minimum ?? schema.exclusiveMinimum,
         max: schema.maximum, placeholder: words || (types.includes("null") ? "as the scene asks" : "none"),
       });
-      return field(input, (value) => { input.value = value ?? ""; }, () => (input.value === "" ? undefined : input.valueAsNumber));
+      return field(input, (value) => { input.value = value ?? ""; },
+        () => (Number.isNaN(input.valueAsNumber) ? undefined : input.valueAsNumber));
     }
     if (types.includes("array")) {
       const isOfNumbers = resolved(this.document, schema.items).type === "number";

@@ -56,8 +56,9 @@ class Drawing {
       const before = item.nodes.map((name) => model.nodes[name]);
       if (ends.length === 1) {
         // To the ground, where its node was.
-        traces.marker("ground", before[0], { symbol: "x-thin", color: fromSheet("--faint"), size: 9 }, `spring of ${item.nodes[0]}, fixed here`);
-        traces.lines("spring", [[before[0], ends[0]]], spring, `spring of ${item.nodes[0]}`);
+        const words = `spring of ${item.nodes[0]}`;
+        traces.marker("ground", before[0], { symbol: "x-thin", color: fromSheet("--faint"), size: 9 }, `${words}, fixed here`);
+        traces.lines("spring", [[before[0], ends[0]]], spring, words);
         continue;
       }
       traces.lines("undeformed", [before], { color: fromSheet("--faint"), width: 1.5, dash: "dot" });

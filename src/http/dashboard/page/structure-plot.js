@@ -68,7 +68,8 @@ export class StructurePlot {
     const { model } = this.path.request;
     const swatch = (style, words, kind = "") =>
       element("li", {}, element("span", { class: `swatch ${kind}`, style }), words);
-    const arrow = (colour, words) => element("li", {}, element("span", { class: "sign", style: `color:${colour}` }, "→"), words);
+    const sign = (colour, shape, words) =>
+      element("li", {}, element("span", { class: "sign", style: `color:var(${colour})` }, shape), words);
     const hasFriction = (model.contacts ?? []).some(({ friction }) => friction > 0);
     const bars = (model.elements ?? []).some(({ kind }) => kind === "bar");
     fill(this.key,
@@ -77,9 +78,8 @@ export class StructurePlot {
       (model.elements ?? []).some(({ kind }) => kind === "spring") ? swatch("", "spring", "dashed") : null,
       model.contacts?.length ? [
         STATES.map(([state, , colour]) => swatch(`--colour:var(${colour})`, state, `state ${state}`)),
-        arrow("var(--text)", "reaction"),
-        hasFriction ? [arrow("var(--slip)", "slip direction"),
-          element("li", {}, element("span", { class: "sign", style: "color:var(--cone)" }, "∨"), "friction cone")] : [],
+        sign("--text", "→", "reaction"),
+        hasFriction ? [sign("--slip", "→", "slip direction"), sign("--cone", "∨", "friction cone")] : [],
       ].flat(2) : []);
   }
 

@@ -64,7 +64,9 @@ export class StructureTraces {
   }
 
   marker(name, place, marker, words) {
-    const trace = this.trace(name, () => ({ mode: "markers", marker: { size: 11, line: { width: 2, color: marker.color }, ...marker } }));
+    const trace = this.trace(name, () => ({
+      mode: "markers", marker: { size: 11, line: { width: 2, color: marker.color }, ...marker },
+    }));
     this.add(trace, [place], words);
   }
 

@@ -93,12 +93,13 @@ export class StudyView {
         y: rows.map(({ path_error: error }) => Math.max(error, LEAST_ERROR)),
         text: rows.map(({ value, increments }) => `${varied} ${short(value)}, ${increments} increments`),
         hovertemplate: `${method}: %{text}<br>error %{y:.2e}, %{x:.3g}${isTimed ? " s" : ""}<extra></extra>`,
-        line: { color: colourOf(place) }, marker: { size: 8, symbol: rows.map(({ resolved }) => (resolved ? "circle" : "circle-open")) },
+        line: { color: colourOf(place) },
+        marker: { size: 8, symbol: rows.map(({ resolved }) => (resolved ? "circle" : "circle-open")) },
       };
     });
-    const logarithmic = (title) => ({ ...axis(title), type: "log", dtick: 1 });
+    const logarithmic = (title) => ({ ...axis(title), type: "log", nticks: 10 });
     await Plotly.react(this.place, traces, layout({
-      xaxis: { ...logarithmic(isTimed ? "run time, s" : varied), dtick: undefined, nticks: 8 }, yaxis: { ...logarithmic("largest distance from the reference"), dtick: undefined, nticks: 10 },
+      xaxis: logarithmic(isTimed ? "run time, s" : varied), yaxis: logarithmic("largest distance from the reference"),
       showlegend: true, legend: { orientation: "h", y: 1.12 }, uirevision: study.id,
     }), CONFIGURATION);
     fill(this.rows, element("p", { class: "quiet" }, "Open circles: errors as small as what the reference itself leaves open."),

@@ -26,7 +26,8 @@ export class TaskList {
 
   async load(cursor = null) {
     const { status } = state();
-    const place = `/v1/${this.of}?limit=${PAGE}${status ? `&status=${encodeURIComponent(status)}` : ""}${cursor ? `&cursor=${cursor}` : ""}`;
+    const asked = new URLSearchParams({ limit: PAGE, ...(status ? { status } : {}), ...(cursor ? { cursor } : {}) });
+    const place = `/v1/${this.of}?${asked}`;
     try {
       const page = await get(place);
       // The filter is another meanwhile: what was asked for after this counts.

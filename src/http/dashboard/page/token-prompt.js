@@ -16,7 +16,8 @@ export function tokenPrompt(place) {
       keepToken(given.value.trim());
       location.reload();
     };
-    fill(place, element("p", {}, element("label", { for: "given-token" }, "This service asks for a token"), told ? `: ${told}` : "."),
+    const label = element("label", { for: "given-token" }, "This service asks for a token");
+    fill(place, element("p", {}, label, told ? `: ${told}` : "."),
       element("div", { class: "actions" }, given, button("Use it", take, { class: "main", id: "use-token" })),
       element("p", { class: "quiet" }, "It is kept as long as this tab is open."));
     given.focus();

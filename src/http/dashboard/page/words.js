@@ -51,7 +51,8 @@ export function settingsSentences(request, plan, defaults) {
     `Contact changes become points of their own: ${setting("events")}.`,
     `It ends after so many increments at the latest: ${setting("max_increments")}.`,
     `Arc length of an increment: first ${arc("initial")}, at least ${arc("min")}, at most ${arc("max")}.`,
-    plan ? `${count(plan.unknowns, "unknown")}, ${count(plan.contacts, "contact")}, ${count(plan.stages, "stage")}; displacements are measured by ${short(plan.displacement_scale)}, forces by ${short(plan.force_scale)}.` : null,
+    plan ? `${count(plan.unknowns, "unknown")}, ${count(plan.contacts, "contact")}, ${count(plan.stages, "stage")}; `
+      + `displacements are measured by ${short(plan.displacement_scale)}, forces by ${short(plan.force_scale)}.` : null,
   ].filter(Boolean);
 }
 
