@@ -15,6 +15,7 @@ mod serve;
 mod settings;
 mod solve;
 mod study;
+mod sweep;
 mod token;
 mod verify;
 mod written;
@@ -39,6 +40,7 @@ enum Command {
     Serve(serve::Arguments),
     Solve(solve::Arguments),
     Study(study::Arguments),
+    Sweep(sweep::Arguments),
     Check(check::Arguments),
     Scenes(scenes::Arguments),
     Verify(verify::Arguments),
@@ -78,6 +80,7 @@ fn run_command() -> Outcome {
         Command::Serve(arguments) => serve::run(&arguments, &settings::in_force(Arguments::command(), &matches)),
         Command::Solve(arguments) => solve::run(&arguments),
         Command::Study(arguments) => study::run(&arguments),
+        Command::Sweep(arguments) => sweep::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Scenes(arguments) => scenes::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
