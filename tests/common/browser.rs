@@ -12,6 +12,8 @@ use tempfile::TempDir;
 
 const PATIENCE: Duration = Duration::from_secs(60);
 const DRIVER: &str = "chromedriver";
+/// It takes a port that is free by one protocol and ends where another program has it by the other.
+const STARTS: usize = 5;
 /// Width and height of the window; a laptop's.
 const WINDOW: (u32, u32) = (1280, 800);
 /// With the value `required` a test fails where there is no browser, and does not pass by.
@@ -182,14 +184,21 @@ impl Drop for Browser {
     }
 }
 
-/// The driver on a port of its own, and its address.
+/// The driver on a port of its own, and its address; `None` where there is none.
 fn driver() -> Option<(Child, String)> {
-    let mut child = Command::new(DRIVER).arg("--port=0").stdout(Stdio::piped()).stderr(Stdio::null()).spawn().ok()?;
-    let mut lines = BufReader::new(child.stdout.take()?).lines().map_while(Result::ok);
-    let port = lines.by_ref().find_map(|line| {
-        let (_, port) = line.split_once("started successfully on port ")?;
-        port.trim_end_matches('.').parse::<u16>().ok()
-    });
-    std::thread::spawn(move || lines.for_each(drop));
-    Some((child, format!("http://127.0.0.1:{}", port.expect("it says its port"))))
+    for _ in 0..STARTS {
+        let mut child =
+            Command::new(DRIVER).arg("--port=0").stdout(Stdio::piped()).stderr(Stdio::null()).spawn().ok()?;
+        let mut lines = BufReader::new(child.stdout.take()?).lines().map_while(Result::ok);
+        let port = lines.by_ref().find_map(|line| {
+            let (_, port) = line.split_once("started successfully on port ")?;
+            port.trim_end_matches('.').parse::<u16>().ok()
+        });
+        if let Some(port) = port {
+            std::thread::spawn(move || lines.for_each(drop));
+            return Some((child, format!("http://127.0.0.1:{port}")));
+        }
+        child.wait().expect("its end");
+    }
+    panic!("{DRIVER} does not say its port");
 }
