@@ -335,3 +335,50 @@ async fn a_service_that_asks_for_tokens_is_given_one() {
     browser.until("document.querySelectorAll('#lists a').length === 1").await;
     browser.close(&service.url, &["status of 401"]).await;
 }
+
+#[tokio::test]
+async fn paths_drawn_together_are_told_apart_by_what_differs() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = serve();
+    let smooth = served.ended(&scene("one-bar-truss")).await;
+    let mut rough = scene("one-bar-truss");
+    rough["model"]["contacts"][0]["friction"] = json!(0.6);
+    rough["analysis"] = json!({"method": "mpec"});
+    let rough = served.ended(&rough).await;
+    browser.visit(&format!("{}/?jobs={smooth},{rough}", served.url())).await;
+    browser.until(&format!("{PATH}.data?.length >= 5")).await;
+    let key =
+        browser.ask("[...document.querySelectorAll('#path .legend li')].map(({textContent}) => textContent)").await;
+    assert_eq!(key[0], "one-bar truss, mu = 0.3, friction 0.3, method default");
+    assert_eq!(key[1], "one-bar truss, mu = 0.3, friction 0.6, method mpec");
+    // The name of a job shows that job alone.
+    browser.ask("document.querySelectorAll('#lists a')[0].click()").await;
+    browser.until(&format!("location.search === '?jobs={rough}'")).await;
+    browser.until(&format!("{PATH}.data.length < 5")).await;
+    browser.close(served.url(), &[]).await;
+}
+
+#[tokio::test]
+async fn nothing_is_wider_than_a_phone() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = serve();
+    let id = served.ended(&scene("curving-slip")).await;
+    let study = json!({"model": scene("von-mises-truss")["model"], "study": {"repeats": 1, "arc_lengths": [0.2, 0.1]}});
+    let study = process::submit(&served.client, served.url(), "/v1/studies", &study).await;
+    process::until(&served.client, served.url(), &format!("/v1/studies/{study}"), process::has_ended).await;
+    let phone = json!({"width": 390, "height": 844, "deviceScaleFactor": 2, "mobile": true});
+    browser.devtools("Emulation.setDeviceMetricsOverride", phone).await;
+    for (address, is_there) in [
+        (format!("/?jobs={id}&figures"), "document.querySelector('#diagnostics-plot .main-svg') !== null"),
+        ("/?run&scene=capstan".to_owned(), "document.getElementById('queue')?.disabled === false"),
+        ("/?run&scene=capstan&as=study".to_owned(), "document.getElementById('queue')?.disabled === false"),
+        (format!("/?study={study}"), "document.querySelectorAll('#study tbody tr').length > 3"),
+    ] {
+        browser.visit(&format!("{}{address}", served.url())).await;
+        browser.until(is_there).await;
+        browser.until("document.querySelectorAll('#lists a').length === 2").await;
+        let width = browser.ask("document.documentElement.scrollWidth").await;
+        assert!(width.as_u64().is_some_and(|width| width <= 390), "{address}: {width}");
+    }
+    browser.close(served.url(), &[]).await;
+}

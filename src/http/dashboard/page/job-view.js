@@ -93,7 +93,7 @@ export class JobView {
     this.drawActions(null);
     try {
       await plotlyLoaded();
-      if (this.isWanted && !this.first) await this.pathPlot.prepare();
+      if (!byId("job").hidden && !this.first) await this.pathPlot.prepare();
     } catch (problem) {
       this.told.said(problem.message, () => this.view());
     }

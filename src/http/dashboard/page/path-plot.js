@@ -5,7 +5,7 @@ import { choice, element, fill } from "./dom.js";
 import { ORDINATES } from "./path-data.js";
 import { axis, colourOf, CONFIGURATION, fromSheet, layout } from "./plot-style.js";
 import { named } from "./points.js";
-import { pointWords, short } from "./words.js";
+import { differences, pointWords, short } from "./words.js";
 
 /** Markers at every increment up to so many. */
 const MARKED = 400;
@@ -227,8 +227,10 @@ export class PathPlot {
         }, path.abscissae(), abscissa)));
     }
     const several = this.paths.length > 1;
+    const apart = differences(this.paths.map(({ request }) => request));
     fill(this.legend, several ? this.paths.map(({ job }, place) =>
       element("li", {}, element("span", { class: "swatch", style: `background:${colourOf(place)}` }), job.name,
+        apart[place] ? `, ${apart[place]}` : "",
         job.parent ? ` from increment ${job.parent.increment}, direction ${job.parent.direction}` : "")) : [],
     path.exact?.path ? element("li", { title: path.exact.path.formula },
       element("span", { class: "swatch dashed" }), `exact (${path.exact.path.name})`) : null);

@@ -56,7 +56,18 @@ export function settingsSentences(request, plan, defaults) {
   ].filter(Boolean);
 }
 
-const words = (value) => plainWords(value ?? "computed from the scene");
+/** Of each request, in words, what is not the same in all of them: what tells paths apart that are drawn together. */
+export function differences(requests) {
+  const settings = requests.map(({ model, analysis = {} }) => ({
+    friction: [...new Set((model.contacts ?? []).map(({ friction }) => friction))].join(" and "),
+    method: words(analysis.method, "default"), selection: words(analysis.selection, "default"),
+    "longest step": words(analysis.arc_length?.max, "default"),
+  }));
+  const differs = (name) => new Set(settings.map((one) => one[name])).size > 1;
+  return settings.map((one) => Object.keys(one).filter(differs).map((name) => `${name} ${one[name]}`).join(", "));
+}
+
+const words = (value, otherwise = "computed from the scene") => plainWords(value ?? otherwise);
 
 export const short = (value) => (typeof value === "number" ? Number(value.toPrecision(5)).toString() : "–");
 
