@@ -96,7 +96,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         return Err(failure);
     }
     let any_failed = rows.iter().any(|row| row.error.is_some());
-    let found = Found { name: sweep.name, parameters: sweep.parameters, combine: sweep.combine, rows };
+    let found = Found { name: sweep.name, variation: sweep.variation, rows };
     let text = match arguments.format {
         Format::Text => found.text(),
         Format::Csv => found.csv(),

@@ -11,6 +11,7 @@ use crate::output::json_line;
 use crate::path::increment::Diagnostics;
 use crate::path::{Increment, StopReason};
 use crate::store::{Claim, Line};
+use crate::sweeps::LimitLoad;
 use std::ops::ControlFlow;
 use std::time::Instant;
 use tokio::sync::mpsc;
@@ -100,7 +101,7 @@ impl<'a> Given<'a> {
             return ControlFlow::Continue(());
         }
         match self.line(&judged, place) {
-            Ok(line) => self.pass(Sent::Line(line))?,
+            Ok((line, limit)) => self.pass(Sent::Line(line, limit))?,
             Err(error) => return self.unwritable(&error),
         }
         self.put_down(place)
@@ -141,7 +142,7 @@ impl<'a> Given<'a> {
         increment.index == last.index && self.last.as_ref().is_none_or(|last| are_same(&last.increment, increment))
     }
 
-    fn line(&mut self, judged: &JudgedIncrement, place: &dyn Place) -> serde_json::Result<Line> {
+    fn line(&mut self, judged: &JudgedIncrement, place: &dyn Place) -> serde_json::Result<(Line, Option<String>)> {
         let body = json_line(judged)?;
         let branch = if judged.increment.directions.is_some() {
             let alternatives = if self.claim.explores { place.alternatives().to_vec() } else { Vec::new() };
@@ -149,7 +150,8 @@ impl<'a> Given<'a> {
         } else {
             None
         };
-        Ok(Line { index: judged.increment.index, body, branch })
+        let limit = LimitLoad::at(&judged.increment).map(|limit| serde_json::to_string(&limit)).transpose()?;
+        Ok((Line { index: judged.increment.index, body, branch }, limit))
     }
 
     /// How the solve ended, with the report that the path has.

@@ -53,14 +53,15 @@ pub enum SolveEnd {
 /// What leaves a solve, in the order in which it is to be stored.
 #[derive(Debug)]
 pub enum Sent {
-    Line(Line),
+    /// An increment, or a row of a study, and, of a limit point, the load there, as JSON.
+    Line(Line, Option<String>),
     Checkpoint(Checkpoint),
 }
 
 impl Sent {
     pub fn index(&self) -> u64 {
         match self {
-            Self::Line(line) => line.index,
+            Self::Line(line, _) => line.index,
             Self::Checkpoint(checkpoint) => checkpoint.index,
         }
     }
@@ -153,7 +154,7 @@ fn study(
     };
     let mut unwritable = None;
     let reported = solver.study(&request, done, cancel, &mut |run| match serde_json::to_string(run) {
-        Ok(body) => match sender.blocking_send(Sent::Line(Line { index: run.index, body, branch: None })) {
+        Ok(body) => match sender.blocking_send(Sent::Line(Line { index: run.index, body, branch: None }, None)) {
             Ok(()) => ControlFlow::Continue(()),
             Err(_) => ControlFlow::Break(()),
         },

@@ -53,12 +53,48 @@ pub struct Parameter {
     pub values: Vec<Value>,
 }
 
+/// What is varied, and how.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Variation {
+    /// In the order of the request.
+    pub parameters: Vec<Parameter>,
+    pub combine: Combine,
+}
+
+impl Variation {
+    /// Which of its values each parameter has in a run.
+    fn choices(&self, run: u64) -> Vec<usize> {
+        let mut left = usize::try_from(run).unwrap_or(usize::MAX);
+        let mut choices: Vec<usize> = self
+            .parameters
+            .iter()
+            .rev()
+            .map(|parameter| match self.combine {
+                Combine::List => left,
+                Combine::Grid => {
+                    let choice = left % parameter.values.len().max(1);
+                    left /= parameter.values.len().max(1);
+                    choice
+                }
+            })
+            .collect();
+        choices.reverse();
+        choices
+    }
+
+    /// The values of a run, in the order of the parameters.
+    pub fn values(&self, run: u64) -> Vec<Value> {
+        let chosen = self.parameters.iter().zip(self.choices(run));
+        chosen.map(|(parameter, choice)| parameter.values.get(choice).cloned().unwrap_or_default()).collect()
+    }
+}
+
 /// A sweep that has been read: its runs can be made, and have still to be checked one by one.
 #[derive(Debug, Clone)]
 pub struct Sweep {
     pub name: Option<String>,
-    pub parameters: Vec<Parameter>,
-    pub combine: Combine,
+    pub variation: Variation,
     runs: u64,
     /// The posted document without what is varied.
     base: Value,
@@ -101,7 +137,7 @@ impl Sweep {
             }
         };
         if mistakes.is_empty() {
-            Ok(Self { name, parameters, combine: form.combine, runs, base })
+            Ok(Self { name, variation: Variation { parameters, combine: form.combine }, runs, base })
         } else {
             Err(InputErrors(mistakes))
         }
@@ -112,39 +148,13 @@ impl Sweep {
         self.runs
     }
 
-    /// Which of its values each parameter has in a run.
-    pub fn choices(&self, run: u64) -> Vec<usize> {
-        let mut left = run as usize;
-        let mut choices: Vec<usize> = self
-            .parameters
-            .iter()
-            .rev()
-            .map(|parameter| match self.combine {
-                Combine::List => left,
-                Combine::Grid => {
-                    let choice = left % parameter.values.len().max(1);
-                    left /= parameter.values.len().max(1);
-                    choice
-                }
-            })
-            .collect();
-        choices.reverse();
-        choices
-    }
-
-    /// The values of a run, in the order of the parameters.
-    pub fn values(&self, run: u64) -> Vec<Value> {
-        let chosen = self.parameters.iter().zip(self.choices(run));
-        chosen.map(|(parameter, choice)| parameter.values.get(choice).cloned().unwrap_or_default()).collect()
-    }
-
     /// A run, read and checked.
     ///
     /// # Errors
     /// What is wrong with it, each with its place in the sweep.
     pub fn run(&self, run: u64) -> Result<Run, InputErrors> {
         let mut document = self.base.clone();
-        for (parameter, value) in self.parameters.iter().zip(self.values(run)) {
+        for (parameter, value) in self.variation.parameters.iter().zip(self.variation.values(run)) {
             put(&mut document, &parameter.pointer, value);
         }
         let text = document.to_string();
@@ -155,16 +165,16 @@ impl Sweep {
 
     /// Mistakes in a run as mistakes in the sweep: those at or about a value that was put there are that value's.
     pub fn located(&self, run: u64, errors: InputErrors) -> InputErrors {
-        let choices = self.choices(run);
+        let (parameters, choices) = (&self.variation.parameters, self.variation.choices(run));
         let located = errors.0.into_iter().map(|error| {
             let about = |parameter: &&Parameter| {
                 is_within(&error.pointer, &parameter.pointer) || is_within(&parameter.pointer, &error.pointer)
             };
             // The mistake of a whole object may be anybody's.
-            let found = self.parameters.iter().position(|parameter| about(&parameter));
+            let found = parameters.iter().position(|parameter| about(&parameter));
             match found.filter(|_| error.pointer.len() > 1) {
                 Some(place) => {
-                    let parameter = &self.parameters[place];
+                    let parameter = &parameters[place];
                     let at = format!("{}/{}", place_of(&parameter.pointer), choices[place]);
                     InputError::new(at, format!("{}: {}", error.place(), error.detail))
                 }
@@ -287,7 +297,7 @@ mod tests {
         let values = json!({FRICTION: [0.1, 0.2], LONGEST: [0.5, 0.25, 0.125]});
         let grid = sweep(values, "grid").unwrap();
         assert_eq!(grid.runs(), 6);
-        let pairs: Vec<Vec<Value>> = (0..6).map(|run| grid.values(run)).collect();
+        let pairs: Vec<Vec<Value>> = (0..6).map(|run| grid.variation.values(run)).collect();
         assert_eq!(pairs[0], [json!(0.1), json!(0.5)]);
         assert_eq!(pairs[1], [json!(0.1), json!(0.25)]);
         assert_eq!(pairs[5], [json!(0.2), json!(0.125)]);
@@ -295,7 +305,7 @@ mod tests {
         assert_eq!((run.model.contacts[0].friction, run.analysis.arc_length.max), (0.2, 0.25));
         let list = sweep(json!({FRICTION: [0.1, 0.2], LONGEST: [0.5, 0.25]}), "list").unwrap();
         assert_eq!(list.runs(), 2);
-        assert_eq!(list.values(1), [json!(0.2), json!(0.25)]);
+        assert_eq!(list.variation.values(1), [json!(0.2), json!(0.25)]);
     }
 
     #[test]

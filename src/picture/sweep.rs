@@ -134,7 +134,7 @@ fn lines(found: &Found) -> Vec<Line<'_>> {
 /// No run has a limit point.
 pub fn svg(found: &Found) -> Result<String, PlotError> {
     let loads = || found.rows.iter().filter_map(|row| row.first_limit.as_ref().map(|limit| limit.load_factor));
-    let Some(first) = found.parameters.first().filter(|_| loads().next().is_some()) else {
+    let Some(first) = found.variation.parameters.first().filter(|_| loads().next().is_some()) else {
         return Err(PlotError::NoLimitLoads);
     };
     let (across, load) = (Across::of(&first.values), Axis::showing(loads(), TICKS));
@@ -156,7 +156,7 @@ fn chart(sheet: &Sheet<'_>, found: &Found, lines: &[Line<'_>], (across, load): (
         .x_label_area_size(BELOW * FINE)
         .y_label_area_size(BESIDE * FINE)
         .build_cartesian_2d(across.range(), load.range.clone())?;
-    let first = found.parameters.first().map(|parameter| place(&parameter.pointer)).unwrap_or_default();
+    let first = found.variation.parameters.first().map(|parameter| place(&parameter.pointer)).unwrap_or_default();
     chart
         .configure_mesh()
         .x_labels(TICKS)
@@ -208,7 +208,7 @@ fn legend(sheet: &Sheet<'_>, found: &Found, lines: &[Line<'_>]) -> Drawn {
         top += ROW;
         lettering.write(sheet, at, words, LONGEST_NAME).map(|()| at)
     };
-    let others = found.parameters.get(1..).unwrap_or_default();
+    let others = found.variation.parameters.get(1..).unwrap_or_default();
     if !others.is_empty() {
         for parameter in others {
             write(&place(&parameter.pointer), FAINT, 0)?;

@@ -80,8 +80,8 @@ fn trace(sweep: &Sweep, run: u64, accept: Accept<'_>) -> Result<Row, InputErrors
     Ok(Row {
         run,
         job: None,
-        values: sweep.values(run),
-        status,
+        values: sweep.variation.values(run),
+        status: status.to_owned(),
         stop_reason: reason.and_then(|reason| name_of(&reason).ok()),
         error,
         last_index,
@@ -94,8 +94,8 @@ fn panicked(sweep: &Sweep, run: u64, text: &str) -> Row {
     Row {
         run,
         job: None,
-        values: sweep.values(run),
-        status: "failed",
+        values: sweep.variation.values(run),
+        status: "failed".to_owned(),
         stop_reason: None,
         error: Some(format!("the solver panicked: {text}")),
         last_index: None,

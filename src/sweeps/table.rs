@@ -28,7 +28,7 @@ impl Found {
     pub fn csv(&self) -> serde_json::Result<String> {
         let mut header = CsvRow::default();
         ["run", "job"].iter().for_each(|name| header.raw(name));
-        self.parameters.iter().for_each(|parameter| header.text(&parameter.pointer));
+        self.variation.parameters.iter().for_each(|parameter| header.text(&parameter.pointer));
         COLUMNS.iter().for_each(|name| header.raw(name));
         let mut text = header.end();
         for row in &self.rows {
@@ -46,7 +46,7 @@ impl Found {
         // Writing to a string does not fail.
         let _ = writeln!(text, "{}\n", self.name.as_deref().unwrap_or("sweep"));
         let mut header = vec!["run".to_owned()];
-        header.extend(self.parameters.iter().map(|one| InputError::new(one.pointer.as_str(), "").place()));
+        header.extend(self.variation.parameters.iter().map(|one| InputError::new(one.pointer.as_str(), "").place()));
         header.extend(["limit load", "kind", "at increment", "end"].map(str::to_owned));
         let mut cells = vec![header];
         for row in &self.rows {
@@ -62,7 +62,7 @@ fn csv_row(row: &Row) -> serde_json::Result<String> {
     line.raw(&row.run.to_string());
     line.raw(row.job.as_deref().unwrap_or_default());
     row.values.iter().for_each(|value| line.text(&shown(value)));
-    line.raw(row.status);
+    line.raw(&row.status);
     line.raw(row.stop_reason.as_deref().unwrap_or_default());
     line.raw(&row.last_index.map(|index| index.to_string()).unwrap_or_default());
     match &row.first_limit {
@@ -88,7 +88,7 @@ fn text_row(row: &Row) -> serde_json::Result<Vec<String>> {
         }
         None => cells.extend(["-", "-", "-"].map(str::to_owned)),
     }
-    cells.push(row.stop_reason.clone().unwrap_or_else(|| row.status.to_owned()));
+    cells.push(row.stop_reason.clone().unwrap_or_else(|| row.status.clone()));
     Ok(cells)
 }
 
