@@ -12,11 +12,13 @@ mod limits;
 mod openapi;
 mod scenes;
 mod serve;
+mod service;
 mod settings;
 mod solve;
 mod study;
 mod token;
 mod verify;
+mod work;
 mod written;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -37,6 +39,7 @@ struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Command {
     Serve(serve::Arguments),
+    Work(work::Arguments),
     Solve(solve::Arguments),
     Study(study::Arguments),
     Check(check::Arguments),
@@ -76,6 +79,7 @@ fn run_command() -> Outcome {
     let arguments = Arguments::from_arg_matches(&matches).map_err(Failure::other)?;
     match arguments.command {
         Command::Serve(arguments) => serve::run(&arguments, &settings::in_force(Arguments::command(), &matches)),
+        Command::Work(arguments) => work::run(&arguments, &settings::in_force(Arguments::command(), &matches)),
         Command::Solve(arguments) => solve::run(&arguments),
         Command::Study(arguments) => study::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
