@@ -366,7 +366,7 @@ async fn a_database_of_before_is_taken_over() {
     let (database, old) = (folder.path().join("jobs.db"), folder.path().join("old"));
     std::fs::create_dir(&old).expect("a folder");
     let first = "0001_jobs_and_increments.sql";
-    let migrations = Path::new(env!("CARGO_MANIFEST_DIR")).join("migrations");
+    let migrations = Path::new(env!("CARGO_MANIFEST_DIR")).join("migrations/sqlite");
     std::fs::copy(migrations.join(first), old.join(first)).expect("copied");
     let options = sqlx::sqlite::SqliteConnectOptions::new().filename(&database).create_if_missing(true);
     let pool = sqlx::SqlitePool::connect_with(options).await.expect("a pool");

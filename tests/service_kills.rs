@@ -4,10 +4,10 @@
 
 mod common;
 
+use common::kills::{Random, assert_undisturbed, strip};
 use common::process::{Process, client, get, has_ended, lines, solved, submit, until};
 use common::server::{Event, EventStream};
-use common::service::{in_short_steps, scene, without_elapsed};
-use reqwest::Client;
+use common::service::{in_short_steps, scene};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::path::Path;
@@ -15,44 +15,6 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 const ARGUMENTS: [&str; 6] = ["--workers", "2", "--lease", "400ms", "--max-attempts", "50"];
-
-/// xorshift64*: the same kills in every run.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self, below: u64) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 33) % below
-    }
-}
-
-fn strip(lines: &[String]) -> Vec<String> {
-    lines.iter().map(|line| without_elapsed(line)).collect()
-}
-
-/// Ended as it should, with increments that rise by one, times that never fall, and all else as `arcslip solve` has it.
-async fn assert_undisturbed(client: &Client, url: &str, id: &str, expected: &[String]) {
-    let job = until(client, url, &format!("/v1/jobs/{id}"), has_ended).await;
-    assert!(matches!(job["status"].as_str(), Some("completed" | "stopped")), "{job}");
-    let lines = lines(client, url, id).await;
-    assert_eq!(strip(&lines), expected, "{id}");
-    let times: Vec<f64> = lines
-        .iter()
-        .map(|line| {
-            serde_json::from_str::<Value>(line).expect("JSON")["diagnostics"]["elapsed_s"].as_f64().expect("a time")
-        })
-        .collect();
-    assert!(times.is_sorted(), "{id}: {times:?}");
-    let (last, report) = (times.last().expect("a time"), job["report"]["elapsed_s"].as_f64().expect("a time"));
-    assert!(report > last - 0.05, "{report} {last}");
-    assert_eq!(job["report"]["increments"], job["progress"]["last_index"]);
-}
-
-fn random_seed_is_fixed() -> Random {
-    Random(0x9E37_79B9_7F4A_7C15)
-}
 
 /// Reads a job's events through every restart until its `end`.
 async fn read_on(url: Arc<Mutex<String>>, id: String) -> Vec<Event> {
@@ -106,7 +68,7 @@ async fn forty_kills_at_random_moments() {
     let database = folder.path().join("jobs.db");
     let kinds = kinds();
     let expected: Vec<Vec<String>> = kinds.iter().map(|request| strip(&solved(request))).collect();
-    let mut random = random_seed_is_fixed();
+    let mut random = Random::fixed();
     let client = client();
     let mut process = Process::serve(&database, &ARGUMENTS);
     let url = Arc::new(Mutex::new(process.url.clone()));

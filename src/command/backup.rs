@@ -1,7 +1,7 @@
 //! `arcslip backup`: a copy of the database, while the service runs or not.
 
 use super::{Failure, Outcome, say};
-use crate::store;
+use crate::store::{self, Location};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -9,8 +9,8 @@ use std::process::ExitCode;
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// The database that is copied.
-    #[arg(long, value_name = "FILE", default_value = "arcslip.db", env = "ARCSLIP_DATABASE")]
-    database: PathBuf,
+    #[arg(long, value_name = "FILE", default_value = "arcslip.db", env = "ARCSLIP_DATABASE", hide_env_values = true)]
+    database: Location,
     /// Where the copy goes; there must be nothing yet.
     #[arg(value_name = "COPY")]
     copy: PathBuf,
@@ -18,6 +18,11 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Outcome {
     let Arguments { database, copy } = arguments;
+    let Location::File(database) = database else {
+        return Err(Failure::Input(vec![format!(
+            "--database {database}: a PostgreSQL database is copied by PostgreSQL's own means, such as pg_dump; a file would do"
+        )]));
+    };
     if copy.exists() {
         return Err(Failure::Input(vec![format!("{}: is there already; a new name would do", copy.display())]));
     }

@@ -1,4 +1,4 @@
-//! What a service takes and keeps, as arguments of `serve`.
+//! What a service takes and keeps, as arguments of `serve` and `work`.
 
 use super::duration;
 use crate::jobs::Limits;

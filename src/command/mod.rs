@@ -12,12 +12,14 @@ mod limits;
 mod openapi;
 mod scenes;
 mod serve;
+mod service;
 mod settings;
 mod solve;
 mod study;
 mod sweep;
 mod token;
 mod verify;
+mod work;
 mod written;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -38,6 +40,7 @@ struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Command {
     Serve(serve::Arguments),
+    Work(work::Arguments),
     Solve(solve::Arguments),
     Study(study::Arguments),
     Sweep(sweep::Arguments),
@@ -78,6 +81,7 @@ fn run_command() -> Outcome {
     let arguments = Arguments::from_arg_matches(&matches).map_err(Failure::other)?;
     match arguments.command {
         Command::Serve(arguments) => serve::run(&arguments, &settings::in_force(Arguments::command(), &matches)),
+        Command::Work(arguments) => work::run(&arguments, &settings::in_force(Arguments::command(), &matches)),
         Command::Solve(arguments) => solve::run(&arguments),
         Command::Study(arguments) => study::run(&arguments),
         Command::Sweep(arguments) => sweep::run(&arguments),

@@ -1,17 +1,19 @@
-//! Settings of `serve`: from the command line, else from the environment, else from a file (`--config`), else the default.
+//! Settings of `serve` and `work`: from the command line, else from the environment, else from a file (`--config`), else the default.
 //!
 //! The file is TOML; its keys are the names of the flags. What it holds takes the place of the defaults, so that there is
-//! one reader for every value wherever it comes from.
+//! one reader for every value wherever it comes from. One file serves both commands: each takes what is its own.
 
 use super::Failure;
 use crate::model::names::{quoted, suggestion_of_all};
+use crate::store::Location;
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Command};
 use std::path::{Path, PathBuf};
 
-/// The subcommand whose settings these are, and its flag that names the file.
-const SERVE: &str = "serve";
+/// The subcommands whose settings these are, and their flags that name the file, and a database, whose password is not told.
+const SERVICES: [&str; 2] = ["serve", "work"];
 const CONFIG: &str = "config";
+const DATABASE: &str = "database";
 
 /// A setting in force.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -31,29 +33,32 @@ type Value = (String, Vec<String>);
 /// the usual text.
 pub fn parse(command: fn() -> Command) -> Result<ArgMatches, Failure> {
     let matches = command().get_matches();
-    let file = matches.subcommand_matches(SERVE).and_then(|serve| serve.get_one::<PathBuf>(CONFIG));
-    let Some(file) = file else { return Ok(matches) };
+    let service = matches.subcommand().filter(|(name, _)| SERVICES.contains(name));
+    let file = service.and_then(|(name, service)| Some((name, service.get_one::<PathBuf>(CONFIG)?)));
+    let Some((service, file)) = file else { return Ok(matches) };
     let bad = |detail: String| Failure::Input(vec![format!("{}: {detail}", file.display())]);
     let values = read(file, &command()).map_err(bad)?;
-    with_defaults(command(), values).try_get_matches().map_err(|error| bad(error.to_string()))
+    with_defaults(command(), service, values).try_get_matches().map_err(|error| bad(error.to_string()))
 }
 
-/// Every setting of `serve`, by name.
+/// Every setting of the service that was asked for, by name.
 pub fn in_force(mut command: Command, matches: &ArgMatches) -> Vec<Setting> {
-    let Some(serve) = matches.subcommand_matches(SERVE) else { return Vec::new() };
+    let Some((name, service)) = matches.subcommand().filter(|(name, _)| SERVICES.contains(name)) else {
+        return Vec::new();
+    };
     // Only then flags without a value have their default.
     command.build();
-    let usual = flags(&command);
+    let usual = flags(&command, name);
     let mut settings: Vec<Setting> = usual
         .iter()
         .filter_map(|argument| {
             let id = argument.get_id().as_str();
             let name = argument.get_long()?.to_owned();
-            let Some(values) = serve.get_raw(id) else {
+            let Some(values) = service.get_raw(id) else {
                 return Some(Setting { name, value: "not set".to_owned(), from: "default" });
             };
             let value = values.map(|value| value.to_string_lossy()).collect::<Vec<_>>().join(",");
-            let from = match serve.value_source(id)? {
+            let from = match service.value_source(id)? {
                 ValueSource::CommandLine => "the command line",
                 ValueSource::EnvVariable => "the environment",
                 _ if argument.get_default_values().iter().map(|known| known.to_string_lossy()).eq([value.as_str()]) => {
@@ -61,6 +66,7 @@ pub fn in_force(mut command: Command, matches: &ArgMatches) -> Vec<Setting> {
                 }
                 _ => "the file",
             };
+            let value = if id == DATABASE { Location::from(value.as_str()).to_string() } else { value };
             Some(Setting { name, value, from })
         })
         .collect();
@@ -68,19 +74,20 @@ pub fn in_force(mut command: Command, matches: &ArgMatches) -> Vec<Setting> {
     settings
 }
 
-fn flags(command: &Command) -> Vec<clap::Arg> {
-    let serve = command.find_subcommand(SERVE);
+fn flags(command: &Command, service: &str) -> Vec<clap::Arg> {
+    let service = command.find_subcommand(service);
     let named = |argument: &&clap::Arg| {
         argument.get_long().is_some() && !matches!(argument.get_id().as_str(), "help" | "version")
     };
-    serve.into_iter().flat_map(Command::get_arguments).filter(named).cloned().collect()
+    service.into_iter().flat_map(Command::get_arguments).filter(named).cloned().collect()
 }
 
 fn read(file: &Path, command: &Command) -> Result<Vec<Value>, String> {
     let text = std::fs::read_to_string(file).map_err(|error| error.to_string())?;
     let table: toml::Table = text.parse().map_err(|error: toml::de::Error| error.to_string())?;
-    let known: Vec<String> = flags(command)
+    let known: Vec<String> = SERVICES
         .iter()
+        .flat_map(|service| flags(command, service))
         .filter_map(|argument| argument.get_long().map(str::to_owned))
         .filter(|name| name != CONFIG)
         .collect();
@@ -109,12 +116,14 @@ fn plain(name: &str, value: toml::Value) -> Result<String, String> {
     }
 }
 
-fn with_defaults(command: Command, values: Vec<Value>) -> Command {
-    command.mut_subcommand(SERVE, |mut serve| {
-        for (name, values) in values {
+fn with_defaults(command: Command, service: &str, values: Vec<Value>) -> Command {
+    let own: Vec<String> =
+        flags(&command, service).iter().filter_map(|flag| flag.get_long().map(str::to_owned)).collect();
+    command.mut_subcommand(service, |mut service| {
+        for (name, values) in values.into_iter().filter(|(name, _)| own.contains(name)) {
             // Identifiers are the flags' names, with `_` for `-`.
-            serve = serve.mut_arg(name.replace('-', "_"), |argument| argument.default_values(values));
+            service = service.mut_arg(name.replace('-', "_"), |argument| argument.default_values(values));
         }
-        serve
+        service
     })
 }

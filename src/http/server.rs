@@ -8,21 +8,15 @@ use super::extract::BODIES;
 use super::listen::{Connections, listen};
 use super::stream::READING_AT_ONCE;
 use super::{Service, router};
+use crate::jobs::crew::wound_up;
 use crate::jobs::{Crew, Jobs, Settings, Solver};
 use crate::store::Store;
 use std::net::SocketAddr;
 use std::sync::Arc;
-use std::time::Duration;
 use tokio::net::TcpListener;
 use tokio::sync::Semaphore;
 use tokio::task::JoinHandle;
-use tokio::time::timeout;
 use tokio_util::sync::CancellationToken;
-
-/// Answers and solves under way get so long to end.
-const DRAIN: Duration = Duration::from_secs(8);
-/// Closing the database after that.
-const CLOSE: Duration = Duration::from_secs(2);
 
 #[derive(Debug, thiserror::Error)]
 pub enum ServerError {
@@ -87,11 +81,6 @@ impl Server {
     /// Ends everything; answers whether it all ended within the bound.
     pub async fn stop(self) -> bool {
         self.shutdown.cancel();
-        let ended = timeout(DRAIN, async { tokio::join!(self.listening, self.crew.stopped()) }).await;
-        if ended.is_err() {
-            tracing::warn!(seconds = DRAIN.as_secs(), "not everything ended in time; its jobs run again later");
-        }
-        let closed = timeout(CLOSE, self.jobs.store().close()).await;
-        ended.is_ok() && closed.is_ok()
+        wound_up(async { tokio::join!(self.listening, self.crew.stopped()) }, self.jobs.store()).await
     }
 }

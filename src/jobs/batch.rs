@@ -5,9 +5,9 @@ use super::solve::Sent;
 use super::{Jobs, Settings};
 use crate::cancel::CancelFlag;
 use crate::metrics::Write;
-use crate::store::{Batch, Claim, Lease, LeaseAnswer, StoreError};
+use crate::store::{Batch, Change, Claim, Lease, LeaseAnswer, StoreError};
 use std::time::Duration;
-use tokio::sync::mpsc;
+use tokio::sync::{mpsc, watch};
 use tokio::time::{Instant, MissedTickBehavior, interval_at, sleep_until, timeout_at};
 use tokio_util::sync::CancellationToken;
 
@@ -82,6 +82,7 @@ pub async fn drain(
     let mut beats = interval_at(Instant::now() + heartbeat, heartbeat.max(Duration::from_millis(1)));
     beats.set_missed_tick_behavior(MissedTickBehavior::Delay);
     let mut gathered = Vec::new();
+    let mut changes = jobs.store.job_changes(lease.job);
     loop {
         let (mut complete, mut reached) = (false, None);
         let time_is_up = async {
@@ -95,6 +96,8 @@ pub async fn drain(
             () = shutdown.cancelled() => return Drained::ShuttingDown,
             () = time_is_up => reached = Some(Reached::Time),
             _ = beats.tick() => {}
+            // Another process may have cancelled it.
+            () = changed_by_another(&mut changes) => {}
             received = gather(sent, &mut gathered, settings) => complete = received == Received::Last,
         }
         // A cancelled gather leaves what it had where it was, so a beat stores it too.
@@ -120,6 +123,18 @@ pub async fn drain(
         }
         if complete {
             return Drained::Complete;
+        }
+    }
+}
+
+/// Waits for a change that is none of ours: those bring their lines.
+async fn changed_by_another(changes: &mut watch::Receiver<Change>) {
+    loop {
+        if changes.changed().await.is_err() {
+            return std::future::pending().await;
+        }
+        if changes.borrow_and_update().at.is_none() {
+            return;
         }
     }
 }

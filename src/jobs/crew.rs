@@ -1,16 +1,23 @@
 //! All workers of a process, and the sweeper that takes back what lost workers held.
 
 use super::{Jobs, retention, worker};
+use crate::store::Store;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 use tokio::task::JoinSet;
+use tokio::time::timeout;
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::AbortOnDropHandle;
 use uuid::Uuid;
 
 /// A task that panics again and again does not take the processor from the others.
 const AFTER_A_PANIC: Duration = Duration::from_secs(1);
+
+/// Answers and solves under way get so long to end.
+const DRAIN: Duration = Duration::from_secs(8);
+/// Closing the database after that.
+const CLOSE: Duration = Duration::from_secs(2);
 
 /// The workers under way.
 pub struct Crew {
@@ -73,6 +80,16 @@ impl Crew {
             }
         }
     }
+}
+
+/// Waits for what has been asked to end, and closes the database; answers whether it all ended within the bound.
+pub async fn wound_up<T>(ends: impl Future<Output = T>, store: &dyn Store) -> bool {
+    let ended = timeout(DRAIN, ends).await;
+    if ended.is_err() {
+        tracing::warn!(seconds = DRAIN.as_secs(), "not everything ended in time; its jobs run again later");
+    }
+    let closed = timeout(CLOSE, store.close()).await;
+    ended.is_ok() && closed.is_ok()
 }
 
 /// Begins a task anew when it has panicked, after a moment.

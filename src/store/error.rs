@@ -1,6 +1,6 @@
 //! What can go wrong with storage, told apart by what a caller can do about it.
 
-type Source = Box<dyn std::error::Error + Send + Sync>;
+pub(super) type Source = Box<dyn std::error::Error + Send + Sync>;
 
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
@@ -40,5 +40,32 @@ impl StoreError {
             Self::Unavailable(_) => true,
             Self::Full(_) | Self::Damaged(_) | Self::Open(_) | Self::Refused(_) => false,
         }
+    }
+}
+
+impl From<sqlx::Error> for StoreError {
+    fn from(error: sqlx::Error) -> Self {
+        let kind: fn(Source) -> Self = match (error.as_database_error(), &error) {
+            (Some(found), _) => {
+                let code = found.code().unwrap_or_default();
+                if found.try_downcast_ref::<sqlx::postgres::PgDatabaseError>().is_some() {
+                    super::postgres::fault(&code)
+                } else {
+                    super::sqlite::fault(&code)
+                }
+            }
+            // A connection that was cut off, in the middle of an answer perhaps.
+            (
+                None,
+                sqlx::Error::PoolTimedOut
+                | sqlx::Error::PoolClosed
+                | sqlx::Error::WorkerCrashed
+                | sqlx::Error::Io(_)
+                | sqlx::Error::Protocol(_),
+            ) => Self::Unavailable,
+            (None, sqlx::Error::ColumnDecode { .. } | sqlx::Error::Decode(_)) => Self::Damaged,
+            (None, _) => Self::Refused,
+        };
+        kind(Box::new(error))
     }
 }

@@ -1,12 +1,17 @@
 //! What is kept: jobs, their increments, and who is working on what.
 //!
 //! [`Store`] is the whole boundary: above it nobody knows SQL, below it nobody knows HTTP or how a path is traced.
-//! [`record`] holds what goes in and out, [`signals`] wakes those who wait for a change, [`sqlite`] is the engine.
-//! Called by `jobs` (which writes) and by `http` (which reads).
+//! [`record`] holds what goes in and out, [`signals`] wakes those who wait for a change, [`announcements`] is what other
+//! processes are told of them; [`sql`] is what is said to both engines, [`sqlite`] (a file of this machine) and [`postgres`]
+//! (a server that many machines share); [`location`] says which. Called by `jobs` (which writes) and by `http` (which reads).
 
+mod announcements;
 pub mod error;
+pub mod location;
+mod postgres;
 pub mod record;
 pub mod signals;
+mod sql;
 mod sqlite;
 
 use async_trait::async_trait;
@@ -17,6 +22,7 @@ use tokio::sync::watch;
 use uuid::Uuid;
 
 pub use error::StoreError;
+pub use location::Location;
 pub use record::{
     Batch, Branch, Checkpoint, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Membership,
     NewFollower, NewJob, Origin, Page, Parent, Standing, Status, Submitted, Task,
@@ -76,6 +82,7 @@ pub trait Store: Send + Sync + 'static {
     async fn renew(&self, lease: &Lease, duration: Duration) -> Result<LeaseAnswer>;
 
     /// Appends increments with what is stored beside them, moves the job's progress and prolongs the lease, all or nothing.
+    /// Where no answer came to such a call, the same call again stores nothing twice and is answered as the first.
     async fn append(&self, lease: &Lease, batch: &Batch, duration: Duration) -> Result<LeaseAnswer>;
 
     /// Ends a job.
@@ -105,10 +112,11 @@ pub trait Store: Send + Sync + 'static {
     /// Proves that the store takes writes.
     async fn probe(&self) -> Result<()>;
 
-    /// Changes whenever something of this job was stored here. Subscribe first, then read: no change is missed.
+    /// Changes whenever something of this job was stored here, and mostly when it was elsewhere. Subscribe first, then read: no
+    /// change that was made here is missed.
     fn job_changes(&self, id: Uuid) -> watch::Receiver<Change>;
 
-    /// Changes whenever a job was put into the queue here.
+    /// Changes whenever a job was put into the queue here, and mostly when it was elsewhere.
     fn queue_changes(&self) -> watch::Receiver<u64>;
 
     async fn close(&self);
@@ -120,7 +128,13 @@ pub async fn back_up(file: &Path, copy: &Path) -> Result<()> {
     sqlite::backup::back_up(file, copy).await
 }
 
-/// Opens (and creates, and migrates) the database in that file.
-pub async fn open(file: &Path) -> Result<Arc<dyn Store>> {
-    Ok(Arc::new(sqlite::SqliteStore::open(file).await?))
+/// Opens (and creates, where it is a file, and migrates) the database there.
+///
+/// # Errors
+/// [`StoreError::Open`], which says where and what would do, and no password.
+pub async fn open(location: impl Into<Location>) -> Result<Arc<dyn Store>> {
+    Ok(match location.into() {
+        Location::File(file) => Arc::new(sqlite::SqliteEngine::open(&file).await?),
+        Location::Postgres(url) => Arc::new(postgres::PostgresEngine::open(&url).await?),
+    })
 }

@@ -1,9 +1,10 @@
 //! Wakes readers as soon as something was stored in this process, and hands them what it was.
 //!
 //! A signal says "look again"; what is true is in the store. Lines that were stored last come along, so that many readers of
-//! one job do not all read the same rows. Changes made by other processes give no signal, so whoever waits also looks from
-//! time to time.
+//! one job do not all read the same rows. What other processes change is told here too where the engine carries
+//! [`Announcements`]; it may be lost, so whoever waits also looks from time to time.
 
+use super::announcements::Announcements;
 use super::{Lease, Line};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -15,6 +16,8 @@ use uuid::Uuid;
 pub struct Signals {
     jobs: Mutex<HashMap<Uuid, Heard>>,
     queue: watch::Sender<u64>,
+    /// What other processes are to be told.
+    announcements: Option<Arc<Announcements>>,
 }
 
 /// Something of a job has changed.
@@ -58,11 +61,16 @@ impl Latest {
 
 impl Default for Signals {
     fn default() -> Self {
-        Self { jobs: Mutex::default(), queue: watch::Sender::new(0) }
+        Self { jobs: Mutex::default(), queue: watch::Sender::new(0), announcements: None }
     }
 }
 
 impl Signals {
+    /// Everything that changes here is to be told to others as well.
+    pub fn announced(announcements: Arc<Announcements>) -> Self {
+        Self { announcements: Some(announcements), ..Self::default() }
+    }
+
     pub fn job_changes(&self, id: Uuid) -> watch::Receiver<Change> {
         let mut jobs = self.jobs();
         // A job nobody listens to any more is forgotten here, so that the map stays as small as the open streams.
@@ -75,6 +83,12 @@ impl Signals {
     }
 
     pub fn job_changed(&self, id: Uuid) {
+        self.announce_job(id);
+        self.job_changed_elsewhere(id);
+    }
+
+    /// Another process has changed something of a job.
+    pub fn job_changed_elsewhere(&self, id: Uuid) {
         if let Some(heard) = self.jobs().get(&id) {
             heard.changes.send_replace(Change::default());
         }
@@ -82,6 +96,7 @@ impl Signals {
 
     /// A job was taken from the queue, with lines up to that one.
     pub fn job_claimed(&self, lease: &Lease, last_index: Option<u64>) {
+        self.announce_job(lease.job);
         if let Some(heard) = self.jobs().get_mut(&lease.job) {
             heard.holder = Some(Holder { lease: lease.clone(), last_index });
             heard.changes.send_replace(Change::default());
@@ -90,6 +105,7 @@ impl Signals {
 
     /// Lines were stored.
     pub fn job_appended(&self, lease: &Lease, lines: &[Line]) {
+        self.announce_job(lease.job);
         let mut jobs = self.jobs();
         let (Some(heard), Some(last)) = (jobs.get_mut(&lease.job), lines.last()) else { return };
         // Between two writes of one lease nobody else writes; between those of two others may have.
@@ -100,7 +116,29 @@ impl Signals {
     }
 
     pub fn queue_changed(&self) {
+        if let Some(announcements) = &self.announcements {
+            announcements.queue();
+        }
+        self.queue_changed_elsewhere();
+    }
+
+    /// Another process has put a job into the queue.
+    pub fn queue_changed_elsewhere(&self) {
         self.queue.send_modify(|count| *count += 1);
+    }
+
+    /// Anything may have changed elsewhere.
+    pub fn all_changed_elsewhere(&self) {
+        for heard in self.jobs().values() {
+            heard.changes.send_replace(Change::default());
+        }
+        self.queue_changed_elsewhere();
+    }
+
+    fn announce_job(&self, id: Uuid) {
+        if let Some(announcements) = &self.announcements {
+            announcements.job(id);
+        }
     }
 
     fn jobs(&self) -> MutexGuard<'_, HashMap<Uuid, Heard>> {

@@ -3,8 +3,8 @@
 use reqwest::{Client, Response, StatusCode};
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
+use std::ffi::OsStr;
 use std::io::{BufRead, BufReader};
-use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
@@ -18,11 +18,19 @@ pub struct Process {
 
 impl Process {
     /// `arcslip serve` on a port of its own, with further arguments.
-    pub fn serve(database: &Path, arguments: &[&str]) -> Self {
+    pub fn serve(database: &(impl AsRef<OsStr> + ?Sized), arguments: &[&str]) -> Self {
         let mut command = Command::new(env!("CARGO_BIN_EXE_arcslip"));
         command.args(["serve", "--listen", "127.0.0.1:0", "--database"]).arg(database).args(arguments);
         command.env("RUST_LOG", "error");
         Self::start(command)
+    }
+
+    /// `arcslip work`, with further arguments; it listens nowhere.
+    pub fn work(database: &(impl AsRef<OsStr> + ?Sized), arguments: &[&str]) -> Self {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_arcslip"));
+        command.args(["work", "--database"]).arg(database).args(arguments);
+        command.env("RUST_LOG", "error");
+        Self::started(command, " works on ").expect("it says where it works")
     }
 
     /// A program that prints `... listens on URL`.
@@ -31,13 +39,15 @@ impl Process {
     }
 
     /// `None`: it ended before it said so.
-    pub fn try_start(mut command: Command) -> Option<Self> {
+    pub fn try_start(command: Command) -> Option<Self> {
+        Self::started(command, " listens on ")
+    }
+
+    fn started(mut command: Command, says: &str) -> Option<Self> {
         let mut child = command.stdout(Stdio::piped()).spawn().expect("the program starts");
         let mut lines = BufReader::new(child.stdout.take().expect("its output")).lines();
-        let url = lines
-            .by_ref()
-            .map_while(Result::ok)
-            .find_map(|line| line.split_once(" listens on ").map(|(_, url)| url.to_owned()));
+        let url =
+            lines.by_ref().map_while(Result::ok).find_map(|line| line.split_once(says).map(|(_, url)| url.to_owned()));
         let Some(url) = url else {
             child.wait().expect("its end");
             return None;

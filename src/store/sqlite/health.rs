@@ -1,13 +1,9 @@
 //! The database file itself: damage, and room that is free in it.
-//!
-//! Damage that any statement meets, or the look through the whole file at the start, is remembered: nothing new is taken or
-//! begun then, because what is written next to damage may make it worse. What can still be read is.
 
-use super::SqliteStore;
+use super::SqliteEngine;
 use crate::store::{Result, StoreError};
 use sqlx::sqlite::SqlitePool;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// As `PRAGMA auto_vacuum` names it.
 const INCREMENTAL: i64 = 2;
@@ -18,7 +14,6 @@ const PAGES_AT_ONCE: i64 = 1024;
 
 #[derive(Debug)]
 pub(super) struct Health {
-    damaged: AtomicBool,
     shrinks: bool,
     file: PathBuf,
     identity: Identity,
@@ -49,51 +44,37 @@ impl Health {
                  sqlite3 FILE 'PRAGMA auto_vacuum = INCREMENTAL; VACUUM'"
             );
         }
-        Ok(Self { damaged: AtomicBool::new(false), shrinks, file: file.to_owned(), identity: identity(file) })
+        Ok(Self { shrinks, file: file.to_owned(), identity: identity(file) })
     }
 
     /// # Errors
-    /// Damage was met before, or the file is not where it was: what is written now would be lost with it.
+    /// The file is not where it was: what is written now would be lost with it.
     pub fn allow(&self) -> Result<()> {
-        if self.damaged.load(Ordering::Relaxed) {
-            return Err(StoreError::Damaged("damage was met before; nothing is written".into()));
-        }
         if identity(&self.file) != self.identity {
             return Err(StoreError::Unavailable("the database's file has been removed or replaced".into()));
         }
         Ok(())
     }
-
-    /// Remembers damage of the file; a row that cannot be read is a matter of that row.
-    pub fn note<T>(&self, answer: Result<T>) -> Result<T> {
-        if let Err(StoreError::Damaged(source)) = &answer
-            && source.downcast_ref::<sqlx::Error>().is_some_and(|error| error.as_database_error().is_some())
-        {
-            self.damaged.store(true, Ordering::Relaxed);
-        }
-        answer
-    }
 }
 
-pub(super) async fn check(store: &SqliteStore) -> Result<()> {
-    let found: String = sqlx::query_scalar("PRAGMA quick_check(1)").fetch_one(&store.readers).await?;
+pub(super) async fn check(engine: &SqliteEngine) -> Result<()> {
+    let found: String = sqlx::query_scalar("PRAGMA quick_check(1)").fetch_one(&engine.readers).await?;
     if found == "ok" {
         return Ok(());
     }
-    store.health.damaged.store(true, Ordering::Relaxed);
     Err(StoreError::Damaged(found.into()))
 }
 
-pub(super) async fn shrink(store: &SqliteStore) -> Result<bool> {
-    if !store.health.shrinks || free_pages(store).await? <= SPARE_PAGES {
+pub(super) async fn shrink(engine: &SqliteEngine) -> Result<bool> {
+    if !engine.health.shrinks || free_pages(engine).await? <= SPARE_PAGES {
         return Ok(false);
     }
     // One page a step: all of them have to be taken.
     let vacuum = sqlx::AssertSqlSafe(format!("PRAGMA incremental_vacuum({PAGES_AT_ONCE})"));
-    sqlx::query(vacuum).fetch_all(&store.writer).await?;
-    Ok(free_pages(store).await? > SPARE_PAGES)
+    sqlx::query(vacuum).fetch_all(&engine.writer).await?;
+    Ok(free_pages(engine).await? > SPARE_PAGES)
 }
 
-async fn free_pages(store: &SqliteStore) -> Result<i64> {
-    Ok(sqlx::query_scalar("PRAGMA freelist_count").fetch_one(&store.writer).await?)
+async fn free_pages(engine: &SqliteEngine) -> Result<i64> {
+    Ok(sqlx::query_scalar("PRAGMA freelist_count").fetch_one(&engine.writer).await?)
 }

@@ -3,9 +3,10 @@
 //! The first that finds nobody waiting begins a task which waits for the connection; those that come meanwhile join it.
 //! Nobody is answered before the commit.
 
-use super::{SqliteStore, jobs};
+use super::SqliteEngine;
+use crate::store::sql::jobs;
 use crate::store::{NewJob, Result, StoreError, Submitted};
-use sqlx::sqlite::SqlitePool;
+use sqlx::sqlite::{Sqlite, SqlitePool};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::sync::oneshot;
 
@@ -20,22 +21,18 @@ struct Waiting {
     answer: oneshot::Sender<Result<Submitted>>,
 }
 
-pub(super) async fn submit(store: &SqliteStore, job: NewJob) -> Result<Submitted> {
+pub(super) async fn submit(engine: &SqliteEngine, job: NewJob) -> Result<Submitted> {
     let (answer, answered) = oneshot::channel();
     let is_first = {
-        let mut waiting = store.intake.waiting();
+        let mut waiting = engine.intake.waiting();
         waiting.push(Waiting { job, answer });
         waiting.len() == 1
     };
     if is_first {
         // A task of its own: it goes on for the others where the first client hangs up.
-        tokio::spawn(take_in(store.writer.clone(), store.intake.clone()));
+        tokio::spawn(take_in(engine.writer.clone(), engine.intake.clone()));
     }
-    let submitted = answered.await.map_err(|lost| StoreError::Unavailable(Box::new(lost)))?;
-    if matches!(submitted, Ok(Submitted::Created(_))) {
-        store.signals.queue_changed();
-    }
-    submitted
+    answered.await.map_err(|lost| StoreError::Unavailable(Box::new(lost)))?
 }
 
 /// Stores all that wait, and those that come while it does.
@@ -62,13 +59,13 @@ async fn take_in(writer: SqlitePool, intake: Intake) {
 /// One commit for all; where that fails, one for each, so that none fails for another's sake.
 async fn store_together(
     writer: &SqlitePool,
-    mut transaction: sqlx::Transaction<'static, sqlx::Sqlite>,
+    mut transaction: sqlx::Transaction<'static, Sqlite>,
     together: Vec<Waiting>,
 ) {
     let stored = async {
         let mut submitted = Vec::with_capacity(together.len());
         for Waiting { job, .. } in &together {
-            submitted.push(jobs::insert(&mut transaction, job).await?);
+            submitted.push(jobs::insert::<Sqlite>(&mut transaction, job).await?);
         }
         transaction.commit().await?;
         Ok::<_, StoreError>(submitted)
@@ -86,7 +83,7 @@ async fn store_together(
 
 async fn alone(writer: &SqlitePool, job: &NewJob) -> Result<Submitted> {
     let mut transaction = writer.begin().await?;
-    let submitted = jobs::insert(&mut transaction, job).await?;
+    let submitted = jobs::insert::<Sqlite>(&mut transaction, job).await?;
     transaction.commit().await?;
     Ok(submitted)
 }

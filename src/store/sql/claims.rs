@@ -1,0 +1,216 @@
+//! The queue: who works on what, and until when.
+//!
+//! Every statement of a worker is fenced by job, worker, attempt, `running` and the time of the lease: a worker that comes
+//! back late changes nothing, whether or not the job was given to another meanwhile. Who holds a lease is then told by the
+//! row alone, and a worker that was stopped for long never goes on with a job that others believe lost. (The time is the
+//! database's: that of its server, or of this machine where it is a file; a clock that jumps forward costs a running job its
+//! lease, and it goes on from its last checkpoint.)
+//!
+//! Which job ends the process that works on it cannot be seen from outside: all that ran there are lost alike. So a loss
+//! counts for as long as nothing of the job was stored after it, and of the jobs with a loss that counts one is worked on
+//! at a time, next to others that have none. One that ends every process is then alone among the suspects at each of its
+//! attempts; a job that was beside it at the first is not beside it at the next.
+
+use super::dialect::{Dialect, Value, values};
+use super::store::{Engine, Of, writer};
+use super::{followers, increments, rows};
+use crate::store::{Claim, Ending, Lease, LeaseAnswer, Result, StoreError};
+use std::time::Duration;
+
+/// The lease is held: `$1` job, `$2` worker, `$3` attempt.
+macro_rules! held {
+    () => {
+        " WHERE id = $1 AND worker = $2 AND attempt = $3 AND status = 'running' AND lease_until >= {clock} "
+    };
+}
+pub(super) use held;
+
+/// Counts the time since the job was last heard of. A clock that was set back takes none away.
+macro_rules! ran {
+    () => {
+        "ran_ms = ran_ms + CASE WHEN updated_at < {now} THEN {now} - updated_at ELSE 0 END, updated_at = {now}"
+    };
+}
+pub(super) use ran;
+
+/// What a claim is made of.
+macro_rules! claimed {
+    () => {
+        " RETURNING id, task, attempt, request, max_increments, last_index, parent, parent_increment, parent_direction, \
+         family, ran_ms, stored_bytes, CASE WHEN started_at > created_at THEN started_at - created_at ELSE 0 END AS waited, \
+         CAST(CASE WHEN started_at = {now} THEN 1 ELSE 0 END AS BIGINT) AS is_first"
+    };
+}
+
+/// Takes the next job from the queue: `$1` worker, `$2` milliseconds. However long the queue is, it looks at its front only.
+pub(in crate::store) const TAKE: &str = concat!(
+    "UPDATE jobs SET status = 'running', worker = $1, lease_until = {now} + $2, attempt = attempt + 1, \
+     started_at = coalesce(started_at, {now}), updated_at = {now} \
+     WHERE id = (SELECT id FROM jobs {waiting} WHERE status = 'queued' AND (losses = 0 OR NOT EXISTS \
+     (SELECT 1 FROM jobs AS suspect WHERE suspect.status = 'running' AND suspect.losses > 0)) \
+     ORDER BY priority DESC, id LIMIT 1 {free})",
+    claimed!()
+);
+
+/// Takes what the worker has already: `$1` worker, `$2` milliseconds.
+const TAKE_AGAIN: &str = concat!(
+    "UPDATE jobs SET lease_until = {now} + $2, ",
+    ran!(),
+    " WHERE id = (SELECT id FROM jobs WHERE status = 'running' AND worker = $1 AND lease_until >= {clock} LIMIT 1)",
+    claimed!()
+);
+
+/// Claims that meet another's, of the only suspect that may be at work, are tried so often at a time.
+const TRIES: usize = 4;
+
+/// `again`: a claim of this worker's has ended without an answer, and may have been carried out.
+pub(super) async fn claim<E: Engine>(engine: &E, worker: &str, lease: Duration, again: bool) -> Result<Option<Claim>> {
+    let mut connection = writer(engine).await?;
+    let values = [Value::from(worker), milliseconds(lease)];
+    let mut row = if again { Of::<E>::first(&mut connection, TAKE_AGAIN, &values).await? } else { None };
+    for more in (0..TRIES).rev() {
+        if row.is_some() {
+            break;
+        }
+        row = match Of::<E>::first(&mut connection, TAKE, &values).await {
+            Ok(None) => return Ok(None),
+            Ok(found) => found,
+            Err(error) if more > 0 && is_repeated(&error) => None,
+            Err(error) => return Err(error.into()),
+        };
+    }
+    let Some(row) = row else { return Ok(None) };
+    let job = rows::id(&row, "id")?;
+    let origin = match rows::parent(&row)? {
+        Some(parent) => Some((parent, followers::origin::<Of<E>>(&mut connection, job).await?)),
+        None => None,
+    };
+    let is_first = rows::flag(&row, "is_first")?;
+    // A branch is stored beside an increment; a checkpoint may be there before the first.
+    let (last, last_branch) = match rows::last_index(&row)? {
+        Some(index) => (
+            Some(increments::stored::<Of<E>>(&mut connection, job, index).await?),
+            increments::last_branch::<Of<E>>(&mut connection, job).await?,
+        ),
+        None => (None, None),
+    };
+    let checkpoint = if is_first { None } else { increments::checkpoint::<Of<E>>(&mut connection, job).await? };
+    let claim = Claim {
+        lease: Lease { job, worker: worker.to_owned(), attempt: rows::count(&row, "attempt")? },
+        task: rows::task(&row)?,
+        request: rows::text(&row, "request")?,
+        max_increments: rows::number(&row, "max_increments")?,
+        last,
+        last_branch,
+        checkpoint,
+        origin,
+        explores: super::dialect::Cells::id(&row, "family")?.is_some(),
+        waited: if is_first { Some(rows::milliseconds(&row, "waited")?) } else { None },
+        ran: rows::milliseconds(&row, "ran_ms")?,
+        stored_bytes: rows::number(&row, "stored_bytes")?,
+    };
+    engine.signals().job_claimed(&claim.lease, claim.last.as_ref().map(|line| line.index));
+    Ok(Some(claim))
+}
+
+/// What is to be there once is there.
+pub(super) fn is_repeated(error: &sqlx::Error) -> bool {
+    error.as_database_error().is_some_and(|error| error.is_unique_violation())
+}
+
+pub(super) fn milliseconds(duration: Duration) -> Value<'static> {
+    // What is added to the time of day stays a number that an engine holds.
+    const LONGEST: u64 = 1 << 52;
+    Value::from(u64::try_from(duration.as_millis()).unwrap_or(LONGEST).min(LONGEST))
+}
+
+pub(super) async fn renew<E: Engine>(engine: &E, lease: &Lease, duration: Duration) -> Result<LeaseAnswer> {
+    let update = concat!("UPDATE jobs SET lease_until = {now} + $4, ", ran!(), held!(), "RETURNING cancel_requested");
+    let values = values![lease.job, &lease.worker, lease.attempt, milliseconds(duration)];
+    answer(Of::<E>::first(&mut *writer(engine).await?, update, values).await?.as_ref())
+}
+
+pub(super) async fn finish<E: Engine>(engine: &E, lease: &Lease, ending: Ending) -> Result<LeaseAnswer> {
+    let row = Of::<E>::first(
+        &mut *writer(engine).await?,
+        concat!(
+            "UPDATE jobs SET status = $4, stop_reason = $5, report = $6, error = $7, worker = NULL, lease_until = NULL, \
+             losses = 0, ended_at = {now}, ",
+            ran!(),
+            held!(),
+            "RETURNING cancel_requested"
+        ),
+        values![
+            lease.job,
+            &lease.worker,
+            lease.attempt,
+            ending.status.name(),
+            &ending.stop_reason,
+            &ending.report,
+            &ending.error
+        ],
+    )
+    .await?;
+    engine.signals().job_changed(lease.job);
+    // Where the job had lost workers, others of the kind may have waited for its end.
+    engine.signals().queue_changed();
+    answer(row.as_ref())
+}
+
+pub(super) async fn release<E: Engine>(engine: &E, lease: &Lease) -> Result<LeaseAnswer> {
+    // The attempt is given back: going away in good order says nothing against the job. A cancelled one is not queued again.
+    let row = Of::<E>::first(
+        &mut *writer(engine).await?,
+        concat!(
+            "UPDATE jobs SET status = CASE cancel_requested WHEN 0 THEN 'queued' ELSE 'cancelled' END, \
+             stop_reason = CASE cancel_requested WHEN 0 THEN NULL ELSE 'cancelled' END, \
+             ended_at = CASE cancel_requested WHEN 0 THEN NULL ELSE {now} END, \
+             attempt = attempt - 1, worker = NULL, lease_until = NULL, ",
+            ran!(),
+            held!(),
+            "RETURNING cancel_requested"
+        ),
+        values![lease.job, &lease.worker, lease.attempt],
+    )
+    .await?;
+    engine.signals().job_changed(lease.job);
+    engine.signals().queue_changed();
+    answer(row.as_ref())
+}
+
+pub(super) async fn reclaim_expired<E: Engine>(engine: &E) -> Result<u64> {
+    let mut connection = writer(engine).await?;
+    let touched = Of::<E>::rows(
+        &mut connection,
+        "UPDATE jobs SET losses = losses + 1, \
+         status = CASE WHEN cancel_requested <> 0 THEN 'cancelled' WHEN losses + 1 < max_attempts THEN 'queued' \
+                  ELSE 'failed' END, \
+         stop_reason = CASE WHEN cancel_requested <> 0 THEN 'cancelled' END, \
+         error = CASE WHEN cancel_requested = 0 AND losses + 1 >= max_attempts \
+                 THEN 'the worker was lost ' || (losses + 1) || ' times in a row, nothing stored between: the process that \
+works on the job ends, or does not answer in time' END, \
+         ended_at = CASE WHEN cancel_requested <> 0 OR losses + 1 >= max_attempts THEN {now} END, \
+         worker = NULL, lease_until = NULL, updated_at = {now} \
+         WHERE id IN (SELECT id FROM jobs WHERE status = 'running' AND lease_until < {clock} {free}) RETURNING id",
+        values![],
+    )
+    .await?;
+    for row in &touched {
+        engine.signals().job_changed(rows::id(row, "id")?);
+    }
+    if !touched.is_empty() {
+        engine.signals().queue_changed();
+    }
+    if let Some(sweep) = <Of<E> as Dialect>::SWEEP {
+        Of::<E>::run(&mut connection, sweep, values![]).await?;
+    }
+    u64::try_from(touched.len()).map_err(|error| StoreError::Refused(Box::new(error)))
+}
+
+/// Of a row with the column `cancel_requested`, which is there where the lease is held.
+pub(super) fn answer(row: Option<&impl super::dialect::Cells>) -> Result<LeaseAnswer> {
+    match row {
+        Some(row) => Ok(LeaseAnswer::Held { cancel_requested: rows::flag(row, "cancel_requested")? }),
+        None => Ok(LeaseAnswer::Lost),
+    }
+}

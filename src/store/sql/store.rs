@@ -1,0 +1,223 @@
+//! The [`Store`] over an engine that speaks SQL, and what it asks of the engine.
+
+use super::dialect::Dialect;
+use super::{claims, families, followers, increments, jobs};
+use crate::store::signals::Signals;
+use crate::store::{
+    Batch, Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, Origin,
+    Page, Result, Standing, Status, Store, StoreError, Submitted,
+};
+use async_trait::async_trait;
+use sqlx::pool::PoolConnection;
+use sqlx::{Pool, Transaction};
+use std::collections::HashSet;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+use tokio::sync::watch;
+use tokio::time::timeout;
+use uuid::Uuid;
+
+/// Connections, and what is not said in SQL.
+#[async_trait]
+pub(in crate::store) trait Engine: Send + Sync + 'static {
+    type Dialect: Dialect;
+
+    /// A call that takes longer has met a database that does not answer; none where a call may take any time.
+    const PATIENCE: Option<Duration>;
+
+    fn readers(&self) -> &Pool<Self::Dialect>;
+
+    fn writers(&self) -> &Pool<Self::Dialect>;
+
+    fn signals(&self) -> &Signals;
+
+    /// # Errors
+    /// Why nothing may be written.
+    fn allow(&self) -> Result<()>;
+
+    async fn submit(&self, job: NewJob) -> Result<Submitted>;
+
+    async fn shrink(&self) -> Result<bool>;
+
+    async fn check(&self) -> Result<()>;
+
+    async fn close(&self);
+}
+
+pub(super) type Of<E> = <E as Engine>::Dialect;
+
+pub(super) async fn reader<E: Engine>(engine: &E) -> sqlx::Result<PoolConnection<E::Dialect>> {
+    engine.readers().acquire().await
+}
+
+pub(super) async fn writer<E: Engine>(engine: &E) -> sqlx::Result<PoolConnection<E::Dialect>> {
+    engine.writers().acquire().await
+}
+
+pub(super) async fn begin<E: Engine>(engine: &E) -> sqlx::Result<Transaction<'static, E::Dialect>> {
+    engine.writers().begin().await
+}
+
+/// Damage that any statement meets, or the look through everything at the start, is remembered: nothing new is taken or begun
+/// then, because what is written next to damage may make it worse. What can still be read is.
+pub(in crate::store) struct SqlStore<E> {
+    pub engine: E,
+    damaged: AtomicBool,
+    /// Workers whose last claim ended without an answer: it may have been carried out.
+    unanswered: Mutex<HashSet<String>>,
+}
+
+impl<E: Engine> SqlStore<E> {
+    pub fn over(engine: E) -> Self {
+        Self { engine, damaged: AtomicBool::new(false), unanswered: Mutex::default() }
+    }
+
+    /// A call that takes or begins something new.
+    async fn begin<T>(&self, call: impl Future<Output = Result<T>>) -> Result<T> {
+        if self.damaged.load(Ordering::Relaxed) {
+            return Err(StoreError::Damaged("damage was met before; nothing is written".into()));
+        }
+        self.engine.allow()?;
+        self.call(call).await
+    }
+
+    async fn call<T>(&self, call: impl Future<Output = Result<T>>) -> Result<T> {
+        let answer = match E::PATIENCE {
+            None => call.await,
+            Some(patience) => timeout(patience, call).await.unwrap_or_else(|late| {
+                Err(StoreError::Unavailable(format!("no answer within {patience:?}: {late}").into()))
+            }),
+        };
+        // Of the database itself; a row that cannot be read is a matter of that row.
+        if let Err(StoreError::Damaged(source)) = &answer
+            && source.downcast_ref::<sqlx::Error>().is_some_and(|error| error.as_database_error().is_some())
+        {
+            self.damaged.store(true, Ordering::Relaxed);
+        }
+        answer
+    }
+
+    fn unanswered(&self) -> MutexGuard<'_, HashSet<String>> {
+        // The set is whole at every point where its holder could panic.
+        self.unanswered.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[async_trait]
+impl<E: Engine> Store for SqlStore<E> {
+    async fn submit(&self, job: NewJob) -> Result<Submitted> {
+        let submitted = self.begin(self.engine.submit(job)).await;
+        if matches!(submitted, Ok(Submitted::Created(_))) {
+            self.engine.signals().queue_changed();
+        }
+        submitted
+    }
+
+    async fn follow(&self, job: NewFollower) -> Result<Option<Submitted>> {
+        self.begin(followers::follow(&self.engine, job)).await
+    }
+
+    async fn job(&self, id: Uuid) -> Result<Option<JobRecord>> {
+        self.call(jobs::get(&self.engine, id)).await
+    }
+
+    async fn standing(&self, id: Uuid) -> Result<Option<Standing>> {
+        self.call(jobs::standing(&self.engine, id)).await
+    }
+
+    async fn request(&self, id: Uuid) -> Result<Option<String>> {
+        self.call(followers::request(&self.engine, id)).await
+    }
+
+    async fn branch(&self, id: Uuid, increment: u64) -> Result<Option<Origin>> {
+        self.call(followers::branch(&self.engine, id, increment)).await
+    }
+
+    async fn explore(&self) -> Result<u64> {
+        self.begin(families::explore(&self.engine)).await
+    }
+
+    async fn jobs(&self, filter: ListFilter) -> Result<Vec<JobRecord>> {
+        self.call(jobs::list(&self.engine, filter)).await
+    }
+
+    async fn tally(&self) -> Result<Vec<(Status, u64)>> {
+        self.call(jobs::tally(&self.engine)).await
+    }
+
+    async fn increments(&self, id: Uuid, after: Option<u64>, page: Page) -> Result<Vec<Line>> {
+        self.call(increments::read(&self.engine, id, after, page)).await
+    }
+
+    async fn request_cancel(&self, id: Uuid) -> Result<Option<JobRecord>> {
+        self.call(jobs::request_cancel(&self.engine, id)).await
+    }
+
+    async fn delete(&self, id: Uuid) -> Result<bool> {
+        self.call(jobs::delete(&self.engine, id)).await
+    }
+
+    async fn claim(&self, worker: &str, lease: Duration) -> Result<Option<Claim>> {
+        let again = self.unanswered().contains(worker);
+        let claimed = self.begin(claims::claim(&self.engine, worker, lease, again)).await;
+        if claimed.is_err() {
+            self.unanswered().insert(worker.to_owned());
+        } else if again {
+            self.unanswered().remove(worker);
+        }
+        claimed
+    }
+
+    async fn renew(&self, lease: &Lease, duration: Duration) -> Result<LeaseAnswer> {
+        self.call(claims::renew(&self.engine, lease, duration)).await
+    }
+
+    async fn append(&self, lease: &Lease, batch: &Batch, duration: Duration) -> Result<LeaseAnswer> {
+        self.call(increments::append(&self.engine, lease, batch, duration)).await
+    }
+
+    async fn finish(&self, lease: &Lease, ending: Ending) -> Result<LeaseAnswer> {
+        self.call(claims::finish(&self.engine, lease, ending)).await
+    }
+
+    async fn release(&self, lease: &Lease) -> Result<LeaseAnswer> {
+        self.call(claims::release(&self.engine, lease)).await
+    }
+
+    async fn reclaim_expired(&self) -> Result<u64> {
+        self.call(claims::reclaim_expired(&self.engine)).await
+    }
+
+    async fn retire(&self, keep: Keep) -> Result<u64> {
+        self.begin(jobs::retire(&self.engine, keep)).await
+    }
+
+    async fn shrink(&self) -> Result<bool> {
+        self.begin(self.engine.shrink()).await
+    }
+
+    async fn check(&self) -> Result<()> {
+        let checked = self.call(self.engine.check()).await;
+        if matches!(checked, Err(StoreError::Damaged(_))) {
+            self.damaged.store(true, Ordering::Relaxed);
+        }
+        checked
+    }
+
+    async fn probe(&self) -> Result<()> {
+        self.begin(jobs::probe(&self.engine)).await
+    }
+
+    fn job_changes(&self, id: Uuid) -> watch::Receiver<Change> {
+        self.engine.signals().job_changes(id)
+    }
+
+    fn queue_changes(&self) -> watch::Receiver<u64> {
+        self.engine.signals().queue_changes()
+    }
+
+    async fn close(&self) {
+        self.engine.close().await;
+    }
+}
