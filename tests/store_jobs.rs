@@ -6,7 +6,8 @@ mod common;
 
 use arcslip::model::request::Explore;
 use arcslip::store::{
-    Batch, Branch, Ending, Keep, Line, ListFilter, NewFollower, Page, Parent, Status, Store, Submitted, Task,
+    Batch, Branch, Ending, Keep, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, NewRun, NewSweep, Page, Parent,
+    Status, Store, Submitted, Task,
 };
 use common::engines::{Database, batch, job, line, queued};
 use std::time::Duration;
@@ -22,6 +23,7 @@ on_both_engines! {
     an_exploration_looked_at_by_many_at_once_queues_the_same,
     a_deleted_job_takes_all_its_rows_along,
     what_is_not_to_be_kept_is_dropped,
+    a_sweep_ends_with_its_runs_however_they_do,
 }
 
 /// An increment with a branch of these alternatives.
@@ -44,7 +46,88 @@ async fn completed(store: &dyn Store, lines: &[Line]) -> Uuid {
 }
 
 fn all(task: Task) -> ListFilter {
-    ListFilter { task, owner: None, status: None, parent: None, before: None, limit: 100 }
+    ListFilter { task, owner: None, status: None, sweep: None, parent: None, before: None, limit: 100 }
+}
+
+/// Runs that complete, fail with their workers, are dropped or cancelled: each has one row, and the last one ends the sweep.
+async fn a_sweep_ends_with_its_runs_however_they_do(database: Database) {
+    let store = database.open().await;
+    let run = |number: u64| NewRun {
+        request: format!("request {number}"),
+        plan: "{}".to_owned(),
+        values: format!("[{number}.50,\"a \\\"name\\\"\"]"),
+        max_increments: 9,
+    };
+    let whole = |key: &str| NewJob {
+        task: Task::Sweep,
+        max_increments: 5,
+        max_attempts: 1,
+        most_queued: 7,
+        idempotency_key: Some(key.to_owned()),
+        ..job(1)
+    };
+    let new = |key: &str| NewSweep { whole: whole(key), runs: (0..5).map(run).collect() };
+    let Ok(Submitted::Created(sweep)) = store.submit_sweep(new("one")).await else { panic!("not stored") };
+    assert_eq!((sweep.task, sweep.status, sweep.last_index), (Task::Sweep, Status::Running, None));
+    assert!(matches!(store.submit_sweep(new("one")).await, Ok(Submitted::Repeated(found)) if found.id == sweep.id));
+    assert!(
+        matches!(store.submit_sweep(new("two")).await, Ok(Submitted::QueueFull { most: 7 })),
+        "there is room for two"
+    );
+    let tally = async || {
+        let tallies = store.tally().await.expect("tallies");
+        let of = |status| tallies.iter().find(|(known, _)| *known == status).map_or(0, |(_, count)| *count);
+        (of(Status::Queued), of(Status::Running))
+    };
+    assert_eq!(tally().await, (5, 0), "nobody works on the sweep itself");
+    let runs = listed(store.as_ref(), ListFilter { sweep: Some(sweep.id), ..all(Task::Path) }).await;
+    assert_eq!(runs.len(), 5);
+    assert_eq!(store.request(runs[0]).await.expect("an answer").as_deref(), Some("request 4"), "newest first");
+
+    let claim = store.claim("worker", MINUTE).await.expect("an answer").expect("a job");
+    for (index, limit) in [(0, "{\"load_factor\":0.10}"), (1, "{\"load_factor\":0.7}")] {
+        let batch = Batch { first_limit: Some(limit.to_owned()), ..batch(&[line(index, "{}")]) };
+        store.append(&claim.lease, &batch, MINUTE).await.expect("stored");
+    }
+    let stop_reason = Some("stages_completed".to_owned());
+    let ending = Ending { status: Status::Completed, stop_reason, report: Some("{}".to_owned()), error: None };
+    store.finish(&claim.lease, ending).await.expect("an answer");
+    store.claim("lost", Duration::ZERO).await.expect("an answer").expect("a job");
+    tokio::time::sleep(Duration::from_millis(5)).await;
+    assert_eq!(store.reclaim_expired().await.expect("an answer"), 1);
+    let working = store.claim("worker", MINUTE).await.expect("an answer").expect("a job");
+    assert!(store.delete(runs[0]).await.expect("an answer"), "the last one, which waits");
+    assert_eq!(store.cancel_sweep(sweep.id).await.expect("an answer"), [working.lease.job]);
+    store.request_cancel(sweep.id).await.expect("an answer");
+    let standing = async || store.standing(sweep.id).await.expect("an answer").expect("a sweep");
+    assert_eq!((standing().await.status, standing().await.last_index), (Status::Running, Some(3)), "one is at work");
+    assert_eq!(store.release(&working.lease).await.expect("an answer"), LeaseAnswer::Held { cancel_requested: true });
+    assert_eq!((standing().await.status, standing().await.last_index), (Status::Cancelled, Some(4)));
+    let rows = store.increments(sweep.id, None, ALL).await.expect("rows");
+    let rows: Vec<serde_json::Value> = rows.iter().map(|row| serde_json::from_str(&row.body).expect("JSON")).collect();
+    let told: Vec<(u64, &str)> = rows
+        .iter()
+        .map(|row| (row["run"].as_u64().expect("a number"), row["status"].as_str().expect("text")))
+        .collect();
+    assert_eq!(told, [(0, "completed"), (1, "failed"), (4, "cancelled"), (3, "cancelled"), (2, "cancelled")]);
+    assert_eq!(rows[0]["job"], claim.lease.job.to_string());
+    assert_eq!(rows[0]["values"], serde_json::json!([0.5, "a \"name\""]));
+    assert_eq!((&rows[0]["first_limit"]["load_factor"], &rows[0]["last_index"]), (&0.1.into(), &1.into()));
+    assert_eq!(rows[0]["stop_reason"], "stages_completed");
+    assert!(rows[1]["error"].as_str().expect("text").contains("was lost"));
+    assert_eq!(rows[2]["error"], "it was deleted");
+    let ended = store.job(sweep.id).await.expect("an answer").expect("a sweep");
+    assert!(ended.ended_at.is_some() && ended.stop_reason.as_deref() == Some("cancelled"));
+    assert_eq!(tally().await, (0, 0));
+
+    // Dropped while its runs wait and work: all of it is gone.
+    let Ok(Submitted::Created(sweep)) = store.submit_sweep(new("three")).await else { panic!("not stored") };
+    let claim = store.claim("worker", MINUTE).await.expect("an answer").expect("a job");
+    assert!(store.delete(sweep.id).await.expect("an answer"));
+    assert_eq!(store.renew(&claim.lease, MINUTE).await.expect("an answer"), LeaseAnswer::Lost);
+    assert!(listed(store.as_ref(), ListFilter { sweep: Some(sweep.id), ..all(Task::Path) }).await.is_empty());
+    assert!(store.increments(sweep.id, None, ALL).await.expect("rows").is_empty());
+    assert_eq!(tally().await, (0, 0));
 }
 
 async fn listed(store: &dyn Store, filter: ListFilter) -> Vec<Uuid> {

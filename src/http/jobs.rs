@@ -93,6 +93,8 @@ pub(super) async fn page<T: View>(
 pub struct ListParameters {
     /// Only jobs with this status.
     status: Option<Status>,
+    /// Only runs of this sweep.
+    sweep: Option<Uuid>,
     /// Only jobs that follow a direction of this one.
     parent: Option<Uuid>,
     /// `next_cursor` of the page before.
@@ -104,6 +106,7 @@ pub struct ListParameters {
 impl Taken for ListParameters {
     const TAKEN: &'static [(&'static str, &'static str)] = &[
         ("status", "`queued`, `running`, `completed`, `stopped`, `cancelled` or `failed`"),
+        ("sweep", "the id of a sweep, a UUID,"),
         ("parent", "the id of a job, a UUID,"),
         ("cursor", "the `next_cursor` of the page before, a UUID,"),
         ("limit", "a whole number from 1 to 200"),
@@ -120,9 +123,9 @@ pub async fn list(
     Extension(caller): Extension<Caller>,
     Parameters(parameters): Parameters<ListParameters>,
 ) -> Result<Json<JobList>, Problem> {
-    let ListParameters { status, parent, cursor, limit } = parameters;
+    let ListParameters { status, sweep, parent, cursor, limit } = parameters;
     let owner = caller.seen_owner().map(str::to_owned);
-    let filter = |limit| ListFilter { task: Task::Path, owner, status, parent, before: cursor, limit };
+    let filter = |limit| ListFilter { task: Task::Path, owner, status, sweep, parent, before: cursor, limit };
     let (jobs, next_cursor) = page(&service, limit, filter).await?;
     Ok(Json(JobList { jobs, next_cursor }))
 }

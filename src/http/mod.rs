@@ -1,9 +1,9 @@
 //! The service's HTTP face; version 1 of the interface.
 //!
 //! [`listen`] takes connections, [`access`] says who may call, [`problem`] is the one edge where errors become answers,
-//! [`extract`], [`parameters`] and [`accept`] read requests, [`view`] and [`view_study`] hold what is answered, [`tag`] spares it
+//! [`extract`], [`parameters`] and [`accept`] read requests, [`view`], [`view_study`] and [`view_sweep`] hold what is answered, [`tag`] spares it
 //! to those who have it; [`jobs`], [`request`], [`follow`], [`increments`], [`columns`], [`exact`], [`stream`], [`csv`],
-//! [`studies`], [`scenes`], [`probes`], [`metrics`] and [`pages`] are the calls, [`dashboard`] what a browser sees,
+//! [`studies`], [`sweeps`], [`scenes`], [`probes`], [`metrics`] and [`pages`] are the calls, [`dashboard`] what a browser sees,
 //! [`document`] their OpenAPI description, [`request_id`] what names each request, [`server`] all of it, and going down in good order.
 //! Called by `command`; knows `jobs` and, for reading, `store`.
 
@@ -30,9 +30,11 @@ pub mod scenes;
 pub mod server;
 pub mod stream;
 pub mod studies;
+pub mod sweeps;
 pub mod tag;
 pub mod view;
 pub mod view_study;
+pub mod view_sweep;
 
 use crate::jobs::crew::Attendance;
 use crate::jobs::{Jobs, Limits};
@@ -82,6 +84,14 @@ fn api() -> OpenApiRouter<Service> {
         .routes(routes!(studies::table_csv))
         .routes(routes!(studies::table_txt))
         .routes(routes!(studies::picture))
+        .routes(routes!(sweeps::submit, sweeps::list))
+        .routes(routes!(sweeps::get, sweeps::delete))
+        .routes(routes!(sweeps::cancel))
+        .routes(routes!(sweeps::rows))
+        .routes(routes!(sweeps::stream))
+        .routes(routes!(sweeps::table_csv))
+        .routes(routes!(sweeps::table_txt))
+        .routes(routes!(sweeps::picture))
         .routes(routes!(scenes::list))
         .routes(routes!(scenes::get))
         .routes(routes!(probes::alive))

@@ -215,6 +215,7 @@ impl From<JobsError> for Problem {
             }
             JobsError::NoJob(id) => Self::not_found(format_args!("job {id}")),
             JobsError::NoStudy(id) => Self::not_found(format_args!("study {id}")),
+            JobsError::NoSweep(id) => Self::not_found(format_args!("sweep {id}")),
             JobsError::Store(error) => error.into(),
             JobsError::Task(_) | JobsError::Write(_) => {
                 tracing::error!(%error, "a request failed");

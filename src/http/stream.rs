@@ -9,6 +9,7 @@ use super::extract::{JobId, last_event_id};
 use super::problem::{Kind, Problem};
 use super::view::{Job, ServerEvent};
 use super::view_study::StudyWithReport;
+use super::view_sweep::Sweep;
 use super::{Service, document};
 use crate::jobs::Caller;
 use crate::judged::JudgedIncrement;
@@ -257,7 +258,7 @@ fn come_back(why: &str) -> String {
 fn event_name(task: Task) -> &'static str {
     match task {
         Task::Path => "increment",
-        Task::Study => "row",
+        Task::Study | Task::Sweep => "row",
     }
 }
 
@@ -265,16 +266,17 @@ fn end(task: Task, job: JobRecord) -> serde_json::Result<String> {
     match task {
         Task::Path => serde_json::to_string(&Job::try_from(job)?),
         Task::Study => serde_json::to_string(&StudyWithReport::try_from(job)?),
+        Task::Sweep => serde_json::to_string(&Sweep::try_from(job)?),
     }
 }
 
-/// What follows the last line of a path, which says itself that it is the end, or of a study, which does not.
+/// What follows the last line of a path, which says itself that it is the end, or of a study or sweep, which does not.
 fn closing_line(task: Task, job: JobRecord) -> Option<io::Result<String>> {
     match task {
         Task::Path => None,
-        Task::Study => Some(end(task, job).map(|study| study + "\n").map_err(|error| {
+        Task::Study | Task::Sweep => Some(end(task, job).map(|whole| whole + "\n").map_err(|error| {
             tracing::error!(%error, "the end cannot be written");
-            io::Error::other("the study cannot be read")
+            io::Error::other("what has ended cannot be read")
         })),
     }
 }

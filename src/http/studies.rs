@@ -84,7 +84,8 @@ pub async fn list(
 ) -> Result<Json<StudyList>, Problem> {
     let ListStudies { status, cursor, limit } = parameters;
     let owner = caller.seen_owner().map(str::to_owned);
-    let filter = |limit| ListFilter { task: Task::Study, owner, status, parent: None, before: cursor, limit };
+    let filter =
+        |limit| ListFilter { task: Task::Study, owner, status, sweep: None, parent: None, before: cursor, limit };
     let (studies, next_cursor) = page(&service, limit, filter).await?;
     Ok(Json(StudyList { studies, next_cursor }))
 }

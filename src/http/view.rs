@@ -72,6 +72,8 @@ pub struct Job {
     pub report: Option<Box<RawValue>>,
     /// The direction of another job that this one follows; null for a job that starts at rest.
     pub parent: Option<Parent>,
+    /// The sweep that it is a run of; null for others.
+    pub sweep: Option<RunOf>,
     /// Jobs of the same owner that follow a direction of this one; `GET /v1/jobs?parent=` lists them.
     pub children: u64,
     /// Of jobs whose analysis says `explore`, and of those queued for it.
@@ -104,6 +106,13 @@ pub struct Parent {
     pub increment: u64,
     /// Place in the increment's `directions`.
     pub direction: u64,
+}
+
+/// A place in a sweep.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct RunOf {
+    pub sweep: Uuid,
+    pub run: u64,
 }
 
 /// A job's part in following the directions that were not taken.
@@ -165,6 +174,7 @@ impl TryFrom<JobRecord> for Job {
                 increment: parent.increment,
                 direction: parent.direction,
             }),
+            sweep: record.run.map(|run| RunOf { sweep: run.sweep, run: run.run }),
             children: record.children,
             explore: record.membership.map(|member| Exploration {
                 family: member.family,
@@ -207,7 +217,7 @@ pub struct ServerEvent {
     /// The index, of an increment or row.
     #[schema(nullable = false)]
     pub id: Option<String>,
-    /// JSON: the increment or the row; of `end`, the job or the study.
+    /// JSON: the increment or the row; of `end`, the job, the study or the sweep.
     #[schema(nullable = false)]
     pub data: Option<String>,
     /// Milliseconds after which it is worth coming back.

@@ -6,7 +6,7 @@
 //! [`limits`] what is taken and how much a job may use, [`retention`] what is kept of ended jobs;
 //! [`trail`] how the states that it has passed are stored once; [`crew`] all workers of a process, [`demonstration`] the built-in scenes as jobs; [`follow`] jobs that follow a direction
 //! of another, [`branches`] the points they begin from, [`explore`] which of them are queued unasked; [`studies`] are jobs of
-//! another task. Called by `http` and `command`; knows `store`, `judged`, `studies`, `path`, `model`
+//! another task, [`sweeps`] stand for many. Called by `http` and `command`; knows `store`, `judged`, `studies`, `path`, `model`
 //! and, for what is counted and timed, `metrics`.
 
 pub mod batch;
@@ -27,6 +27,7 @@ pub mod solve;
 pub mod solver;
 pub mod studies;
 pub mod submission;
+pub mod sweeps;
 pub mod trail;
 pub mod worker;
 
@@ -64,6 +65,8 @@ pub enum JobsError {
     NoJob(Uuid),
     #[error("no study {0}")]
     NoStudy(Uuid),
+    #[error("no sweep {0}")]
+    NoSweep(Uuid),
     #[error(transparent)]
     Store(#[from] StoreError),
     #[error("a task ended early: {0}")]
@@ -135,6 +138,9 @@ impl Jobs {
 
     pub async fn cancel(&self, caller: &Caller, task: Task, id: Uuid) -> Result<JobRecord, JobsError> {
         self.find(caller, task, id).await?;
+        if task == Task::Sweep {
+            self.store.cancel_sweep(id).await?.into_iter().for_each(|run| self.running.cancel(run));
+        }
         let job = self.store.request_cancel(id).await?.ok_or_else(|| absent(task, id))?;
         // A job that runs elsewhere learns of it when its lease is renewed; one that runs here need not wait.
         self.running.cancel(id);
@@ -153,6 +159,7 @@ fn absent(task: Task, id: Uuid) -> JobsError {
     match task {
         Task::Path => JobsError::NoJob(id),
         Task::Study => JobsError::NoStudy(id),
+        Task::Sweep => JobsError::NoSweep(id),
     }
 }
 

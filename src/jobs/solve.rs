@@ -86,6 +86,8 @@ pub fn start(jobs: &Jobs, claim: &Claim, stored: Vec<Line>, cancel: CancelFlag) 
             let _entered = span.enter();
             let ended = catch_unwind(AssertUnwindSafe(|| match claim_of_thread.task {
                 Task::Path => run(&jobs, &claim_of_thread, cancel, &sender),
+                // Nobody claims one: its runs are claimed.
+                Task::Sweep => SolveEnd::Silent,
                 Task::Study => study(jobs.solver.as_ref(), &claim_of_thread, &stored, &cancel, &sender),
             }))
             .unwrap_or_else(|panic| SolveEnd::Panicked(panics::text(panic.as_ref())));

@@ -65,7 +65,7 @@ impl Jobs {
         self.lines(id, None).await
     }
 
-    async fn lines(&self, id: Uuid, mut after: Option<u64>) -> Result<Vec<Line>, StoreError> {
+    pub(super) async fn lines(&self, id: Uuid, mut after: Option<u64>) -> Result<Vec<Line>, StoreError> {
         let mut lines = Vec::new();
         loop {
             let page = self.store.increments(id, after, PAGE).await?;

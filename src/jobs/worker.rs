@@ -92,7 +92,7 @@ async fn trace(jobs: &Jobs, claim: &Claim, shutdown: &CancellationToken) -> Resu
         cancel.cancel();
     }
     let stored = match claim.task {
-        Task::Path => Vec::new(),
+        Task::Path | Task::Sweep => Vec::new(),
         Task::Study => batch::retry(jobs.settings.lease, shutdown, || jobs.stored(lease.job)).await?,
     };
     let mut solve = match solve::start(jobs, claim, stored, cancel.clone()) {

@@ -25,7 +25,7 @@ pub use error::StoreError;
 pub use location::Location;
 pub use record::{
     Batch, Branch, Checkpoint, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Membership,
-    NewFollower, NewJob, Origin, Page, Parent, Standing, Status, Submitted, Task,
+    NewFollower, NewJob, NewRun, NewSweep, Origin, Page, Parent, RunOf, Standing, Status, Submitted, Task,
 };
 
 pub use signals::Change;
@@ -37,6 +37,12 @@ pub type Result<T> = std::result::Result<T, StoreError>;
 pub trait Store: Send + Sync + 'static {
     /// Stores a job as `queued`, or finds the one that came with the same idempotency key.
     async fn submit(&self, job: NewJob) -> Result<Submitted>;
+
+    /// Stores a sweep and all of its runs, those as `queued`, or finds the one that came with the same idempotency key.
+    async fn submit_sweep(&self, sweep: NewSweep) -> Result<Submitted>;
+
+    /// Cancels the runs of a sweep: those that wait at once; those at work are marked, and answered.
+    async fn cancel_sweep(&self, id: Uuid) -> Result<Vec<Uuid>>;
 
     /// Stores a job that follows another as `queued`, or finds the one that came with the same idempotency key.
     /// `None`: the parent, or a branch of it up to that increment, is not there.

@@ -57,6 +57,8 @@ pub enum Task {
     Path,
     /// Traces many; its lines are the paths that have been traced.
     Study,
+    /// Stands for jobs of its own; its lines are those that have ended.
+    Sweep,
 }
 
 impl Task {
@@ -64,11 +66,12 @@ impl Task {
         match self {
             Self::Path => "path",
             Self::Study => "study",
+            Self::Sweep => "sweep",
         }
     }
 
     pub fn from_name(name: &str) -> Option<Self> {
-        [Self::Path, Self::Study].into_iter().find(|task| task.name() == name)
+        [Self::Path, Self::Study, Self::Sweep].into_iter().find(|task| task.name() == name)
     }
 }
 
@@ -92,6 +95,31 @@ pub struct NewJob {
     pub idempotency_key: Option<String>,
     /// The job begins a family.
     pub explore: Option<Explore>,
+}
+
+/// A sweep to be stored: what stands for all of it, and its runs in order, which have its name, owner and priority.
+#[derive(Debug, Clone)]
+pub struct NewSweep {
+    pub whole: NewJob,
+    pub runs: Vec<NewRun>,
+}
+
+/// A run of a sweep to be queued.
+#[derive(Debug, Clone)]
+pub struct NewRun {
+    pub request: String,
+    /// JSON.
+    pub plan: String,
+    /// A JSON array: what it has in the places that the sweep varies.
+    pub values: String,
+    pub max_increments: u64,
+}
+
+/// The place of a job among the runs of a sweep.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RunOf {
+    pub sweep: Uuid,
+    pub run: u64,
 }
 
 /// The direction of another job that a job follows.
@@ -208,6 +236,8 @@ pub struct JobRecord {
     pub created_at: Timestamp,
     pub started_at: Option<Timestamp>,
     pub ended_at: Option<Timestamp>,
+    /// The sweep that it is a run of.
+    pub run: Option<RunOf>,
     pub parent: Option<Parent>,
     /// Jobs that follow this one.
     pub children: u64,
@@ -228,6 +258,8 @@ pub struct ListFilter {
     /// Only jobs of this one's.
     pub owner: Option<String>,
     pub status: Option<Status>,
+    /// Only runs of this sweep.
+    pub sweep: Option<Uuid>,
     /// Only jobs that follow this one.
     pub parent: Option<Uuid>,
     /// Only jobs older than this one.

@@ -1,8 +1,8 @@
 //! A store whose writes can be made to fail; everything else is the real one.
 
 use arcslip::store::{
-    Batch, Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, Origin,
-    Page, Result, Standing, Status, Store, StoreError, Submitted,
+    Batch, Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, NewSweep,
+    Origin, Page, Result, Standing, Status, Store, StoreError, Submitted,
 };
 use async_trait::async_trait;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -51,6 +51,15 @@ impl Store for FaultyStore {
     async fn submit(&self, job: NewJob) -> Result<Submitted> {
         self.room()?;
         self.inner.submit(job).await
+    }
+
+    async fn submit_sweep(&self, sweep: NewSweep) -> Result<Submitted> {
+        self.room()?;
+        self.inner.submit_sweep(sweep).await
+    }
+
+    async fn cancel_sweep(&self, id: Uuid) -> Result<Vec<Uuid>> {
+        self.inner.cancel_sweep(id).await
     }
 
     async fn follow(&self, job: NewFollower) -> Result<Option<Submitted>> {

@@ -13,6 +13,7 @@ use utoipa::openapi::security::{Http, HttpAuthScheme, SecurityRequirement, Secur
 pub const JOBS: &str = "jobs";
 pub const INCREMENTS: &str = "increments";
 pub const STUDIES: &str = "studies";
+pub const SWEEPS: &str = "sweeps";
 pub const SCENES: &str = "scenes";
 pub const PROBES: &str = "probes";
 
@@ -49,6 +50,7 @@ const TOKEN: &str = "token";
         (name = JOBS, description = "Paths to be traced"),
         (name = INCREMENTS, description = "Points of a path, as they converge or later"),
         (name = STUDIES, description = "One scene over a ladder of settings and over methods: error against run time"),
+        (name = SWEEPS, description = "One model with other values in its places: limit loads"),
         (name = SCENES, description = "Built-in models, ready to post"),
         (name = PROBES, description = "For whoever runs the service"),
     )

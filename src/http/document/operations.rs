@@ -8,7 +8,7 @@ use utoipa::openapi::schema::SchemaType;
 use utoipa::openapi::{ContentBuilder, Header, Object, Ref, RefOr, ResponseBuilder, Schema, Type};
 
 /// Calls whose answers carry a tag where what they tell of is finished.
-const TAGGED: [&str; 10] = [
+const TAGGED: [&str; 15] = [
     "get_job",
     "get_request",
     "list_increments",
@@ -19,6 +19,11 @@ const TAGGED: [&str; 10] = [
     "get_study_table_csv",
     "get_study_table_txt",
     "get_study_picture",
+    "get_sweep",
+    "list_sweep_rows",
+    "get_sweep_table_csv",
+    "get_sweep_table_txt",
+    "get_sweep_picture",
 ];
 /// What can be asked of a job that has been queued, by its id; of a study likewise.
 const OF_A_JOB: [&str; 10] = [
@@ -41,6 +46,16 @@ const OF_A_STUDY: [&str; 7] = [
     "get_study_picture",
     "cancel_study",
     "delete_study",
+];
+const OF_A_SWEEP: [&str; 8] = [
+    "get_sweep",
+    "list_sweep_rows",
+    "stream_sweep",
+    "get_sweep_table_csv",
+    "get_sweep_table_txt",
+    "get_sweep_picture",
+    "cancel_sweep",
+    "delete_sweep",
 ];
 /// The scene that examples are of.
 const EXAMPLE: &str = "klarbring";
@@ -68,6 +83,12 @@ pub(super) fn complete(operation: &mut Operation) -> serde_json::Result<()> {
             let mut study = scene()?;
             study["study"] = json!({"methods": ["auto", "mpec"], "arc_lengths": [0.5, 0.25], "repeats": 1});
             exemplified(operation, study);
+        }
+        "submit_sweep" => {
+            leads_to(operation, &OF_A_SWEEP);
+            let mut sweep = scene()?;
+            sweep["sweep"] = json!({"replace": {"/model/contacts/0/friction": [0.1, 0.2]}, "combine": "grid"});
+            exemplified(operation, sweep);
         }
         "follow_direction" => {
             leads_to(operation, &OF_A_JOB);

@@ -138,7 +138,7 @@ pub(super) async fn finish<E: Engine>(engine: &E, lease: &Lease, ending: Ending)
              losses = 0, ended_at = {now}, ",
             ran!(),
             held!(),
-            "RETURNING cancel_requested"
+            "RETURNING cancel_requested, sweep"
         ),
         values![
             lease.job,
@@ -152,6 +152,9 @@ pub(super) async fn finish<E: Engine>(engine: &E, lease: &Lease, ending: Ending)
     )
     .await?;
     engine.signals().job_changed(lease.job);
+    if let Some(sweep) = row.as_ref().map(|row| super::dialect::Cells::id(row, "sweep")).transpose()?.flatten() {
+        engine.signals().job_changed(sweep);
+    }
     // Where the job had lost workers, others of the kind may have waited for its end.
     engine.signals().queue_changed();
     answer(row.as_ref())

@@ -25,7 +25,7 @@ pub(super) async fn append<E: Engine>(
         &mut transaction,
         concat!(
             "UPDATE jobs SET last_index = coalesce($4, last_index), lease_until = {now} + $6, losses = 0, \
-             stored_bytes = stored_bytes + $5, ",
+             stored_bytes = stored_bytes + $5, first_limit = coalesce(first_limit, $7), ",
             ran!(),
             held!(),
             "RETURNING cancel_requested"
@@ -36,7 +36,8 @@ pub(super) async fn append<E: Engine>(
             lease.attempt,
             lines.last().map(|line| line.index),
             bytes,
-            milliseconds(duration)
+            milliseconds(duration),
+            &batch.first_limit
         ],
     )
     .await?;

@@ -105,6 +105,9 @@ pub(super) async fn list<E: Engine>(engine: &E, filter: ListFilter) -> Result<Ve
     if let Some(parent) = filter.parent {
         add(" AND parent = ", Value::from(parent));
     }
+    if let Some(sweep) = filter.sweep {
+        add(" AND sweep = ", Value::from(sweep));
+    }
     if let Some(status) = filter.status {
         add(" AND status = ", Value::from(status.name()));
     }
@@ -145,6 +148,8 @@ pub(super) async fn delete<E: Engine>(engine: &E, id: Uuid) -> Result<bool> {
     let hold = "UPDATE families SET queued = queued WHERE id = (SELECT family FROM jobs WHERE id = $1)";
     Of::<E>::run(&mut transaction, hold, values![id]).await?;
     let delete = "DELETE FROM jobs WHERE id = $1 RETURNING family";
+    // Of a sweep: its runs before it, as where they end.
+    Of::<E>::run(&mut transaction, "DELETE FROM jobs WHERE sweep = $1", values![id]).await?;
     let deleted = Of::<E>::first(&mut transaction, delete, values![id]).await?;
     if let Some(row) = &deleted
         && let Some(family) = super::dialect::Cells::id(row, "family")?

@@ -2,7 +2,7 @@
 
 use super::dialect::Cells;
 use crate::model::request::Explore;
-use crate::store::{JobRecord, Membership, Origin, Parent, Result, Status, StoreError, Task};
+use crate::store::{JobRecord, Membership, Origin, Parent, Result, RunOf, Status, StoreError, Task};
 use jiff::Timestamp;
 use std::time::Duration;
 use uuid::Uuid;
@@ -11,7 +11,7 @@ use uuid::Uuid;
 macro_rules! job_columns {
     () => {
         "id, task, owner, name, status, plan, report, stop_reason, error, max_increments, last_index, attempt, max_attempts, losses, \
-         cancel_requested, created_at, started_at, ended_at, parent, parent_increment, parent_direction, \
+         cancel_requested, created_at, started_at, ended_at, sweep, sweep_run, parent, parent_increment, parent_direction, \
          (SELECT count(*) FROM jobs AS child WHERE child.parent = jobs.id AND child.owner IS NOT DISTINCT FROM jobs.owner) \
          AS children, family, generation, explored, not_queued, \
          (SELECT depth FROM families WHERE families.id = jobs.family) AS depth, \
@@ -42,6 +42,7 @@ pub(super) fn job(row: &impl Cells) -> Result<JobRecord> {
         created_at: time(there(row.number("created_at")?, "created_at")?)?,
         started_at: row.number("started_at")?.map(time).transpose()?,
         ended_at: row.number("ended_at")?.map(time).transpose()?,
+        run: run(row)?,
         parent: parent(row)?,
         children: number(row, "children")?,
         membership: membership(row)?,
@@ -75,6 +76,11 @@ pub(super) fn parent(row: &impl Cells) -> Result<Option<Parent>> {
 /// Of a row with the columns `body` and `trail`.
 pub(super) fn origin(row: &impl Cells) -> Result<Origin> {
     Ok(Origin { body: text(row, "body")?, trail: row.text("trail")?.unwrap_or_default() })
+}
+
+fn run(row: &impl Cells) -> Result<Option<RunOf>> {
+    let Some(sweep) = row.id("sweep")? else { return Ok(None) };
+    Ok(Some(RunOf { sweep, run: number(row, "sweep_run")? }))
 }
 
 fn membership(row: &impl Cells) -> Result<Option<Membership>> {

@@ -1,11 +1,11 @@
 //! The [`Store`] over an engine that speaks SQL, and what it asks of the engine.
 
 use super::dialect::Dialect;
-use super::{claims, families, followers, increments, jobs};
+use super::{claims, families, followers, increments, jobs, sweeps};
 use crate::store::signals::Signals;
 use crate::store::{
-    Batch, Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, Origin,
-    Page, Result, Standing, Status, Store, StoreError, Submitted,
+    Batch, Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, NewSweep,
+    Origin, Page, Result, Standing, Status, Store, StoreError, Submitted,
 };
 use async_trait::async_trait;
 use sqlx::pool::PoolConnection;
@@ -112,6 +112,18 @@ impl<E: Engine> Store for SqlStore<E> {
             self.engine.signals().queue_changed();
         }
         submitted
+    }
+
+    async fn submit_sweep(&self, sweep: NewSweep) -> Result<Submitted> {
+        let submitted = self.begin(sweeps::submit(&self.engine, sweep)).await;
+        if matches!(submitted, Ok(Submitted::Created(_))) {
+            self.engine.signals().queue_changed();
+        }
+        submitted
+    }
+
+    async fn cancel_sweep(&self, id: Uuid) -> Result<Vec<Uuid>> {
+        self.call(sweeps::cancel(&self.engine, id)).await
     }
 
     async fn follow(&self, job: NewFollower) -> Result<Option<Submitted>> {

@@ -1,0 +1,272 @@
+//! Sweeps: submit, list, read, follow, cancel, delete; their rows, table and picture.
+
+use super::extract::{JobId, JsonText, Parameters, Taken, bounded, idempotency_key, index};
+use super::jobs::{SubmitParameters, accepted, page};
+use super::problem::{Kind, Problem};
+use super::view::ServerEvent;
+use super::view_sweep::{Sweep, SweepList, SweepPlan, SweepRows, address};
+use super::{Service, document, tag};
+use crate::jobs::Caller;
+use crate::model::SweepRequest;
+use crate::picture::{self, PlotError};
+use crate::store::{ListFilter, Page, Status, Task};
+use crate::sweeps::{Found, Row};
+use axum::Extension;
+use axum::Json;
+use axum::extract::State;
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::Deserialize;
+use serde_json::value::RawValue;
+use uuid::Uuid;
+
+const ROWS: u32 = 1_000;
+const PAGE_BYTES: usize = 1 << 20;
+
+/// Queue a sweep, or only check it.
+///
+/// One model with other values in places of it: a job for each combination, all of them queued together or none. The jobs
+/// are like any others; what is found of each is the load at the first limit point of its path.
+#[utoipa::path(
+    post, path = "/v1/sweeps", tag = document::SWEEPS, operation_id = "submit_sweep",
+    params(
+        SubmitParameters,
+        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255,
+         description = "Sent again with the same body, it answers the sweep of the first time; with another body it is refused.")
+    ),
+    request_body = SweepRequest,
+    responses(
+        (status = 202, description = "Queued, or queued before under the same idempotency key.", body = Sweep,
+         headers(("Location" = String, description = "The sweep's address."))),
+        (status = 200, description = "With `validate=true`: what would be done.", body = SweepPlan),
+    )
+)]
+pub async fn submit(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    Parameters(parameters): Parameters<SubmitParameters>,
+    headers: HeaderMap,
+    JsonText(request): JsonText,
+) -> Result<Response, Problem> {
+    let key = idempotency_key(&headers)?;
+    if parameters.validate {
+        let (variation, runs) = service.jobs.validate_sweep(request).await?;
+        return Ok(Json(SweepPlan { runs, variation }).into_response());
+    }
+    accepted::<Sweep>(service.jobs.submit_sweep(&caller, request, key).await?, address)
+}
+
+#[derive(Debug, Deserialize, utoipa::IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub struct ListSweeps {
+    /// Only sweeps with this status.
+    status: Option<Status>,
+    /// `next_cursor` of the page before.
+    cursor: Option<Uuid>,
+    #[param(minimum = 1, maximum = 200, default = 50)]
+    limit: Option<u32>,
+}
+
+impl Taken for ListSweeps {
+    const TAKEN: &'static [(&'static str, &'static str)] = &[
+        ("status", "`queued`, `running`, `completed`, `stopped`, `cancelled` or `failed`"),
+        ("cursor", "the `next_cursor` of the page before, a UUID,"),
+        ("limit", "a whole number from 1 to 200"),
+    ];
+}
+
+/// List sweeps, newest first.
+#[utoipa::path(
+    get, path = "/v1/sweeps", tag = document::SWEEPS, operation_id = "list_sweeps", params(ListSweeps),
+    responses((status = 200, description = "A page of sweeps.", body = SweepList))
+)]
+pub async fn list(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    Parameters(parameters): Parameters<ListSweeps>,
+) -> Result<Json<SweepList>, Problem> {
+    let ListSweeps { status, cursor, limit } = parameters;
+    let owner = caller.seen_owner().map(str::to_owned);
+    let (task, before) = (Task::Sweep, cursor);
+    let filter = |limit| ListFilter { task, owner, status, sweep: None, parent: None, before, limit };
+    let (sweeps, next_cursor) = page(&service, limit, filter).await?;
+    Ok(Json(SweepList { sweeps, next_cursor }))
+}
+
+/// One sweep: status, progress, and what it varies.
+#[utoipa::path(
+    get, path = "/v1/sweeps/{id}", tag = document::SWEEPS, operation_id = "get_sweep",
+    params(("id" = Uuid, Path, description = "The sweep's id.")),
+    responses((status = 200, description = "The sweep.", body = Sweep))
+)]
+pub async fn get(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    JobId(id): JobId,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    let sweep = service.jobs.find(&caller, Task::Sweep, id).await?;
+    tag::json(&headers, sweep.status.is_ended(), &Sweep::try_from(sweep)?)
+}
+
+#[derive(Debug, Deserialize, utoipa::IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub struct RowParameters {
+    /// Only rows past this place: `next_after` of the page before.
+    after: Option<u64>,
+    /// Rows at most.
+    #[param(minimum = 1, maximum = 1_000, default = 1_000)]
+    limit: Option<u32>,
+}
+
+impl Taken for RowParameters {
+    const TAKEN: &'static [(&'static str, &'static str)] =
+        &[("after", "the place of a row, 0 or more,"), ("limit", "a whole number from 1 to 1000")];
+}
+
+/// Runs that have ended so far, in the order in which they did.
+#[utoipa::path(
+    get, path = "/v1/sweeps/{id}/rows", tag = document::SWEEPS, operation_id = "list_sweep_rows",
+    params(("id" = Uuid, Path, description = "The sweep's id."), RowParameters),
+    responses((status = 200, description = "A page of rows, empty when there are no more for now.", body = SweepRows))
+)]
+pub async fn rows(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    JobId(id): JobId,
+    Parameters(parameters): Parameters<RowParameters>,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    let after = index("after", parameters.after)?;
+    let rows = bounded("limit", parameters.limit, ROWS, ROWS)?;
+    let is_finished = service.jobs.find(&caller, Task::Sweep, id).await?.status.is_ended();
+    let lines = service.jobs.store().increments(id, after, Page { rows, bytes: PAGE_BYTES }).await?;
+    let next_after = lines.last().map(|line| line.index).or(after);
+    let rows = lines.into_iter().map(|line| RawValue::from_string(line.body)).collect::<Result<_, _>>()?;
+    tag::json(&headers, is_finished, &SweepRows { rows, next_after })
+}
+
+/// Follow a sweep: its runs as they end, then its own end.
+///
+/// Server-sent events: `row` events, one a run, whose id is the place in the order of ending; then one `end` event with the
+/// sweep. `Last-Event-ID` and a service that goes down are as for a job's stream.
+///
+/// With `Accept: application/x-ndjson`: one run a line, and a last line with the sweep, which has no `run`.
+#[utoipa::path(
+    get, path = "/v1/sweeps/{id}/stream", tag = document::SWEEPS, operation_id = "stream_sweep",
+    params(
+        ("id" = Uuid, Path, description = "The sweep's id."),
+        ("Last-Event-ID" = Option<u64>, Header, description = "Id of the last row received.")
+    ),
+    responses((status = 200, description = "Runs in the order in which they end.", content(
+        (ServerEvent = "text/event-stream"),
+        (Row = "application/x-ndjson")
+    )))
+)]
+pub async fn stream(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    JobId(id): JobId,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    super::stream::answer(service, &caller, Task::Sweep, id, &headers).await
+}
+
+/// Cancel the runs of a sweep that have not ended; what was found is kept. An ended sweep stays as it is.
+#[utoipa::path(
+    post, path = "/v1/sweeps/{id}/cancel", tag = document::SWEEPS, operation_id = "cancel_sweep",
+    params(("id" = Uuid, Path, description = "The sweep's id.")),
+    responses((status = 202, description = "The sweep; runs at work end shortly.", body = Sweep))
+)]
+pub async fn cancel(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    JobId(id): JobId,
+) -> Result<(StatusCode, Json<Sweep>), Problem> {
+    let sweep = service.jobs.cancel(&caller, Task::Sweep, id).await?;
+    Ok((StatusCode::ACCEPTED, Json(sweep.try_into()?)))
+}
+
+/// Stop a sweep, and drop it and its jobs.
+#[utoipa::path(
+    delete, path = "/v1/sweeps/{id}", tag = document::SWEEPS, operation_id = "delete_sweep",
+    params(("id" = Uuid, Path, description = "The sweep's id.")),
+    responses((status = 204, description = "The sweep is gone."))
+)]
+pub async fn delete(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    JobId(id): JobId,
+) -> Result<StatusCode, Problem> {
+    service.jobs.delete(&caller, Task::Sweep, id).await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// The runs that have ended, as CSV.
+#[utoipa::path(
+    get, path = "/v1/sweeps/{id}/table.csv", tag = document::SWEEPS, operation_id = "get_sweep_table_csv",
+    params(("id" = Uuid, Path, description = "The sweep's id.")),
+    responses((status = 200, description = "The table; one line a run.", body = String, content_type = "text/csv"))
+)]
+pub async fn table_csv(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    JobId(id): JobId,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    let own = [
+        (header::CONTENT_TYPE, "text/csv; charset=utf-8".to_owned()),
+        (header::CONTENT_DISPOSITION, format!("attachment; filename=\"sweep-{id}.csv\"")),
+    ];
+    let (found, is_finished) = found(&service, &caller, id).await?;
+    tag::bytes(&headers, is_finished, own, found.csv()?)
+}
+
+/// The runs that have ended, as columns of text.
+#[utoipa::path(
+    get, path = "/v1/sweeps/{id}/table.txt", tag = document::SWEEPS, operation_id = "get_sweep_table_txt",
+    params(("id" = Uuid, Path, description = "The sweep's id.")),
+    responses((status = 200, description = "The table, for a reader.", body = String, content_type = "text/plain"))
+)]
+pub async fn table_txt(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    JobId(id): JobId,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    let (found, is_finished) = found(&service, &caller, id).await?;
+    tag::bytes(&headers, is_finished, [(header::CONTENT_TYPE, "text/plain; charset=utf-8")], found.text()?)
+}
+
+/// The first limit load against the first parameter, one line for each set of values of the others.
+#[utoipa::path(
+    get, path = "/v1/sweeps/{id}/picture.svg", tag = document::SWEEPS, operation_id = "get_sweep_picture",
+    params(("id" = Uuid, Path, description = "The sweep's id.")),
+    responses((status = 200, description = "The picture.", body = String, content_type = "image/svg+xml"))
+)]
+pub async fn picture(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    JobId(id): JobId,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    let (found, is_finished) = found(&service, &caller, id).await?;
+    match picture::sweep::svg(&found) {
+        Ok(svg) => tag::bytes(&headers, is_finished, [(header::CONTENT_TYPE, "image/svg+xml")], svg),
+        Err(PlotError::Drawing(error)) => {
+            tracing::error!(%error, sweep = %id, "a picture cannot be drawn");
+            Err(Problem::new(Kind::Internal, "the log has more under this answer's x-request-id"))
+        }
+        Err(PlotError::NoErrors | PlotError::Empty | PlotError::NoLimitLoads) => {
+            Err(Problem::not_found(format_args!("picture of sweep {id}: no run of it has a limit point yet")))
+        }
+    }
+}
+
+/// What a sweep has found so far, and whether that is all.
+async fn found(service: &Service, caller: &Caller, id: Uuid) -> Result<(Found, bool), Problem> {
+    let sweep = service.jobs.find(caller, Task::Sweep, id).await?;
+    Ok((service.jobs.sweep_so_far(&sweep).await?, sweep.status.is_ended()))
+}
