@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 command -v curl > /dev/null || { apt-get update -q && apt-get install -qy curl; }
 
 work=$(mktemp -d)
-trap 'kill %1 2> /dev/null || true; rm -rf "$work"; rm -f path.ndjson path.svg path.csv *-study.svg study.csv arcslip.db arcslip.db-*' EXIT
+trap 'kill %1 2> /dev/null || true; rm -rf "$work"; rm -f path.ndjson path.svg path.csv *-study.svg study.csv *-sweep.svg sweep.csv arcslip.db arcslip.db-*' EXIT
 
 # The fenced blocks of the README in order: language on the first line of each file.
 awk -v folder="$work" '/^```/ { if (inside) { inside = 0; close(file) } else { inside = 1; count++;
@@ -49,6 +49,13 @@ while read -r command; do
   bash -c "$command" > "$work/out" 2> "$work/err" || { cat "$work/out" "$work/err"; echo "failed: $command"; exit 1; }
 done < <(tail -n +2 "$(block 'study one-bar-truss')")
 test -s one-bar-truss-study.svg && test -s capstan-study.svg && test -s study.csv
+
+# The sweeps' table and picture are made, and the picture is the one shown.
+while read -r command; do
+  bash -c "$command" > "$work/out" 2> "$work/err" || { cat "$work/out" "$work/err"; echo "failed: $command"; exit 1; }
+done < <(tail -n +2 "$(block 'sweep arch-type-truss')")
+cmp arch-type-truss-sweep.svg src/scenes/pictures/arch-type-truss-sweep.svg
+test "$(wc -l < sweep.csv)" = 7
 
 # The model in the README is one.
 tail -n +2 "$(block '"dimension": 2')" > "$work/model.json"
