@@ -13,7 +13,7 @@
 //!
 //! `metrics` counts and times what `jobs` and `http` do, and knows neither. `linear_algebra` stands below all of them, [`measure`] beside the solver that it judges ([`judged`] brings both
 //! together), [`scenes`] holds the built-in models with their exact solutions, [`studies`] sets the errors of paths against
-//! their times. Everything up to [`judged`], and these, builds without the `server` feature and knows neither HTTP nor SQL.
+//! their times, [`sweeps`] limit loads against what is varied. Everything up to [`judged`], and these, builds without the `server` feature and knows neither HTTP nor SQL.
 //!
 //! ## Notation
 //!
@@ -37,10 +37,12 @@ pub mod measure;
 pub mod model;
 pub mod mpec;
 pub mod output;
+pub mod panics;
 pub mod path;
 pub mod scenes;
 pub mod structure;
 pub mod studies;
+pub mod sweeps;
 pub mod verify;
 
 #[cfg(feature = "server")]

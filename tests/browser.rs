@@ -55,9 +55,7 @@ async fn a_scene_is_run_and_its_limit_points_are_drawn_and_named() {
     browser.page.goto(&address).await.expect("a page");
     browser.until(&format!("{NAMED}?.x.length === 2")).await;
     browser.until("document.querySelector('#structure-plot .main-svg') !== null").await;
-    browser.is_content().await;
-    assert!(browser.asked_nobody_but(&service.url).await > 10);
-    browser.close().await;
+    browser.close(&service.url, &[]).await;
 }
 
 #[tokio::test]
@@ -71,16 +69,15 @@ async fn a_broken_model_is_refused_at_its_line() {
     broken["model"]["contacts"][0]["node"] = json!("top");
     let text = serde_json::to_string_pretty(&broken).expect("JSON");
     let line = text.lines().position(|line| line.contains("\"top\"")).expect("it is there") + 1;
-    let put = "const place = document.getElementById('request'); place.value = arguments[0]; \
-               place.dispatchEvent(new Event('input'));";
-    browser.page.execute(put, vec![json!(text)]).await.expect("it runs");
+    browser.put("#request", &text).await;
     let told = browser.until("document.querySelector('#verdict .mistakes')?.textContent").await;
     let told = told.as_str().expect("text");
     assert!(told.contains(&format!("Line {line} ")) && told.contains("`top`") && told.contains("`tip`"), "{told}");
     assert_eq!(browser.ask("document.getElementById('queue').disabled").await, true);
-    browser.page.execute(put, vec![json!("{\n  \"model\": {,}\n}")]).await.expect("it runs");
+    browser.put("#request", "{\n  \"model\": {,}\n}").await;
     browser.until("document.querySelector('#verdict .mistakes')?.textContent.includes('Line 2')").await;
-    browser.close().await;
+    // The browser itself tells of every answer of that kind.
+    browser.close(&service.url, &["status of 422", "status of 400"]).await;
 }
 
 #[tokio::test]
@@ -100,8 +97,7 @@ async fn another_direction_is_followed_and_drawn_beside_the_path() {
     assert_eq!(branch["jobs"].as_array().map(Vec::len), Some(1));
     let begins = browser.ask("(({data: [line, , branch]}) => [line.y[line.customdata.indexOf(7)], branch.y[0]])(document.getElementById('path-plot'))").await;
     assert_eq!(begins[0], begins[1], "it begins where it leaves the other");
-    browser.is_content().await;
-    browser.close().await;
+    browser.close(&service.url, &[]).await;
 }
 
 /// The program on that port.
@@ -126,7 +122,7 @@ async fn a_path_goes_on_growing_without_a_gap_after_a_restart() {
     request["analysis"]["record"] = json!({"every": 200, "directions": false});
     let id = process::submit(&client, &url, "/v1/jobs", &request).await;
     browser.page.goto(&format!("{url}/?jobs={id}")).await.expect("a page");
-    browser.until("document.getElementById('path-plot').data?.[0].x.length > 20").await;
+    browser.until("document.getElementById('path-plot').data?.[0]?.x.length > 20").await;
     service.terminated().await;
     browser.until("document.getElementById('connection').textContent.startsWith('Disconnected')").await;
     let before = browser.ask("document.getElementById('path-plot').data[0].x.length").await;
@@ -140,5 +136,5 @@ async fn a_path_goes_on_growing_without_a_gap_after_a_restart() {
     let stored: Vec<f64> = indices(lines.iter().map(String::as_str)).into_iter().map(|index| index as f64).collect();
     assert!(before.as_u64().is_some_and(|before| before < stored.len() as u64), "it was cut: {before}");
     assert!(drawn == stored, "without gap or repeat: {} of {}", drawn.len(), stored.len());
-    browser.close().await;
+    browser.close(&url, &["net::ERR_"]).await;
 }

@@ -105,7 +105,33 @@ async fn a_copy_that_is_broken_off_is_none() {
     assert!(made.status.success(), "{made:?}");
     assert!(whole(&copy).await);
     assert_eq!(std::fs::metadata(&copy).expect("a file").permissions().mode() & 0o777, 0o600);
-    assert!(!folder.path().join("copy.db.partial").exists());
+}
+
+/// Of two that are made at a time under one name one is the copy, and whole, and the other one is told so.
+#[tokio::test]
+async fn copies_that_are_made_at_a_time_do_not_disturb_each_other() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // A name that an unfinished copy could have.
+    let (database, copy) = (folder.path().join("copy.db.partial"), folder.path().join("copy.db"));
+    let client = client();
+    let server = Process::serve(&database, &[]);
+    let id = submit(&client, &server.url, "/v1/jobs", &in_short_steps("one-bar-truss", 5000, 5000)).await;
+    until(&client, &server.url, &format!("/v1/jobs/{id}"), has_ended).await;
+    for milliseconds in [0, 2, 5, 9, 14, 20] {
+        let begin = || {
+            let mut command = Command::new(env!("CARGO_BIN_EXE_arcslip"));
+            command.arg("backup").arg("--database").arg(&database).arg(&copy).spawn().expect("it runs")
+        };
+        let mut first = begin();
+        tokio::time::sleep(Duration::from_millis(milliseconds)).await;
+        let mut second = begin();
+        let ends = [first.wait().expect("its end").success(), second.wait().expect("its end").success()];
+        assert_eq!(ends.iter().filter(|end| **end).count(), 1, "{milliseconds} ms: {ends:?}");
+        assert!(whole(&copy).await, "{milliseconds} ms");
+        std::fs::remove_file(&copy).expect("removed");
+    }
+    assert!(database.exists());
+    assert_eq!(server.terminated().await.0, Some(0));
 }
 
 async fn whole(copy: &Path) -> bool {

@@ -10,6 +10,8 @@ use common::service::request;
 use common::solver::MadeUp;
 use reqwest::{Method, RequestBuilder};
 use serde_json::{Value, json};
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::TcpStream;
 
 /// Sends, and checks what holds for every error.
 async fn problem(ask: RequestBuilder, status: u16, kind: &str) -> Value {
@@ -38,6 +40,25 @@ async fn problem(ask: RequestBuilder, status: u16, kind: &str) -> Value {
     assert_eq!(problem["status"], status);
     assert!(problem["title"].is_string() && problem["detail"].is_string(), "{problem}");
     problem
+}
+
+#[tokio::test]
+async fn headers_say_one_thing_or_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let server = TestServer::start(&folder.path().join("jobs.db"), MadeUp::default()).await;
+    let id = server.submit(&request("one", 3)).await;
+    let post = || server.ask(Method::POST, "/v1/jobs").json(&request("two", 3));
+    let twice = post().header("idempotency-key", "a").header("idempotency-key", "b");
+    assert!(problem(twice, 400, "invalid-parameter").await["detail"].as_str().expect("a text").contains("twice"));
+    problem(post().header("idempotency-key", "a\tb"), 400, "invalid-parameter").await;
+    problem(post().header("content-encoding", "gzip"), 415, "unsupported-media-type").await;
+    let stream = server.ask(Method::GET, &format!("/v1/jobs/{id}/stream"));
+    problem(stream.header("last-event-id", "1").header("last-event-id", "2"), 400, "invalid-parameter").await;
+    let mut bare = TcpStream::connect(server.address()).await.expect("a connection");
+    bare.write_all(b"GET /healthz HTTP/1.1\r\nConnection: close\r\n\r\n").await.expect("sent");
+    let mut answer = String::new();
+    bare.read_to_string(&mut answer).await.expect("an answer");
+    assert!(answer.starts_with("HTTP/1.1 400 ") && answer.contains("one header Host"), "{answer}");
 }
 
 /// What somebody meant by a parameter that there is not would not be done.

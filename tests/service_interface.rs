@@ -61,7 +61,7 @@ async fn pages_probes_and_request_ids() {
     let server = TestServer::start(&folder.path().join("jobs.db"), MadeUp::default()).await;
     assert_eq!(server.get_json("/healthz").await["status"], "alive");
     assert_eq!(server.get_json("/readyz").await["workers"], 2);
-    assert!(server.get("/").await.text().await.expect("a body").contains("/v1/scenes"));
+    assert!(server.get("/").await.text().await.expect("a body").contains("/assets/main.js"));
     let docs = server.get("/docs").await;
     assert_eq!(docs.status(), StatusCode::OK);
     let docs = docs.text().await.expect("a body");

@@ -77,7 +77,10 @@ async fn a_job_that_would_follow_another_waits_for_room_too() {
     let too_many = json!({"increment": 7, "direction": 0, "max_increments": 501});
     let problem = refusal(server.post(&place, &too_many).await, 422, "not-followable").await;
     assert_eq!(problem["errors"][0]["pointer"], "/max_increments");
-    assert_eq!(server.post(&place, &body).await.status(), 202);
+    let queued = server.post(&place, &body).await;
+    assert_eq!(queued.status(), 202);
+    let queued: Value = queued.json().await.expect("a job");
+    assert_eq!(queued["progress"]["max_increments"], 500, "no more than this service takes");
     refusal(server.post(&place, &body).await, 429, "queue-full").await;
 }
 

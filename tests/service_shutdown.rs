@@ -3,6 +3,7 @@
 
 mod common;
 
+use arcslip::scenes::lattice::LatticeArch;
 use common::process::{Process, client, has_ended, lines, solved, submit, until};
 use common::reader::{Format, Reader, Said};
 use common::service::{in_short_steps, indices, without_elapsed};
@@ -19,6 +20,30 @@ async fn read(mut reader: Reader) -> (Vec<u64>, Said) {
             Said::Increment(index, _) => indices.push(index),
             last => return (indices, last),
         }
+    }
+}
+
+/// Models that are being checked are not waited for, nor do those pile up whose clients have gone.
+#[tokio::test(flavor = "multi_thread")]
+async fn checks_under_way_do_not_keep_the_service() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let process = Process::serve(&folder.path().join("jobs.db"), &[]);
+    let large = LatticeArch::of_unknowns(60_000).request().expect("a request");
+    let body = serde_json::to_string(&large).expect("JSON");
+    let client = client();
+    let asked: Vec<_> = (0..24)
+        .map(|_| {
+            let ask = client.post(format!("{}/v1/jobs?validate=true", process.url)).body(body.clone());
+            tokio::spawn(ask.header("content-type", "application/json").send())
+        })
+        .collect();
+    tokio::time::sleep(Duration::from_millis(500)).await;
+    let (status, took) = process.terminated().await;
+    assert_eq!(status, Some(0));
+    assert!(took < BOUND, "{took:?}");
+    for one in asked {
+        // Answered or not.
+        let _ = one.await.expect("no panic");
     }
 }
 

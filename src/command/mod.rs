@@ -16,6 +16,7 @@ mod service;
 mod settings;
 mod solve;
 mod study;
+mod sweep;
 mod token;
 mod verify;
 mod work;
@@ -42,6 +43,7 @@ enum Command {
     Work(work::Arguments),
     Solve(solve::Arguments),
     Study(study::Arguments),
+    Sweep(sweep::Arguments),
     Check(check::Arguments),
     Scenes(scenes::Arguments),
     Verify(verify::Arguments),
@@ -82,6 +84,7 @@ fn run_command() -> Outcome {
         Command::Work(arguments) => work::run(&arguments, &settings::in_force(Arguments::command(), &matches)),
         Command::Solve(arguments) => solve::run(&arguments),
         Command::Study(arguments) => study::run(&arguments),
+        Command::Sweep(arguments) => sweep::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Scenes(arguments) => scenes::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),

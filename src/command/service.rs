@@ -58,7 +58,8 @@ impl Arguments {
     }
 
     pub async fn open(&self) -> Result<Arc<dyn Store>, Failure> {
-        store::open(self.database.clone()).await.map_err(Failure::other)
+        let database = &self.database;
+        store::open(database.clone()).await.map_err(|error| Failure::Other(format!("--database {database}: {error}")))
     }
 
     /// Begins the log with every setting in force.
@@ -82,7 +83,11 @@ impl Arguments {
 
 /// Runs a service until it has ended.
 pub fn run<T>(service: impl Future<Output = Result<T, Failure>>) -> Result<T, Failure> {
-    tokio::runtime::Builder::new_multi_thread().enable_all().build().map_err(Failure::other)?.block_on(service)
+    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build().map_err(Failure::other)?;
+    let outcome = runtime.block_on(service);
+    // Models that are being checked for clients who have gone are not waited for.
+    runtime.shutdown_background();
+    outcome
 }
 
 /// What asks a service to end.

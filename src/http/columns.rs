@@ -22,6 +22,8 @@ const ROWS: u32 = 10_000;
 const COLUMNS: usize = 32;
 /// Read from the store at a time.
 const PART: usize = 1 << 20;
+/// An answer ends early when it has so many bytes.
+const LARGEST: usize = 16 << 20;
 
 #[derive(Debug, Deserialize, utoipa::IntoParams)]
 #[serde(deny_unknown_fields)]
@@ -33,7 +35,7 @@ pub struct ColumnParameters {
     of: Option<String>,
     /// Only increments with a larger index: `next_after` of the page before.
     after: Option<u64>,
-    /// Increments at most.
+    /// Increments at most; an answer of large members may hold fewer and not be the last.
     #[param(minimum = 1, maximum = 10_000, default = 10_000)]
     limit: Option<u32>,
 }
@@ -58,6 +60,9 @@ pub struct Columns {
     pub points: Vec<PointAt>,
     /// Pass it as `after` for the next page: the last index of this one, or what was asked for when it is empty.
     pub next_after: Option<u64>,
+    /// Of what is held for the columns.
+    #[serde(skip)]
+    bytes: usize,
 }
 
 /// A point that is not `regular`, with its increment's index.
@@ -88,7 +93,7 @@ pub async fn columns(
     let is_finished = service.jobs.find(&caller, Task::Path, id).await?.status.is_ended();
     let names = members.iter().map(|member| (member.name.to_owned(), Vec::new()));
     let mut found = Columns { columns: names.collect(), ..Columns::default() };
-    while left > 0 {
+    while left > 0 && found.bytes < LARGEST {
         let lines = service.jobs.store().increments(id, after, Page { rows: left, bytes: PART }).await?;
         let Some(last) = lines.last() else { break };
         after = Some(last.index);
@@ -110,11 +115,11 @@ struct Member<'a> {
 fn members(of: &str) -> Result<Vec<Member<'_>>, Problem> {
     let mut members: Vec<Member> = Vec::new();
     for name in of.split(',').filter(|name| !name.is_empty()) {
-        if members.iter().any(|known| known.name == name) {
+        let steps: Vec<String> = name.strip_prefix('/').unwrap_or(name).split('/').map(unescaped).collect();
+        if members.iter().any(|known| known.steps == steps) {
             return Err(Problem::parameter("of", format_args!("`{name}` stands twice; once would do")));
         }
-        let steps = name.strip_prefix('/').unwrap_or(name).split('/');
-        members.push(Member { name, steps: steps.map(unescaped).collect() });
+        members.push(Member { name, steps });
     }
     match members.len() {
         found if found > COLUMNS => {
@@ -141,7 +146,9 @@ impl Columns {
                 let Some(within) = value else { break };
                 value = Step(step).deserialize(&mut serde_json::Deserializer::from_str(within.get()))?;
             }
-            column.push(value.filter(|value| value.get() != "null").map(ToOwned::to_owned));
+            let value = value.filter(|value| value.get() != "null");
+            self.bytes += value.map_or(0, |value| value.get().len()) + size_of::<Box<RawValue>>();
+            column.push(value.map(ToOwned::to_owned));
         }
         if let Some((_, point)) = top.iter().find(|(name, _)| name == "point") {
             #[derive(Deserialize)]
@@ -274,7 +281,7 @@ mod tests {
 
     #[test]
     fn too_many_names_and_names_that_stand_twice_are_refused() {
-        assert!(members("a,b,a").is_err());
+        assert!(members("a,b,a").is_err() && members("a/b,/a/b").is_err());
         let many: Vec<String> = (0..=COLUMNS).map(|number| format!("m{number}")).collect();
         assert!(members(&many.join(",")).is_err());
         assert_eq!(members(&many[1..].join(",")).unwrap_or_default().len(), COLUMNS);

@@ -2,17 +2,17 @@
 
 use super::Service;
 use super::problem::{Kind, Problem};
+use crate::jobs::Posted;
 use crate::model::names::{quoted, suggestion};
 use axum::body::{Bytes, HttpBody};
 use axum::extract::rejection::BytesRejection;
 use axum::extract::{FromRequest, FromRequestParts, Path, Query, Request};
 use axum::http::request::Parts;
-use axum::http::{HeaderMap, StatusCode, Uri, header};
+use axum::http::{HeaderMap, HeaderValue, StatusCode, Uri, header};
 use axum::response::IntoResponse;
 use serde::de::DeserializeOwned;
 use std::sync::Arc;
 use std::time::Duration;
-use tokio::sync::OwnedSemaphorePermit;
 use tokio::time::timeout;
 use uuid::Uuid;
 
@@ -26,8 +26,8 @@ const LONGEST_KEY: usize = 255;
 /// Of an increment or row: the largest that can be stored.
 const LARGEST_INDEX: u64 = i64::MAX as u64;
 
-/// A JSON body as it came, and its room among those that are held; who reads it says what is wrong with it.
-pub struct JsonText(pub Vec<u8>, pub OwnedSemaphorePermit);
+/// A JSON body as it came, with its room among those that are held; who reads it says what is wrong with it.
+pub struct JsonText(pub Posted);
 
 impl FromRequest<Service> for JsonText {
     type Rejection = Problem;
@@ -35,6 +35,9 @@ impl FromRequest<Service> for JsonText {
     async fn from_request(request: Request, state: &Service) -> Result<Self, Problem> {
         if !is_json(request.headers()) {
             return Err(Problem::new(Kind::UnsupportedMediaType, "send the header Content-Type: application/json"));
+        }
+        if request.headers().get(header::CONTENT_ENCODING).is_some_and(|coding| coding != "identity") {
+            return Err(Problem::new(Kind::UnsupportedMediaType, "send the body as it is, without a Content-Encoding"));
         }
         let most = state.jobs.settings.limits.body_bytes;
         let told = request.body().size_hint().exact().and_then(|bytes| usize::try_from(bytes).ok());
@@ -45,7 +48,7 @@ impl FromRequest<Service> for JsonText {
             let room = u32::try_from(bytes.div_ceil(BODY_UNIT)).unwrap_or(u32::MAX).min(BODIES);
             let room = Arc::clone(&state.bodies).acquire_many_owned(room).await.map_err(|_| gone_down())?;
             let body = Bytes::from_request(request, state).await.map_err(|rejection| refused_body(rejection, most))?;
-            Ok(Self(body.into(), room))
+            Ok(Self(Posted { text: body.into(), room: Some(Box::new(room)) }))
         });
         taken.await.map_err(late)?
     }
@@ -124,17 +127,27 @@ fn refused_query<T: Taken>(query: &str) -> Problem {
     Problem::new(Kind::InvalidParameter, "the query cannot be read; `name=value` joined by `&` is expected")
 }
 
+/// A header that says one thing.
+fn only<'a>(name: &str, headers: &'a HeaderMap) -> Result<Option<&'a HeaderValue>, Problem> {
+    let mut all = headers.get_all(name).iter();
+    match (all.next(), all.next()) {
+        (_, Some(_)) => Err(Problem::parameter(name, "it stands twice; once would do")),
+        (value, None) => Ok(value),
+    }
+}
+
 /// The `Idempotency-Key` header, if there is one.
 pub fn idempotency_key(headers: &HeaderMap) -> Result<Option<String>, Problem> {
-    let Some(value) = headers.get("idempotency-key") else { return Ok(None) };
+    let Some(value) = only("Idempotency-Key", headers)? else { return Ok(None) };
     let refuse = || Problem::parameter("Idempotency-Key", "1 to 255 printable ASCII characters");
     let key = value.to_str().map_err(|_| refuse())?;
-    if (1..=LONGEST_KEY).contains(&key.len()) { Ok(Some(key.to_owned())) } else { Err(refuse()) }
+    let is_printable = key.bytes().all(|byte| (b' '..=b'~').contains(&byte));
+    if is_printable && (1..=LONGEST_KEY).contains(&key.len()) { Ok(Some(key.to_owned())) } else { Err(refuse()) }
 }
 
 /// The `Last-Event-ID` header: the index of the last event the client has; `event` is its name.
 pub fn last_event_id(event: &str, headers: &HeaderMap) -> Result<Option<u64>, Problem> {
-    let Some(value) = headers.get("last-event-id") else { return Ok(None) };
+    let Some(value) = only("Last-Event-ID", headers)? else { return Ok(None) };
     let refuse = || {
         Problem::parameter(
             "Last-Event-ID",

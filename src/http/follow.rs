@@ -36,7 +36,7 @@ pub async fn follow(
     Extension(caller): Extension<Caller>,
     JobId(id): JobId,
     headers: HeaderMap,
-    JsonText(request, _room): JsonText,
+    JsonText(request): JsonText,
 ) -> Result<Response, Problem> {
     accepted::<Job>(service.jobs.follow(&caller, id, request, idempotency_key(&headers)?).await?, address)
 }

@@ -16,7 +16,7 @@ use serde_json::value::RawValue;
 const PAGE_DEFAULT: u32 = 1_000;
 const PAGE_LARGEST: u32 = 10_000;
 /// A page ends early when its increments are large.
-const PAGE_BYTES: usize = 8 << 20;
+const PAGE_BYTES: usize = 1 << 20;
 
 #[derive(Debug, Deserialize, utoipa::IntoParams)]
 #[serde(deny_unknown_fields)]

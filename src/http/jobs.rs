@@ -52,7 +52,7 @@ pub async fn submit(
     Extension(caller): Extension<Caller>,
     Parameters(parameters): Parameters<SubmitParameters>,
     headers: HeaderMap,
-    JsonText(request, _room): JsonText,
+    JsonText(request): JsonText,
 ) -> Result<Response, Problem> {
     let key = idempotency_key(&headers)?;
     if parameters.validate {

@@ -43,7 +43,7 @@ pub async fn submit(
     Extension(caller): Extension<Caller>,
     Parameters(parameters): Parameters<SubmitParameters>,
     headers: HeaderMap,
-    JsonText(request, _room): JsonText,
+    JsonText(request): JsonText,
 ) -> Result<Response, Problem> {
     let key = idempotency_key(&headers)?;
     if parameters.validate {
@@ -225,7 +225,7 @@ pub async fn picture(
             tracing::error!(%error, study = %id, "a picture cannot be drawn");
             Err(Problem::new(super::problem::Kind::Internal, "the log has more under this answer's x-request-id"))
         }
-        Err(PlotError::NoErrors | PlotError::Empty) => {
+        Err(PlotError::NoErrors | PlotError::Empty | PlotError::NoLimitLoads) => {
             Err(Problem::not_found(format_args!("picture of study {id}: no path of it has an error yet")))
         }
     }

@@ -127,9 +127,9 @@ pub struct Exploration {
 
 #[derive(Debug, Serialize, ToSchema)]
 pub struct Progress {
-    /// Increments stored so far.
+    /// Increments up to the last one that is stored, those not recorded among them.
     pub increments: u64,
-    /// Index of the last one; null before the first.
+    /// Index of the last one that is stored; null before the first.
     pub last_index: Option<u64>,
     /// What the request bounds them by.
     pub max_increments: u64,

@@ -55,7 +55,7 @@ impl Allowance {
     fn take(&mut self, gathered: &mut Vec<Sent>) -> bool {
         let fits = gathered.iter().position(|sent| match sent {
             Sent::Checkpoint(_) => false,
-            Sent::Line(line) => match self.bytes.checked_sub(line.bytes()) {
+            Sent::Line(line, _) => match self.bytes.checked_sub(line.bytes()) {
                 Some(left) => {
                     self.bytes = left;
                     false
@@ -172,7 +172,10 @@ fn batch(gathered: &mut Vec<Sent>) -> Batch {
     let mut batch = Batch::default();
     for sent in gathered.drain(..) {
         match sent {
-            Sent::Line(line) => batch.lines.push(line),
+            Sent::Line(line, limit) => {
+                batch.lines.push(line);
+                batch.first_limit = batch.first_limit.or(limit);
+            }
             Sent::Checkpoint(checkpoint) => batch.checkpoints.push(checkpoint),
         }
     }

@@ -1,12 +1,11 @@
 //! A new job along a direction that is listed at an increment of another.
 
 use super::submission::wrong_input;
-use super::{Caller, Jobs, JobsError, branches, queued};
+use super::{Caller, Jobs, JobsError, Limits, Posted, Solver, branches, queued};
 use crate::metrics::Write;
 use crate::model::{InputError, InputErrors, decode};
 use crate::path::Increment;
 use crate::store::{JobRecord, NewFollower, Page, Parent, Task};
-use std::sync::Arc;
 use uuid::Uuid;
 
 impl Jobs {
@@ -15,9 +14,10 @@ impl Jobs {
         &self,
         caller: &Caller,
         id: Uuid,
-        body: Vec<u8>,
+        posted: impl Into<Posted>,
         idempotency_key: Option<String>,
     ) -> Result<JobRecord, JobsError> {
+        let Posted { text: body, room } = posted.into();
         let asked = decode::follow(&body).map_err(|errors| wrong_input(&body, errors, JobsError::Follow))?;
         let limits = self.settings.limits;
         if let Some(past) = asked.max_increments.and_then(|most| limits.past_increments("/max_increments", most)) {
@@ -36,18 +36,19 @@ impl Jobs {
             ));
         };
         let text = self.store.request(id).await?.ok_or(JobsError::NoJob(id))?;
-        let solver = Arc::clone(&self.solver);
-        tokio::task::spawn_blocking(move || -> Result<(), JobsError> {
-            let request = decode::decode(text.as_bytes()).map_err(|errors| {
+        let posted = Posted { text: text.into_bytes(), room };
+        let check = move |solver: &dyn Solver, _: &Limits, text: Vec<u8>| {
+            let request = decode::decode(&text).map_err(|errors| {
                 refused("", format!("the job's model is no longer accepted, post it anew: {errors}"))
             })?;
             let beginning = branches::beginning(&parent, &origin).map_err(|error| {
                 refused("/increment", format!("what is stored there cannot be read, trace the path anew: {error}"))
             })?;
             solver.check_beginning(&request, beginning).map_err(JobsError::Follow)
-        })
-        .await??;
-        let max_increments = Some(asked.max_increments.unwrap_or(job.max_increments));
+        };
+        let ((), _room) = self.checked(posted, check).await?;
+        // The service may have taken more when the other one was queued.
+        let max_increments = Some(asked.max_increments.unwrap_or(job.max_increments.min(limits.increments)));
         // Nothing to be found here any more: the parent was deleted just now.
         let owner = caller.owner().map(str::to_owned);
         let follower = NewFollower { parent, owner, max_increments, idempotency_key, most_queued: limits.queued };
@@ -61,7 +62,7 @@ impl Jobs {
         let lines = self.store.increments(job.id, before, Page { rows: 1, bytes: 1 }).await?;
         let Some(line) = lines.first().filter(|line| line.index == increment) else {
             let stored = match job.last_index {
-                Some(last) => format!("increments 0 to {last} are stored"),
+                Some(last) => format!("it is not stored; those that are recorded go up to {last} so far"),
                 None => "no increment is stored yet".to_owned(),
             };
             return Err(refused("/increment", format!("found {increment}; {stored}")));

@@ -11,6 +11,7 @@ use crate::output::json_line;
 use crate::path::increment::Diagnostics;
 use crate::path::{Increment, StopReason};
 use crate::store::{Claim, Line};
+use crate::sweeps::LimitLoad;
 use std::ops::ControlFlow;
 use std::time::Instant;
 use tokio::sync::mpsc;
@@ -72,8 +73,7 @@ impl<'a> Given<'a> {
 
     /// Counts what a step took, and sends its increment on; where that is not recorded, a checkpoint now and then.
     pub fn take(&mut self, step: Step, place: &dyn Place) -> ControlFlow<()> {
-        let Some(judged) = step.given else { return self.put_down(place) };
-        let (time, totals) = (self.since.elapsed(), judged.increment.diagnostics);
+        let (time, totals) = (self.since.elapsed(), step.diagnostics);
         let before = self.counted.replace(totals).unwrap_or(totals);
         self.work.solved(Solved {
             time,
@@ -82,7 +82,10 @@ impl<'a> Given<'a> {
             qp_solves: totals.qp_solves.saturating_sub(before.qp_solves),
             mpec_solves: totals.mpec_solves.saturating_sub(before.mpec_solves),
         });
-        let flow = self.send(judged, place);
+        let flow = match step.given {
+            Some(judged) => self.send(judged, place),
+            None => self.put_down(place),
+        };
         self.since = Instant::now();
         flow
     }
@@ -100,7 +103,7 @@ impl<'a> Given<'a> {
             return ControlFlow::Continue(());
         }
         match self.line(&judged, place) {
-            Ok(line) => self.pass(Sent::Line(line))?,
+            Ok((line, limit)) => self.pass(Sent::Line(line, limit))?,
             Err(error) => return self.unwritable(&error),
         }
         self.put_down(place)
@@ -141,7 +144,7 @@ impl<'a> Given<'a> {
         increment.index == last.index && self.last.as_ref().is_none_or(|last| are_same(&last.increment, increment))
     }
 
-    fn line(&mut self, judged: &JudgedIncrement, place: &dyn Place) -> serde_json::Result<Line> {
+    fn line(&mut self, judged: &JudgedIncrement, place: &dyn Place) -> serde_json::Result<(Line, Option<String>)> {
         let body = json_line(judged)?;
         let branch = if judged.increment.directions.is_some() {
             let alternatives = if self.claim.explores { place.alternatives().to_vec() } else { Vec::new() };
@@ -149,7 +152,8 @@ impl<'a> Given<'a> {
         } else {
             None
         };
-        Ok(Line { index: judged.increment.index, body, branch })
+        let limit = LimitLoad::at(&judged.increment).map(|limit| serde_json::to_string(&limit)).transpose()?;
+        Ok((Line { index: judged.increment.index, body, branch }, limit))
     }
 
     /// How the solve ended, with the report that the path has.

@@ -111,7 +111,7 @@ impl fmt::Display for Limits {
             ("contacts", self.contacts.to_string(), refused),
             ("`max_increments`", self.increments.to_string(), refused),
             ("jobs and studies that wait", self.queued.to_string(), "refused, 429 with `Retry-After`"),
-            ("seconds that a job runs", self.wall_time.as_secs().to_string(), "`stopped`, `time_limit`"),
+            ("seconds that a job runs", self.wall_time.as_secs_f64().to_string(), "`stopped`, `time_limit`"),
             ("bytes stored of a job", self.stored_bytes.to_string(), "`stopped`, `storage_limit`"),
         ];
         rows.into_iter().try_for_each(|(limit, value, past)| writeln!(f, "| {limit} | {value} | {past} |"))

@@ -35,7 +35,9 @@ use crate::model::InputErrors;
 use crate::path::Plan;
 use crate::store::{JobRecord, NewJob, Store, StoreError, Submitted, Task};
 use running::Running;
+use std::num::NonZeroUsize;
 use std::sync::Arc;
+use tokio::sync::Semaphore;
 use uuid::Uuid;
 
 pub use caller::Caller;
@@ -43,6 +45,7 @@ pub use crew::Crew;
 pub use limits::Limits;
 pub use settings::Settings;
 pub use solver::{PathSolver, Solver};
+pub use submission::Posted;
 
 /// Why a request was not carried out.
 #[derive(Debug, thiserror::Error)]
@@ -77,11 +80,15 @@ pub struct Jobs {
     pub(crate) settings: Settings,
     pub(crate) running: Running,
     pub(crate) metrics: Arc<Metrics>,
+    /// Requests that are read and checked at a time.
+    checks: Arc<Semaphore>,
 }
 
 impl Jobs {
     pub fn new(store: Arc<dyn Store>, solver: Arc<dyn Solver>, settings: Settings) -> Self {
-        Self { store, solver, settings, running: Running::default(), metrics: Arc::default() }
+        let processors = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+        let checks = Arc::new(Semaphore::new(processors));
+        Self { store, solver, settings, running: Running::default(), metrics: Arc::default(), checks }
     }
 
     pub fn store(&self) -> &dyn Store {
@@ -93,17 +100,17 @@ impl Jobs {
     }
 
     /// The plan of a request; nothing is queued.
-    pub async fn validate(&self, request: Vec<u8>) -> Result<Plan, JobsError> {
-        Ok(self.prepare(request).await?.plan)
+    pub async fn validate(&self, request: impl Into<Posted>) -> Result<Plan, JobsError> {
+        Ok(self.checked(request.into(), submission::prepare).await?.0.plan)
     }
 
     pub async fn submit(
         &self,
         caller: &Caller,
-        request: Vec<u8>,
+        request: impl Into<Posted>,
         idempotency_key: Option<String>,
     ) -> Result<JobRecord, JobsError> {
-        let prepared = self.prepare(request).await?;
+        let (prepared, _room) = self.checked(request.into(), submission::prepare).await?;
         let job = NewJob {
             task: Task::Path,
             owner: caller.owner().map(str::to_owned),
@@ -139,12 +146,6 @@ impl Jobs {
         let deleted = self.store.delete(id).await?;
         self.running.cancel(id);
         if deleted { Ok(()) } else { Err(absent(task, id)) }
-    }
-
-    /// Reading and checking a large model takes time that the runtime's threads do not have.
-    async fn prepare(&self, request: Vec<u8>) -> Result<submission::Prepared, JobsError> {
-        let (solver, limits) = (Arc::clone(&self.solver), self.settings.limits);
-        tokio::task::spawn_blocking(move || submission::prepare(solver.as_ref(), &limits, request)).await?
     }
 }
 

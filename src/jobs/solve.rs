@@ -10,6 +10,7 @@ use super::{Jobs, Solver, branches};
 use crate::cancel::CancelFlag;
 use crate::judged::JudgedReport;
 use crate::model::{InputErrors, decode};
+use crate::panics;
 use crate::store::{Checkpoint, Claim, Line, Task};
 use crate::studies::{self, Run};
 use std::ops::ControlFlow;
@@ -52,14 +53,15 @@ pub enum SolveEnd {
 /// What leaves a solve, in the order in which it is to be stored.
 #[derive(Debug)]
 pub enum Sent {
-    Line(Line),
+    /// An increment, or a row of a study, and, of a limit point, the load there, as JSON.
+    Line(Line, Option<String>),
     Checkpoint(Checkpoint),
 }
 
 impl Sent {
     pub fn index(&self) -> u64 {
         match self {
-            Self::Line(line) => line.index,
+            Self::Line(line, _) => line.index,
             Self::Checkpoint(checkpoint) => checkpoint.index,
         }
     }
@@ -86,7 +88,7 @@ pub fn start(jobs: &Jobs, claim: &Claim, stored: Vec<Line>, cancel: CancelFlag) 
                 Task::Path => run(&jobs, &claim_of_thread, cancel, &sender),
                 Task::Study => study(jobs.solver.as_ref(), &claim_of_thread, &stored, &cancel, &sender),
             }))
-            .unwrap_or_else(|panic| SolveEnd::Panicked(panic_text(panic.as_ref())));
+            .unwrap_or_else(|panic| SolveEnd::Panicked(panics::text(panic.as_ref())));
             // Nobody waits for the end when the runtime is going down.
             let _ = end_sender.send(ended);
         },
@@ -152,7 +154,7 @@ fn study(
     };
     let mut unwritable = None;
     let reported = solver.study(&request, done, cancel, &mut |run| match serde_json::to_string(run) {
-        Ok(body) => match sender.blocking_send(Sent::Line(Line { index: run.index, body, branch: None })) {
+        Ok(body) => match sender.blocking_send(Sent::Line(Line { index: run.index, body, branch: None }, None)) {
             Ok(()) => ControlFlow::Continue(()),
             Err(_) => ControlFlow::Break(()),
         },
@@ -167,13 +169,5 @@ fn study(
         (None, Ok(None)) if cancel.is_cancelled() => SolveEnd::Cancelled,
         (None, Ok(None)) => SolveEnd::Silent,
         (None, Err(errors)) => SolveEnd::Refused(errors),
-    }
-}
-
-fn panic_text(panic: &(dyn std::any::Any + Send)) -> String {
-    match (panic.downcast_ref::<&str>(), panic.downcast_ref::<String>()) {
-        (Some(text), _) => (*text).to_owned(),
-        (None, Some(text)) => text.clone(),
-        (None, None) => "a panic without text".to_owned(),
     }
 }

@@ -1,13 +1,12 @@
 //! Studies as jobs: queued, run and resumed by the same workers as paths are.
 
 use super::submission::{not_text, wrong_input};
-use super::{Caller, Jobs, JobsError, Limits, Solver, queued};
+use super::{Caller, Jobs, JobsError, Limits, Posted, Solver, queued};
 use crate::metrics::Write;
 use crate::model::decode;
 use crate::store::{JobRecord, Line, NewJob, Page, Task};
 use crate::store::{Result as StoreResult, StoreError};
 use crate::studies::{Plan, Report, Run};
-use std::sync::Arc;
 use uuid::Uuid;
 
 const PAGE: Page = Page { rows: 1000, bytes: 4 << 20 };
@@ -21,17 +20,17 @@ struct Prepared {
 
 impl Jobs {
     /// The plan of a study; nothing is queued.
-    pub async fn validate_study(&self, request: Vec<u8>) -> Result<Plan, JobsError> {
-        Ok(self.prepare_study(request).await?.plan)
+    pub async fn validate_study(&self, request: impl Into<Posted>) -> Result<Plan, JobsError> {
+        Ok(self.checked(request.into(), prepare).await?.0.plan)
     }
 
     pub async fn submit_study(
         &self,
         caller: &Caller,
-        request: Vec<u8>,
+        request: impl Into<Posted>,
         idempotency_key: Option<String>,
     ) -> Result<JobRecord, JobsError> {
-        let Prepared { text, name, plan } = self.prepare_study(request).await?;
+        let (Prepared { text, name, plan }, _room) = self.checked(request.into(), prepare).await?;
         let job = NewJob {
             task: Task::Study,
             owner: caller.owner().map(str::to_owned),
@@ -46,11 +45,6 @@ impl Jobs {
             explore: None,
         };
         queued(self.metrics.work.timed(Write::Submit, self.store.submit(job)).await?)
-    }
-
-    async fn prepare_study(&self, request: Vec<u8>) -> Result<Prepared, JobsError> {
-        let (solver, limits) = (Arc::clone(&self.solver), self.settings.limits);
-        tokio::task::spawn_blocking(move || prepare(solver.as_ref(), &limits, request)).await?
     }
 
     /// What a study has found so far; `None` before the first path.

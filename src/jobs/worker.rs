@@ -6,7 +6,8 @@ use super::{Jobs, running};
 use crate::cancel::CancelFlag;
 use crate::judged::JudgedReport;
 use crate::metrics::Write;
-use crate::path::{Outcome, StopReason};
+use crate::output::columns::name_of;
+use crate::path::Outcome;
 use crate::store::{Claim, Ending, Lease, LeaseAnswer, Status, StoreError, Task};
 use crate::studies;
 use std::time::Duration;
@@ -223,13 +224,8 @@ fn reported(judged: &JudgedReport) -> serde_json::Result<Ending> {
     };
     Ok(Ending {
         status,
-        stop_reason: Some(reason_name(judged.report.stop_reason)?),
+        stop_reason: Some(name_of(&judged.report.stop_reason)?),
         report: Some(serde_json::to_string(judged)?),
         error: None,
     })
-}
-
-/// The reason as the contract spells it.
-fn reason_name(reason: StopReason) -> serde_json::Result<String> {
-    serde_json::from_value(serde_json::to_value(reason)?)
 }

@@ -9,7 +9,8 @@ use crate::cancel::CancelFlag;
 use crate::measure::Judge;
 use crate::model::JobRequest;
 use crate::model::request::Method;
-use crate::path::{Path, Scene, TracedPath};
+use crate::path::increment::Diagnostics;
+use crate::path::{Increment, Path, Scene, TracedPath};
 
 /// An iterator of judged increments, by whichever method the analysis names.
 pub struct JudgedPath<'a> {
@@ -32,6 +33,8 @@ pub struct JudgedPath<'a> {
 #[derive(Debug)]
 pub struct Step {
     pub index: u64,
+    /// The path's totals.
+    pub diagnostics: Diagnostics,
     pub given: Option<JudgedIncrement>,
 }
 
@@ -126,9 +129,10 @@ impl<'a> JudgedPath<'a> {
             let LeftOut { judged, place } = self.left_out.take()?;
             self.put_down = Some(place);
             self.off_measure = false;
-            return Some(Step { index: judged.increment.index, given: Some(judged) });
+            let Increment { index, diagnostics, .. } = judged.increment;
+            return Some(Step { index, diagnostics, given: Some(judged) });
         };
-        let index = increment.index;
+        let Increment { index, diagnostics, .. } = increment;
         let measure = self.judge.judge(&increment);
         self.off_measure = self.measure.include(index, &measure);
         self.found = self.alternatives.at(&increment, &self.open());
@@ -136,10 +140,10 @@ impl<'a> JudgedPath<'a> {
         let judged = JudgedIncrement { increment: self.record.cut(increment), measure };
         if kept {
             self.left_out = None;
-            return Some(Step { index, given: Some(judged) });
+            return Some(Step { index, diagnostics, given: Some(judged) });
         }
         self.left_out = Some(LeftOut { judged, place: self.place() });
-        Some(Step { index, given: None })
+        Some(Step { index, diagnostics, given: None })
     }
 
     fn present(&self) -> Option<JudgedCheckpoint> {

@@ -46,6 +46,9 @@ pub const MAX_STUDY_REFINEMENT: u64 = 16;
 /// Displacement components of all points of one path of a study: they are held in memory to be compared.
 pub const MAX_STUDY_VALUES: f64 = 5e7;
 
+/// Runs of a sweep.
+pub const MAX_SWEEP_RUNS: u64 = 100_000;
+
 /// Numbers of a request are zero or lie between this and [`MAX_MAGNITUDE`] in absolute value, so that neither a ratio
 /// of two of them nor its square can overflow or vanish.
 pub const MIN_MAGNITUDE: f64 = 1e-75;

@@ -1,6 +1,6 @@
 //! What a user posts, decoded from JSON and checked.
 //!
-//! [`request`] and [`study`] hold the types of the contract, [`mod@decode`] reads them from JSON text and says where each mistake is,
+//! [`request`], [`study`] and [`sweep`] hold the types of the contract, [`mod@decode`] reads them from JSON text and says where each mistake is,
 //! [`mod@check`] looks at what can only be judged on the whole (unknown names, zero lengths, penetration). Nothing here
 //! knows how a path is traced. [`read`] does both.
 
@@ -13,10 +13,12 @@ mod mistakes;
 pub(crate) mod names;
 pub mod request;
 pub mod study;
+pub mod sweep;
 
 pub use error::{InputError, InputErrors};
 pub use request::{Analysis, FollowRequest, JobRequest, Model};
 pub use study::StudyRequest;
+pub use sweep::{Sweep, SweepRequest};
 
 /// Reads a job request from JSON text and checks it: what every edge (HTTP, command line) does with what comes in.
 ///

@@ -1,12 +1,15 @@
 //! Pictures, as SVG.
 //!
-//! [`path`] is load against displacement, [`study`] error against run time (or what is varied); [`shapes`] is what both are drawn with,
-//! [`labels`] finds room for letters. Called by `command` and `http`; knows `path`, `model` and `studies`.
+//! [`path`] is load against displacement, [`study`] error against run time (or what is varied), [`sweep`] limit load against what is
+//! varied; [`shapes`] is what all are drawn with, [`axis`] finds ranges and tick texts, [`labels`] room for letters. Called by
+//! `command` and `http`; knows `path`, `model`, `studies` and `sweeps`.
 
+mod axis;
 mod labels;
 pub mod path;
 mod shapes;
 pub mod study;
+pub mod sweep;
 
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]
@@ -15,6 +18,8 @@ pub enum PlotError {
     Empty,
     #[error("no path of the study has an error yet, so that nothing can be drawn")]
     NoErrors,
+    #[error("no run of the sweep has a limit point yet, so that nothing can be drawn")]
+    NoLimitLoads,
     #[error("the picture could not be drawn: {0}")]
     Drawing(String),
 }

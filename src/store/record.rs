@@ -272,6 +272,8 @@ pub struct Batch {
     pub lines: Vec<Line>,
     /// In order; none before lines up to its increment that are not stored.
     pub checkpoints: Vec<Checkpoint>,
+    /// The first limit load among the lines, as JSON; of a job the first of all is kept.
+    pub first_limit: Option<String>,
 }
 
 impl Batch {
@@ -282,7 +284,7 @@ impl Batch {
 
 impl From<Vec<Line>> for Batch {
     fn from(lines: Vec<Line>) -> Self {
-        Self { lines, checkpoints: Vec::new() }
+        Self { lines, ..Self::default() }
     }
 }
 

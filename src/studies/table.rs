@@ -2,6 +2,7 @@
 
 use super::report::Report;
 use super::row::Row;
+use crate::output::columns::{name_of, push_columns};
 use crate::output::csv::CsvRow;
 use std::fmt::Write;
 
@@ -136,30 +137,4 @@ fn text_row(row: &Row) -> serde_json::Result<Vec<String>> {
         time(row.time.map(|time| time.largest_s)),
         name_of(&row.stop_reason)?,
     ])
-}
-
-/// Cells under one another, the first column and the last to the left.
-fn push_columns(text: &mut String, rows: &[Vec<String>]) {
-    let columns = rows.first().map_or(0, Vec::len);
-    let widths: Vec<usize> = (0..columns)
-        .map(|column| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or_default())
-        .collect();
-    for row in rows {
-        for (column, (cell, width)) in row.iter().zip(&widths).enumerate() {
-            if column > 0 {
-                text.push_str("  ");
-            }
-            let _ = match column {
-                0 => write!(text, "{cell:<width$}"),
-                _ if column + 1 == columns => write!(text, "{cell}"),
-                _ => write!(text, "{cell:>width$}"),
-            };
-        }
-        text.push('\n');
-    }
-}
-
-/// As the contract spells it.
-fn name_of(value: &impl serde::Serialize) -> serde_json::Result<String> {
-    serde_json::from_value(serde_json::to_value(value)?)
 }

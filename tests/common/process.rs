@@ -7,6 +7,7 @@ use std::ffi::OsStr;
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
+use tempfile::TempDir;
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
@@ -113,6 +114,36 @@ impl Drop for Process {
     fn drop(&mut self) {
         let _ = self.child.kill();
         let _ = self.child.wait();
+    }
+}
+
+/// The program with a database of its own.
+pub struct Served {
+    pub service: Process,
+    pub client: Client,
+    _folder: TempDir,
+}
+
+impl Served {
+    pub fn start() -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        let service = Process::serve(&folder.path().join("jobs.db"), &[]);
+        Self { service, client: client(), _folder: folder }
+    }
+
+    pub fn url(&self) -> &str {
+        &self.service.url
+    }
+
+    /// A job that has ended.
+    pub async fn ended(&self, request: &Value) -> String {
+        let id = submit(&self.client, self.url(), "/v1/jobs", request).await;
+        until(&self.client, self.url(), &format!("/v1/jobs/{id}"), has_ended).await;
+        id
+    }
+
+    pub async fn get(&self, place: &str) -> Value {
+        get(&self.client, self.url(), place).await.expect("an answer")
     }
 }
 

@@ -88,7 +88,8 @@ impl Solver for MadeUp {
             }
             assert!(!(request.model.name.as_deref() == Some(PANICS) && index == 3), "a made-up defect");
             increments += 1;
-            let step = Step { index, given: Some(judged(index, run)) };
+            let judged = judged(index, run);
+            let step = Step { index, diagnostics: judged.increment.diagnostics, given: Some(judged) };
             if accept(step, &Nowhere).is_break() {
                 return Ok(None);
             }

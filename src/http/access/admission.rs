@@ -7,7 +7,7 @@ use super::{Access, Door, origins};
 use crate::http::problem::{Kind, Problem};
 use crate::jobs::Caller;
 use axum::extract::{ConnectInfo, Request, State};
-use axum::http::{HeaderMap, Method, header};
+use axum::http::{HeaderMap, Method, Version, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use std::net::SocketAddr;
@@ -52,6 +52,10 @@ impl Access {
             rules.rates.of_address(address.ip()).map_err(|wait| Problem::too_often("this address", wait))?;
         }
         let headers = request.headers();
+        // RFC 9112, section 3.2.
+        if request.version() == Version::HTTP_11 && headers.get_all(header::HOST).iter().count() != 1 {
+            return Err(Problem::new(Kind::InvalidParameter, "one header Host, the name of the service, is expected"));
+        }
         let needed = needed(request.method(), request.uri().path());
         if needed == Some(Scope::Submit) && rules.origins.is_foreign(headers) {
             return Err(Problem::new(

@@ -109,7 +109,8 @@ impl Tokens {
     /// `file` is named in errors.
     pub fn of_text(file: &str, text: &str) -> Result<Self, TokensError> {
         let mut tokens = Vec::new();
-        for (number, line) in (1..).zip(text.lines()) {
+        // Some editors begin a file with a mark of its encoding.
+        for (number, line) in (1..).zip(text.trim_start_matches('\u{feff}').lines()) {
             let fields: Vec<&str> = line.split('#').next().unwrap_or_default().split_whitespace().collect();
             if fields.is_empty() {
                 continue;
@@ -215,7 +216,7 @@ mod tests {
     #[test]
     fn hashes_are_those_of_sha_256() {
         // FIPS 180-4's example for "abc".
-        let text = "ann read ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+        let text = "\u{feff}ann read ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
         assert!(Tokens::of_text("tokens", text).unwrap().find("abc").is_some());
     }
 

@@ -8,6 +8,7 @@ mod follow;
 mod model;
 mod reader;
 mod study;
+mod sweep;
 
 use super::json::Json;
 use super::mistakes::Mistakes;
@@ -15,6 +16,7 @@ use super::{FollowRequest, InputError, InputErrors, JobRequest, StudyRequest};
 use reader::{Fields, Input};
 
 const JOB_REQUEST: Fields = Fields { what: "a job request", known: &["model", "analysis"], later: &[] };
+const SWEEP_REQUEST: Fields = Fields { what: "a sweep", known: &["model", "analysis", "sweep"], later: &[] };
 const STUDY_REQUEST: Fields = Fields { what: "a study", known: &["model", "analysis", "study"], later: &[] };
 
 /// Reads a job request from JSON text and checks nothing but form; [`super::check::check`] looks at the rest.
@@ -33,6 +35,18 @@ pub fn decode(text: &[u8]) -> Result<JobRequest, InputErrors> {
 /// As for [`decode`].
 pub fn study(text: &[u8]) -> Result<StudyRequest, InputErrors> {
     read(text, STUDY_REQUEST.what, study_request)
+}
+
+/// Reads from a sweep's JSON text what it replaces; its model is read with the values put in it.
+///
+/// # Errors
+/// As for [`decode`].
+pub fn replacements(text: &[u8]) -> Result<sweep::Form, InputErrors> {
+    read(text, SWEEP_REQUEST.what, |input, mistakes| {
+        let object = input.object(&SWEEP_REQUEST, mistakes)?;
+        object.required("model", mistakes, |_, _| Some(()))?;
+        object.required("sweep", mistakes, sweep::sweep)
+    })
 }
 
 /// Reads a request to follow a direction from JSON text, and checks it as far as it goes by itself.

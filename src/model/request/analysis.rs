@@ -69,16 +69,16 @@ impl Default for Analysis {
     }
 }
 
+/// How increments are found. `auto`: arc-length steps in the current contact mode, which is decided where it can change;
+/// `mpec`: every increment by the MPEC of Kanno and Martins; `regularised`: the rival, for comparison: penalty contact and
+/// regularised friction under a conventional arc-length method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
-    /// Arc-length steps in the current contact mode; the mode is decided where it can change.
     #[default]
     Auto,
-    /// Every increment by the MPEC of Kanno and Martins.
     Mpec,
-    /// The rival, for comparison: penalty contact and regularised friction under a conventional arc-length method.
     Regularised,
 }
 
@@ -146,17 +146,16 @@ pub enum LoadSign {
     PreviousIncrement,
 }
 
+/// Which direction is taken where there are several. `max_dissipation`: that of largest dissipation per arc length;
+/// `min_potential_energy`: that along which the potential energy of structure and loads falls fastest per arc length; ties of
+/// both go to the straightest; `straightest`: that whose displacement rate makes the smallest angle with the incoming one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Selection {
-    /// The direction of largest dissipation per arc length; ties go to the straightest.
     #[default]
     MaxDissipation,
-    /// The direction along which the potential energy of structure and loads falls fastest per arc length; ties go to
-    /// the straightest.
     MinPotentialEnergy,
-    /// The direction whose displacement rate makes the smallest angle with the incoming one.
     Straightest,
 }
 

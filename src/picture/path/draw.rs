@@ -1,9 +1,9 @@
 //! The curve on paper: axes, lines, dots, marks, letters, and the legend beside them.
 
-use super::axis::Axis;
 use super::curve::{Curve, StageCurve};
 use super::legend::{LISTED_EVENTS, Legend};
 use super::strokes::{MARKER, Stroke, leader, marker};
+use crate::picture::axis::Axis;
 use crate::picture::labels::Map;
 use crate::picture::shapes::{self, DrawingError, Drawn, FINE, INK, Lettering, Place, Sheet};
 use plotters::prelude::{ChartBuilder, PathElement, RGBColor};

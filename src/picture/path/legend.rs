@@ -1,8 +1,8 @@
 //! What lines, marks and letters mean.
 
-use super::axis::Axis;
 use super::curve::{Curve, Event};
 use super::strokes::{Stroke, marker};
+use crate::picture::axis::Axis;
 use crate::picture::shapes::{Drawn, FAINT_INK, FINE, INK, Lettering, Place, Sheet};
 
 /// Stages and events that are listed; the rest is counted.

@@ -1,9 +1,8 @@
 //! The picture of a path: load factor against one displacement component, its events lettered.
 //!
-//! `curve` takes from the increments what is drawn, `axis` finds ranges and tick texts, `legend` says what the letters
+//! `curve` takes from the increments what is drawn, `legend` says what the letters
 //! mean, `strokes` are lines and marks, `draw` puts it all on paper. Called by `solve` alone.
 
-mod axis;
 mod curve;
 mod draw;
 mod legend;

@@ -1,7 +1,8 @@
 //! A copy of a database that others may be writing to.
 //!
 //! `VACUUM INTO` reads in one transaction, so that the copy is of one moment, and writes no page that is not needed. Until it
-//! is whole and checked the copy has another name: nothing that is broken off is ever taken for a copy.
+//! is whole and checked the copy has another name, one that nobody else has: nothing that is broken off is ever taken for a
+//! copy, and nothing that is there already is touched.
 
 use crate::store::{Result, StoreError};
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection};
@@ -10,20 +11,27 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+use uuid::Uuid;
 
 const BUSY_TIMEOUT: Duration = Duration::from_secs(30);
 /// What the name of an unfinished copy ends with.
 const PARTIAL: &str = ".partial";
 
 pub(in crate::store) async fn back_up(file: &Path, copy: &Path) -> Result<()> {
-    let partial = PathBuf::from([copy.as_os_str(), PARTIAL.as_ref()].join("".as_ref()));
-    remove(&partial)?;
+    let partial = beside(copy, &format!(".{}{PARTIAL}", Uuid::now_v7()));
     let made = write(file, &partial).await.and_then(|()| keep(&partial, copy).map_err(unwritten));
     if made.is_err() {
-        // Why it could not be made counts for more.
-        let _ = remove(&partial);
+        // Why it could not be made counts for more. What SQLite may have left beside it goes, too.
+        for other in ["", "-journal", "-wal", "-shm"] {
+            let _ = fs::remove_file(beside(&partial, other));
+        }
     }
     made
+}
+
+/// A name with something at its end.
+fn beside(name: &Path, end: &str) -> PathBuf {
+    PathBuf::from([name.as_os_str(), end.as_ref()].join("".as_ref()))
 }
 
 async fn write(file: &Path, partial: &Path) -> Result<()> {
@@ -61,18 +69,6 @@ fn keep(partial: &Path, copy: &Path) -> io::Result<()> {
     fs::remove_file(partial)?;
     let folder = copy.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     File::open(folder)?.sync_all()
-}
-
-/// What an earlier one left that was broken off, and what SQLite had beside it.
-fn remove(partial: &Path) -> Result<()> {
-    for beside in ["", "-journal", "-wal", "-shm"] {
-        let name = PathBuf::from([partial.as_os_str(), beside.as_ref()].join("".as_ref()));
-        match fs::remove_file(name) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(unwritten(error)),
-            _ => {}
-        }
-    }
-    Ok(())
 }
 
 fn open(error: sqlx::Error) -> StoreError {

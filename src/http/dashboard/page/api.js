@@ -6,13 +6,23 @@ let asks = () => {};
 /** What a call answered instead of what was asked for. */
 export class Problem extends Error {
   constructor(status, told) {
-    super(told.detail ?? told.title ?? `the service answered ${status}`);
+    super(told.detail ?? told.title ?? `The service answered ${status}.`);
     this.status = status;
     this.title = told.title ?? "";
     /** [{pointer, detail}] of input that is refused. */
     this.errors = told.errors ?? [];
   }
 }
+
+/** The service did not answer. */
+export class Unreachable extends Error {
+  constructor() {
+    super("The service cannot be reached.");
+  }
+}
+
+/** Whether a call was given up because nobody waits for it any more. */
+export const isGivenUp = (problem) => problem.name === "AbortError";
 
 /** Who is told that the service asks for a token. */
 export function onTokenAsked(listener) {
@@ -30,10 +40,15 @@ export async function call(place, { method = "GET", body, headers = {}, signal }
   const token = sessionStorage.getItem(TOKEN);
   if (token) sent.Authorization = `Bearer ${token}`;
   if (body !== undefined) sent["Content-Type"] = "application/json";
-  const answer = await fetch(place, { method, body, headers: sent, signal });
+  let answer;
+  try {
+    answer = await fetch(place, { method, body, headers: sent, signal });
+  } catch (problem) {
+    throw problem instanceof TypeError ? new Unreachable() : problem;
+  }
   if (answer.ok) return answer;
   const told = await answer.json().catch(() => ({}));
-  if (answer.status === 401) asks(told.detail ?? "This service asks for a token.");
+  if (answer.status === 401) asks(told.detail ?? "");
   throw new Problem(answer.status, told);
 }
 
@@ -41,35 +56,7 @@ export async function get(place, signal) {
   return (await call(place, { signal })).json();
 }
 
-let described = null;
-
-/** The defaults of a request's `analysis`, as the service's own description has them. */
-export async function analysisDefaults() {
-  described ??= get("/openapi.json");
-  try {
-    const { properties } = (await described).components.schemas.Analysis;
-    return Object.fromEntries(Object.entries(properties).map(([name, property]) => [name, property.default]));
-  } catch (problem) {
-    described = null;
-    throw problem;
-  }
-}
-
 /** Posts text as it stands. */
 export async function post(place, text) {
   return (await call(place, { method: "POST", body: text })).json();
-}
-
-/** Saves an answer as a file. */
-export async function download(place, name) {
-  save(await (await call(place)).blob(), name);
-}
-
-export function save(blob, name) {
-  const address = URL.createObjectURL(blob);
-  const link = document.createElement("a");
-  link.href = address;
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(address), 1000);
 }

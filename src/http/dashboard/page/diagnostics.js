@@ -1,7 +1,8 @@
 // How well and how fast: errors against run time, work, events, settings.
 
-import { analysisDefaults } from "./api.js";
-import { element, fill } from "./dom.js";
+import { isGivenUp } from "./api.js";
+import { element, fill, table } from "./dom.js";
+import { analysisDefaults } from "./schema.js";
 import { axis, colourOf, CONFIGURATION, layout } from "./plot-style.js";
 import { settingsSentences, short } from "./words.js";
 
@@ -19,15 +20,17 @@ const NOTHING = 1e-20;
 const ROWS = 500;
 
 export class Diagnostics {
-  constructor(panel) {
+  /** Tells `opened(yes)`. */
+  constructor(panel, told, isOpen) {
     this.path = null;
     this.place = element("div", { class: "plot", id: "diagnostics-plot" });
-    this.work = element("div", { class: "wide" });
-    this.events = element("div", { class: "wide" });
+    this.work = element("div", {});
+    this.events = element("div", {});
     this.settings = element("div", {});
-    this.whole = element("details", { ontoggle: () => this.draw() },
+    this.whole = element("details", { open: isOpen, ontoggle: () => { told.opened(this.whole.open); this.draw(); } },
       element("summary", {}, element("h2", {}, "Diagnostics")), this.place,
-      element("p", { class: "quiet" }, "Errors that are exactly zero have no place on this axis."), this.work, this.settings, this.events);
+      element("p", { class: "quiet" }, "Errors that are exactly zero have no place on this axis."), this.work,
+      this.settings, this.events);
     fill(panel, this.whole);
   }
 
@@ -44,7 +47,7 @@ export class Diagnostics {
       defaults = await analysisDefaults();
       await path.need([of("elapsed_s"), ...ERRORS.concat(WORK).map(([name]) => of(name))]);
     } catch (problem) {
-      if (problem.name !== "AbortError") fill(this.work, element("p", { class: "bad" }, problem.message));
+      if (!isGivenUp(problem)) fill(this.work, element("p", { class: "bad" }, problem.message));
       return;
     }
     if (path !== this.path) return;
@@ -65,18 +68,14 @@ export class Diagnostics {
   tables(defaults) {
     const { path } = this;
     const many = path.index.length || 1;
-    fill(this.work, element("h3", {}, "Work"), element("table", {}, element("thead", {}, element("tr", {},
-      ["", "in all", "an increment"].map((words) => element("th", {}, words)))), element("tbody", {},
-      WORK.map(([name, words]) => {
-        // Counted from the start of the job.
-        const sum = path.job.report?.[name] ?? path.columns.get(of(name)).at(-1) ?? 0;
-        return element("tr", {}, element("td", {}, words), element("td", { class: "number" }, String(sum)),
-          element("td", { class: "number" }, short(sum / many)));
-      }))));
+    fill(this.work, element("h3", {}, "Work"), table(["", "in all", "an increment"], WORK.map(([name, words]) => {
+      // Counted from the start of the job.
+      const sum = path.job.report?.[name] ?? path.columns.get(of(name)).at(-1) ?? 0;
+      return [words, sum, Number(short(sum / many))];
+    })));
     const told = path.points.filter(({ point }) => point.event);
     fill(this.events, element("h3", {}, "Events"), told.length === 0 ? element("p", { class: "quiet" }, "None so far.")
-      : element("table", {}, element("tbody", {}, told.slice(0, ROWS).map(({ index, point }) => element("tr", {},
-        element("td", { class: "number" }, String(index)), element("td", {}, point.event))))),
+      : table([], told.slice(0, ROWS).map(({ index, point }) => [index, point.event])),
     told.length > ROWS ? element("p", { class: "quiet" }, `and ${told.length - ROWS} more`) : null);
     const { left_out: leftOut = [] } = path.job.plan ?? {};
     fill(this.settings, element("h3", {}, "Settings"), element("ul", {},

@@ -1,64 +1,74 @@
-// Directions at the chosen increment where there is more than one: load rate, dissipation, which was taken, and following
-// another as a new job that is drawn in the same plot.
+// Directions at the chosen increment where there is more than one, and where none is chosen at the last bifurcation: load rate,
+// dissipation, which was taken, and following another as a new job that is drawn in the same plot.
 
 import { post } from "./api.js";
-import { element, fill } from "./dom.js";
-import { isGoingOn, short } from "./words.js";
+import { button, element, fill, table } from "./dom.js";
+import { short } from "./words.js";
 
 export class Directions {
-  /** Tells `followed(job)`. */
+  /** Tells `followed(job)` and `chosen(index)`. */
   constructor(panel, told) {
     this.panel = panel;
     this.told = told;
+    this.shown = "";
   }
 
   async choose(path, at) {
-    this.wanted = `${path.id} ${at}`;
-    const { wanted } = this;
-    const index = at ?? path.last();
-    // While a path grows its last increment is another every time.
-    if (index === null || (at === null && isGoingOn(path.job))) return this.hide();
+    const index = at ?? path.lastBifurcation() ?? path.last();
+    const wanted = `${path.id} ${at} ${index}`;
+    this.wanted = wanted;
+    if (wanted === this.shown) return;
     let increment = null;
     try {
-      increment = await path.increment(index);
+      increment = index === null ? null : await path.increment(index);
     } catch {
-      return this.hide();
+      // What cannot be fetched is told of where the structure is drawn.
+      this.panel.hidden = true;
+      return;
     }
-    if (wanted !== this.wanted) return undefined;
-    return increment?.directions ? this.draw(path, increment) : this.hide();
+    if (wanted !== this.wanted) return;
+    this.shown = wanted;
+    if (increment?.directions) this.draw(path, at, increment);
+    else this.hide(path, index);
   }
 
-  hide() {
-    this.panel.hidden = true;
+  /** Nothing to choose between here; where there was says so. */
+  hide(path, index) {
+    const last = path.points.findLast((one) => one.point.bifurcation && one.index < index)?.index;
+    this.panel.hidden = last === undefined;
+    if (last === undefined) return;
+    fill(this.panel, element("h2", {}, "Directions"), element("p", { class: "quiet" },
+      `Increment ${index} has no other direction that is kept. The bifurcation before it is at `,
+      button(`increment ${last}`, () => this.told.chosen(last), { class: "plain" }), "."));
   }
 
-  draw(path, { index, directions, contacts }) {
+  draw(path, at, { index, directions, contacts }) {
     this.panel.hidden = false;
     const problem = element("p", { class: "bad", role: "alert" });
     const states = (direction) => direction.contacts
       .map((status, place) => `${contacts[place] ? `${contacts[place].node}: ` : ""}${status}`).join(", ");
-    const follow = async (place, button) => {
-      button.disabled = true;
+    const follow = async (place, pressed) => {
+      pressed.disabled = true;
       problem.textContent = "";
       try {
         this.told.followed(await post(`/v1/jobs/${path.id}/follow`, JSON.stringify({ increment: index, direction: place })));
       } catch (refused) {
         problem.textContent = [refused.message, ...(refused.errors ?? []).map(({ detail }) => detail)].join(" ");
-        button.disabled = false;
       }
+      pressed.disabled = false;
     };
     const rows = directions.map((direction, place) => element("tr", { class: direction.taken ? "taken" : null },
       element("td", {}, String(place)), element("td", {}, states(direction)),
       element("td", { class: "number" }, short(direction.load_rate)),
       element("td", { class: "number" }, short(direction.dissipation_rate)),
-      element("td", {}, direction.taken ? "taken" : element("button", {
-        type: "button", onclick: (event) => follow(place, event.target), "aria-label": `follow direction ${place}`,
-      }, "Follow"))));
-    fill(this.panel, element("h2", {}, `Directions at increment ${index}`),
-      element("p", { class: "quiet" }, "Each is a way in which the path can go on from this point, in both senses of the load."),
-      element("div", { class: "wide" }, element("table", {},
-        element("thead", {}, element("tr", {}, ["", "contacts", "load rate", "dissipation rate", ""].map((words) =>
-          element("th", {}, words)))),
-        element("tbody", {}, rows))), problem);
+      element("td", {}, direction.taken ? "taken" : button("Follow", (event) => follow(place, event.target), {
+        "aria-label": `follow direction ${place}`, "data-key": `follow ${place}`,
+      }))));
+    const where = at === null ? [` at increment ${index}, the last bifurcation of the path`] : [` at increment ${index}`];
+    fill(this.panel, element("h2", {}, "Directions", where),
+      element("p", { class: "quiet" }, "Each is a way in which the path can go on from this point, in both senses of the load. ",
+        at !== null ? null
+          : button("Show the structure there", () => this.told.chosen(index), { class: "plain", "data-key": "there" })),
+      table(["", "contacts", "load rate", "dissipation rate", ""], rows), problem);
   }
 }

@@ -1,5 +1,7 @@
 // Elements of the page, made without markup in strings: what a model or a server says is only ever text.
 
+const isThere = (child) => child !== null && child !== undefined && child !== false;
+
 /** An element with attributes (`on…` are listeners) and children, which may be elements, texts, or null for none. */
 export function element(name, attributes = {}, ...children) {
   const made = document.createElement(name);
@@ -8,20 +10,55 @@ export function element(name, attributes = {}, ...children) {
     else if (value === true) made.setAttribute(key, "");
     else if (value !== false && value !== null && value !== undefined) made.setAttribute(key, value);
   }
-  made.append(...children.flat().filter((child) => child !== null && child !== undefined));
+  made.append(...children.flat().filter(isThere));
   return made;
 }
 
 export const byId = (id) => document.getElementById(id);
 
+/** Puts children in the place of those there were; what has focus and a `data-key` has it again in the new ones. */
 export function fill(parent, ...children) {
-  parent.replaceChildren(...children.flat().filter((child) => child !== null && child !== undefined));
+  const focused = parent.contains(document.activeElement) ? document.activeElement.dataset.key : undefined;
+  parent.replaceChildren(...children.flat().filter(isThere));
+  if (focused !== undefined) parent.querySelector(`[data-key="${CSS.escape(focused)}"]`)?.focus();
 }
 
 /** A select with options `[value, text]`. */
 export function choice(attributes, options, chosen) {
   return element("select", attributes,
     options.map(([value, text]) => element("option", { value, selected: value === chosen }, text)));
+}
+
+/** A button; `act` gets the event. */
+export function button(words, act, attributes = {}) {
+  return element("button", { type: "button", ...attributes, onclick: act }, words);
+}
+
+/** A button that asks, in its own place, before it acts. */
+export function askingButton(words, question, act, attributes = {}) {
+  const place = element("span", { class: "asking" });
+  const rest = (hasFocus) => {
+    fill(place, button(words, ask, attributes));
+    if (hasFocus) place.firstChild.focus();
+  };
+  const ask = () => {
+    const no = button("No", () => rest(true));
+    const yes = button("Yes", () => { rest(true); act(); }, { class: "danger" });
+    fill(place, element("span", { role: "alert" }, question), yes, no);
+    no.focus();
+  };
+  place.addEventListener("keydown", (event) => { if (event.key === "Escape") rest(true); });
+  rest(false);
+  return place;
+}
+
+/** Head and rows of a table; numbers stand to the right. A row may be an element or a list of cells. */
+export function table(head, rows) {
+  const cell = (value) => (value instanceof Node ? element("td", {}, value)
+    : element("td", typeof value === "number" ? { class: "number" } : {}, String(value ?? "–")));
+  return element("div", { class: "wide" }, element("table", {},
+    head.length ? element("thead", {}, element("tr", {}, head.map((words) => element("th", { scope: "col" }, words)))) : null,
+    element("tbody", {}, rows.map((row) => (row instanceof Node ? row : element("tr", {}, row.map(cell)))))));
 }
 
 /** Calls a function once in the next frame, however often it is asked for. */
@@ -31,5 +68,25 @@ export function onceAFrame(work) {
     if (asked) return;
     asked = true;
     requestAnimationFrame(() => { asked = false; work(); });
+  };
+}
+
+/** Pauses are at least so many times as long as what is done between them. */
+const REST = 3;
+
+/** Calls a function at most once in so many milliseconds, less often where it takes long, and after the last time that it was
+ *  asked for. */
+export function atMostEvery(milliseconds, work) {
+  let waits = false;
+  let pause = milliseconds;
+  return () => {
+    if (waits) return;
+    waits = true;
+    setTimeout(async () => {
+      waits = false;
+      const began = performance.now();
+      await work();
+      pause = Math.max(milliseconds, REST * (performance.now() - began));
+    }, pause);
   };
 }

@@ -1,5 +1,5 @@
 // Where in a JSON text the value stands that a JSON Pointer (RFC 6901) names: the service says which value is wrong, the
-// reader wants to see the line.
+// reader wants to see the line; a setting is put in its place, and the rest of the text stays as it was written.
 
 /** `{line, start, end}` of the value, or of the nearest one around it that is there. */
 export function placeIn(text, { pointer = "", detail = "" }) {
@@ -20,6 +20,30 @@ export function placeIn(text, { pointer = "", detail = "" }) {
   }
   return { ...found, line: text.slice(0, found.start).split("\n").length };
 }
+
+/** The text with a member of its outermost object set; `undefined` takes it out where it stands. */
+export function withMember(text, name, value) {
+  const places = [];
+  const reader = new Reader(text);
+  reader.value([name], (start, end, isWhole) => places.push({ start, end, isWhole }));
+  const written = value === undefined ? null : indented(value);
+  const place = places.find(({ isWhole }) => isWhole);
+  if (place) return `${text.slice(0, place.start)}${written ?? "{}"}${text.slice(place.end)}`;
+  if (written === null) return text;
+  const end = text.trimEnd().length - 1;
+  const before = text.slice(0, end).trimEnd();
+  return `${before}${before.endsWith("{") ? "" : ","}\n  ${JSON.stringify(name)}: ${written}\n${text.slice(end)}`;
+}
+
+/** A member of the outermost object: its own members on a line each. */
+function indented(value) {
+  const members = Object.entries(value).map(([name, own]) => `    ${JSON.stringify(name)}: ${onOneLine(own)}`);
+  return members.length ? `{\n${members.join(",\n")}\n  }` : "{}";
+}
+
+/** Line breaks within JSON's texts are escaped, so that those found are the layout's. */
+const onOneLine = (value) => JSON.stringify(value, null, 1)
+  .replace(/([{[])\n\s*/g, "$1").replace(/\n\s*([}\]])/g, "$1").replace(/\n\s*/g, " ");
 
 class Reader {
   constructor(text) {
@@ -49,7 +73,8 @@ class Reader {
     return JSON.parse(this.text.slice(start, this.at));
   }
 
-  /** Reads a value; tells the place of each one on the way of the steps, which are null where the way is elsewhere. */
+  /** Reads a value; tells the place of each one on the way of the steps, which are null where the way is elsewhere, and
+   *  whether it is the whole of the one that the steps lead to. */
   value(steps, tell) {
     this.space();
     const start = this.at;
@@ -61,7 +86,7 @@ class Reader {
       if (!plain) throw new SyntaxError(`a value at ${this.at}`);
       this.at += plain[0].length;
     }
-    if (steps?.length === 0) tell(start, this.at);
+    if (steps?.length === 0) tell(start, this.at, true);
   }
 
   members(opening, steps, tell) {
@@ -81,7 +106,7 @@ class Reader {
         this.expect(":");
       }
       const isOnTheWay = steps?.length > 0 && steps[0] === name;
-      if (isOnTheWay) tell(start, start + Math.max(1, name.length + 2));
+      if (isOnTheWay) tell(start, start + Math.max(1, name.length + 2), false);
       this.value(isOnTheWay ? steps.slice(1) : null, tell);
       this.space();
       if (this.text[this.at] !== ",") break;

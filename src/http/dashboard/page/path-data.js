@@ -1,13 +1,22 @@
 // What is held of a job: the job, its request, columns of its increments, the points that are not regular, and whole
 // increments where a view has asked for them.
 
-import { call, get } from "./api.js";
+import { get } from "./api.js";
 import { follow } from "./stream.js";
+import { isGoingOn } from "./words.js";
 
 /** Increments that are fetched together when one of them is looked at. */
 const WHOLE = 64;
+/** Increments that are held whole as they stream in; those past it are fetched again where they are looked at. */
+const HELD = 20000;
 const ALWAYS = ["stage", "load_factor", "arc_length"];
 const escaped = (name) => name.replaceAll("~", "~0").replaceAll("/", "~1").replaceAll(",", "~2");
+
+/** What can be drawn over the path: [name, words]. */
+export const ORDINATES = [
+  ["load_factor", "load factor"], ["/energy/dissipated", "dissipated energy"], ["/energy/strain", "strain energy"],
+  ["/energy/external_work", "external work"],
+];
 
 export const displacement = (node, component) => `/displacements/${escaped(node)}/${component}`;
 
@@ -22,17 +31,18 @@ export class PathData {
     this.points = [];
     this.whole = new Map();
     this.problem = null;
+    this.isLoaded = false;
     this.isConnected = true;
     this.stop = () => {};
     this.given = new AbortController();
   }
 
-  /** Reads what is stored, and goes on with what comes. */
-  async load(abscissa) {
+  /** Reads what is stored, with these columns, and goes on with what comes. */
+  async load(columns) {
     const place = `/v1/jobs/${this.id}`;
     const { signal } = this.given;
     [this.job, this.request] = await Promise.all([get(place, signal), get(`${place}/request`, signal)]);
-    const wanted = [...new Set([...ALWAYS, abscissa ?? this.ownAbscissa()])];
+    const wanted = [...new Set([...ALWAYS, ...columns, ...(columns.length ? [] : [this.ownAbscissa()])])];
     for (const name of wanted) this.columns.set(name, []);
     let after = null;
     for (;;) {
@@ -41,10 +51,11 @@ export class PathData {
       if (page.index.length === 0 || page.next_after === this.job.progress.last_index) break;
       after = page.next_after;
     }
+    this.isLoaded = true;
     this.told("loaded", this);
-    if (signal.aborted || !["queued", "running"].includes(this.job.status)) return;
-    this.stop = follow(this.id, this.index.at(-1) ?? null, {
-      increments: (come) => this.take(come),
+    if (signal.aborted || !isGoingOn(this.job)) return;
+    this.stop = follow(place, this.index.at(-1) ?? null, {
+      come: (increments) => this.take(increments),
       end: (job) => { this.job = job; this.told("ended", this); },
       deleted: () => { this.problem = "This job has been deleted."; this.told("ended", this); },
       connected: (yes) => { this.isConnected = yes; this.told("connection", this); },
@@ -71,7 +82,7 @@ export class PathData {
       for (const [name, column] of this.columns) column.push(pick(increment, name));
       const { point } = increment;
       if (point.kind !== "regular" || point.bifurcation) this.points.push({ index: increment.index, point });
-      if (this.whole.size < 20000) this.whole.set(increment.index, increment);
+      if (this.whole.size < HELD) this.whole.set(increment.index, increment);
     }
     this.told("grown", this);
   }
@@ -136,6 +147,11 @@ export class PathData {
     return this.index.at(-1) ?? null;
   }
 
+  /** Index of the last bifurcation point that has been found; null before the first. */
+  lastBifurcation() {
+    return this.points.findLast(({ point }) => point.bifurcation)?.index ?? null;
+  }
+
   /** The displacement that the last stage is about: what ends it, or else what is loaded. */
   ownAbscissa() {
     const { model } = this.request;
@@ -146,11 +162,19 @@ export class PathData {
       const watched = until?.displacement;
       if (watched && isRecorded(watched.node)) return displacement(watched.node, "xyz".indexOf(watched.component));
     }
-    for (const stage of stages) {
-      for (const [node, force] of Object.entries({ ...stage.forces, ...stage.displacements })) {
-        const component = Array.isArray(force) ? force.findIndex((value) => value !== 0) : -1;
+    const loaded = (places) => {
+      for (const [node, amount] of Object.entries(places)) {
+        const component = Array.isArray(amount) ? largest(amount) : -1;
         if (component >= 0 && isRecorded(node)) return displacement(node, component);
       }
+      return null;
+    };
+    for (const { forces, displacements, obstacle_motion: motion } of stages) {
+      // An obstacle that moves takes along what is on it.
+      const taken = (model.contacts ?? []).filter(({ obstacle }) => motion?.[obstacle])
+        .map(({ node, obstacle }) => [node, motion[obstacle]]);
+      const found = loaded({ ...forces, ...displacements }) ?? loaded(Object.fromEntries(taken));
+      if (found) return found;
     }
     return "arc_length";
   }
@@ -161,13 +185,19 @@ export class PathData {
     const nodes = Array.isArray(recorded) ? recorded : Object.keys(this.request.model.nodes);
     const components = "xyz".slice(0, this.request.model.dimension);
     return [["arc_length", "arc length"], ...nodes.flatMap((node) =>
-      [...components].map((letter, component) => [displacement(node, component), `displacement of ${node}, ${letter}`]))];
+      [...components].map((letter, component) => [displacement(node, component), `${letter} of ${node}`]))];
   }
 
   close() {
     this.given.abort();
     this.stop();
   }
+}
+
+/** Place of the largest component; -1 where all are zero. */
+function largest(components) {
+  const most = Math.max(...components.map(Math.abs));
+  return most > 0 ? components.findIndex((value) => Math.abs(value) === most) : -1;
 }
 
 /** A member of an increment by its name or JSON Pointer. */
@@ -178,22 +208,4 @@ export function pick(increment, name) {
     value = value?.[step.replaceAll("~2", ",").replaceAll("~1", "/").replaceAll("~0", "~")];
   }
   return value ?? null;
-}
-
-/** Every increment that is stored, as JSON, a page after the other. */
-export async function everyIncrement(id) {
-  const parts = [];
-  let after = "";
-  for (;;) {
-    const page = await get(`/v1/jobs/${id}/increments?limit=10000${after}`);
-    if (page.increments.length === 0) break;
-    parts.push(...page.increments.map((increment) => JSON.stringify(increment)));
-    after = `&after=${page.next_after}`;
-  }
-  return new Blob([`{"increments": [\n${parts.join(",\n")}\n]}\n`], { type: "application/json" });
-}
-
-export async function act(id, what) {
-  if (what === "delete") await call(`/v1/jobs/${id}`, { method: "DELETE" });
-  else await call(`/v1/jobs/${id}/cancel`, { method: "POST" });
 }

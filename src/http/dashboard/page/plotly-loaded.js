@@ -1,14 +1,40 @@
-// Plotly's script is large: it is run while what it will draw is already on its way.
+// Plotly's script is large: the page asks for it first, so that it is there when what it will draw has come.
 
-import { element } from "./dom.js";
+import { byId, element } from "./dom.js";
 
 let asked = null;
 
-/** Resolves once `Plotly` is there. */
+/** Resolves once `Plotly` is there; a script that has not come is asked for anew. */
 export function plotlyLoaded() {
   asked ??= new Promise((resolve, refuse) => {
-    const failed = () => { asked = null; refuse(new Error("Plotly could not be loaded from the service")); };
-    document.head.append(element("script", { src: "/assets/plotly.js", onload: resolve, onerror: failed }));
+    if (window.Plotly) {
+      resolve();
+      return;
+    }
+    const hasCome = document.readyState === "complete";
+    const script = hasCome ? element("script", { src: "/assets/plotly.js" }) : byId("plotly");
+    script.addEventListener("load", resolve);
+    script.addEventListener("error", () => {
+      asked = null;
+      refuse(new Error("Plotly could not be loaded from the service."));
+    });
+    if (hasCome) document.head.append(script);
   });
   return asked;
+}
+
+/** Draws something out of sight while nothing else is to be done: what is drawn first takes longest. */
+export async function warmPlotlyUp() {
+  await plotlyLoaded();
+  const idle = window.requestIdleCallback ?? setTimeout;
+  idle(async () => {
+    const place = element("div", { class: "plot unseen", "aria-hidden": "true" });
+    document.body.append(place);
+    await Plotly.newPlot(place, [
+      { type: "scatter", mode: "lines", x: [0, 1], y: [0, 1] },
+      { type: "scatter", mode: "markers+text", x: [0, 1], y: [0, 1], text: ["A", "B"] },
+    ], {}, {});
+    Plotly.purge(place);
+    place.remove();
+  });
 }

@@ -11,22 +11,26 @@ export function letters(number) {
   return name;
 }
 
+/** Path to what has been found of it: `{taken, stretch, found}`. Points are only ever added to a path. */
+const known = new WeakMap();
+
 /**
  * Of a path's points that are not regular: [{name, index, kind, bifurcation, event}]. Of a stretch on which every increment has
  * more than one direction, the first is named.
  */
 export function named(path) {
-  const found = [];
-  let stretch = null;
-  for (const { index, point } of path.points) {
+  if (!known.has(path)) known.set(path, { taken: 0, stretch: null, found: [] });
+  const so = known.get(path);
+  for (; so.taken < path.points.length; so.taken++) {
+    const { index, point } = path.points[so.taken];
     const place = path.placeOf(index);
-    const begins = point.bifurcation && stretch !== place - 1;
-    if (point.bifurcation) stretch = place;
+    const begins = point.bifurcation && so.stretch !== place - 1;
+    if (point.bifurcation) so.stretch = place;
     if (point.kind === "start" || point.kind === "end") continue;
     if (NAMED.has(point.kind) || begins) {
       const kind = point.kind === "regular" ? "bifurcation" : point.kind;
-      found.push({ name: letters(found.length), index, kind, bifurcation: point.bifurcation, event: point.event });
+      so.found.push({ name: letters(so.found.length), index, kind, bifurcation: point.bifurcation, event: point.event });
     }
   }
-  return found;
+  return so.found;
 }

@@ -1,72 +1,134 @@
-// A new run: a built-in scene or a model that is pasted or dropped, its plan before it is queued, mistakes at their place in
-// the text.
+// A new run: a built-in scene or a model that is pasted or dropped, settings, the plan before it is queued, mistakes at their
+// place in the text.
 
-import { analysisDefaults, call, get, post } from "./api.js";
-import { choice, element, fill } from "./dom.js";
+import { call, get, post } from "./api.js";
+import { button, choice, element, fill } from "./dom.js";
+import { placeIn, withMember } from "./json-places.js";
+import { analysisDefaults, description } from "./schema.js";
+import { SettingsFields } from "./settings-fields.js";
 import { change, state } from "./state.js";
-import { settingsSentences } from "./words.js";
-import { placeIn } from "./json-places.js";
+import { plainWords, settingsSentences } from "./words.js";
 
+/** Milliseconds without a key before the text is checked. */
 const PAUSE = 400;
+/** Settings that are shown at once. */
+const FIRST = ["method", "selection", "events", "max_increments", "arc_length"];
+const KINDS = [["", "one path"], ["study", "a study: error against run time"]];
+/** Lines above a mistake that stay in sight. */
+const ABOVE = 4;
 
 export class RunForm {
-  /** Tells `queued(job)`. */
+  /** Tells `queued(job)` and `queuedStudy(study)`. */
   constructor(panel, told) {
     this.panel = panel;
     this.told = told;
     this.scene = null;
     this.asked = 0;
+    this.fields = new Map();
     this.text = element("textarea", {
       id: "request", spellcheck: "false", rows: 22, "aria-label": "job request (JSON)", oninput: () => this.edited(),
-      ondragover: (event) => event.preventDefault(), ondrop: (event) => this.dropped(event),
     });
     this.lines = element("pre", { class: "line-numbers", "aria-hidden": "true" });
     this.text.addEventListener("scroll", () => { this.lines.scrollTop = this.text.scrollTop; });
-    this.button = element("button", { type: "button", id: "queue", class: "main", disabled: true, onclick: () => this.queue() }, "Run");
+    this.button = button("Run", () => this.queue(), { id: "queue", class: "main", disabled: true });
     this.verdict = element("div", { id: "verdict", "aria-live": "polite" });
     this.scenes = element("label", {});
+    this.kinds = element("label", {});
     this.shows = element("p", { class: "quiet" });
-    fill(panel, element("h2", {}, "New run"), element("div", { class: "choices" }, this.scenes), this.shows,
-      element("p", { class: "quiet" }, "Or paste a model here, or drop a file."),
-      element("div", { class: "editor" }, this.lines, this.text),
-      element("div", { class: "actions" }, this.button,
-        element("button", { type: "button", onclick: () => change({ run: false }) }, "Close")), this.verdict);
+    this.settings = element("div", { id: "settings" });
+    const file = element("input", {
+      type: "file", accept: ".json,application/json", onchange: (event) => this.take(event.target.files),
+    });
+    const others = element("label", {}, "Or paste a model, drop a file here, or choose one: ", file);
+    fill(panel, element("h2", {}, "New run"), element("div", { class: "choices" }, this.scenes, this.kinds), this.shows,
+      element("div", { class: "sides" },
+        element("div", {}, element("p", { class: "quiet" }, others),
+          element("div", { class: "editor" }, this.lines, this.text),
+          element("div", { class: "actions" }, this.button, button("Close", () => change({ run: false }))), this.verdict),
+        element("div", {}, element("h3", {}, "Settings"), this.settings)));
+    panel.addEventListener("dragover", (event) => event.preventDefault());
+    panel.addEventListener("drop", (event) => {
+      if (event.dataTransfer.files.length === 0) return;
+      event.preventDefault();
+      this.take(event.dataTransfer.files);
+    });
+  }
+
+  get isStudy() {
+    return state().as === "study";
   }
 
   async show() {
     this.panel.hidden = !state().run;
     if (this.panel.hidden) return;
     try {
-      if (!this.known) {
-        this.known = (await get("/v1/scenes")).scenes;
-      }
+      this.known ??= (await get("/v1/scenes")).scenes;
+      await this.drawSettings();
       const wanted = state().scene || this.known[0].name;
-      fill(this.scenes, "Scene ", choice({ id: "scene", onchange: (event) => change({ scene: event.target.value }) },
-        [...(wanted.startsWith("job:") ? [[wanted, "the model of a job"]] : []),
-          ...this.known.map(({ name }) => [name, name])], wanted));
+      fill(this.scenes, "Scene ", choice({
+        id: "scene", "data-key": "scene", onchange: (event) => change({ scene: event.target.value }),
+      }, [
+        ...(wanted.startsWith("job:") ? [[wanted, "the model of a job"]] : []), ...this.known.map(({ name }) => [name, name]),
+      ], wanted));
+      fill(this.kinds, "Trace ", choice({
+        id: "kind", "data-key": "kind", onchange: (event) => change({ as: event.target.value }),
+      }, KINDS, state().as));
       this.shows.textContent = this.known.find(({ name }) => name === wanted)?.shows ?? "";
-      if (this.scene === wanted) return;
-      this.scene = wanted;
-      const place = wanted.startsWith("job:") ? `/v1/jobs/${wanted.slice(4)}/request` : `/v1/scenes/${wanted}`;
-      // As it is written: who wrote it has put on one line what belongs together.
-      this.text.value = await (await call(place)).text();
+      if (this.scene !== wanted) {
+        const place = wanted.startsWith("job:") ? `/v1/jobs/${wanted.slice(4)}/request`
+          : `/v1/scenes/${encodeURIComponent(wanted)}`;
+        // As it is written: who wrote it has put on one line what belongs together.
+        this.text.value = await (await call(place)).text();
+        this.scene = wanted;
+      }
       this.edited();
     } catch (problem) {
-      fill(this.verdict, element("p", { class: "bad" }, problem.message));
+      fill(this.verdict, element("p", { class: "bad", role: "alert" }, problem.message),
+        button("Try again", () => this.show()));
     }
   }
 
-  async dropped(event) {
-    const [file] = event.dataTransfer.files;
+  /** Fields for each part of the request that holds settings. */
+  async drawSettings() {
+    const wanted = this.isStudy ? ["study", "analysis"] : ["analysis"];
+    if (this.settings.dataset.of === wanted.join()) return;
+    const document = await description();
+    this.fields = new Map(wanted.map((name) => {
+      const schema = document.components.schemas.StudyRequest.properties[name];
+      const first = name === "study" ? ["arc_lengths", "methods", "repeats", "reference"] : FIRST;
+      return [name, new SettingsFields(document, schema, first, (value) => this.set(name, value))];
+    }));
+    fill(this.settings, [...this.fields.values()].map(({ place }) => place));
+    this.settings.dataset.of = wanted.join();
+  }
+
+  /** A field has been changed. */
+  set(name, value) {
+    this.text.value = withMember(this.text.value, name, Object.keys(value).length ? value : undefined);
+    this.edited();
+  }
+
+  async take([file]) {
     if (!file) return;
-    event.preventDefault();
     this.text.value = await file.text();
     this.edited();
   }
 
   edited() {
     this.button.disabled = true;
+    this.button.textContent = this.isStudy ? "Run the study" : "Run";
     this.number(new Map());
+    let request = null;
+    try {
+      request = JSON.parse(this.text.value);
+    } catch {
+      // The service says what is wrong; until then no field can be put into the text.
+    }
+    const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
+    for (const [name, fields] of this.fields) {
+      const value = isObject(request) ? request[name] ?? {} : null;
+      fields.show(isObject(value) ? value : null);
+    }
     clearTimeout(this.soon);
     this.soon = setTimeout(() => this.check(), PAUSE);
   }
@@ -78,16 +140,22 @@ export class RunForm {
     this.lines.scrollTop = this.text.scrollTop;
   }
 
+  get place() {
+    return this.isStudy ? "/v1/studies" : "/v1/jobs";
+  }
+
   async check() {
     const asked = ++this.asked;
     const text = this.text.value;
+    const { isStudy } = this;
     try {
-      const [plan, defaults] = await Promise.all([post("/v1/jobs?validate=true", text), analysisDefaults()]);
+      const [plan, defaults] = await Promise.all([post(`${this.place}?validate=true`, text), analysisDefaults()]);
       if (asked !== this.asked) return;
-      const request = JSON.parse(text);
+      const scene = isStudy ? plan.scene : plan;
+      const sentences = settingsSentences(JSON.parse(text), scene, defaults);
       fill(this.verdict, element("h3", {}, "Plan"), element("ul", { class: "plan" },
-        settingsSentences(request, plan, defaults).map((words) => element("li", {}, words)),
-        plan.left_out.map(({ what, why }) => element("li", {}, element("b", {}, `Left out: ${what}. `), `${why}.`))));
+        [...(isStudy ? [studySentence(plan)] : []), ...sentences].map((words) => element("li", {}, words)),
+        scene.left_out.map(({ what, why }) => element("li", {}, element("b", {}, `Left out: ${what}. `), `${why}.`))));
       this.button.disabled = false;
     } catch (problem) {
       if (asked === this.asked) this.refused(problem, text);
@@ -99,23 +167,27 @@ export class RunForm {
     this.number(new Map(found.map(({ line }) => [line, true])));
     fill(this.verdict, element("h3", { class: "bad" }, problem.title || "Not accepted"),
       found.length === 0 ? element("p", { class: "bad" }, problem.message) : element("ul", { class: "mistakes" },
-        found.map(({ line, start, end, pointer, detail }) => element("li", {}, element("button", {
-          type: "button", class: "plain",
-          onclick: () => {
-            this.text.focus();
-            this.text.setSelectionRange(start, end);
-            this.text.scrollTop = (line - 4) * (this.text.scrollHeight / text.split("\n").length);
-          },
-        }, element("b", {}, `Line ${line}`), pointer ? ` (${pointer})` : "", `: ${detail}`)))));
+        found.map(({ line, start, end, pointer, detail }) => element("li", {}, button([element("b", {}, `Line ${line}`),
+          pointer ? ` (${pointer})` : "", `: ${detail}`], () => {
+          this.text.focus();
+          this.text.setSelectionRange(start, end);
+          this.text.scrollTop = (line - ABOVE) * (this.text.scrollHeight / text.split("\n").length);
+        }, { class: "plain" })))));
   }
 
   async queue() {
     this.button.disabled = true;
+    const tell = this.isStudy ? this.told.queuedStudy : this.told.queued;
     try {
-      this.told.queued(await post("/v1/jobs", this.text.value));
+      tell(await post(this.place, this.text.value));
     } catch (problem) {
       this.refused(problem, this.text.value);
     }
     this.button.disabled = false;
   }
+}
+
+function studySentence({ methods, values, parameter, repeats, runs, reference_is: reference }) {
+  return `${runs} paths: ${methods.join(", ")}, each with ${plainWords(parameter)} ${values.join(", ")}, timed ${repeats} times; `
+    + `errors against the ${reference}.`;
 }

@@ -1,54 +1,112 @@
 // Everything that says which view is shown, in one place and in the address, so that a view can be sent.
 //
-// jobs: ids drawn in the path plot; the first is the one whose structure and figures are shown.
-// abscissa: "arc_length" or a JSON Pointer to a displacement; null for the job's own choice. at: the chosen increment, null
-// for the last. status: the list's filter. run: the form for a new run is open; scene: what is in it.
+// jobs: ids drawn in the path plot; the first is the one whose structure and figures are shown. study: the id of a study that
+// is shown in their place. abscissa and ordinate: a member of the increments or a JSON Pointer to one; null for the job's own
+// choice. at: the chosen increment, null for the last. turn: azimuth and elevation (degrees) from which a structure in space
+// is seen, null for the usual ones. figures: the diagnostics are open. status: the lists' filter. run: the form for a new run is
+// open; scene: what is in it; as: "study" where it queues one.
 
-const EMPTY = { jobs: [], abscissa: null, at: null, status: "", run: false, scene: "" };
+const EMPTY = {
+  jobs: [], study: null, abscissa: null, ordinate: null, at: null, turn: null, figures: false, status: "", run: false, scene: "",
+  as: "",
+};
+/** Milliseconds between changes of the address that are no steps: browsers take no more of them than so many. */
+const PAUSE = 250;
+const ID = /^[0-9a-f-]{36}$/i;
 const listeners = new Set();
 
 function ofAddress() {
   const given = new URLSearchParams(location.search);
   const at = Number.parseInt(given.get("at") ?? "", 10);
+  const study = given.get("study") ?? "";
   return {
-    jobs: (given.get("jobs") ?? "").split(",").filter((id) => /^[0-9a-f-]{36}$/i.test(id)),
+    jobs: (given.get("jobs") ?? "").split(",").filter((id) => ID.test(id)),
+    study: ID.test(study) ? study : null,
     abscissa: given.get("abscissa"),
+    ordinate: given.get("ordinate"),
     at: Number.isSafeInteger(at) && at >= 0 ? at : null,
+    turn: angles(given.get("turn") ?? ""),
+    figures: given.has("figures"),
     status: given.get("status") ?? "",
     run: given.has("run"),
     scene: given.get("scene") ?? "",
+    as: given.get("as") === "study" ? "study" : "",
   };
+}
+
+function angles(text) {
+  const found = text.split(",").map(Number);
+  return text && found.length === 2 && found.every(Number.isFinite) ? found : null;
 }
 
 function address(state) {
   const parts = [];
+  if (state.study) parts.push(`study=${state.study}`);
   if (state.jobs.length) parts.push(`jobs=${state.jobs.join(",")}`);
   if (state.abscissa) parts.push(`abscissa=${encodeURIComponent(state.abscissa)}`);
+  if (state.ordinate) parts.push(`ordinate=${encodeURIComponent(state.ordinate)}`);
   if (state.at !== null) parts.push(`at=${state.at}`);
-  if (state.status) parts.push(`status=${state.status}`);
+  if (state.turn) parts.push(`turn=${state.turn.map(Math.round).join(",")}`);
+  if (state.figures) parts.push("figures");
+  if (state.status) parts.push(`status=${encodeURIComponent(state.status)}`);
   if (state.run) parts.push("run");
   if (state.run && state.scene) parts.push(`scene=${encodeURIComponent(state.scene)}`);
+  if (state.run && state.as) parts.push(`as=${state.as}`);
   return parts.length ? `?${parts.join("&")}` : "/";
 }
 
 let now = { ...EMPTY, ...ofAddress() };
+let written = -PAUSE;
+let later = null;
+
+/** Puts the state into the address: at once, or when the pause since the last time is over. */
+function write() {
+  clearTimeout(later);
+  const wait = written + PAUSE - performance.now();
+  if (wait > 0) {
+    later = setTimeout(write, wait);
+    return;
+  }
+  written = performance.now();
+  history.replaceState(null, "", address(now));
+}
 
 export const state = () => now;
+/** Whether both show the same, their form, filter and chosen point aside. */
+export const isSameView = (a, b) => a.jobs.join() === b.jobs.join() && a.run === b.run && a.study === b.study;
 
 /** Changes the view; listeners get the view before. Another job or form is a step to go back from, an increment is not. */
 export function change(changes) {
   const before = now;
   now = { ...now, ...changes };
-  const isStep = before.jobs.join() !== now.jobs.join() || before.run !== now.run;
-  if (address(now) !== address(before)) history[isStep ? "pushState" : "replaceState"](null, "", address(now));
+  if (!isSameView(before, now)) {
+    clearTimeout(later);
+    history.replaceState(null, "", address(before));
+    history.pushState(null, "", address(now));
+  } else if (address(now) !== address(before)) {
+    write();
+  }
   for (const listener of listeners) listener(before);
 }
+
+/** Shows one job alone. */
+export function openJob(id) {
+  change({ jobs: [id], study: null, at: null, abscissa: null, ordinate: null, run: false });
+}
+
+export function openStudy(id) {
+  change({ jobs: [], study: id, at: null, run: false });
+}
+
+export const addressOfJob = (...ids) => `/?jobs=${ids.join(",")}`;
+export const addressOfStudy = (id) => `/?study=${id}`;
 
 export function onChange(listener) {
   listeners.add(listener);
 }
 
 addEventListener("popstate", () => {
+  clearTimeout(later);
   const before = now;
   now = { ...EMPTY, ...ofAddress() };
   for (const listener of listeners) listener(before);

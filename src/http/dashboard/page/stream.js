@@ -1,5 +1,5 @@
-// Follows a job over server-sent events read by fetch (an EventSource sends no token): resumes after the last index that
-// came, without gap or repeat, whatever ends the connection.
+// Follows a job or a study over server-sent events read by fetch (an EventSource sends no token): resumes after the last
+// index that came, without gap or repeat, whatever ends the connection.
 
 import { call, Problem } from "./api.js";
 
@@ -9,10 +9,10 @@ const LATEST = 8000;
 const SILENCE = 40000;
 
 /**
- * `after`: the last index that is held, or null. Tells `increments(list)`, `end(job)`, `deleted()`, `connected(yes)`.
- * Answers a function that gives the stream up.
+ * `place`: of the job or study. `after`: the last index that is held, or null. Tells `come(list)` of increments or rows,
+ * `end(job)`, `deleted()`, `connected(yes)`. Answers a function that gives the stream up.
  */
-export function follow(id, after, { increments, end, deleted, connected }) {
+export function follow(place, after, { come, end, deleted, connected }) {
   let given = new AbortController();
   let isOver = false;
   let last = after;
@@ -24,7 +24,7 @@ export function follow(id, after, { increments, end, deleted, connected }) {
     try {
       const headers = { Accept: "text/event-stream" };
       if (last !== null) headers["Last-Event-ID"] = String(last);
-      const answer = await call(`/v1/jobs/${id}/stream`, { headers, signal: given.signal });
+      const answer = await call(`${place}/stream`, { headers, signal: given.signal });
       connected(true);
       wait = SOON;
       const reader = answer.body.pipeThrough(new TextDecoderStream()).getReader();
@@ -45,11 +45,11 @@ export function follow(id, after, { increments, end, deleted, connected }) {
   }
 
   function take(events) {
-    const come = events.filter(({ event }) => event === "increment").map(({ data }) => JSON.parse(data))
+    const found = events.filter(({ event }) => event === "increment" || event === "row").map(({ data }) => JSON.parse(data))
       .filter(({ index }) => last === null || index > last);
-    if (come.length) {
-      last = come.at(-1).index;
-      increments(come);
+    if (found.length) {
+      last = found.at(-1).index;
+      come(found);
     }
     const closing = events.find(({ event }) => event === "end" || event === "deleted");
     if (!closing) return;

@@ -19,8 +19,10 @@ const KINDS = {
   smooth_bifurcation: "bifurcation point", contact_change: "contact change", bifurcation: "bifurcation point", end: "end",
 };
 
+/** A name of the interface as words. */
+export const plainWords = (name) => String(name).replaceAll("_", " ");
 export const statusWords = (status) => STATUS[status] ?? status;
-export const kindWords = (kind) => KINDS[kind] ?? kind.replaceAll("_", " ");
+export const kindWords = (kind) => KINDS[kind] ?? plainWords(kind);
 /** A named point: what it is, and whether the path could go another way there. */
 export const pointWords = ({ kind, bifurcation }) =>
   `${kindWords(kind)}${bifurcation && !kind.includes("bifurcation") ? " and bifurcation" : ""}`;
@@ -30,7 +32,7 @@ export function stopSentence(job) {
   if (job.error) return `It failed: ${job.error}.`;
   const told = job.report?.sentence;
   if (told) return `${told[0].toUpperCase()}${told.slice(1)}.`;
-  return job.stop_reason ? STOPPED[job.stop_reason] ?? job.stop_reason.replaceAll("_", " ") : "";
+  return job.stop_reason ? STOPPED[job.stop_reason] ?? plainWords(job.stop_reason) : "";
 }
 
 /** Settings as they are, the defaults said as such. */
@@ -49,11 +51,23 @@ export function settingsSentences(request, plan, defaults) {
     `Contact changes become points of their own: ${setting("events")}.`,
     `It ends after so many increments at the latest: ${setting("max_increments")}.`,
     `Arc length of an increment: first ${arc("initial")}, at least ${arc("min")}, at most ${arc("max")}.`,
-    plan ? `${count(plan.unknowns, "unknown")}, ${count(plan.contacts, "contact")}, ${count(plan.stages, "stage")}; displacements are measured by ${short(plan.displacement_scale)}, forces by ${short(plan.force_scale)}.` : null,
+    plan ? `${count(plan.unknowns, "unknown")}, ${count(plan.contacts, "contact")}, ${count(plan.stages, "stage")}; `
+      + `displacements are measured by ${short(plan.displacement_scale)}, forces by ${short(plan.force_scale)}.` : null,
   ].filter(Boolean);
 }
 
-const words = (value) => String(value ?? "computed from the scene").replaceAll("_", " ");
+/** Of each request, in words, what is not the same in all of them: what tells paths apart that are drawn together. */
+export function differences(requests) {
+  const settings = requests.map(({ model, analysis = {} }) => ({
+    friction: [...new Set((model.contacts ?? []).map(({ friction }) => friction))].join(" and "),
+    method: words(analysis.method, "default"), selection: words(analysis.selection, "default"),
+    "longest step": words(analysis.arc_length?.max, "default"),
+  }));
+  const differs = (name) => new Set(settings.map((one) => one[name])).size > 1;
+  return settings.map((one) => Object.keys(one).filter(differs).map((name) => `${name} ${one[name]}`).join(", "));
+}
+
+const words = (value, otherwise = "computed from the scene") => plainWords(value ?? otherwise);
 
 export const short = (value) => (typeof value === "number" ? Number(value.toPrecision(5)).toString() : "–");
 

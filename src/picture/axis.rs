@@ -22,7 +22,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// The axis that shows these values, 0 among them: every path starts there.
+    /// The axis that shows these values, 0 among them: every path starts there, and a load that falls to a half looks like it.
     pub fn showing(values: impl Iterator<Item = f64>, ticks: usize) -> Self {
         let (low, high) = values.fold((0.0_f64, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
         let largest = high.max(-low);

@@ -1,0 +1,194 @@
+//! `arcslip sweep`: one model with other values in its places, on all cores.
+
+use super::input;
+use super::written::{one_on_standard_output, write};
+use super::{Failure, Outcome};
+use crate::judged::JudgedIncrement;
+use crate::model::Sweep;
+use crate::output::json_line;
+use crate::picture;
+use crate::sweeps::{self, Found, Row};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::{BufWriter, IsTerminal, Write};
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::{Mutex, PoisonError};
+
+/// Trace a model with other values in its places: the first limit load of each.
+///
+/// FILE is a job request with `"sweep": {"replace": {POINTER: [VALUES]}}`, or one without where --replace is given.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    model: input::Model,
+    /// Put these values at this place, in place of those in the file, such as `/model/contacts/0/friction=0.1,0.2`; again for
+    /// further places.
+    #[arg(long, value_name = "POINTER=VALUES", value_parser = replacement)]
+    replace: Vec<(String, Vec<serde_json::Value>)>,
+    /// How the values of several places meet.
+    #[arg(long, value_enum)]
+    combine: Option<CombineName>,
+    /// Paths traced at a time. Default: one a processor.
+    #[arg(long, value_name = "N")]
+    threads: Option<NonZeroUsize>,
+    /// Write the table here; `-` is standard output.
+    #[arg(long, value_name = "FILE", default_value = "-")]
+    out: PathBuf,
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+    /// Draw the limit load against the first parameter here, as an SVG; `-` is standard output.
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
+    /// Write each path into this folder, as RUN.ndjson.
+    #[arg(long, value_name = "FOLDER")]
+    paths: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Format {
+    /// Columns for a reader.
+    Text,
+    /// A table with named columns.
+    Csv,
+    /// Parameters and rows as one JSON object.
+    Json,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum CombineName {
+    /// Each with each.
+    Grid,
+    /// The first of each, then the second of each and so on.
+    List,
+}
+
+/// Values are JSON where they can be read as such, and texts otherwise.
+fn replacement(argument: &str) -> Result<(String, Vec<serde_json::Value>), String> {
+    let (pointer, values) = argument.split_once('=').ok_or("POINTER=VALUE,VALUE,... is expected")?;
+    let values =
+        values.split(',').map(|text| serde_json::from_str(text).unwrap_or_else(|_| serde_json::Value::from(text)));
+    Ok((pointer.to_owned(), values.collect()))
+}
+
+pub fn run(arguments: &Arguments) -> Outcome {
+    one_on_standard_output(&[("--out", Some(&arguments.out)), ("--plot", arguments.plot.as_deref())])?;
+    let sweep = Sweep::read(&arguments.text()?).map_err(input::refused)?;
+    let threads = arguments.threads.or_else(|| std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
+    let progress = progress_bar(sweep.runs());
+    let written = arguments.paths.as_deref().map(Paths::in_folder).transpose()?;
+    let accept = |run: u64, judged: &JudgedIncrement| match &written {
+        Some(paths) => paths.write(run, judged),
+        None => ControlFlow::Continue(()),
+    };
+    let done = |row: &Row| {
+        progress.inc(1);
+        if let Some(paths) = &written {
+            paths.close(row.run);
+        }
+    };
+    let rows = sweeps::run(&sweep, threads, &accept, &done).map_err(input::refused)?;
+    progress.finish_and_clear();
+    if let Some(failure) = written.and_then(Paths::failure) {
+        return Err(failure);
+    }
+    let any_failed = rows.iter().any(|row| row.error.is_some());
+    let found = Found { name: sweep.name, variation: sweep.variation, rows };
+    let text = match arguments.format {
+        Format::Text => found.text(),
+        Format::Csv => found.csv(),
+        Format::Json => serde_json::to_string_pretty(&found).map(|text| text + "\n"),
+    };
+    write(&arguments.out, &text.map_err(Failure::other)?)?;
+    if let Some(file) = &arguments.plot {
+        write(file, &picture::sweep::svg(&found).map_err(Failure::other)?)?;
+    }
+    Ok(if any_failed { ExitCode::from(super::FAILED) } else { ExitCode::SUCCESS })
+}
+
+impl Arguments {
+    /// The document, with what the command line says in the place of its own.
+    fn text(&self) -> Result<Vec<u8>, Failure> {
+        let text = self.model.text()?;
+        if self.replace.is_empty() && self.combine.is_none() {
+            return Ok(text);
+        }
+        // What cannot be read as an object is told with its place where the sweep is read.
+        let Ok(serde_json::Value::Object(mut document)) = serde_json::from_slice(&text) else { return Ok(text) };
+        let sweep = document.entry("sweep").or_insert_with(|| serde_json::json!({}));
+        if !self.replace.is_empty() {
+            let replace: serde_json::Map<_, _> =
+                self.replace.iter().map(|(pointer, values)| (pointer.clone(), values.clone().into())).collect();
+            sweep["replace"] = replace.into();
+        }
+        if let Some(combine) = self.combine {
+            let name = match combine {
+                CombineName::Grid => "grid",
+                CombineName::List => "list",
+            };
+            sweep["combine"] = name.into();
+        }
+        serde_json::to_vec(&document).map_err(Failure::other)
+    }
+}
+
+/// Files of paths, written by several threads.
+struct Paths {
+    folder: PathBuf,
+    files: Mutex<HashMap<u64, BufWriter<File>>>,
+    failed: Mutex<Option<String>>,
+}
+
+impl Paths {
+    fn in_folder(folder: &Path) -> Result<Self, Failure> {
+        std::fs::create_dir_all(folder).map_err(|error| Failure::Other(format!("{}: {error}", folder.display())))?;
+        Ok(Self { folder: folder.to_owned(), files: Mutex::default(), failed: Mutex::default() })
+    }
+
+    fn write(&self, run: u64, judged: &JudgedIncrement) -> ControlFlow<()> {
+        let file = self.folder.join(format!("{run}.ndjson"));
+        let written = || -> std::io::Result<()> {
+            let mut files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
+            if judged.increment.index == 0 {
+                files.insert(run, BufWriter::new(File::create(&file)?));
+            }
+            match files.get_mut(&run) {
+                Some(to) => writeln!(to, "{}", json_line(judged)?),
+                None => Ok(()),
+            }
+        };
+        match written() {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(error) => self.fail(format!("{}: {error}", file.display())),
+        }
+    }
+
+    fn close(&self, run: u64) {
+        let file = self.files.lock().unwrap_or_else(PoisonError::into_inner).remove(&run);
+        if let Some(Err(error)) = file.map(|mut file| file.flush()) {
+            let _ = self.fail(format!("{}: {error}", self.folder.join(format!("{run}.ndjson")).display()));
+        }
+    }
+
+    fn fail(&self, error: String) -> ControlFlow<()> {
+        self.failed.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+        ControlFlow::Break(())
+    }
+
+    fn failure(self) -> Option<Failure> {
+        self.failed.into_inner().unwrap_or_else(PoisonError::into_inner).map(Failure::Other)
+    }
+}
+
+/// On a terminal, where it does not disturb the table: that comes when all is done.
+fn progress_bar(runs: u64) -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{bar:40} {pos} of {len} paths, {elapsed}")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(runs).with_style(style)
+}

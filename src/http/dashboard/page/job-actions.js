@@ -1,0 +1,49 @@
+// What can be done with a job or a study: cancel, delete, download, run again.
+
+import { call } from "./api.js";
+import { askingButton, button, element } from "./dom.js";
+import { download, downloadIncrements } from "./downloads.js";
+import { change, state } from "./state.js";
+import { isGoingOn } from "./words.js";
+
+/** `done()` is called after what changes the lists, `failed(problem)` where something is refused. */
+export function jobActions(job, done, failed) {
+  const { id } = job;
+  const then = doing(done, failed);
+  return element("div", { class: "actions" },
+    isGoingOn(job) ? button("Cancel", then(() => call(`/v1/jobs/${id}/cancel`, { method: "POST" }))) : null,
+    button("Path (csv)", then(() => download(`/v1/jobs/${id}/path.csv`, `path-${id}.csv`))),
+    button("Increments (json)", then(() => downloadIncrements(id))),
+    button("Model (json)", then(() => download(`/v1/jobs/${id}/request`, `request-${id}.json`))),
+    button("Run again, changed", () => change({ run: true, scene: `job:${id}`, as: "" })),
+    askingButton("Delete", `Delete “${job.name}” and all its increments?`, then(async () => {
+      await call(`/v1/jobs/${id}`, { method: "DELETE" });
+      change({ jobs: state().jobs.filter((other) => other !== id), at: null });
+    }), { class: "danger", id: "delete" }));
+}
+
+export function studyActions(study, done, failed) {
+  const { id } = study;
+  const then = doing(done, failed);
+  const hasFound = study.report !== null;
+  return element("div", { class: "actions" },
+    isGoingOn(study) ? button("Cancel", then(() => call(`/v1/studies/${id}/cancel`, { method: "POST" }))) : null,
+    hasFound ? [
+      button("Table (csv)", then(() => download(`/v1/studies/${id}/table.csv`, `study-${id}.csv`))),
+      button("Table (text)", then(() => download(`/v1/studies/${id}/table.txt`, `study-${id}.txt`))),
+      button("Picture (svg)", then(() => download(`/v1/studies/${id}/picture.svg`, `study-${id}.svg`))),
+    ] : [],
+    askingButton("Delete", `Delete the study “${study.name}” and all that it has found?`, then(async () => {
+      await call(`/v1/studies/${id}`, { method: "DELETE" });
+      change({ study: null });
+    }), { class: "danger", id: "delete" }));
+}
+
+const doing = (done, failed) => (what) => async () => {
+  try {
+    await what();
+    done();
+  } catch (problem) {
+    failed(problem);
+  }
+};

@@ -1,0 +1,239 @@
+// One or several jobs: their paths, the structure, directions and figures of the first. Carries what happens in one part to the
+// others.
+
+import { isGivenUp } from "./api.js";
+import { Diagnostics } from "./diagnostics.js";
+import { Directions } from "./directions.js";
+import { atMostEvery, byId, element, fill, onceAFrame } from "./dom.js";
+import { jobActions } from "./job-actions.js";
+import { PathData } from "./path-data.js";
+import { PathPlot } from "./path-plot.js";
+import { plotlyLoaded } from "./plotly-loaded.js";
+import { addressOfJob, change, state } from "./state.js";
+import { StructurePlot } from "./structure-plot.js";
+import { isGoingOn, statusWords, stopSentence } from "./words.js";
+
+/** Milliseconds between pictures of the structure of a path that grows: the path itself is drawn first. */
+const STRUCTURE = 300;
+/** The same for directions and figures. */
+const FIGURES = 2000;
+/** What the page measures itself: from the start of its loading to the first path on the screen. */
+const FIRST_PATH = "first path";
+
+export class JobView {
+  /** Tells `said(words, again)`: what stands in the place of a job, and how to try again; `changed()`; `connection()`. */
+  constructor(told) {
+    this.told = told;
+    /** Paths that are held, drawn or not: id to path. */
+    this.held = new Map();
+    this.summary = element("div", {});
+    this.actions = element("div", {});
+    fill(byId("heading"), this.summary, this.actions);
+    const chosen = (index) => change({ at: index });
+    this.pathPlot = new PathPlot(byId("path"), {
+      chosen: (id, index) => this.chooseAt(id, index),
+      hovered: (id, index) => { if (id === state().jobs[0]) this.structure.choose(index); },
+      left: () => this.structure.choose(state().at),
+      axes: (axes) => change(axes),
+    });
+    this.structure = new StructurePlot(byId("structure"), {
+      chosen, pointedAt: (yes) => this.pathPlot.pointAt(yes), turned: (turn) => change({ turn }),
+    }, state().turn);
+    this.directions = new Directions(byId("directions"), {
+      chosen,
+      followed: (job) => { told.changed(); change({ jobs: [...state().jobs, job.id] }); },
+    });
+    this.diagnostics = new Diagnostics(byId("diagnostics"), { opened: (figures) => change({ figures }) }, state().figures);
+    this.structureLater = atMostEvery(STRUCTURE, () => {
+      if (state().at === null && this.first) return this.structure.choose(null);
+      return null;
+    });
+    this.figuresLater = atMostEvery(FIGURES, () => {
+      if (state().at === null && this.first) this.directions.choose(this.first, null);
+      return this.diagnostics.draw();
+    });
+    this.grown = onceAFrame(() => {
+      this.pathPlot.grow();
+      this.heading();
+      this.structureLater();
+      this.figuresLater();
+    });
+  }
+
+  /** The first of the paths that are shown, once it can be drawn. */
+  get first() {
+    const [path] = this.paths();
+    return path && path.id === state().jobs[0] ? path : null;
+  }
+
+  paths() {
+    return state().jobs.map((id) => this.held.get(id)).filter((path) => path?.isLoaded);
+  }
+
+  get isConnected() {
+    return state().jobs.every((id) => this.held.get(id)?.isConnected !== false);
+  }
+
+  /** The view has changed in more than the chosen increment. */
+  view() {
+    this.hold();
+    this.draw();
+    if (this.isWanted && !this.first) this.prepare();
+  }
+
+  get isWanted() {
+    return state().jobs.length > 0 && !state().run && state().study === null;
+  }
+
+  /** The place of a path while that is on its way. */
+  async prepare() {
+    byId("job").hidden = false;
+    byId("job").classList.add("loading");
+    fill(this.summary, element("p", { class: "quiet" }, "Loading the path …"));
+    this.drawActions(null);
+    try {
+      await plotlyLoaded();
+      if (!byId("job").hidden && !this.first) await this.pathPlot.prepare();
+    } catch (problem) {
+      this.told.said(problem.message, () => this.view());
+    }
+  }
+
+  /** The chosen increment has changed. */
+  choose() {
+    const { at } = state();
+    const { first } = this;
+    if (!first) return;
+    this.pathPlot.choose(at);
+    this.structure.choose(at);
+    this.directions.choose(first, at);
+  }
+
+  /** Goes along the path by so many increments. */
+  step(by) {
+    const { first } = this;
+    if (!first?.index.length) return;
+    const place = Math.max(0, first.placeOf(state().at ?? first.last()));
+    change({ at: first.index[Math.min(first.index.length - 1, Math.max(0, place + by))] });
+  }
+
+  chooseAt(id, index) {
+    const { jobs } = state();
+    // A point of another path makes that one the first.
+    change(id === jobs[0] ? { at: index } : { jobs: [id, ...jobs.filter((other) => other !== id)], at: index });
+  }
+
+  hold() {
+    const wanted = state().jobs;
+    for (const [id, path] of this.held) {
+      if (!wanted.includes(id)) {
+        path.close();
+        this.held.delete(id);
+      }
+    }
+    const { abscissa, ordinate } = state();
+    for (const id of wanted.filter((one) => !this.held.has(one))) {
+      const path = new PathData(id, (what, which) => this.hears(what, which));
+      this.held.set(id, path);
+      path.load([abscissa, ordinate].filter(Boolean)).catch((problem) => {
+        if (isGivenUp(problem)) return;
+        path.close();
+        this.held.delete(id);
+        byId("job").hidden = true;
+        this.told.said(`The job cannot be shown: ${problem.message}`, () => this.view());
+      });
+    }
+  }
+
+  hears(what, path) {
+    if (!state().jobs.includes(path.id)) return;
+    if (what === "connection") this.told.connection();
+    else if (what === "grown") this.grown();
+    else if (what === "loaded") this.draw();
+    else {
+      this.told.connection();
+      this.draw();
+      this.told.changed();
+    }
+  }
+
+  async draw() {
+    const { first } = this;
+    const section = byId("job");
+    if (!this.isWanted) section.hidden = true;
+    if (!this.isWanted || !first) return;
+    section.hidden = false;
+    section.classList.remove("loading");
+    const shown = this.paths();
+    const axes = axesOf(first);
+    this.heading();
+    try {
+      await Promise.all([plotlyLoaded(), ...shown.map((path) => path.need([axes.abscissa, axes.ordinate]))]);
+    } catch (problem) {
+      if (!isGivenUp(problem)) this.told.said(problem.message, () => this.view());
+      return;
+    }
+    if (this.first !== first) return;
+    this.told.said("");
+    await this.pathPlot.draw(shown, axes, state().at);
+    measureFirstPath();
+    // Each in a frame of its own: the page answers between them.
+    await frame();
+    await this.structure.show(first, state().at);
+    await frame();
+    this.layExact(first);
+    this.directions.choose(first, state().at);
+    this.diagnostics.show(first);
+  }
+
+  /** Lays the exact path over the computed one once that is whole; the picture does not wait for it. */
+  async layExact(path) {
+    if (isGoingOn(path.job)) return;
+    const before = path.exact;
+    try {
+      await path.exactPath();
+    } catch (problem) {
+      if (!isGivenUp(problem)) this.told.said(problem.message);
+      return;
+    }
+    if (path.exact === before || !path.exact.path || this.first !== path) return;
+    await this.pathPlot.draw(this.paths(), axesOf(path), state().at);
+  }
+
+  heading() {
+    const { first } = this;
+    if (!first) return;
+    const { job } = first;
+    const kept = first.index.length;
+    const all = (first.last() ?? -1) + 1;
+    const many = kept === all ? `${all} increments. ` : `${all} increments, ${kept} of them kept. `;
+    fill(this.summary, element("div", { class: "bar" }, element("h2", {}, job.name),
+      element("span", { class: `status ${job.status}`, id: "status" }, job.status)),
+    element("p", { id: "stop" }, many, isGoingOn(job) ? `The job ${statusWords(job.status)}.` : stopSentence(job),
+      job.parent ? element("span", {}, " It follows ", element("a", {
+        href: addressOfJob(job.parent.job, job.id), "data-key": "parent",
+      }, "another job"), ` from increment ${job.parent.increment} in direction ${job.parent.direction}.`) : null),
+    first.problem ? element("p", { class: "bad", role: "alert" }, first.problem) : null);
+    this.drawActions(job);
+  }
+
+  /** Made anew only where they change, so that focus stays on them while a path grows. */
+  drawActions(job) {
+    const key = job ? `${job.id} ${job.status}` : "";
+    if (this.actions.dataset.of === key) return;
+    this.actions.dataset.of = key;
+    fill(this.actions, job ? jobActions(job, this.told.changed, (problem) => this.told.said(problem.message)) : null);
+  }
+}
+
+const axesOf = (path) => ({ abscissa: state().abscissa ?? path.ownAbscissa(), ordinate: state().ordinate ?? "load_factor" });
+
+const frame = () => new Promise((resume) => requestAnimationFrame(() => setTimeout(resume)));
+
+function measureFirstPath() {
+  if (performance.getEntriesByName(FIRST_PATH).length > 0) return;
+  // What is done after a frame's callbacks comes after that frame is on its way to the screen.
+  requestAnimationFrame(() => setTimeout(() => {
+    if (performance.getEntriesByName(FIRST_PATH).length === 0) performance.measure(FIRST_PATH, { start: 0 });
+  }));
+}

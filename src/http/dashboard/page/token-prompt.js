@@ -1,0 +1,25 @@
+// Asks for the token where the service takes nobody without one.
+
+import { keepToken, onTokenAsked } from "./api.js";
+import { button, element, fill } from "./dom.js";
+
+export function tokenPrompt(place) {
+  onTokenAsked((told) => {
+    if (!place.hidden) return;
+    place.hidden = false;
+    const given = element("input", {
+      type: "password", id: "given-token", autocomplete: "off", size: 40, required: true,
+      onkeydown: (event) => { if (event.key === "Enter") take(); },
+    });
+    const take = () => {
+      if (!given.value.trim()) return;
+      keepToken(given.value.trim());
+      location.reload();
+    };
+    const label = element("label", { for: "given-token" }, "This service asks for a token");
+    fill(place, element("p", {}, label, told ? `: ${told}` : "."),
+      element("div", { class: "actions" }, given, button("Use it", take, { class: "main", id: "use-token" })),
+      element("p", { class: "quiet" }, "It is kept as long as this tab is open."));
+    given.focus();
+  });
+}

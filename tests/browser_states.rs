@@ -1,0 +1,162 @@
+//! The dashboard where there is little to be seen or much to be typed: nothing yet, nothing any more, tokens, the keyboard, a
+//! phone.
+//!
+//! Where there is no chromedriver these tests say that they are skipped; with `ARCSLIP_BROWSER=required` they fail there.
+#![cfg(feature = "server")]
+
+mod common;
+
+use arcslip::http::access::tokens;
+use common::browser::Browser;
+use common::process::{self, Process, Served};
+use common::service::scene;
+use serde_json::{Value, json};
+use std::process::Command;
+
+const STATUS: &str = "document.getElementById('status')?.textContent";
+const STRUCTURE: &str = "document.getElementById('structure-plot')";
+
+#[tokio::test]
+async fn the_list_of_calls_is_that_of_the_service() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    browser.visit(&format!("{}/", served.url())).await;
+    browser.until("document.querySelector('#lists .quiet')?.textContent.startsWith('There are no jobs yet')").await;
+    browser.ask("document.querySelector('#calls > summary').click()").await;
+    browser.until("document.querySelectorAll('#calls tr').length > 20").await;
+    let listed = browser.ask("[...document.querySelectorAll('#calls tr')].map((row) => [...row.children].slice(0, 2).map(({textContent}) => textContent).join(' '))").await;
+    let document = served.get("/openapi.json").await;
+    let listed: Vec<&str> = listed.as_array().expect("rows").iter().filter_map(Value::as_str).collect();
+    for (path, calls) in document["paths"].as_object().expect("paths") {
+        for method in calls.as_object().expect("calls").keys() {
+            let call = format!("{} {path}", method.to_uppercase());
+            assert!(listed.contains(&call.as_str()), "{call} in {listed:?}");
+        }
+    }
+    browser.close(served.url(), &[]).await;
+}
+
+#[tokio::test]
+async fn what_cannot_be_shown_says_so_and_is_tried_again() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    let url = served.url().to_owned();
+    browser.visit(&format!("{url}/?status=failed&jobs=00000000-0000-7000-8000-000000000000")).await;
+    browser.until("document.getElementById('notice').textContent.startsWith('The job cannot be shown: ')").await;
+    browser.until("document.querySelector('#lists .quiet')?.textContent === 'No job is failed.'").await;
+    let id = served.ended(&scene("klarbring")).await;
+    browser.visit(&format!("{url}/")).await;
+    browser.until("document.querySelector('#lists a') !== null").await;
+    browser.until("window.Plotly !== undefined").await;
+    served.service.terminated().await;
+    browser.ask("document.querySelector('#lists a').click()").await;
+    browser.until("document.getElementById('notice').textContent.includes('The service cannot be reached.')").await;
+    assert_eq!(browser.ask("document.querySelector('#notice button').textContent").await, "Try again");
+    assert!(browser.page.current_url().await.expect("an address").to_string().contains(&id));
+    browser.close(&url, &["status of 404", "net::ERR_"]).await;
+}
+
+#[tokio::test]
+async fn a_job_is_deleted_after_a_question_and_by_the_keyboard_alone() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    let id = served.ended(&scene("von-mises-truss")).await;
+    browser.visit(&format!("{}/?jobs={id}&at=3", served.url())).await;
+    browser.until(&format!("{STRUCTURE}.data?.length > 2")).await;
+    let focused = "document.activeElement.id || document.activeElement.textContent";
+    // Along the path by the arrows of the slider.
+    browser.ask("document.getElementById('increment').focus()").await;
+    browser.keys(RIGHT).await;
+    browser.until("new URLSearchParams(location.search).get('at') === '4'").await;
+    browser.until("document.querySelector('#structure .slider + p').textContent.startsWith('Increment 4,')").await;
+    // Every control is reached in turn, with its focus to be seen, and none keeps it.
+    browser.ask("document.querySelector('h1 a').focus()").await;
+    let mut passed = Vec::new();
+    for _ in 0..80 {
+        browser.keys(TAB).await;
+        let found = browser.ask(&format!("document.activeElement === document.body ? null : {focused}")).await;
+        let Some(name) = found.as_str() else { break };
+        let outline = browser.ask("getComputedStyle(document.activeElement).outlineStyle").await;
+        assert_ne!(outline, "none", "{name}");
+        passed.push(name.to_owned());
+    }
+    for control in ["open-run", "filter", "delete", "ordinate", "abscissa", "increment", "Diagnostics"] {
+        assert!(passed.iter().any(|name| name == control), "{control} in {passed:?}");
+    }
+    // A question in the page itself, answered with no first.
+    browser.ask("document.getElementById('delete').focus()").await;
+    browser.keys(ENTER).await;
+    browser
+        .until("document.querySelector('.asking [role=alert]')?.textContent.startsWith('Delete “von Mises truss”')")
+        .await;
+    assert_eq!(browser.ask(focused).await, "No");
+    browser.keys(ESCAPE).await;
+    browser.until(&format!("{focused} === 'delete'")).await;
+    assert_eq!(served.get(&format!("/v1/jobs/{id}")).await["status"], "completed");
+    browser.keys(ENTER).await;
+    browser.keys(SHIFT_TAB).await;
+    assert_eq!(browser.ask(focused).await, "Yes");
+    browser.keys(ENTER).await;
+    browser.until("document.getElementById('notice').textContent.startsWith('Choose a job')").await;
+    assert_eq!(served.get(&format!("/v1/jobs/{id}")).await["status"], 404);
+    browser.close(served.url(), &[]).await;
+}
+
+const TAB: &str = "\u{e004}";
+const SHIFT_TAB: &str = "\u{e008}\u{e004}\u{e008}";
+const ENTER: &str = "\u{e007}";
+const ESCAPE: &str = "\u{e00c}";
+const RIGHT: &str = "\u{e014}";
+
+#[tokio::test]
+async fn a_service_that_asks_for_tokens_is_given_one() {
+    let Some(browser) = Browser::open().await else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let (token, hash) = tokens::make().expect("randomness");
+    let file = folder.path().join("tokens");
+    std::fs::write(&file, format!("ann read,submit {hash}\n")).expect("written");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_arcslip"));
+    command.args(["serve", "--listen", "127.0.0.1:0", "--database"]).arg(folder.path().join("jobs.db"));
+    command.env("ARCSLIP_TOKENS_FILE", &file).env("RUST_LOG", "error");
+    let service = Process::start(command);
+    let asks = "document.getElementById('given-token') !== null";
+    browser.visit(&format!("{}/?run&scene=klarbring", service.url)).await;
+    browser.until(asks).await;
+    browser.put("#given-token", "arc_of_someone_else").await;
+    browser.press("#use-token").await;
+    browser.until("sessionStorage.length === 1").await;
+    browser.until(asks).await;
+    browser.put("#given-token", &token).await;
+    browser.ask("document.getElementById('given-token').focus()").await;
+    browser.keys(ENTER).await;
+    browser.press("#queue").await;
+    browser.until(&format!("{STATUS} === 'completed'")).await;
+    assert_eq!(browser.ask("document.getElementById('token').hidden").await, true);
+    browser.until("document.querySelectorAll('#lists a').length === 1").await;
+    browser.close(&service.url, &["status of 401"]).await;
+}
+
+#[tokio::test]
+async fn nothing_is_wider_than_a_phone() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    let id = served.ended(&scene("curving-slip")).await;
+    let study = json!({"model": scene("von-mises-truss")["model"], "study": {"repeats": 1, "arc_lengths": [0.2, 0.1]}});
+    let study = process::submit(&served.client, served.url(), "/v1/studies", &study).await;
+    process::until(&served.client, served.url(), &format!("/v1/studies/{study}"), process::has_ended).await;
+    let phone = json!({"width": 390, "height": 844, "deviceScaleFactor": 2, "mobile": true});
+    browser.devtools("Emulation.setDeviceMetricsOverride", phone).await;
+    for (address, is_there) in [
+        (format!("/?jobs={id}&figures"), "document.querySelector('#diagnostics-plot .main-svg') !== null"),
+        ("/?run&scene=capstan".to_owned(), "document.getElementById('queue')?.disabled === false"),
+        ("/?run&scene=capstan&as=study".to_owned(), "document.getElementById('queue')?.disabled === false"),
+        (format!("/?study={study}"), "document.querySelectorAll('#study tbody tr').length > 3"),
+    ] {
+        browser.visit(&format!("{}{address}", served.url())).await;
+        browser.until(is_there).await;
+        browser.until("document.querySelectorAll('#lists a').length === 2").await;
+        let width = browser.ask("document.documentElement.scrollWidth").await;
+        assert!(width.as_u64().is_some_and(|width| width <= 390), "{address}: {width}");
+    }
+    browser.close(served.url(), &[]).await;
+}

@@ -1,0 +1,207 @@
+//! What a reader of the dashboard sees and sets: settings, directions, energies, the structure in space, studies, every scene.
+//!
+//! Where there is no chromedriver these tests say that they are skipped; with `ARCSLIP_BROWSER=required` they fail there.
+#![cfg(feature = "server")]
+
+mod common;
+
+use common::browser::Browser;
+use common::process::Served;
+use common::service::scene;
+use serde_json::{Value, json};
+
+const STATUS: &str = "document.getElementById('status')?.textContent";
+const PATH: &str = "document.getElementById('path-plot')";
+const MARK: &str = "document.getElementById('path-plot').data[2]";
+const STRUCTURE: &str = "document.getElementById('structure-plot')";
+
+#[tokio::test]
+async fn settings_have_words_and_defaults_and_agree_with_the_text() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    browser.visit(&format!("{}/?run&scene=klarbring", served.url())).await;
+    browser.until("document.getElementById('queue')?.disabled === false").await;
+    let document = served.get("/openapi.json").await;
+    let analysis = &document["components"]["schemas"]["Analysis"]["properties"];
+    let shown = browser.ask("document.getElementById('settings').textContent").await;
+    let words = analysis["max_increments"]["description"].as_str().expect("text").replace('\n', " ");
+    assert!(shown.as_str().is_some_and(|shown| shown.contains(&words)), "{shown}");
+    let standard = browser.ask("document.getElementById('setting-max_increments').placeholder").await;
+    assert_eq!(standard, format!("{} (default)", analysis["max_increments"]["default"]));
+    // From the fields into the text, the rest of which stays as it was written.
+    let before = browser.ask("document.getElementById('request').value").await;
+    browser.put("#setting-max_increments", "7").await;
+    browser.put("#setting-arc_length-max", "0.25").await;
+    browser.put("#setting-selection", "straightest").await;
+    let after = browser.ask("document.getElementById('request').value").await;
+    let (before, after) = (before.as_str().expect("text"), after.as_str().expect("text"));
+    let request: Value = serde_json::from_str(after).expect("JSON");
+    assert_eq!(
+        request["analysis"],
+        json!({"max_increments": 7, "arc_length": {"max": 0.25}, "selection": "straightest"})
+    );
+    assert_eq!(request["model"], scene("klarbring")["model"]);
+    assert!(after.starts_with(before.trim_end().trim_end_matches('}').trim_end()), "{after}");
+    // What is as by default is not written.
+    browser.put("#setting-arc_length-max", "").await;
+    browser.put("#setting-selection", "").await;
+    let text = browser.ask("document.getElementById('request').value").await;
+    let request: Value = serde_json::from_str(text.as_str().expect("text")).expect("JSON");
+    assert_eq!(request["analysis"], json!({"max_increments": 7}));
+    // From the text into the fields.
+    let mut other = scene("klarbring");
+    other["analysis"] = json!({"method": "mpec", "arc_length": {"jump": false}, "max_increments": 5});
+    browser.put("#request", &other.to_string()).await;
+    let names = "['method', 'max_increments', 'selection', 'arc_length-jump']";
+    let fields = format!("{names}.map((name) => document.getElementById(`setting-${{name}}`).value)");
+    assert_eq!(browser.ask(&fields).await, json!(["mpec", "5", "", "false"]));
+    // A text that cannot be read takes no settings.
+    browser.put("#request", "{").await;
+    assert_eq!(browser.ask("document.querySelector('fieldset.settings').disabled").await, true);
+    browser.put("#request", &other.to_string()).await;
+    browser.press("#queue").await;
+    browser.until(&format!("{STATUS} === 'completed'")).await;
+    let jobs = served.get("/v1/jobs").await;
+    let id = jobs["jobs"][0]["id"].as_str().expect("an id");
+    assert_eq!(served.get(&format!("/v1/jobs/{id}/request")).await["analysis"]["method"], "mpec");
+    browser.close(served.url(), &["status of 4"]).await;
+}
+
+#[tokio::test]
+async fn the_last_bifurcation_is_shown_where_none_is_chosen_and_energies_are_drawn_over_the_path() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    let id = served.ended(&scene("klarbring")).await;
+    let page = served.get(&format!("/v1/jobs/{id}/increments")).await;
+    let increments = page["increments"].as_array().expect("a list");
+    let last = increments.iter().rfind(|line| line["point"]["bifurcation"] == true).expect("one");
+    browser.visit(&format!("{}/?jobs={id}", served.url())).await;
+    let told = browser.until("document.querySelector('#directions h2')?.textContent").await;
+    assert_eq!(told, format!("Directions at increment {}, the last bifurcation of the path", last["index"]));
+    // The energy that friction has taken, over the path.
+    browser.put("#ordinate", "/energy/dissipated").await;
+    browser.until(&format!("{PATH}.layout.yaxis.title.text === 'dissipated energy'")).await;
+    let drawn = browser.ask(&format!("{PATH}.data[0].y.filter((value) => value !== null)")).await;
+    let drawn: Vec<_> = drawn.as_array().expect("a list").iter().map(Value::as_f64).collect();
+    let stored: Vec<_> = increments.iter().map(|line| line["energy"]["dissipated"].as_f64()).collect();
+    assert_eq!(drawn, stored);
+    browser.until("location.search.includes('ordinate=%2Fenergy%2Fdissipated')").await;
+    browser.close(served.url(), &[]).await;
+}
+
+#[tokio::test]
+async fn structure_and_path_point_at_each_other_and_space_is_turned_by_dragging() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    let id = served.ended(&scene("curving-slip")).await;
+    browser.visit(&format!("{}/?jobs={id}", served.url())).await;
+    browser.until(&format!("{STRUCTURE}.data?.length > 3")).await;
+    let size = browser.ask(&format!("{MARK}.marker.size")).await.as_f64().expect("a number");
+    let (x, y) = browser.middle_of("#structure-plot").await;
+    browser.drag(&[(x - 2.0, y), (x, y)], false).await;
+    browser.until(&format!("{MARK}.marker.size > {size}")).await;
+    let places = format!("{STRUCTURE}.data.find(({{name}}) => name === 'node').x");
+    let before = browser.ask(&places).await;
+    browser.drag(&[(x, y), (x + 40.0, y + 10.0), (x + 80.0, y + 20.0)], true).await;
+    browser.until(&format!("{places}.join() !== '{}'", join(&before))).await;
+    assert_ne!(browser.ask("document.getElementById('azimuth').value").await, "-60", "the slider goes along");
+    browser.until("/[?&]turn=-?[0-9]+,[0-9]+/.test(location.search)").await;
+    // Over a point of the path its structure is shown.
+    let place = "(({left, top}, {_fullLayout: {xaxis, yaxis}, data: [line]}) => [left + xaxis._offset + xaxis.c2p(line.x[9]), \
+                 top + yaxis._offset + yaxis.c2p(line.y[9])])(document.getElementById('path-plot').getBoundingClientRect(), document.getElementById('path-plot'))";
+    browser.middle_of("#path-plot").await;
+    let found = browser.ask(place).await;
+    let (x, y) = (found[0].as_f64().expect("a number"), found[1].as_f64().expect("a number"));
+    browser.drag(&[(x - 3.0, y), (x, y)], false).await;
+    browser.until("/^Increment (8|9|10),/.test(document.querySelector('#structure .slider + p').textContent)").await;
+    browser.close(served.url(), &[]).await;
+}
+
+fn join(numbers: &Value) -> String {
+    let numbers = numbers.as_array().expect("a list").iter();
+    numbers
+        .map(|number| if number.is_null() { String::new() } else { number.to_string() })
+        .collect::<Vec<_>>()
+        .join(",")
+}
+
+#[tokio::test]
+async fn a_study_is_queued_listed_and_drawn() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    browser.visit(&format!("{}/?run&scene=von-mises-truss&as=study", served.url())).await;
+    browser.until("document.getElementById('setting-repeats') !== null").await;
+    browser.put("#setting-repeats", "1").await;
+    browser.put("#setting-arc_lengths", "0.2, 0.1").await;
+    browser
+        .until("document.getElementById('verdict').textContent.includes('arc length 0.2, 0.1, timed 1 times')")
+        .await;
+    browser.press("#queue").await;
+    browser.until("document.getElementById('study-status')?.textContent === 'completed'").await;
+    browser.until("document.getElementById('study-plot').layout?.xaxis.title.text === 'run time, s'").await;
+    let drawn = browser
+        .ask("document.getElementById('study-plot').data.map(({name, x, y}) => [name.split(',')[0], x, y])")
+        .await;
+    let id = served.get("/v1/studies").await["studies"][0]["id"].as_str().expect("an id").to_owned();
+    let study = served.get(&format!("/v1/studies/{id}")).await;
+    let rows = study["report"]["rows"].as_array().expect("rows");
+    for line in drawn.as_array().expect("lines") {
+        let own: Vec<&Value> =
+            rows.iter().filter(|row| row["method"] == line[0] && !row["path_error"].is_null()).collect();
+        let part =
+            |name: &str| Value::Array(own.iter().map(|row| row.pointer(name).expect("a value").clone()).collect());
+        assert!(own.len() == 2 && line[1] == part("/time/median_s"), "{line}");
+        assert_eq!(line[2], part("/path_error"));
+    }
+    assert_eq!(browser.ask("document.querySelectorAll('#study tbody tr').length").await, rows.len());
+    let link = browser.ask("document.querySelector('#lists a[aria-current]')?.getAttribute('href')").await;
+    assert_eq!(link, format!("/?study={id}"));
+    let address = browser.page.current_url().await.expect("an address").to_string();
+    assert!(address.contains(&id), "{address}");
+    browser.close(served.url(), &[]).await;
+}
+
+#[tokio::test]
+async fn every_built_in_scene_is_drawn() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    let scenes = served.get("/v1/scenes").await;
+    for summary in scenes["scenes"].as_array().expect("a list") {
+        let name = summary["name"].as_str().expect("a name");
+        let id = served.ended(&scene(name)).await;
+        browser.visit(&format!("{}/?jobs={id}", served.url())).await;
+        browser.until(&format!("{STRUCTURE}?.data?.some(({{name}}) => name === 'node')")).await;
+        let kept = served.get(&format!("/v1/jobs/{id}")).await["progress"]["increments"].clone();
+        assert_eq!(
+            browser.ask(&format!("{PATH}.data[0].customdata.filter(Number.isInteger).length")).await,
+            kept,
+            "{name}"
+        );
+        let has_number = "document.getElementById('stop').textContent.includes('increments. ')";
+        assert_eq!(browser.ask(has_number).await, true, "{name}");
+        assert_eq!(browser.ask("document.getElementById('notice').hidden").await, true, "{name}");
+    }
+    browser.close(served.url(), &[]).await;
+}
+
+#[tokio::test]
+async fn paths_drawn_together_are_told_apart_by_what_differs() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    let smooth = served.ended(&scene("one-bar-truss")).await;
+    let mut rough = scene("one-bar-truss");
+    rough["model"]["contacts"][0]["friction"] = json!(0.6);
+    rough["analysis"] = json!({"method": "mpec"});
+    let rough = served.ended(&rough).await;
+    browser.visit(&format!("{}/?jobs={smooth},{rough}", served.url())).await;
+    browser.until(&format!("{PATH}.data?.length >= 5")).await;
+    let key =
+        browser.ask("[...document.querySelectorAll('#path .legend li')].map(({textContent}) => textContent)").await;
+    assert_eq!(key[0], "one-bar truss, mu = 0.3, friction 0.3, method default");
+    assert_eq!(key[1], "one-bar truss, mu = 0.3, friction 0.6, method mpec");
+    // The name of a job shows that job alone.
+    browser.ask("document.querySelectorAll('#lists a')[0].click()").await;
+    browser.until(&format!("location.search === '?jobs={rough}'")).await;
+    browser.until(&format!("{PATH}.data.length < 5")).await;
+    browser.close(served.url(), &[]).await;
+}
