@@ -68,6 +68,29 @@ for scene in one-bar-truss three-snapping-bars; do
   "$target/release/arcslip" solve "$scene" --out /dev/null --plot "$work/$scene.svg" 2> /dev/null || test $? = 1
   cmp "$work/$scene.svg" "src/scenes/pictures/$scene.svg"
 done
+# A server and two workers on PostgreSQL: one of a folder of its own takes the place of the one that the commands mean.
+binaries=$(ls -d /usr/lib/postgresql/*/bin 2> /dev/null | sort -V | tail -1)
+if [ -z "$binaries" ]; then
+  [ "${ARCSLIP_POSTGRES:-}" != required ] || { echo "PostgreSQL is required and not there"; exit 1; }
+  echo "skipped: no PostgreSQL; the README's section on many machines is not shown"
+else
+  as=(); if [ "$(id -u)" = 0 ]; then as=(setpriv --reuid postgres --regid postgres --clear-groups); fi
+  mkdir -m 777 "$work/postgres"; chmod 755 "$work"
+  export PGHOST=localhost PGPORT=54329 PGUSER=administrator PATH="$(cd "$target/release" && pwd):$binaries:$PATH"
+  "${as[@]}" "$binaries/initdb" --auth=trust --username="$PGUSER" --no-sync -D "$work/postgres/data" > "$work/initdb.log"
+  "${as[@]}" "$binaries/postgres" -D "$work/postgres/data" -p "$PGPORT" -k "$work/postgres" > "$work/postgres.log" 2>&1 &
+  postgres=$!
+  trap 'kill -QUIT $postgres 2> /dev/null || true; kill %1 2> /dev/null || true; wait; rm -rf "$work"' EXIT
+  for _ in $(seq 1 100); do if "$binaries/pg_isready" -q; then break; fi; sleep 0.1; done
+  # What it leaves at work ends with the shell that began it, in good order.
+  { tail -n +2 "$(block 'createuser arcslip')"; echo 'kill $(jobs -p); wait'; } > "$work/script.sh"
+  (cd "$work" && bash -euo pipefail script.sh) > "$work/hosts" 2> "$work/hosts.log" ||
+    { cat "$work/hosts" "$work/hosts.log"; exit 1; }
+  grep -q '"status":"ready","workers":0' "$work/hosts"
+  test "$(tail -1 "$work/hosts")" = "$(arcslip solve klarbring 2> /dev/null | grep -c index)"
+  kill -INT $postgres; wait $postgres
+fi
+
 # A clean shutdown.
 kill -TERM %1
 wait %1

@@ -166,11 +166,11 @@ async fn a_database_that_crashes_and_comes_back_loses_nothing() {
     for _ in 0..3 {
         ids.push(submit(&client, &server.url, "/v1/jobs", &long()).await);
     }
-    for (reached, away) in [(200, 50), (1500, 1500)] {
+    for (reached, away) in [(200, 50), (1500, 6000)] {
         stored(&client, &server.url, &ids[0], reached).await;
         let begun = postgres.crash(Duration::from_millis(away));
         let answer = async {
-            tokio::time::sleep(Duration::from_millis(away / 2)).await;
+            tokio::time::sleep(Duration::from_millis(away / 10)).await;
             client.get(format!("{}/readyz", server.url)).send().await.expect("an answer").status()
         };
         let ((), ready) = tokio::join!(begun, answer);

@@ -226,7 +226,7 @@ async fn a_claim_brings_what_an_earlier_attempt_stored(database: Database) {
     stored.checkpoints = vec![checkpoint(1, "given up", true), checkpoint(2, "a", true)];
     store.append(&first.lease, &stored, MINUTE).await.expect("stored");
     // Between two rows that are recorded.
-    let between = Batch { lines: Vec::new(), checkpoints: vec![checkpoint(4, "b", false)], ..Batch::default() };
+    let between = Batch { checkpoints: vec![checkpoint(4, "b", false)], ..Batch::default() };
     assert_eq!(store.append(&first.lease, &between, Duration::from_millis(1)).await.expect("stored"), HELD);
     tokio::time::sleep(Duration::from_millis(20)).await;
     assert_eq!(store.reclaim_expired().await.expect("an answer"), 1);
@@ -272,7 +272,7 @@ async fn an_append_whose_answer_was_lost_is_repeated_and_stored_once(database: D
     for _ in 0..3 {
         assert_eq!(store.append(&lease, &again, MINUTE).await.expect("an answer"), HELD);
     }
-    let apart = Batch { lines: Vec::new(), checkpoints: vec![checkpoint(3, "b", false)], ..Batch::default() };
+    let apart = Batch { checkpoints: vec![checkpoint(3, "b", false)], ..Batch::default() };
     for _ in 0..2 {
         assert_eq!(store.append(&lease, &apart, MINUTE).await.expect("an answer"), HELD);
     }

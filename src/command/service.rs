@@ -58,8 +58,8 @@ impl Arguments {
     }
 
     pub async fn open(&self) -> Result<Arc<dyn Store>, Failure> {
-        let named = |error| Failure::Other(format!("--database {}: {error}", self.database));
-        store::open(self.database.clone()).await.map_err(named)
+        let database = &self.database;
+        store::open(database.clone()).await.map_err(|error| Failure::Other(format!("--database {database}: {error}")))
     }
 
     /// Begins the log with every setting in force.

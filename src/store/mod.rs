@@ -137,7 +137,7 @@ pub async fn back_up(file: &Path, copy: &Path) -> Result<()> {
 /// Opens (and creates, where it is a file, and migrates) the database there.
 ///
 /// # Errors
-/// [`StoreError::Open`], which says where and what would do, and no password.
+/// [`StoreError::Open`], which says what would do, and no password.
 pub async fn open(location: impl Into<Location>) -> Result<Arc<dyn Store>> {
     Ok(match location.into() {
         Location::File(file) => Arc::new(sqlite::SqliteEngine::open(&file).await?),

@@ -33,16 +33,16 @@ const PARAMETERS: [&str; 10] = [
 const SERVER_SETTINGS: [(&str, &str); 6] = [
     ("idle_in_transaction_session_timeout", "10s"),
     ("lock_timeout", "15s"),
-    ("statement_timeout", "60s"),
+    ("statement_timeout", "100s"),
     ("tcp_keepalives_idle", "10"),
     ("tcp_keepalives_interval", "5"),
     ("tcp_keepalives_count", "3"),
 ];
 
 /// # Errors
-/// A URL that is none; the error holds nothing of it that may be a password.
+/// A URL that is none; the error holds nothing of it, because that may be a password.
 pub(super) fn options(url: &Url) -> Result<PgConnectOptions> {
-    let bad = |why: String| StoreError::Open(format!("{url}: {why}").into());
+    let bad = |why: String| StoreError::Open(why.into());
     let text = url.with_password();
     let query = text.split_once('?').map_or("", |(_, query)| query);
     for name in query.split('&').filter_map(|pair| pair.split('=').next()).filter(|name| !name.is_empty()) {
@@ -73,15 +73,15 @@ pub(super) fn options(url: &Url) -> Result<PgConnectOptions> {
 }
 
 /// Makes the tables, or brings them up to what this program knows; one process after the other, whoever begins first.
-pub(super) async fn prepare(options: &PgConnectOptions, url: &Url) -> Result<()> {
-    let open = |error: sqlx::Error| StoreError::Open(format!("{url}: {error}").into());
+pub(super) async fn prepare(options: &PgConnectOptions) -> Result<()> {
+    let open = |error: sqlx::Error| StoreError::Open(Box::new(error));
     // A change of a large table may take its time, and others wait for it here.
     let patient = options.clone().options([("lock_timeout", "0"), ("statement_timeout", "0")]);
     let mut connection = timeout(TO_CONNECT, patient.connect())
         .await
-        .map_err(|_| StoreError::Open(format!("{url}: the server does not answer").into()))?
+        .map_err(|_| StoreError::Open("the server does not answer".into()))?
         .map_err(open)?;
-    let prepared = migrate(&mut connection).await.map_err(|why| StoreError::Open(format!("{url}: {why}").into()));
+    let prepared = migrate(&mut connection).await.map_err(StoreError::Open);
     // Closing lets go of the lock, however it ended.
     connection.close().await.map_err(open)?;
     prepared

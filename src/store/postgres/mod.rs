@@ -43,7 +43,7 @@ pub struct PostgresEngine {
 impl PostgresEngine {
     pub async fn open(url: &Url) -> Result<SqlStore<Self>> {
         let options = connect::options(url)?;
-        connect::prepare(&options, url).await?;
+        connect::prepare(&options).await?;
         let pool = PgPoolOptions::new()
             .max_connections(CONNECTIONS)
             .acquire_timeout(ACQUIRE_TIMEOUT)

@@ -75,15 +75,28 @@ impl<E: Engine> SqlStore<E> {
 
     /// A call that takes or begins something new.
     async fn begin<T>(&self, call: impl Future<Output = Result<T>>) -> Result<T> {
-        if self.damaged.load(Ordering::Relaxed) {
-            return Err(StoreError::Damaged("damage was met before; nothing is written".into()));
-        }
-        self.engine.allow()?;
+        self.allow()?;
         self.call(call).await
     }
 
+    fn allow(&self) -> Result<()> {
+        if self.damaged.load(Ordering::Relaxed) {
+            return Err(StoreError::Damaged("damage was met before; nothing is written".into()));
+        }
+        self.engine.allow()
+    }
+
     async fn call<T>(&self, call: impl Future<Output = Result<T>>) -> Result<T> {
-        let answer = match E::PATIENCE {
+        self.within(E::PATIENCE, call).await
+    }
+
+    /// A call that drops a job, which may have millions of rows.
+    async fn drop_rows<T>(&self, call: impl Future<Output = Result<T>>) -> Result<T> {
+        self.within(E::PATIENCE.map(|patience| 4 * patience), call).await
+    }
+
+    async fn within<T>(&self, patience: Option<Duration>, call: impl Future<Output = Result<T>>) -> Result<T> {
+        let answer = match patience {
             None => call.await,
             Some(patience) => timeout(patience, call).await.unwrap_or_else(|late| {
                 Err(StoreError::Unavailable(format!("no answer within {patience:?}: {late}").into()))
@@ -167,7 +180,7 @@ impl<E: Engine> Store for SqlStore<E> {
     }
 
     async fn delete(&self, id: Uuid) -> Result<bool> {
-        self.call(jobs::delete(&self.engine, id)).await
+        self.drop_rows(jobs::delete(&self.engine, id)).await
     }
 
     async fn claim(&self, worker: &str, lease: Duration) -> Result<Option<Claim>> {
@@ -202,7 +215,8 @@ impl<E: Engine> Store for SqlStore<E> {
     }
 
     async fn retire(&self, keep: Keep) -> Result<u64> {
-        self.begin(jobs::retire(&self.engine, keep)).await
+        self.allow()?;
+        self.drop_rows(jobs::retire(&self.engine, keep)).await
     }
 
     async fn shrink(&self) -> Result<bool> {
