@@ -106,9 +106,11 @@ fn a_file_of_settings_that_is_wrong_is_told_with_what_would_do() {
     for (lines, expected) in [
         ("worker = 3", "there is no setting `worker`; did you mean `workers`?"),
         ("config = \"other\"", "there is no setting `config`"),
-        ("workers = 0", "--workers"),
+        ("workers = 1025", "--workers"),
         ("workers = 1.5", "workers: found a float; a text, a whole number or true or false would do"),
         ("workers = [", "TOML"),
+        ("workers = [1, 2]", "workers: found a list; one value is expected"),
+        ("max-queued = []", "max-queued: found a list"),
         ("demo = \"perhaps\"", "--demo"),
     ] {
         std::fs::write(folder.path().join("arcslip.toml"), lines).expect("written");

@@ -7,7 +7,7 @@ use super::Failure;
 use crate::model::names::{quoted, suggestion_of_all};
 use crate::store::Location;
 use clap::parser::ValueSource;
-use clap::{ArgMatches, Command};
+use clap::{ArgAction, ArgMatches, Command};
 use std::path::{Path, PathBuf};
 
 /// The subcommands whose settings these are, and their flags that name the file, and a database, whose password is not told.
@@ -85,20 +85,22 @@ fn flags(command: &Command, service: &str) -> Vec<clap::Arg> {
 fn read(file: &Path, command: &Command) -> Result<Vec<Value>, String> {
     let text = std::fs::read_to_string(file).map_err(|error| error.to_string())?;
     let table: toml::Table = text.parse().map_err(|error: toml::de::Error| error.to_string())?;
-    let known: Vec<String> = SERVICES
+    // Each with whether it takes several values.
+    let known: Vec<(String, bool)> = SERVICES
         .iter()
         .flat_map(|service| flags(command, service))
-        .filter_map(|argument| argument.get_long().map(str::to_owned))
-        .filter(|name| name != CONFIG)
+        .filter_map(|flag| Some((flag.get_long()?.to_owned(), matches!(flag.get_action(), ArgAction::Append))))
+        .filter(|(name, _)| name != CONFIG)
         .collect();
     table
         .into_iter()
         .map(|(name, value)| {
-            if !known.contains(&name) {
-                let nearest = suggestion_of_all(&name, known.iter().map(String::as_str));
+            let Some((_, takes_several)) = known.iter().find(|(known, _)| *known == name) else {
+                let nearest = suggestion_of_all(&name, known.iter().map(|(name, _)| name.as_str()));
                 return Err(format!("there is no setting {}{nearest}", quoted(&name)));
-            }
+            };
             let values = match value {
+                toml::Value::Array(_) if !takes_several => Err(format!("{name}: found a list; one value is expected")),
                 toml::Value::Array(values) => values.into_iter().map(|value| plain(&name, value)).collect(),
                 value => plain(&name, value).map(|value| vec![value]),
             };
