@@ -162,6 +162,30 @@ async fn a_study_is_queued_listed_and_drawn() {
 }
 
 #[tokio::test]
+async fn a_sweep_is_queued_listed_and_drawn_and_its_paths_over_one_another() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    browser.visit(&format!("{}/?run&scene=one-bar-truss&as=sweep", served.url())).await;
+    browser.until("document.getElementById('verdict').textContent.includes('5 paths, each a job of its own')").await;
+    browser.press("#queue").await;
+    browser.until("document.getElementById('sweep-status')?.textContent === 'completed'").await;
+    browser.until("document.getElementById('sweep-plot').data?.[0].x.length === 5").await;
+    let drawn = browser.ask("document.getElementById('sweep-plot').data.map(({x, y}) => [x, y])").await;
+    let id = served.get("/v1/sweeps").await["sweeps"][0]["id"].as_str().expect("an id").to_owned();
+    let rows = served.get(&format!("/v1/sweeps/{id}/rows")).await;
+    let mut rows: Vec<&Value> = rows["rows"].as_array().expect("rows").iter().collect();
+    rows.sort_by_key(|row| row["run"].as_u64());
+    let part = |name: &str| Value::Array(rows.iter().map(|row| row.pointer(name).expect("a value").clone()).collect());
+    assert_eq!(drawn, json!([[part("/values/0"), part("/first_limit/load_factor")]]));
+    assert_eq!(browser.ask("document.querySelectorAll('#sweep tbody tr').length").await, 5);
+    let link = browser.ask("document.querySelector('#lists a[aria-current]')?.getAttribute('href')").await;
+    assert_eq!(link, format!("/?sweep={id}"));
+    browser.press("#overlay").await;
+    browser.until("document.querySelectorAll('#lists input:checked').length === 5").await;
+    browser.close(served.url(), &[]).await;
+}
+
+#[tokio::test]
 async fn every_built_in_scene_is_drawn() {
     let Some(browser) = Browser::open().await else { return };
     let served = Served::start();

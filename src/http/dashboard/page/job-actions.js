@@ -1,4 +1,4 @@
-// What can be done with a job or a study: cancel, delete, download, run again.
+// What can be done with a job, a study or a sweep: cancel, delete, download, run again.
 
 import { call } from "./api.js";
 import { askingButton, button, element } from "./dom.js";
@@ -36,6 +36,22 @@ export function studyActions(study, done, failed) {
     askingButton("Delete", `Delete the study “${study.name}” and all that it has found?`, then(async () => {
       await call(`/v1/studies/${id}`, { method: "DELETE" });
       change({ study: null });
+    }), { class: "danger", id: "delete" }));
+}
+
+export function sweepActions(sweep, hasFound, done, failed) {
+  const { id } = sweep;
+  const then = doing(done, failed);
+  return element("div", { class: "actions" },
+    isGoingOn(sweep) ? button("Cancel", then(() => call(`/v1/sweeps/${id}/cancel`, { method: "POST" }))) : null,
+    hasFound ? [
+      button("Table (csv)", then(() => download(`/v1/sweeps/${id}/table.csv`, `sweep-${id}.csv`))),
+      button("Table (text)", then(() => download(`/v1/sweeps/${id}/table.txt`, `sweep-${id}.txt`))),
+      button("Picture (svg)", then(() => download(`/v1/sweeps/${id}/picture.svg`, `sweep-${id}.svg`))),
+    ] : [],
+    askingButton("Delete", `Delete the sweep “${sweep.name}” and all its jobs?`, then(async () => {
+      await call(`/v1/sweeps/${id}`, { method: "DELETE" });
+      change({ sweep: null });
     }), { class: "danger", id: "delete" }));
 }
 

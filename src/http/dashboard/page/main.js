@@ -1,4 +1,4 @@
-// Starts the page, and shows what the state says: a form, a study, or jobs.
+// Starts the page, and shows what the state says: a form, a study, a sweep, or jobs.
 
 import { callsList } from "./calls-list.js";
 import { button, byId, element, fill } from "./dom.js";
@@ -6,8 +6,9 @@ import { JobView } from "./job-view.js";
 import { onThemeChange } from "./plot-style.js";
 import { plotlyLoaded, warmPlotlyUp } from "./plotly-loaded.js";
 import { RunForm } from "./run-form.js";
-import { change, isSameView, onChange, openJob, openStudy, state } from "./state.js";
+import { change, isSameView, onChange, openJob, openStudy, openSweep, state } from "./state.js";
 import { StudyView } from "./study-view.js";
+import { SweepView } from "./sweep-view.js";
 import { TaskLists } from "./task-lists.js";
 import { tokenPrompt } from "./token-prompt.js";
 
@@ -19,7 +20,7 @@ function say(words, again) {
 }
 
 function connection() {
-  const isLost = !jobView.isConnected || !studyView.isConnected;
+  const isLost = [jobView, studyView, sweepView].some((one) => !one.isConnected);
   const place = byId("connection");
   place.textContent = isLost ? "Disconnected; trying again …" : "";
   place.classList.toggle("bad", isLost);
@@ -29,12 +30,13 @@ tokenPrompt(byId("token"));
 const lists = new TaskLists(byId("lists"));
 const changed = () => lists.load();
 const jobView = new JobView({ said: say, changed, connection });
-const studyView = new StudyView(byId("study"), {
-  failed: (problem) => say(problem.message), shown: () => say(""), changed, connection,
-});
+const told = { failed: (problem) => say(problem.message), shown: () => say(""), changed, connection };
+const studyView = new StudyView(byId("study"), told);
+const sweepView = new SweepView(byId("sweep"), told);
 const runForm = new RunForm(byId("run"), {
   queued: (job) => { changed(); openJob(job.id); },
   queuedStudy: (study) => { changed(); openStudy(study.id); },
+  queuedSweep: (sweep) => { changed(); openSweep(sweep.id); },
 });
 callsList(byId("calls"));
 
@@ -44,8 +46,9 @@ function view(before) {
   if (before) lists.changed(before);
   if (!before || before.run !== now.run || before.scene !== now.scene || before.as !== now.as) runForm.show();
   if (isOther) {
-    say(now.run || now.jobs.length ? "" : now.study ? "Loading …" : "Choose a job, or start one with New run.");
+    say(now.run || now.jobs.length ? "" : now.study || now.sweep ? "Loading …" : "Choose a job, or start one with New run.");
     studyView.show(now.run ? null : now.study);
+    sweepView.show(now.run ? null : now.sweep);
     jobView.view();
     connection();
   } else if (before.abscissa !== now.abscissa || before.ordinate !== now.ordinate) {
@@ -56,7 +59,7 @@ function view(before) {
 }
 
 onChange(view);
-onThemeChange(() => { jobView.draw(); studyView.draw(); });
+onThemeChange(() => { jobView.draw(); studyView.draw(); sweepView.draw(); });
 byId("open-run").addEventListener("click", () => change({ run: true }));
 addEventListener("keydown", (event) => {
   if (event.target.matches("input, textarea, select") || event.ctrlKey || event.metaKey || event.altKey) return;
@@ -65,5 +68,5 @@ addEventListener("keydown", (event) => {
 });
 view(null);
 // Where there is something to be drawn already, that is what goes first.
-const ready = state().jobs.length || state().study ? plotlyLoaded : warmPlotlyUp;
+const ready = state().jobs.length || state().study || state().sweep ? plotlyLoaded : warmPlotlyUp;
 ready().catch((problem) => say(problem.message));

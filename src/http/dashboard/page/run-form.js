@@ -13,12 +13,17 @@ import { plainWords, settingsSentences } from "./words.js";
 const PAUSE = 400;
 /** Settings that are shown at once. */
 const FIRST = ["method", "selection", "events", "max_increments", "arc_length"];
-const KINDS = [["", "one path"], ["study", "a study: error against run time"]];
+const KINDS = [
+  ["", "one path"], ["study", "a study: error against run time"], ["sweep", "a sweep: limit loads against what is varied"],
+];
+const PLACES = { "": "/v1/jobs", study: "/v1/studies", sweep: "/v1/sweeps" };
+/** What is put into a text that is to be a sweep and says nothing of it yet. */
+const FIRST_SWEEP = { replace: { "/model/contacts/0/friction": [0.1, 0.2, 0.3, 0.4, 0.5] } };
 /** Lines above a mistake that stay in sight. */
 const ABOVE = 4;
 
 export class RunForm {
-  /** Tells `queued(job)` and `queuedStudy(study)`. */
+  /** Tells `queued(job)`, `queuedStudy(study)` and `queuedSweep(sweep)`. */
   constructor(panel, told) {
     this.panel = panel;
     this.told = told;
@@ -58,6 +63,10 @@ export class RunForm {
     return state().as === "study";
   }
 
+  get isSweep() {
+    return state().as === "sweep";
+  }
+
   async show() {
     this.panel.hidden = !state().run;
     if (this.panel.hidden) return;
@@ -81,6 +90,7 @@ export class RunForm {
         this.text.value = await (await call(place)).text();
         this.scene = wanted;
       }
+      this.sweepOrNot();
       this.edited();
     } catch (problem) {
       fill(this.verdict, element("p", { class: "bad", role: "alert" }, problem.message),
@@ -108,6 +118,23 @@ export class RunForm {
     this.edited();
   }
 
+  /** A sweep has a member of its own, which nothing else takes. */
+  sweepOrNot() {
+    let request = null;
+    try {
+      request = JSON.parse(this.text.value);
+    } catch {
+      return;
+    }
+    if (request === null || typeof request !== "object" || this.isSweep === "sweep" in request) return;
+    if (this.isSweep) {
+      this.text.value = withMember(this.text.value, "sweep", FIRST_SWEEP);
+    } else {
+      delete request.sweep;
+      this.text.value = JSON.stringify(request, null, 2);
+    }
+  }
+
   async take([file]) {
     if (!file) return;
     this.text.value = await file.text();
@@ -116,7 +143,7 @@ export class RunForm {
 
   edited() {
     this.button.disabled = true;
-    this.button.textContent = this.isStudy ? "Run the study" : "Run";
+    this.button.textContent = this.isStudy ? "Run the study" : this.isSweep ? "Run the sweep" : "Run";
     this.number(new Map());
     let request = null;
     try {
@@ -141,16 +168,21 @@ export class RunForm {
   }
 
   get place() {
-    return this.isStudy ? "/v1/studies" : "/v1/jobs";
+    return PLACES[state().as];
   }
 
   async check() {
     const asked = ++this.asked;
     const text = this.text.value;
-    const { isStudy } = this;
+    const { isStudy, isSweep } = this;
     try {
       const [plan, defaults] = await Promise.all([post(`${this.place}?validate=true`, text), analysisDefaults()]);
       if (asked !== this.asked) return;
+      if (isSweep) {
+        fill(this.verdict, element("h3", {}, "Plan"), element("p", {}, `${plan.runs} paths, each a job of its own.`));
+        this.button.disabled = false;
+        return;
+      }
       const scene = isStudy ? plan.scene : plan;
       const sentences = settingsSentences(JSON.parse(text), scene, defaults);
       fill(this.verdict, element("h3", {}, "Plan"), element("ul", { class: "plan" },
@@ -177,7 +209,7 @@ export class RunForm {
 
   async queue() {
     this.button.disabled = true;
-    const tell = this.isStudy ? this.told.queuedStudy : this.told.queued;
+    const tell = this.isStudy ? this.told.queuedStudy : this.isSweep ? this.told.queuedSweep : this.told.queued;
     try {
       tell(await post(this.place, this.text.value));
     } catch (problem) {

@@ -1,13 +1,13 @@
 // Everything that says which view is shown, in one place and in the address, so that a view can be sent.
 //
-// jobs: ids drawn in the path plot; the first is the one whose structure and figures are shown. study: the id of a study that
+// jobs: ids drawn in the path plot; the first is the one whose structure and figures are shown. study, sweep: the id of one that
 // is shown in their place. abscissa and ordinate: a member of the increments or a JSON Pointer to one; null for the job's own
 // choice. at: the chosen increment, null for the last. turn: azimuth and elevation (degrees) from which a structure in space
 // is seen, null for the usual ones. figures: the diagnostics are open. status: the lists' filter. run: the form for a new run is
-// open; scene: what is in it; as: "study" where it queues one.
+// open; scene: what is in it; as: "study" or "sweep" where it queues one.
 
 const EMPTY = {
-  jobs: [], study: null, abscissa: null, ordinate: null, at: null, turn: null, figures: false, status: "", run: false, scene: "",
+  jobs: [], study: null, sweep: null, abscissa: null, ordinate: null, at: null, turn: null, figures: false, status: "", run: false, scene: "",
   as: "",
 };
 /** Milliseconds between changes of the address that are no steps: browsers take no more of them than so many. */
@@ -18,10 +18,11 @@ const listeners = new Set();
 function ofAddress() {
   const given = new URLSearchParams(location.search);
   const at = Number.parseInt(given.get("at") ?? "", 10);
-  const study = given.get("study") ?? "";
+  const idOf = (name) => (ID.test(given.get(name) ?? "") ? given.get(name) : null);
   return {
     jobs: (given.get("jobs") ?? "").split(",").filter((id) => ID.test(id)),
-    study: ID.test(study) ? study : null,
+    study: idOf("study"),
+    sweep: idOf("sweep"),
     abscissa: given.get("abscissa"),
     ordinate: given.get("ordinate"),
     at: Number.isSafeInteger(at) && at >= 0 ? at : null,
@@ -30,7 +31,7 @@ function ofAddress() {
     status: given.get("status") ?? "",
     run: given.has("run"),
     scene: given.get("scene") ?? "",
-    as: given.get("as") === "study" ? "study" : "",
+    as: ["study", "sweep"].find((kind) => kind === given.get("as")) ?? "",
   };
 }
 
@@ -42,6 +43,7 @@ function angles(text) {
 function address(state) {
   const parts = [];
   if (state.study) parts.push(`study=${state.study}`);
+  if (state.sweep) parts.push(`sweep=${state.sweep}`);
   if (state.jobs.length) parts.push(`jobs=${state.jobs.join(",")}`);
   if (state.abscissa) parts.push(`abscissa=${encodeURIComponent(state.abscissa)}`);
   if (state.ordinate) parts.push(`ordinate=${encodeURIComponent(state.ordinate)}`);
@@ -73,7 +75,7 @@ function write() {
 
 export const state = () => now;
 /** Whether both show the same, their form, filter and chosen point aside. */
-export const isSameView = (a, b) => a.jobs.join() === b.jobs.join() && a.run === b.run && a.study === b.study;
+export const isSameView = (a, b) => a.jobs.join() === b.jobs.join() && a.run === b.run && a.study === b.study && a.sweep === b.sweep;
 
 /** Changes the view; listeners get the view before. Another job or form is a step to go back from, an increment is not. */
 export function change(changes) {
@@ -89,17 +91,24 @@ export function change(changes) {
   for (const listener of listeners) listener(before);
 }
 
-/** Shows one job alone. */
-export function openJob(id) {
-  change({ jobs: [id], study: null, at: null, abscissa: null, ordinate: null, run: false });
+/** Shows these jobs and nothing else. */
+export function openJobs(jobs) {
+  change({ jobs, study: null, sweep: null, at: null, abscissa: null, ordinate: null, run: false });
 }
 
+export const openJob = (id) => openJobs([id]);
+
 export function openStudy(id) {
-  change({ jobs: [], study: id, at: null, run: false });
+  change({ jobs: [], study: id, sweep: null, at: null, run: false });
+}
+
+export function openSweep(id) {
+  change({ jobs: [], study: null, sweep: id, at: null, run: false });
 }
 
 export const addressOfJob = (...ids) => `/?jobs=${ids.join(",")}`;
 export const addressOfStudy = (id) => `/?study=${id}`;
+export const addressOfSweep = (id) => `/?sweep=${id}`;
 
 export function onChange(listener) {
   listeners.add(listener);

@@ -1,4 +1,4 @@
-// Follows a job or a study over server-sent events read by fetch (an EventSource sends no token): resumes after the last
+// Follows a job, a study or a sweep over server-sent events read by fetch (an EventSource sends no token): resumes after the last
 // index that came, without gap or repeat, whatever ends the connection.
 
 import { call, Problem } from "./api.js";
@@ -9,7 +9,7 @@ const LATEST = 8000;
 const SILENCE = 40000;
 
 /**
- * `place`: of the job or study. `after`: the last index that is held, or null. Tells `come(list)` of increments or rows,
+ * `place`: of the job, study or sweep. `after`: the last index that is held, or null. Tells `come(list)` of increments or rows,
  * `end(job)`, `deleted()`, `connected(yes)`. Answers a function that gives the stream up.
  */
 export function follow(place, after, { come, end, deleted, connected }) {
@@ -45,11 +45,11 @@ export function follow(place, after, { come, end, deleted, connected }) {
   }
 
   function take(events) {
-    const found = events.filter(({ event }) => event === "increment" || event === "row").map(({ data }) => JSON.parse(data))
-      .filter(({ index }) => last === null || index > last);
+    const found = events.filter(({ event }) => event === "increment" || event === "row")
+      .filter(({ id }) => last === null || Number(id) > last);
     if (found.length) {
-      last = found.at(-1).index;
-      come(found);
+      last = Number(found.at(-1).id);
+      come(found.map(({ data }) => JSON.parse(data)));
     }
     const closing = events.find(({ event }) => event === "end" || event === "deleted");
     if (!closing) return;
@@ -79,7 +79,7 @@ export function follow(place, after, { come, end, deleted, connected }) {
 }
 
 function read(text) {
-  const found = { event: "", data: "" };
+  const found = { event: "", id: "", data: "" };
   for (const line of text.split("\n")) {
     const colon = line.indexOf(":");
     const name = line.slice(0, colon);

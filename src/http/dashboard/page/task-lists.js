@@ -1,7 +1,9 @@
-// The lists of jobs and of studies beside the view: progress, filter, which paths are drawn together.
+// The lists of jobs, of studies and of sweeps beside the view: progress, filter, which paths are drawn together.
 
 import { choice, element, fill } from "./dom.js";
-import { addressOfJob, addressOfStudy, change, isSameView, openJob, openStudy, state } from "./state.js";
+import {
+  addressOfJob, addressOfStudy, addressOfSweep, change, isSameView, openJob, openStudy, openSweep, state,
+} from "./state.js";
 import { TaskList } from "./task-list.js";
 import { ago, isGoingOn } from "./words.js";
 
@@ -17,16 +19,21 @@ export class TaskLists {
       title: "Studies", of: "studies", row: studyRow,
       empty: (status) => (status ? `No study is ${status}.` : "None yet: a new run can be a study, too."),
     });
+    this.sweeps = new TaskList({
+      title: "Sweeps", of: "sweeps", row: sweepRow,
+      empty: (status) => (status ? `No sweep is ${status}.` : "None yet: a new run can be a sweep, too."),
+    });
+    this.lists = [this.jobs, this.studies, this.sweeps];
     this.filter = element("label", {}, "Show ");
     fill(place, element("div", { class: "bar" }, element("h2", {}, "Jobs"), this.filter), this.jobs.place,
-      element("h2", { class: "second" }, "Studies"), this.studies.place);
+      element("h2", { class: "second" }, "Studies"), this.studies.place,
+      element("h2", { class: "second" }, "Sweeps"), this.sweeps.place);
     this.drawFilter();
     this.load();
   }
 
   load() {
-    this.jobs.load();
-    this.studies.load();
+    for (const list of this.lists) list.load();
   }
 
   /** The view has changed. */
@@ -36,8 +43,7 @@ export class TaskLists {
       this.drawFilter();
       this.load();
     } else if (!isSameView(before, state())) {
-      this.jobs.draw();
-      this.studies.draw();
+      for (const list of this.lists) list.draw();
     }
   }
 
@@ -67,20 +73,20 @@ function row(task, isChosen, before, link, told, done, most) {
 }
 
 function jobRow(job) {
-  const { jobs: shown, study } = state();
-  const place = study ? -1 : shown.indexOf(job.id);
+  const { jobs: shown, study, sweep } = state();
+  const place = study || sweep ? -1 : shown.indexOf(job.id);
   const { increments, max_increments: most } = job.progress;
   const others = shown.filter((id) => id !== job.id);
   const draw = element("input", {
     type: "checkbox", checked: place >= 0, "data-key": `draw ${job.id}`, "aria-label": `draw ${job.name} with the others`,
     title: "draw with the others",
     onchange: (event) => change({
-      jobs: event.target.checked ? [...others, job.id] : others, run: false, study: null, ...(place === 0 ? { at: null } : {}),
+      jobs: event.target.checked ? [...others, job.id] : others, run: false, study: null, sweep: null, ...(place === 0 ? { at: null } : {}),
     }),
   });
   const link = within(addressOfJob(job.id), () => openJob(job.id),
     { "data-key": `open ${job.id}`, "aria-current": place === 0 ? "true" : null }, job.name);
-  const told = `${increments} increments, ${ago(job.created_at)}${job.parent ? ", a branch" : ""}`;
+  const told = `${increments} increments, ${ago(job.created_at)}${job.parent ? ", a branch" : ""}${job.sweep ? `, run ${job.sweep.run} of a sweep` : ""}`;
   return row(job, place === 0, draw, link, told, increments, most);
 }
 
@@ -90,4 +96,12 @@ function studyRow(study) {
   const link = within(addressOfStudy(study.id), () => openStudy(study.id),
     { "data-key": `open ${study.id}`, "aria-current": isChosen ? "true" : null }, study.name);
   return row(study, isChosen, element("span", {}), link, `${runs} of ${of} paths, ${ago(study.created_at)}`, runs, of);
+}
+
+function sweepRow(sweep) {
+  const isChosen = state().sweep === sweep.id;
+  const { ended, of } = sweep.progress;
+  const link = within(addressOfSweep(sweep.id), () => openSweep(sweep.id),
+    { "data-key": `open ${sweep.id}`, "aria-current": isChosen ? "true" : null }, sweep.name ?? "sweep");
+  return row(sweep, isChosen, element("span", {}), link, `${ended} of ${of} runs, ${ago(sweep.created_at)}`, ended, of);
 }
