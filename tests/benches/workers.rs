@@ -19,19 +19,18 @@ mod reader;
 #[path = "../common/service.rs"]
 mod service;
 
-use arcslip::store::{self, Batch, Ending, Line, Location, NewJob, Status, Store, Task};
+use arcslip::store::{self, Batch, Ending, Line, Location, NewJob, Status, Task};
 use load::{are_whole, listed, queue, worked_off};
 use postgres::Postgres;
 use process::{Process, client, has_ended, solved, submit, until};
 use serde_json::Value;
 use service::scene;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 const WORKERS: [usize; 3] = [1, 2, 4];
 const CLIENTS: usize = 16;
 /// Jobs that come one by one while nobody is busy.
-const ALONE: usize = 100;
+const ALONE: usize = 40;
 /// Lines of one append: as the first of a job come, as those of a fast path do, and as many as go together.
 const BATCHES: [usize; 3] = [1, 20, 2000];
 const REPEATS: usize = 40;
@@ -156,16 +155,12 @@ async fn calls(location: Location) -> Vec<(String, Duration)> {
         store.finish(&lease, ending).await.expect("an answer");
         note("finish", began.elapsed());
     }
-    close(store).await;
+    store.close().await;
     let median = |mut times: Vec<Duration>| {
         times.sort_unstable();
         times[times.len() / 2]
     };
     times.into_iter().map(|(call, times)| (call, median(times))).collect()
-}
-
-async fn close(store: Arc<dyn Store>) {
-    store.close().await;
 }
 
 fn lines_from(first: u64, count: usize, body: &str) -> Vec<Line> {

@@ -2,7 +2,7 @@
 
 use super::postgres;
 use super::service::request;
-use arcslip::store::{self, Batch, Line, Location, NewJob, Store, Submitted, Task};
+use arcslip::store::{self, Batch, JobRecord, Line, Location, NewJob, Store, Submitted, Task};
 use sqlx::ConnectOptions;
 use sqlx::postgres::PgConnectOptions;
 use sqlx::sqlite::SqliteConnectOptions;
@@ -93,6 +93,10 @@ pub async fn queued(store: &dyn Store, job: NewJob) -> Uuid {
         Submitted::Created(job) => job.id,
         other => panic!("{other:?}"),
     }
+}
+
+pub async fn found(store: &dyn Store, id: Uuid) -> JobRecord {
+    store.job(id).await.expect("an answer").expect("a job")
 }
 
 pub fn line(index: u64, body: &str) -> Line {

@@ -64,7 +64,7 @@ fn command(program: &Path) -> Command {
 }
 
 impl Postgres {
-    /// `None`, having said so: there are no binaries.
+    /// `synced`: every commit is on the disk before it is told. `None`, having said so: there are no binaries.
     pub fn start(synced: bool) -> Option<Self> {
         let Some(binaries) = binaries() else {
             let required = std::env::var("ARCSLIP_POSTGRES").is_ok_and(|value| value == "required");
@@ -76,8 +76,9 @@ impl Postgres {
         std::fs::set_permissions(&folder, std::fs::Permissions::from_mode(0o777)).expect("permissions");
         let data = folder.join("data");
         let made = command(&binaries.join("initdb"))
-            .args(["--auth=trust", "--username=arcslip", "--encoding=UTF8", "--no-locale", "--no-sync", "-D"])
+            .args(["--auth=trust", "--username=arcslip", "--encoding=UTF8", "--no-locale", "-D"])
             .arg(&data)
+            .args((!synced).then_some("--no-sync"))
             .output()
             .expect("initdb runs");
         assert!(made.status.success(), "{made:?}");
