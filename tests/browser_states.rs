@@ -57,6 +57,49 @@ async fn what_cannot_be_shown_says_so_and_is_tried_again() {
 }
 
 #[tokio::test]
+async fn what_is_not_recorded_is_not_drawn_as_if_it_were() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    let mut request = scene("three-snapping-bars");
+    request["analysis"]["record"] = json!({"nodes": ["tip2"], "contacts": [], "every": 10});
+    let id = served.ended(&request).await;
+    browser.visit(&format!("{}/?jobs={id}", served.url())).await;
+    browser.until("document.getElementById('structure').textContent.includes('nodes 1 are recorded')").await;
+    let bars = "document.getElementById('structure-plot').data.filter(({name}) => name.startsWith('bar '))";
+    let words = browser.ask(&format!("{bars}.flatMap(({{text}}) => text).filter(Boolean)")).await;
+    for words in words.as_array().expect("a list").iter().filter_map(Value::as_str) {
+        assert!(!words.contains("tip0") && !words.contains("tip1"), "{words}");
+    }
+    // One that is gone does not hide the other, whichever stands first.
+    let gone = "00000000-0000-7000-8000-000000000000";
+    for shared in [format!("{gone},{id}"), format!("{id},{gone}")] {
+        browser.visit(&format!("{}/?jobs={shared}", served.url())).await;
+        browser.until("document.getElementById('notice').textContent.includes('Not all jobs can be shown')").await;
+        browser.until(&format!("{STATUS} !== undefined && !document.getElementById('job').hidden")).await;
+    }
+    browser.close(served.url(), &["status of 404"]).await;
+}
+
+#[tokio::test]
+async fn a_text_of_very_many_lines_is_checked_and_run() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    browser.visit(&format!("{}/?run&scene=klarbring", served.url())).await;
+    browser.until("document.getElementById('queue')?.disabled === false").await;
+    browser
+        .ask(
+            "(() => { const text = document.getElementById('request'); text.value = '\\n'.repeat(150000) + text.value; \
+              text.dispatchEvent(new Event('input')); })()",
+        )
+        .await;
+    browser.until("document.getElementById('queue').disabled").await;
+    browser.until("document.getElementById('queue').disabled === false").await;
+    browser.press("#queue").await;
+    browser.until(&format!("{STATUS} === 'completed'")).await;
+    browser.close(served.url(), &[]).await;
+}
+
+#[tokio::test]
 async fn a_job_is_deleted_after_a_question_and_by_the_keyboard_alone() {
     let Some(browser) = Browser::open().await else { return };
     let served = Served::start();

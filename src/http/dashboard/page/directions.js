@@ -22,7 +22,8 @@ export class Directions {
     try {
       increment = index === null ? null : await path.increment(index);
     } catch {
-      // What cannot be fetched is told of where the structure is drawn.
+      // What cannot be fetched is told of where the structure is drawn; the next choice asks again.
+      this.shown = "";
       this.panel.hidden = true;
       return;
     }

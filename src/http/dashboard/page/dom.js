@@ -10,7 +10,7 @@ export function element(name, attributes = {}, ...children) {
     else if (value === true) made.setAttribute(key, "");
     else if (value !== false && value !== null && value !== undefined) made.setAttribute(key, value);
   }
-  made.append(...children.flat().filter(isThere));
+  for (const child of children.flat().filter(isThere)) made.append(child);
   return made;
 }
 
@@ -19,7 +19,9 @@ export const byId = (id) => document.getElementById(id);
 /** Puts children in the place of those there were; what has focus and a `data-key` has it again in the new ones. */
 export function fill(parent, ...children) {
   const focused = parent.contains(document.activeElement) ? document.activeElement.dataset.key : undefined;
-  parent.replaceChildren(...children.flat().filter(isThere));
+  const fresh = document.createDocumentFragment();
+  for (const child of children.flat().filter(isThere)) fresh.append(child);
+  parent.replaceChildren(fresh);
   if (focused !== undefined) parent.querySelector(`[data-key="${CSS.escape(focused)}"]`)?.focus();
 }
 

@@ -9,10 +9,10 @@ const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a
 
 export const vector = { plus, times, dot, length, unit, cross };
 
-/** Node name to place; nodes that are not recorded stay where they are. */
+/** Node name to place, of the nodes that are recorded. */
 export function places(model, increment) {
-  return new Map(Object.entries(model.nodes).map(([name, place]) =>
-    [name, plus(place, increment?.displacements[name] ?? [])]));
+  return new Map(Object.entries(model.nodes).filter(([name]) => increment.displacements[name])
+    .map(([name, place]) => [name, plus(place, increment.displacements[name])]));
 }
 
 /** How far each obstacle has moved: what earlier stages reached, and the running one's pattern times its load factor. */

@@ -76,13 +76,20 @@ export class JobView {
 
   /** The view has changed in more than the chosen increment. */
   view() {
+    this.structure.rest();
     this.hold();
     this.draw();
     if (this.isWanted && !this.first) this.prepare();
   }
 
+  /** The page's colours have changed. */
+  repaint() {
+    this.structure.repaint();
+    return this.draw();
+  }
+
   get isWanted() {
-    return state().jobs.length > 0 && !state().run && state().study === null;
+    return state().jobs.length > 0 && !state().run && state().study === null && state().sweep === null;
   }
 
   /** The place of a path while that is on its way. */
@@ -139,6 +146,13 @@ export class JobView {
         if (isGivenUp(problem)) return;
         path.close();
         this.held.delete(id);
+        const others = state().jobs.filter((other) => other !== id);
+        if (problem.status === 404 && others.length > 0) {
+          // Those that are there are shown.
+          this.missing = `Not all jobs can be shown: ${problem.message}`;
+          change({ jobs: others });
+          return;
+        }
         byId("job").hidden = true;
         this.told.said(`The job cannot be shown: ${problem.message}`, () => this.view());
       });
@@ -174,7 +188,8 @@ export class JobView {
       return;
     }
     if (this.first !== first) return;
-    this.told.said("");
+    this.told.said(this.missing ?? "");
+    this.missing = null;
     await this.pathPlot.draw(shown, axes, state().at);
     measureFirstPath();
     // Each in a frame of its own: the page answers between them.

@@ -17,6 +17,7 @@ function say(words, again) {
   const place = byId("notice");
   place.hidden = !words;
   fill(place, element("p", {}, words), again ? button("Try again", () => { say("Loading …"); again(); }) : null);
+  if (words) place.scrollIntoView({ block: "nearest" });
 }
 
 function connection() {
@@ -59,7 +60,7 @@ function view(before) {
 }
 
 onChange(view);
-onThemeChange(() => { jobView.draw(); studyView.draw(); sweepView.draw(); });
+onThemeChange(() => { jobView.repaint(); studyView.draw(); sweepView.draw(); });
 byId("open-run").addEventListener("click", () => change({ run: true }));
 addEventListener("keydown", (event) => {
   if (event.target.matches("input, textarea, select") || event.ctrlKey || event.metaKey || event.altKey) return;

@@ -57,7 +57,12 @@ export class PathData {
     this.stop = follow(place, this.index.at(-1) ?? null, {
       come: (increments) => this.take(increments),
       end: (job) => { this.job = job; this.told("ended", this); },
-      deleted: () => { this.problem = "This job has been deleted."; this.told("ended", this); },
+      deleted: () => {
+        this.problem = "This job has been deleted.";
+        this.job = { ...this.job, status: "deleted" };
+        this.isConnected = true;
+        this.told("ended", this);
+      },
       connected: (yes) => { this.isConnected = yes; this.told("connection", this); },
     });
   }

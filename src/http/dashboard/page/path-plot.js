@@ -5,7 +5,7 @@ import { choice, element, fill } from "./dom.js";
 import { ORDINATES } from "./path-data.js";
 import { axis, colourOf, CONFIGURATION, fromSheet, layout } from "./plot-style.js";
 import { named } from "./points.js";
-import { differences, pointWords, short } from "./words.js";
+import { differences, pointWords, short, verbatim } from "./words.js";
 
 /** Markers at every increment up to so many. */
 const MARKED = 400;
@@ -121,7 +121,7 @@ export class PathPlot {
       x: places.map((place) => abscissa[place]), y: places.map((place) => ordinate[place]),
       text: found.map(({ name }) => name), customdata: found.map(({ index }) => index),
       meta: found.map(({ kind }) => kind), type: "scatter", mode: "markers+text", textposition: "top center",
-      hovertext: found.map((point) => `${point.name}: ${pointWords(point)}${point.event ? `, ${point.event}` : ""}`),
+      hovertext: found.map((point) => `${point.name}: ${pointWords(point)}${point.event ? `, ${verbatim(point.event)}` : ""}`),
       hovertemplate: "%{hovertext}<br>%{x:.5g}, %{y:.5g}<extra></extra>",
       marker: {
         size: 9, color: fromSheet("--panel"), line: { color: colour, width: 2 },
@@ -232,7 +232,7 @@ export class PathPlot {
       element("li", {}, element("span", { class: "swatch", style: `background:${colourOf(place)}` }), job.name,
         apart[place] ? `, ${apart[place]}` : "",
         job.parent ? ` from increment ${job.parent.increment}, direction ${job.parent.direction}` : "")) : [],
-    path.exact?.path ? element("li", { title: path.exact.path.formula },
+    path.exact?.path && this.exact() ? element("li", { title: path.exact.path.formula },
       element("span", { class: "swatch dashed" }), `exact (${path.exact.path.name})`) : null);
   }
 

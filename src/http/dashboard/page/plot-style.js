@@ -1,5 +1,7 @@
 // What all plots have in common: colours of the page, fonts, margins, how Plotly behaves.
 
+import { verbatim } from "./words.js";
+
 const dark = matchMedia("(prefers-color-scheme: dark)");
 const COLOURS = ["#3486cc", "#d2691e", "#2e9a5b", "#a44fb0", "#c23b4e", "#7f7a1f", "#1f9aa3", "#7a6a5d"];
 
@@ -16,7 +18,7 @@ export const CONFIGURATION = {
 
 export function axis(title) {
   return {
-    title: { text: title, standoff: 8 }, gridcolor: fromSheet("--grid"), zerolinecolor: fromSheet("--zero"),
+    title: { text: verbatim(title), standoff: 8 }, gridcolor: fromSheet("--grid"), zerolinecolor: fromSheet("--zero"),
     linecolor: fromSheet("--zero"), automargin: true, exponentformat: "power",
   };
 }

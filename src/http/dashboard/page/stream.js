@@ -65,6 +65,7 @@ export function follow(place, after, { come, end, deleted, connected }) {
       } catch (problem) {
         if (problem instanceof Problem && problem.status === 404) {
           isOver = true;
+          connected(true);
           deleted();
         }
       }

@@ -11,6 +11,8 @@ const { plus, times, length, unit, dot } = vector;
 const CLASSES = 4;
 export const TENSION = ["#f0b7a8", "#e08770", "#cc5540", "#a62a1d"];
 export const COMPRESSION = ["#b3cdea", "#7fabdb", "#4a86c8", "#2560a8"];
+/** Forces below this part of the largest axial stiffness are zero but for rounding. */
+const ROUNDING = 1e-12;
 /** Arrows and cones, as a part of the structure's extent. */
 const ARROW = 0.22;
 const CONE = 0.16;
@@ -54,6 +56,11 @@ class Drawing {
     for (const item of model.elements ?? []) {
       const ends = item.nodes.map((name) => now.get(name));
       const before = item.nodes.map((name) => model.nodes[name]);
+      if (ends.includes(undefined)) {
+        // Where it is now is not recorded.
+        traces.lines("undeformed", before.length > 1 ? [before] : [], { color: fromSheet("--faint"), width: 1.5, dash: "dot" });
+        continue;
+      }
       if (ends.length === 1) {
         // To the ground, where its node was.
         const words = `spring of ${item.nodes[0]}`;
@@ -65,10 +72,11 @@ class Drawing {
       if (item.kind !== "bar") traces.lines("spring", [ends], spring, `spring ${item.nodes.join(" – ")}`);
       else bars.push([ends, tension(item, ends[0], ends[1], before[0], before[1]), item.nodes.join(" – ")]);
     }
-    const most = Math.max(...bars.map(([, force]) => Math.abs(force)), 1e-300);
+    const most = bars.reduce((sum, [, force]) => Math.max(sum, Math.abs(force)), 1e-300);
+    const stiffest = (model.elements ?? []).reduce((sum, item) => Math.max(sum, item.axial_stiffness ?? 0), 0);
     for (const [ends, force, words] of bars) {
       const place = Math.min(CLASSES - 1, Math.floor((Math.abs(force) / most) * CLASSES));
-      const color = force === 0 ? fromSheet("--zero") : (force > 0 ? TENSION : COMPRESSION)[place];
+      const color = Math.abs(force) <= ROUNDING * stiffest ? fromSheet("--zero") : (force > 0 ? TENSION : COMPRESSION)[place];
       traces.lines(`bar ${color}`, [ends], { color, width: 4 }, `${words}: force ${short(force)}`);
     }
   }
@@ -80,6 +88,7 @@ class Drawing {
     const most = pushing.reduce((sum, force) => Math.max(sum, force), Math.max(largest, 1e-300));
     increment.contacts.forEach((contact, number) => {
       const place = now.get(contact.node);
+      if (!place) return;
       const { normal, tangents } = frame(model.obstacles[contact.obstacle], place, moved.get(contact.obstacle));
       const [, symbol, colour] = STATES.find(([state]) => state === contact.status) ?? STATES[0];
       const words = `${contact.node} on ${contact.obstacle}: ${contact.status}, gap ${short(contact.gap)}, normal `

@@ -86,9 +86,13 @@ export class StructurePlot {
   /** Another increment, or a path that has grown. */
   async choose(at) {
     const { path } = this;
+    this.at = at;
     if (!path || path.index.length === 0) return;
     const place = at === null ? path.index.length - 1 : path.placeOf(at);
-    if (place < 0) return;
+    if (place < 0) {
+      this.words.textContent = `There is no increment ${at} among those that are kept.`;
+      return;
+    }
     this.slider.max = path.index.length - 1;
     this.slider.value = place;
     this.wanted = path.index[place];
@@ -109,7 +113,18 @@ export class StructurePlot {
       this.asked = false;
     }
     // Another path has been asked for meanwhile.
-    if (path !== this.path && this.path) await this.choose(null);
+    if (path !== this.path && this.path) await this.choose(this.at);
+  }
+
+  /** In the page's colours as they are now. */
+  repaint() {
+    if (this.path) this.controls();
+    this.again();
+  }
+
+  /** Another view than the one that is played. */
+  rest() {
+    if (this.playing) this.play();
   }
 
   slid() {
@@ -177,7 +192,7 @@ export class StructurePlot {
     this.largest = largest;
     const { point } = shown;
     this.words.textContent = `Increment ${shown.index}, ${kindWords(point.kind)}, stage “${shown.stage}”, load factor `
-      + `${short(shown.load_factor)}${point.event ? `: ${point.event}` : ""}`;
+      + `${short(shown.load_factor)}${point.event ? `: ${point.event}` : ""}${leftOut(model, shown)}`;
     const plain = { ...axis(""), zeroline: false, visible: !this.isInSpace };
     const [x, y] = this.range(flat);
     await Plotly.react(this.place, traces, layout({
@@ -190,6 +205,13 @@ export class StructurePlot {
     const half = HALF[this.path.request.model.dimension] * this.extent.size;
     return flat(this.extent.middle).map((middle) => [middle - half, middle + half]);
   }
+}
+
+/** What a request has left out of its increments is not drawn, and that is said. */
+function leftOut(model, shown) {
+  const all = Object.keys(model.nodes).length;
+  const nodes = Object.keys(shown.displacements).length;
+  return nodes < all ? `. Of ${all} nodes ${nodes} are recorded; bars at the others are not drawn` : "";
 }
 
 const classes = (colours) => `background:linear-gradient(to right, ${colours.join(", ")})`;

@@ -1,7 +1,7 @@
 // Plotly traces of a picture of a structure: what is drawn alike is one of them.
 
 import { fromSheet } from "./plot-style.js";
-import { short } from "./words.js";
+import { short, verbatim } from "./words.js";
 
 /** Nodes from which on they are drawn small. */
 const MANY = 200;
@@ -24,11 +24,12 @@ export class StructureTraces {
   }
 
   add(trace, places, words = "") {
+    const said = verbatim(words);
     for (const place of places) {
       const [x, y] = this.flat(place);
       trace.x.push(x);
       trace.y.push(y);
-      trace.text.push(words);
+      trace.text.push(said);
     }
   }
 

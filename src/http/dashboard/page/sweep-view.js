@@ -8,7 +8,7 @@ import { axis, colourOf, CONFIGURATION, layout } from "./plot-style.js";
 import { plotlyLoaded } from "./plotly-loaded.js";
 import { addressOfJob, openJobs } from "./state.js";
 import { follow } from "./stream.js";
-import { isGoingOn, plainWords, short, statusWords } from "./words.js";
+import { isGoingOn, plainWords, short, statusWords, verbatim } from "./words.js";
 
 /** Milliseconds between drawings while rows come in. */
 const AGAIN = 500;
@@ -93,7 +93,7 @@ export class SweepView {
     const lines = Object.groupBy(rows, ({ values }) => JSON.stringify(values.slice(1)));
     const traces = Object.values(lines).map((line, place) => ({
       type: "scatter", mode: "lines+markers",
-      name: line[0].values.slice(1).map((value, other) => `${names[other + 1]} ${shown(value)}`).join(", ") || "first limit load",
+      name: line[0].values.slice(1).map((value, other) => `${verbatim(names[other + 1])} ${verbatim(shown(value))}`).join(", ") || "first limit load",
       x: line.map(({ values }) => (typeof values[0] === "number" ? values[0] : shown(values[0]))),
       y: line.map(({ first_limit: limit }) => limit?.load_factor ?? null),
       text: line.map(({ run, first_limit: limit }) => `run ${run}${limit ? `, ${plainWords(limit.kind)}` : ""}`),

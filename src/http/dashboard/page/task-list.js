@@ -8,6 +8,8 @@ import { isGoingOn } from "./words.js";
 const PAGE = 40;
 /** Milliseconds between readings. */
 const AGAIN = 3000;
+/** So many times as seldom where nothing goes on. */
+const QUIET = 4;
 
 export class TaskList {
   /** `of`: the call's address and the name of its list; `row(task)` answers an `li`; `empty(status)` what an empty list says. */
@@ -19,8 +21,12 @@ export class TaskList {
     this.rows = element("ul", { class: "tasks", "aria-label": title });
     this.below = element("div", {});
     this.place = element("div", {}, this.rows, this.below);
+    let rests = 0;
     setInterval(() => {
-      if (!document.hidden && (this.problem || this.tasks?.some(isGoingOn))) this.load();
+      const isBusy = this.problem || this.tasks?.some(isGoingOn);
+      rests = isBusy ? 0 : rests + 1;
+      // What others queue appears, too, if later.
+      if (!document.hidden && (isBusy || rests % QUIET === 0)) this.load();
     }, AGAIN);
   }
 
@@ -32,8 +38,17 @@ export class TaskList {
       const page = await get(place);
       // The filter is another meanwhile: what was asked for after this counts.
       if (status !== state().status) return;
-      this.tasks = cursor ? [...this.tasks, ...page[this.of]] : page[this.of];
-      this.cursor = page.next_cursor;
+      const found = page[this.of];
+      if (cursor) {
+        this.tasks = [...this.tasks, ...found];
+        this.cursor = page.next_cursor;
+      } else {
+        // Older ones that have been asked for stay.
+        const last = found.at(-1)?.id;
+        const older = page.next_cursor ? (this.tasks ?? []).filter(({ id }) => id < last) : [];
+        this.tasks = [...found, ...older];
+        if (older.length === 0) this.cursor = page.next_cursor;
+      }
       this.problem = null;
     } catch (problem) {
       this.problem = problem;

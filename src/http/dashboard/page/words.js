@@ -12,13 +12,16 @@ const STOPPED = {
 };
 const STATUS = {
   queued: "waits in the queue", running: "is running", completed: "completed", stopped: "stopped: the path cannot go on",
-  cancelled: "cancelled", failed: "failed",
+  cancelled: "cancelled", failed: "failed", deleted: "has been deleted",
 };
 const KINDS = {
   start: "start", regular: "regular point", smooth_limit: "limit point", nonsmooth_limit: "limit point at a contact change",
   smooth_bifurcation: "bifurcation point", contact_change: "contact change", bifurcation: "bifurcation point", end: "end",
 };
 
+/** A text of a user's where Plotly would read markup and templates in it. */
+export const verbatim = (text) => String(text).replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;")
+  .replaceAll("%{", "%\u200b{");
 /** A name of the interface as words. */
 export const plainWords = (name) => String(name).replaceAll("_", " ");
 export const statusWords = (status) => STATUS[status] ?? status;
@@ -59,7 +62,7 @@ export function settingsSentences(request, plan, defaults) {
 /** Of each request, in words, what is not the same in all of them: what tells paths apart that are drawn together. */
 export function differences(requests) {
   const settings = requests.map(({ model, analysis = {} }) => ({
-    friction: [...new Set((model.contacts ?? []).map(({ friction }) => friction))].join(" and "),
+    friction: [...new Set((model.contacts ?? []).map(({ friction }) => friction))].join(" and ") || "none",
     method: words(analysis.method, "default"), selection: words(analysis.selection, "default"),
     "longest step": words(analysis.arc_length?.max, "default"),
   }));
