@@ -13,7 +13,7 @@ use std::path::Path;
 
 const FOLDER: &str = "src/http/dashboard/pictures";
 /// Bytes that a picture may have.
-const LARGEST: usize = 150_000;
+const LARGEST: usize = 160_000;
 
 #[tokio::test]
 async fn the_readmes_pictures_show_what_the_page_shows() {
