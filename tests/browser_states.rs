@@ -92,7 +92,7 @@ async fn a_text_of_very_many_lines_is_checked_and_run() {
               text.dispatchEvent(new Event('input')); })()",
         )
         .await;
-    browser.until("document.getElementById('queue').disabled").await;
+    // Not until it has been checked as it is now.
     browser.until("document.getElementById('queue').disabled === false").await;
     browser.press("#queue").await;
     browser.until(&format!("{STATUS} === 'completed'")).await;
