@@ -128,7 +128,7 @@ async fn parameters_and_headers() {
         ("cursor=%26", "cursor: found `&`; the `next_cursor`"),
         ("stauts=queued", "there is no parameter `stauts`; did you mean `status`?"),
         ("limit=1&limit=2", "limit: it stands twice"),
-        ("=", "there is no parameter ``; known: `status`, `parent`, `cursor`, `limit`"),
+        ("=", "there is no parameter ``; known: `status`, `sweep`, `parent`, `cursor`, `limit`"),
     ] {
         let problem = problem(server.ask(Method::GET, &format!("/v1/jobs?{query}")), 400, "invalid-parameter").await;
         assert!(problem["detail"].as_str().expect("text").starts_with(told), "{query}: {problem}");
