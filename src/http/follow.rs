@@ -22,7 +22,7 @@ use axum::response::Response;
     post, path = "/v1/jobs/{id}/follow", tag = document::JOBS, operation_id = "follow_direction",
     params(
         ("id" = Uuid, Path, description = "The job whose direction is followed."),
-        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255,
+        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[ -~]+$",
          description = "Sent again with the same body, it answers the job of the first time; with another body it is refused.")
     ),
     request_body = FollowRequest,

@@ -37,7 +37,7 @@ impl Taken for SubmitParameters {
     post, path = "/v1/jobs", tag = document::JOBS, operation_id = "submit_job",
     params(
         SubmitParameters,
-        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255,
+        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[ -~]+$",
          description = "Sent again with the same body, it answers the job of the first time; with another body it is refused.")
     ),
     request_body = JobRequest,

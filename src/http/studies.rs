@@ -28,7 +28,7 @@ use uuid::Uuid;
     post, path = "/v1/studies", tag = document::STUDIES, operation_id = "submit_study",
     params(
         SubmitParameters,
-        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255,
+        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[ -~]+$",
          description = "Sent again with the same body, it answers the study of the first time; with another body it is refused.")
     ),
     request_body = StudyRequest,

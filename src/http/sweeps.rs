@@ -31,7 +31,7 @@ const PAGE_BYTES: usize = 1 << 20;
     post, path = "/v1/sweeps", tag = document::SWEEPS, operation_id = "submit_sweep",
     params(
         SubmitParameters,
-        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255,
+        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[ -~]+$",
          description = "Sent again with the same body, it answers the sweep of the first time; with another body it is refused.")
     ),
     request_body = SweepRequest,
