@@ -17,6 +17,8 @@ use std::time::Duration;
 const TRIES: usize = 6;
 /// Milliseconds until a stored path is on the screen, from the start of the page's loading.
 const FIRST_PAINT: f64 = 1000.0;
+/// The service of a development build takes so many times as long for its part, at the most.
+const UNOPTIMISED: f64 = if cfg!(debug_assertions) { 2.0 } else { 1.0 };
 /// A fixed piece of work; answers how many milliseconds the browser takes for it, at the median of a few times.
 const WORK: &str = "(() => {
     const times = Array.from({ length: 5 }, () => {
@@ -57,11 +59,11 @@ async fn a_stored_path_of_ten_thousand_increments_is_on_the_screen_within_a_seco
         let slower = (work / QUIET_WORK).max(1.0);
         shortest = shortest.min(entry["duration"].as_f64().expect("milliseconds") / slower);
         eprintln!("on the screen after {} ms, the machine {slower:.2} times as slow as when quiet", entry["duration"]);
-        if shortest <= FIRST_PAINT {
+        if shortest <= UNOPTIMISED * FIRST_PAINT {
             break;
         }
     }
-    assert!(shortest <= FIRST_PAINT, "{shortest} ms");
+    assert!(shortest <= UNOPTIMISED * FIRST_PAINT, "{shortest} ms");
 }
 
 /// Gathers the browser's entries of frames that took long, and how far apart frames were.
