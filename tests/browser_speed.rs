@@ -12,6 +12,10 @@ use common::server::TestServer;
 use common::service::{in_short_steps, request};
 use common::solver::MadeUp;
 use std::time::Duration;
+use tokio::sync::Mutex;
+
+/// One test at a time: each takes what both processors have.
+static ALONE: Mutex<()> = Mutex::const_new(());
 
 const TRIES: usize = 6;
 /// Milliseconds until a stored path is on the screen, from the start of the page's loading.
@@ -23,6 +27,7 @@ const FRAME: f64 = 200.0;
 
 #[tokio::test]
 async fn a_stored_path_of_ten_thousand_increments_is_on_the_screen_within_a_second() {
+    let _alone = ALONE.lock().await;
     let folder = tempfile::tempdir().expect("a folder");
     let service = Process::serve(&folder.path().join("jobs.db"), &[]);
     let client = process::client();
@@ -74,6 +79,7 @@ const STREAMED: u64 = 2_600;
 
 #[tokio::test]
 async fn no_frame_freezes_while_two_hundred_increments_a_second_stream_in() {
+    let _alone = ALONE.lock().await;
     let mut shortest = f64::INFINITY;
     for _ in 0..TRIES {
         let Some(browser) = Browser::open().await else { return };
