@@ -6,6 +6,7 @@ mod access;
 mod backup;
 mod check;
 mod duration;
+mod findings;
 mod health;
 mod input;
 mod limits;

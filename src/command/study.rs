@@ -1,17 +1,12 @@
 //! `arcslip study`: a scene over a ladder of settings and over methods, error against run time.
 
-use super::written::{one_on_standard_output, write};
-use super::{Failure, Outcome, input};
+use super::{Failure, Outcome, findings, input};
 use crate::cancel::CancelFlag;
 use crate::model::StudyRequest;
 use crate::model::decode;
 use crate::model::request::Method;
-use crate::picture;
-use crate::studies::{self, Report, Run};
-use indicatif::{ProgressBar, ProgressStyle};
-use std::io::IsTerminal;
+use crate::studies::{self, Run};
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Trace a scene with several settings and methods: error against run time.
@@ -36,24 +31,8 @@ pub struct Arguments {
     /// Times that each path is timed, in place of the study's.
     #[arg(long, value_name = "N")]
     repeats: Option<u64>,
-    /// Write the table here; `-` is standard output.
-    #[arg(long, value_name = "FILE", default_value = "-")]
-    out: PathBuf,
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    format: Format,
-    /// Draw error against time here, as an SVG; `-` is standard output.
-    #[arg(long, value_name = "FILE")]
-    plot: Option<PathBuf>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Format {
-    /// Columns for a reader.
-    Text,
-    /// A table with named columns.
-    Csv,
-    /// The whole report as one JSON object.
-    Json,
+    #[command(flatten)]
+    written: findings::Written,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -74,10 +53,10 @@ impl From<MethodName> for Method {
 }
 
 pub fn run(arguments: &Arguments) -> Outcome {
-    one_on_standard_output(&[("--out", Some(&arguments.out)), ("--plot", arguments.plot.as_deref())])?;
+    arguments.written.check()?;
     let request = arguments.request()?;
     let plan = studies::plan(&request).map_err(input::refused)?;
-    let progress = progress_bar(plan.runs);
+    let progress = findings::progress_bar(plan.runs);
     progress.tick();
     let accept = &mut |run: &Run| {
         progress.set_position(run.index + 1);
@@ -88,16 +67,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let Some(report) = report else {
         return Err(Failure::Other("the reference's path ended without a report".to_owned()));
     };
-    let text = match arguments.format {
-        Format::Text => report.text(),
-        Format::Csv => report.csv(),
-        Format::Json => serde_json::to_string_pretty(&report).map(|text| text + "\n"),
-    };
-    let text = text.map_err(Failure::other)?;
-    write(&arguments.out, &text)?;
-    if let Some(file) = &arguments.plot {
-        draw(file, &report)?;
-    }
+    arguments.written.write(&report)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -116,18 +86,4 @@ impl Arguments {
         study.repeats = self.repeats.unwrap_or(study.repeats);
         Ok(request)
     }
-}
-
-fn draw(file: &Path, report: &Report) -> Result<(), Failure> {
-    write(file, &picture::study::svg(report).map_err(Failure::other)?)
-}
-
-/// On a terminal, where it does not disturb the table: that comes when all is done.
-fn progress_bar(runs: u64) -> ProgressBar {
-    if !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let style = ProgressStyle::with_template("{bar:40} {pos} of {len} paths, {elapsed}")
-        .unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(runs).with_style(style)
 }

@@ -1,17 +1,13 @@
 //! `arcslip sweep`: one model with other values in its places, on all cores.
 
-use super::input;
-use super::written::{one_on_standard_output, write};
-use super::{Failure, Outcome};
+use super::{Failure, Outcome, findings, input};
 use crate::judged::JudgedIncrement;
 use crate::model::Sweep;
 use crate::output::json_line;
-use crate::picture;
 use crate::sweeps::{self, Found, Row};
-use indicatif::{ProgressBar, ProgressStyle};
 use std::collections::HashMap;
 use std::fs::File;
-use std::io::{BufWriter, IsTerminal, Write};
+use std::io::{BufWriter, Write};
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -35,27 +31,11 @@ pub struct Arguments {
     /// Paths traced at a time. Default: one a processor.
     #[arg(long, value_name = "N")]
     threads: Option<NonZeroUsize>,
-    /// Write the table here; `-` is standard output.
-    #[arg(long, value_name = "FILE", default_value = "-")]
-    out: PathBuf,
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    format: Format,
-    /// Draw the limit load against the first parameter here, as an SVG; `-` is standard output.
-    #[arg(long, value_name = "FILE")]
-    plot: Option<PathBuf>,
+    #[command(flatten)]
+    written: findings::Written,
     /// Write each path into this folder, as RUN.ndjson.
     #[arg(long, value_name = "FOLDER")]
     paths: Option<PathBuf>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Format {
-    /// Columns for a reader.
-    Text,
-    /// A table with named columns.
-    Csv,
-    /// Parameters and rows as one JSON object.
-    Json,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -75,10 +55,10 @@ fn replacement(argument: &str) -> Result<(String, Vec<serde_json::Value>), Strin
 }
 
 pub fn run(arguments: &Arguments) -> Outcome {
-    one_on_standard_output(&[("--out", Some(&arguments.out)), ("--plot", arguments.plot.as_deref())])?;
+    arguments.written.check()?;
     let sweep = Sweep::read(&arguments.text()?).map_err(input::refused)?;
     let threads = arguments.threads.or_else(|| std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
-    let progress = progress_bar(sweep.runs());
+    let progress = findings::progress_bar(sweep.runs());
     let written = arguments.paths.as_deref().map(Paths::in_folder).transpose()?;
     let accept = |run: u64, judged: &JudgedIncrement| match &written {
         Some(paths) => paths.write(run, judged),
@@ -97,15 +77,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     }
     let any_failed = rows.iter().any(|row| row.error.is_some());
     let found = Found { name: sweep.name, variation: sweep.variation, rows };
-    let text = match arguments.format {
-        Format::Text => found.text(),
-        Format::Csv => found.csv(),
-        Format::Json => serde_json::to_string_pretty(&found).map(|text| text + "\n"),
-    };
-    write(&arguments.out, &text.map_err(Failure::other)?)?;
-    if let Some(file) = &arguments.plot {
-        write(file, &picture::sweep::svg(&found).map_err(Failure::other)?)?;
-    }
+    arguments.written.write(&found)?;
     Ok(if any_failed { ExitCode::from(super::FAILED) } else { ExitCode::SUCCESS })
 }
 
@@ -181,14 +153,4 @@ impl Paths {
     fn failure(self) -> Option<Failure> {
         self.failed.into_inner().unwrap_or_else(PoisonError::into_inner).map(Failure::Other)
     }
-}
-
-/// On a terminal, where it does not disturb the table: that comes when all is done.
-fn progress_bar(runs: u64) -> ProgressBar {
-    if !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let style = ProgressStyle::with_template("{bar:40} {pos} of {len} paths, {elapsed}")
-        .unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(runs).with_style(style)
 }

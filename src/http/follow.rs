@@ -1,8 +1,8 @@
 //! A new job along a direction of another.
 
 use super::extract::{JobId, JsonText, idempotency_key};
-use super::jobs::accepted;
 use super::problem::Problem;
+use super::tasks::accepted;
 use super::view::{Job, address};
 use super::{Service, document};
 use crate::jobs::Caller;

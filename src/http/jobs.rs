@@ -1,36 +1,21 @@
 //! Jobs: submit, list, read, cancel, delete.
 
-use super::extract::{JobId, JsonText, Parameters, Taken, bounded, idempotency_key};
+use super::extract::{JobId, JsonText, Parameters, Taken, idempotency_key};
 use super::problem::Problem;
+use super::tasks::{SubmitParameters, accepted, page};
 use super::view::{Job, JobList, address};
-use super::{Service, document, tag};
+use super::{Service, document, tag, tasks};
 use crate::jobs::Caller;
 use crate::model::JobRequest;
 use crate::path::Plan;
-use crate::store::{JobRecord, ListFilter, Status, Task};
+use crate::store::{ListFilter, Status, Task};
 use axum::Extension;
 use axum::Json;
 use axum::extract::State;
-use axum::http::{HeaderMap, StatusCode, header};
+use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use uuid::Uuid;
-
-const LIST_DEFAULT: u32 = 50;
-const LIST_LARGEST: u32 = 200;
-
-#[derive(Debug, Deserialize, utoipa::IntoParams)]
-#[serde(deny_unknown_fields)]
-#[into_params(parameter_in = Query)]
-pub struct SubmitParameters {
-    /// Check the request and answer its plan; queue nothing.
-    #[serde(default)]
-    pub(super) validate: bool,
-}
-
-impl Taken for SubmitParameters {
-    const TAKEN: &'static [(&'static str, &'static str)] = &[("validate", "`true` or `false`")];
-}
 
 /// Queue a job, or only check it.
 #[utoipa::path(
@@ -59,32 +44,6 @@ pub async fn submit(
         return Ok(Json(service.jobs.validate(request).await?).into_response());
     }
     accepted::<Job>(service.jobs.submit(&caller, request, key).await?, address)
-}
-
-/// The answer to what has been queued: where it is, and what it is.
-pub(super) fn accepted<T: View>(record: JobRecord, address: fn(Uuid) -> String) -> Result<Response, Problem> {
-    let location = address(record.id);
-    Ok((StatusCode::ACCEPTED, [(header::LOCATION, location)], Json(T::try_from(record)?)).into_response())
-}
-
-/// A record as it is answered.
-pub(super) trait View: TryFrom<JobRecord, Error = serde_json::Error> + Serialize {}
-
-impl<T: TryFrom<JobRecord, Error = serde_json::Error> + Serialize> View for T {}
-
-/// What is listed, newest first, up to so many, and the cursor of the next page.
-pub(super) async fn page<T: View>(
-    service: &Service,
-    limit: Option<u32>,
-    filter: impl FnOnce(u32) -> ListFilter,
-) -> Result<(Vec<T>, Option<Uuid>), Problem> {
-    let limit = bounded("limit", limit, LIST_DEFAULT, LIST_LARGEST)?;
-    // One more than asked for tells whether there is a next page.
-    let mut records = service.jobs.store().jobs(filter(limit + 1)).await?;
-    let more = records.len() > limit as usize;
-    records.truncate(limit as usize);
-    let next_cursor = records.last().map(|record| record.id).filter(|_| more);
-    Ok((records.into_iter().map(T::try_from).collect::<Result<_, _>>()?, next_cursor))
 }
 
 #[derive(Debug, Deserialize, utoipa::IntoParams)]
@@ -157,8 +116,7 @@ pub async fn cancel(
     Extension(caller): Extension<Caller>,
     JobId(id): JobId,
 ) -> Result<(StatusCode, Json<Job>), Problem> {
-    let job = service.jobs.cancel(&caller, Task::Path, id).await?;
-    Ok((StatusCode::ACCEPTED, Json(job.try_into()?)))
+    tasks::cancel(&service, &caller, Task::Path, id).await
 }
 
 /// Stop a job and drop what is stored.
@@ -172,6 +130,5 @@ pub async fn delete(
     Extension(caller): Extension<Caller>,
     JobId(id): JobId,
 ) -> Result<StatusCode, Problem> {
-    service.jobs.delete(&caller, Task::Path, id).await?;
-    Ok(StatusCode::NO_CONTENT)
+    tasks::delete(&service, &caller, Task::Path, id).await
 }

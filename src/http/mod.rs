@@ -1,8 +1,8 @@
 //! The service's HTTP face; version 1 of the interface.
 //!
 //! [`listen`] takes connections, [`access`] says who may call, [`problem`] is the one edge where errors become answers,
-//! [`extract`], [`parameters`] and [`accept`] read requests, [`view`], [`view_study`] and [`view_sweep`] hold what is answered, [`tag`] spares it
-//! to those who have it; [`jobs`], [`request`], [`follow`], [`increments`], [`columns`], [`exact`], [`stream`], [`csv`],
+//! [`extract`], [`parameters`] and [`accept`] read requests, [`view`], [`view_study`] and [`view_sweep`] hold what is
+//! answered, [`tag`] spares it to those who have it, [`tasks`] and [`findings`] are what several calls share; [`jobs`], [`request`], [`follow`], [`increments`], [`columns`], [`exact`], [`stream`], [`csv`],
 //! [`studies`], [`sweeps`], [`scenes`], [`probes`], [`metrics`] and [`pages`] are the calls, [`dashboard`] what a browser sees,
 //! [`document`] their OpenAPI description, [`request_id`] what names each request, [`server`] all of it, and going down in good order.
 //! Called by `command`; knows `jobs` and, for reading, `store`.
@@ -15,6 +15,7 @@ pub mod dashboard;
 pub mod document;
 pub mod exact;
 pub mod extract;
+pub mod findings;
 pub mod follow;
 pub mod increments;
 pub mod jobs;
@@ -32,6 +33,7 @@ pub mod stream;
 pub mod studies;
 pub mod sweeps;
 pub mod tag;
+pub mod tasks;
 pub mod view;
 pub mod view_study;
 pub mod view_sweep;

@@ -1,22 +1,21 @@
 //! Studies: submit, list, read, follow, cancel, delete; their table and picture.
 
-use super::extract::{JobId, JsonText, Parameters, Taken, idempotency_key};
-use super::jobs::{SubmitParameters, accepted, page};
+use super::extract::{JobId, JsonText, Parameters, idempotency_key};
+use super::findings::SoFar;
 use super::problem::Problem;
+use super::tasks::{ListByStatus, SubmitParameters, accepted};
 use super::view::ServerEvent;
 use super::view_study::{Study, StudyList, StudyWithReport, address};
-use super::{Service, document, tag};
+use super::{Service, document, tag, tasks};
 use crate::jobs::Caller;
 use crate::model::StudyRequest;
-use crate::picture::{self, PlotError};
-use crate::store::{ListFilter, Status, Task};
+use crate::store::Task;
 use crate::studies::{Plan, Report, Run};
 use axum::Extension;
 use axum::Json;
 use axum::extract::State;
-use axum::http::{HeaderMap, StatusCode, header};
+use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
-use serde::Deserialize;
 use uuid::Uuid;
 
 /// Queue a study, or only check it.
@@ -52,41 +51,17 @@ pub async fn submit(
     accepted::<Study>(service.jobs.submit_study(&caller, request, key).await?, address)
 }
 
-#[derive(Debug, Deserialize, utoipa::IntoParams)]
-#[serde(deny_unknown_fields)]
-#[into_params(parameter_in = Query)]
-pub struct ListStudies {
-    /// Only studies with this status.
-    status: Option<Status>,
-    /// `next_cursor` of the page before.
-    cursor: Option<Uuid>,
-    #[param(minimum = 1, maximum = 200, default = 50)]
-    limit: Option<u32>,
-}
-
-impl Taken for ListStudies {
-    const TAKEN: &'static [(&'static str, &'static str)] = &[
-        ("status", "`queued`, `running`, `completed`, `stopped`, `cancelled` or `failed`"),
-        ("cursor", "the `next_cursor` of the page before, a UUID,"),
-        ("limit", "a whole number from 1 to 200"),
-    ];
-}
-
 /// List studies, newest first.
 #[utoipa::path(
-    get, path = "/v1/studies", tag = document::STUDIES, operation_id = "list_studies", params(ListStudies),
+    get, path = "/v1/studies", tag = document::STUDIES, operation_id = "list_studies", params(ListByStatus),
     responses((status = 200, description = "A page of studies.", body = StudyList))
 )]
 pub async fn list(
     State(service): State<Service>,
     Extension(caller): Extension<Caller>,
-    Parameters(parameters): Parameters<ListStudies>,
+    Parameters(parameters): Parameters<ListByStatus>,
 ) -> Result<Json<StudyList>, Problem> {
-    let ListStudies { status, cursor, limit } = parameters;
-    let owner = caller.seen_owner().map(str::to_owned);
-    let filter =
-        |limit| ListFilter { task: Task::Study, owner, status, sweep: None, parent: None, before: cursor, limit };
-    let (studies, next_cursor) = page(&service, limit, filter).await?;
+    let (studies, next_cursor) = parameters.page(&service, &caller, Task::Study).await?;
     Ok(Json(StudyList { studies, next_cursor }))
 }
 
@@ -150,8 +125,7 @@ pub async fn cancel(
     Extension(caller): Extension<Caller>,
     JobId(id): JobId,
 ) -> Result<(StatusCode, Json<Study>), Problem> {
-    let study = service.jobs.cancel(&caller, Task::Study, id).await?;
-    Ok((StatusCode::ACCEPTED, Json(study.try_into()?)))
+    tasks::cancel(&service, &caller, Task::Study, id).await
 }
 
 /// Stop a study and drop what is stored.
@@ -165,8 +139,7 @@ pub async fn delete(
     Extension(caller): Extension<Caller>,
     JobId(id): JobId,
 ) -> Result<StatusCode, Problem> {
-    service.jobs.delete(&caller, Task::Study, id).await?;
-    Ok(StatusCode::NO_CONTENT)
+    tasks::delete(&service, &caller, Task::Study, id).await
 }
 
 /// The rows found so far, as CSV.
@@ -181,12 +154,7 @@ pub async fn table_csv(
     JobId(id): JobId,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    let own = [
-        (header::CONTENT_TYPE, "text/csv; charset=utf-8".to_owned()),
-        (header::CONTENT_DISPOSITION, format!("attachment; filename=\"study-{id}.csv\"")),
-    ];
-    let (report, is_finished) = found(&service, &caller, id).await?;
-    tag::bytes(&headers, is_finished, own, report.csv()?)
+    found(&service, &caller, id).await?.csv(&headers)
 }
 
 /// The rows found so far, as columns of text.
@@ -201,8 +169,7 @@ pub async fn table_txt(
     JobId(id): JobId,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    let (report, is_finished) = found(&service, &caller, id).await?;
-    tag::bytes(&headers, is_finished, [(header::CONTENT_TYPE, "text/plain; charset=utf-8")], report.text()?)
+    found(&service, &caller, id).await?.text(&headers)
 }
 
 /// Error against time so far, on logarithmic scales, one line a method.
@@ -219,26 +186,18 @@ pub async fn picture(
     JobId(id): JobId,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    let (report, is_finished) = found(&service, &caller, id).await?;
-    match picture::study::svg(&report) {
-        Ok(svg) => tag::bytes(&headers, is_finished, [(header::CONTENT_TYPE, "image/svg+xml")], svg),
-        Err(PlotError::Drawing(error)) => {
-            tracing::error!(%error, study = %id, "a picture cannot be drawn");
-            Err(Problem::new(super::problem::Kind::Internal, "the log has more under this answer's x-request-id"))
-        }
-        Err(PlotError::NoErrors | PlotError::Empty | PlotError::NoLimitLoads) => {
-            Err(Problem::not_found(format_args!("picture of study {id}: no path of it has an error yet")))
-        }
-    }
+    found(&service, &caller, id).await?.picture(&headers)
 }
 
-/// What a study has found so far, and whether that is all; a problem before its first path.
-async fn found(service: &Service, caller: &Caller, id: Uuid) -> Result<(Report, bool), Problem> {
-    let study = service.jobs.find(caller, Task::Study, id).await?;
-    if let Some(report) = &study.report {
-        return Ok((serde_json::from_str(report)?, study.status.is_ended()));
-    }
-    let report = service.jobs.study_so_far(&study).await?;
-    let absent = || Problem::not_found(format_args!("table of study {id}: no path of it has been traced yet"));
-    Ok((report.ok_or_else(absent)?, study.status.is_ended()))
+/// What a study has found so far; a problem before its first path.
+async fn found(service: &Service, caller: &Caller, id: Uuid) -> Result<SoFar<Report>, Problem> {
+    let task = Task::Study;
+    let study = service.jobs.find(caller, task, id).await?;
+    let findings = match &study.report {
+        Some(report) => serde_json::from_str(report)?,
+        None => service.jobs.study_so_far(&study).await?.ok_or_else(|| {
+            Problem::not_found(format_args!("table of study {id}: no path of it has been traced yet"))
+        })?,
+    };
+    Ok(SoFar { task, id, findings, is_finished: study.status.is_ended() })
 }

@@ -1,20 +1,20 @@
 //! Sweeps: submit, list, read, follow, cancel, delete; their rows, table and picture.
 
 use super::extract::{JobId, JsonText, Parameters, Taken, bounded, idempotency_key, index};
-use super::jobs::{SubmitParameters, accepted, page};
-use super::problem::{Kind, Problem};
+use super::findings::SoFar;
+use super::problem::Problem;
+use super::tasks::{ListByStatus, SubmitParameters, accepted};
 use super::view::ServerEvent;
 use super::view_sweep::{Sweep, SweepList, SweepPlan, SweepRows, address};
-use super::{Service, document, tag};
+use super::{Service, document, tag, tasks};
 use crate::jobs::Caller;
 use crate::model::SweepRequest;
-use crate::picture::{self, PlotError};
-use crate::store::{ListFilter, Page, Status, Task};
+use crate::store::{Page, Task};
 use crate::sweeps::{Found, Row};
 use axum::Extension;
 use axum::Json;
 use axum::extract::State;
-use axum::http::{HeaderMap, StatusCode, header};
+use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use serde_json::value::RawValue;
@@ -56,41 +56,17 @@ pub async fn submit(
     accepted::<Sweep>(service.jobs.submit_sweep(&caller, request, key).await?, address)
 }
 
-#[derive(Debug, Deserialize, utoipa::IntoParams)]
-#[serde(deny_unknown_fields)]
-#[into_params(parameter_in = Query)]
-pub struct ListSweeps {
-    /// Only sweeps with this status.
-    status: Option<Status>,
-    /// `next_cursor` of the page before.
-    cursor: Option<Uuid>,
-    #[param(minimum = 1, maximum = 200, default = 50)]
-    limit: Option<u32>,
-}
-
-impl Taken for ListSweeps {
-    const TAKEN: &'static [(&'static str, &'static str)] = &[
-        ("status", "`queued`, `running`, `completed`, `stopped`, `cancelled` or `failed`"),
-        ("cursor", "the `next_cursor` of the page before, a UUID,"),
-        ("limit", "a whole number from 1 to 200"),
-    ];
-}
-
 /// List sweeps, newest first.
 #[utoipa::path(
-    get, path = "/v1/sweeps", tag = document::SWEEPS, operation_id = "list_sweeps", params(ListSweeps),
+    get, path = "/v1/sweeps", tag = document::SWEEPS, operation_id = "list_sweeps", params(ListByStatus),
     responses((status = 200, description = "A page of sweeps.", body = SweepList))
 )]
 pub async fn list(
     State(service): State<Service>,
     Extension(caller): Extension<Caller>,
-    Parameters(parameters): Parameters<ListSweeps>,
+    Parameters(parameters): Parameters<ListByStatus>,
 ) -> Result<Json<SweepList>, Problem> {
-    let ListSweeps { status, cursor, limit } = parameters;
-    let owner = caller.seen_owner().map(str::to_owned);
-    let (task, before) = (Task::Sweep, cursor);
-    let filter = |limit| ListFilter { task, owner, status, sweep: None, parent: None, before, limit };
-    let (sweeps, next_cursor) = page(&service, limit, filter).await?;
+    let (sweeps, next_cursor) = parameters.page(&service, &caller, Task::Sweep).await?;
     Ok(Json(SweepList { sweeps, next_cursor }))
 }
 
@@ -185,8 +161,7 @@ pub async fn cancel(
     Extension(caller): Extension<Caller>,
     JobId(id): JobId,
 ) -> Result<(StatusCode, Json<Sweep>), Problem> {
-    let sweep = service.jobs.cancel(&caller, Task::Sweep, id).await?;
-    Ok((StatusCode::ACCEPTED, Json(sweep.try_into()?)))
+    tasks::cancel(&service, &caller, Task::Sweep, id).await
 }
 
 /// Stop a sweep, and drop it and its jobs.
@@ -200,8 +175,7 @@ pub async fn delete(
     Extension(caller): Extension<Caller>,
     JobId(id): JobId,
 ) -> Result<StatusCode, Problem> {
-    service.jobs.delete(&caller, Task::Sweep, id).await?;
-    Ok(StatusCode::NO_CONTENT)
+    tasks::delete(&service, &caller, Task::Sweep, id).await
 }
 
 /// The runs that have ended, as CSV.
@@ -216,12 +190,7 @@ pub async fn table_csv(
     JobId(id): JobId,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    let own = [
-        (header::CONTENT_TYPE, "text/csv; charset=utf-8".to_owned()),
-        (header::CONTENT_DISPOSITION, format!("attachment; filename=\"sweep-{id}.csv\"")),
-    ];
-    let (found, is_finished) = found(&service, &caller, id).await?;
-    tag::bytes(&headers, is_finished, own, found.csv()?)
+    found(&service, &caller, id).await?.csv(&headers)
 }
 
 /// The runs that have ended, as columns of text.
@@ -236,8 +205,7 @@ pub async fn table_txt(
     JobId(id): JobId,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    let (found, is_finished) = found(&service, &caller, id).await?;
-    tag::bytes(&headers, is_finished, [(header::CONTENT_TYPE, "text/plain; charset=utf-8")], found.text()?)
+    found(&service, &caller, id).await?.text(&headers)
 }
 
 /// The first limit load against the first parameter, one line for each set of values of the others.
@@ -252,21 +220,13 @@ pub async fn picture(
     JobId(id): JobId,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    let (found, is_finished) = found(&service, &caller, id).await?;
-    match picture::sweep::svg(&found) {
-        Ok(svg) => tag::bytes(&headers, is_finished, [(header::CONTENT_TYPE, "image/svg+xml")], svg),
-        Err(PlotError::Drawing(error)) => {
-            tracing::error!(%error, sweep = %id, "a picture cannot be drawn");
-            Err(Problem::new(Kind::Internal, "the log has more under this answer's x-request-id"))
-        }
-        Err(PlotError::NoErrors | PlotError::Empty | PlotError::NoLimitLoads) => {
-            Err(Problem::not_found(format_args!("picture of sweep {id}: no run of it has a limit point yet")))
-        }
-    }
+    found(&service, &caller, id).await?.picture(&headers)
 }
 
-/// What a sweep has found so far, and whether that is all.
-async fn found(service: &Service, caller: &Caller, id: Uuid) -> Result<(Found, bool), Problem> {
-    let sweep = service.jobs.find(caller, Task::Sweep, id).await?;
-    Ok((service.jobs.sweep_so_far(&sweep).await?, sweep.status.is_ended()))
+/// What a sweep has found so far.
+async fn found(service: &Service, caller: &Caller, id: Uuid) -> Result<SoFar<Found>, Problem> {
+    let task = Task::Sweep;
+    let sweep = service.jobs.find(caller, task, id).await?;
+    let findings = service.jobs.sweep_so_far(&sweep).await?;
+    Ok(SoFar { task, id, findings, is_finished: sweep.status.is_ended() })
 }

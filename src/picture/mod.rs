@@ -1,10 +1,12 @@
 //! Pictures, as SVG.
 //!
 //! [`path`] is load against displacement, [`study`] error against run time (or what is varied), [`sweep`] limit load against what is
-//! varied; [`shapes`] is what all are drawn with, [`axis`] finds ranges and tick texts, [`labels`] room for letters. Called by
-//! `command` and `http`; knows `path`, `model`, `studies` and `sweeps`.
+//! varied; [`findings`] is what both of the latter can be read as. [`shapes`] is what all are drawn with, [`chart`] two of them
+//! into, [`axis`] finds ranges and tick texts, [`labels`] room for letters. Called by `command` and `http`; knows `path`, `model`, `studies` and `sweeps`.
 
 mod axis;
+mod chart;
+pub mod findings;
 mod labels;
 pub mod path;
 mod shapes;

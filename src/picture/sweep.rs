@@ -2,10 +2,11 @@
 
 use super::PlotError;
 use super::axis::Axis;
+use super::chart::{self, CAPTION, MARGIN, Side};
 use super::shapes::{self, Drawn, FAINT_INK, FINE, INK, Lettering, PAPER, Place, Sheet};
 use crate::model::InputError;
 use crate::sweeps::{Found, Row, shown};
-use plotters::prelude::{ChartBuilder, Circle, PathElement, RGBColor};
+use plotters::prelude::{Circle, PathElement, RGBColor};
 use plotters::style::Color;
 use serde_json::Value;
 use std::ops::Range;
@@ -14,29 +15,20 @@ use std::ops::Range;
 const CHART: i32 = 600;
 const LEGEND: i32 = 260;
 const HEIGHT: i32 = 480;
-const MARGIN: i32 = 16;
-const CAPTION: i32 = 42;
-const BELOW: i32 = 48;
-const BESIDE: i32 = 70;
 const DOT: i32 = 4;
 const ROW: i32 = 20;
 const TICKS: usize = 9;
 /// Lines that the legend names; more are drawn and counted.
 const NAMED: usize = 18;
-/// Characters of a title and of a line's name.
-const LONGEST: usize = 80;
+/// Characters of a line's name.
 const LONGEST_NAME: usize = 34;
 const LONGEST_TICK: usize = 12;
 /// Values that are all positive and so far apart stand on a logarithmic axis.
 const FAR_APART: f64 = 100.0;
 
-const GRID: RGBColor = RGBColor(228, 228, 228);
 /// Of the first line and of the last.
 const FIRST: RGBColor = RGBColor(25, 85, 150);
 const LAST: RGBColor = RGBColor(190, 20, 40);
-const TITLE: Lettering = Lettering { size: 15, color: &INK, bold: true, centred: true };
-const NAME: Lettering = Lettering { size: 13, color: &INK, bold: false, centred: true };
-const TICK: Lettering = Lettering { size: 12, ..NAME };
 const PLAIN: Lettering = Lettering { size: 12, color: &INK, bold: false, centred: false };
 const FAINT: Lettering = Lettering { size: 11, color: &FAINT_INK, bold: false, centred: false };
 
@@ -140,38 +132,25 @@ pub fn svg(found: &Found) -> Result<String, PlotError> {
     let (across, load) = (Across::of(&first.values), Axis::showing(loads(), TICKS));
     let lines = lines(found);
     let drawn = shapes::svg(CHART + LEGEND, HEIGHT, |sheet| {
-        chart(sheet, found, &lines, (&across, &load))?;
+        draw_chart(sheet, found, &lines, (&across, &load))?;
         legend(sheet, found, &lines)
     });
     drawn.map_err(|error| PlotError::Drawing(error.to_string()))
 }
 
-fn chart(sheet: &Sheet<'_>, found: &Found, lines: &[Line<'_>], (across, load): (&Across, &Axis)) -> Drawn {
+fn draw_chart(sheet: &Sheet<'_>, found: &Found, lines: &[Line<'_>], (across, load): (&Across, &Axis)) -> Drawn {
     let (part, _) = sheet.split_horizontally(CHART * FINE);
-    let title = found.name.as_deref().unwrap_or("sweep");
-    TITLE.write(sheet, ((CHART + BESIDE) / 2 * FINE, CAPTION / 2 * FINE), title, LONGEST)?;
-    let mut chart = ChartBuilder::on(&part)
-        .margin(MARGIN * FINE)
-        .margin_top(CAPTION * FINE)
-        .x_label_area_size(BELOW * FINE)
-        .y_label_area_size(BESIDE * FINE)
-        .build_cartesian_2d(across.range(), load.range.clone())?;
     let first = found.variation.parameters.first().map(|parameter| place(&parameter.pointer)).unwrap_or_default();
-    chart
-        .configure_mesh()
-        .x_labels(TICKS)
-        .y_labels(TICKS)
-        .max_light_lines(0)
-        .bold_line_style(GRID.stroke_width(8))
-        .axis_style(INK.stroke_width(10))
-        .set_all_tick_mark_size(5 * FINE)
-        .label_style(TICK.style())
-        .axis_desc_style(NAME.style())
-        .x_label_formatter(&|value| across.tick(*value))
-        .y_label_formatter(&|value| load.tick(*value))
-        .x_desc(shapes::legible(&across.named(&first), LONGEST))
-        .y_desc(load.named("first limit load factor"))
-        .draw()?;
+    let sides = [
+        Side { name: across.named(&first), range: across.range(), tick: &|at| across.tick(at), ticks: TICKS },
+        Side {
+            name: load.named("first limit load factor"),
+            range: load.range.clone(),
+            tick: &|at| load.tick(at),
+            ticks: TICKS,
+        },
+    ];
+    let chart = chart::chart(&part, CHART, Some(found.name.as_deref().unwrap_or("sweep")), sides)?;
     for (number, line) in lines.iter().enumerate() {
         let color = color(number, lines.len());
         let places: Vec<Option<Place>> = line

@@ -4,9 +4,10 @@ use super::curve::{Curve, StageCurve};
 use super::legend::{LISTED_EVENTS, Legend};
 use super::strokes::{MARKER, Stroke, leader, marker};
 use crate::picture::axis::Axis;
+use crate::picture::chart::{self, CAPTION, LONGEST, MARGIN, Side, TITLE};
 use crate::picture::labels::Map;
-use crate::picture::shapes::{self, DrawingError, Drawn, FINE, INK, Lettering, Place, Sheet};
-use plotters::prelude::{ChartBuilder, PathElement, RGBColor};
+use crate::picture::shapes::{self, DrawingError, Drawn, FINE, Lettering, Place, Sheet};
+use plotters::prelude::{PathElement, RGBColor};
 use plotters::style::Color;
 
 /// Widths, in pixels.
@@ -15,11 +16,6 @@ const LEGEND: i32 = 380;
 /// The chart is at least and at most this high; the legend may be longer.
 const LOWEST: i32 = 480;
 const HIGHEST: i32 = 900;
-const MARGIN: i32 = 16;
-const CAPTION: i32 = 42;
-/// Room for the ticks' texts and the axes' names.
-const BELOW: i32 = 48;
-const BESIDE: i32 = 70;
 /// At most this many ticks an axis.
 const TICKS: usize = 10;
 /// Half a letter's height, and half its width for each character, in fine units.
@@ -29,14 +25,8 @@ const HALF_WIDTH: i32 = 60;
 const TIED: i32 = 18 * FINE;
 /// Dots closer than this to the last one are left out, in fine units.
 const DENSE: i32 = 20;
-/// Characters of the title and of an axis' name.
-const LONGEST: usize = 80;
 
-const GRID: RGBColor = RGBColor(228, 228, 228);
 const ZERO: RGBColor = RGBColor(170, 170, 170);
-const TITLE: Lettering = Lettering { size: 15, color: &INK, bold: true, centred: true };
-const NAME: Lettering = Lettering { size: 13, color: &INK, bold: false, centred: true };
-const TICK: Lettering = Lettering { size: 12, ..NAME };
 const LETTER: Lettering = Lettering { size: 14, ..TITLE };
 
 /// The picture as SVG text.
@@ -54,30 +44,16 @@ pub fn draw(curve: &Curve) -> Result<String, DrawingError> {
 fn draw_chart(sheet: &Sheet<'_>, curve: &Curve, displacement: &Axis, load: &Axis, height: i32) -> Drawn {
     let (part, _) = sheet.split_horizontally(CHART * FINE);
     let (part, _) = part.split_vertically(height * FINE);
-    if let Some(title) = &curve.title {
-        TITLE.write(sheet, ((CHART + BESIDE) / 2 * FINE, CAPTION / 2 * FINE), title, LONGEST)?;
-    }
-    let mut chart = ChartBuilder::on(&part)
-        .margin(MARGIN * FINE)
-        .margin_top(CAPTION * FINE)
-        .x_label_area_size(BELOW * FINE)
-        .y_label_area_size(BESIDE * FINE)
-        .build_cartesian_2d(displacement.range.clone(), load.range.clone())?;
-    chart
-        .configure_mesh()
-        .x_labels(TICKS)
-        .y_labels(TICKS)
-        .max_light_lines(0)
-        .bold_line_style(GRID.stroke_width(8))
-        .axis_style(INK.stroke_width(10))
-        .set_all_tick_mark_size(5 * FINE)
-        .label_style(TICK.style())
-        .axis_desc_style(NAME.style())
-        .x_label_formatter(&|value| displacement.tick(*value))
-        .y_label_formatter(&|value| load.tick(*value))
-        .x_desc(shapes::legible(&displacement.named(&format!("displacement {}", curve.against)), LONGEST))
-        .y_desc(load.named("load factor"))
-        .draw()?;
+    let sides = [
+        Side {
+            name: displacement.named(&format!("displacement {}", curve.against)),
+            range: displacement.range.clone(),
+            tick: &|at| displacement.tick(at),
+            ticks: TICKS,
+        },
+        Side { name: load.named("load factor"), range: load.range.clone(), tick: &|at| load.tick(at), ticks: TICKS },
+    ];
+    let chart = chart::chart(&part, CHART, curve.title.as_deref(), sides)?;
     let on_sheet = |at: (f64, f64)| chart.backend_coord(&(displacement.drawn(at.0), load.drawn(at.1)));
     let (across, along) = chart.plotting_area().get_pixel_range();
     let origin = on_sheet((0.0, 0.0));
