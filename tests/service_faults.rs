@@ -92,6 +92,7 @@ async fn a_full_disk_fails_the_job_keeps_what_is_stored_and_passes() {
     store.full.store(true, Ordering::Relaxed);
     let refused = server.post("/v1/jobs", &request("another", 5)).await;
     assert_eq!(refused.status(), 507);
+    assert!(refused.headers().contains_key("retry-after"));
     let text = refused.text().await.expect("a body");
     assert!(text.contains("/problems/storage-full") && !text.contains("INSERT") && !text.contains("/tmp"), "{text}");
     solver.let_go();

@@ -139,9 +139,21 @@ async fn a_follower_stands_on_its_own_and_is_taken_up_by_another_process() {
 
     // Queued where nobody works, the one it follows deleted, begun by a worker that is lost after four increments.
     let server = TestServer::start_with(&database, PathSolver, waiting()).await;
-    let queued = follow(&server, &root, &asked).await;
+    let with_key = async |key: &'static str, asked: &Value| {
+        let call = server.ask(Method::POST, &format!("/v1/jobs/{root}/follow")).header("Idempotency-Key", key);
+        let answer = call.json(asked).send().await.expect("an answer");
+        (answer.status(), answer.json::<Value>().await.expect("JSON"))
+    };
+    let (status, queued) = with_key("once", &asked).await;
+    assert_eq!(status, StatusCode::ACCEPTED);
     let gone = server.ask(Method::DELETE, &format!("/v1/jobs/{root}")).send().await.expect("an answer");
     assert_eq!(gone.status(), StatusCode::NO_CONTENT);
+    // A client that did not hear the answer asks again.
+    let (status, again) = with_key("once", &asked).await;
+    assert_eq!((status, &again["id"]), (StatusCode::ACCEPTED, &queued["id"]));
+    let elsewhere = json!({"increment": 0, "direction": 0});
+    assert_eq!(with_key("once", &elsewhere).await.0, StatusCode::UNPROCESSABLE_ENTITY);
+    assert_eq!(with_key("another", &asked).await.0, StatusCode::NOT_FOUND);
     assert!(server.stop().await);
     let lost = store::open(&database).await.expect("a store");
     let claim = lost.claim("lost", Duration::from_secs(5)).await.expect("a claim").expect("a job");

@@ -5,7 +5,7 @@
 mod common;
 
 use arcslip::jobs::{Limits, PathSolver, Settings};
-use arcslip::store::{self, Keep};
+use arcslip::store::{self, Batch, Keep};
 use common::server::{TestServer, settings};
 use common::service::{in_short_steps, indices, request, scene, without_elapsed};
 use common::solver::MadeUp;
@@ -310,7 +310,7 @@ async fn what_an_exploration_has_still_to_look_at_is_kept() {
     server.until(&id, |job| job["status"] == "queued").await;
     let claim = store.claim("worker", Duration::from_secs(60)).await.expect("a claim").expect("a job");
     let ended = arcslip::store::Ending::failed("ended");
-    store.finish(&claim.lease, ended).await.expect("ended");
+    store.finish(&claim.lease, &Batch::default(), &ended).await.expect("ended");
     // Whichever comes first, the sweep or this: only a family that has been looked at goes.
     store.explore().await.expect("looked at");
     assert_eq!(store.retire(Keep::Newest(0)).await.expect("an answer"), 1);

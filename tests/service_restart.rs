@@ -3,7 +3,7 @@
 
 mod common;
 
-use arcslip::store::{self, Ending, LeaseAnswer, Page};
+use arcslip::store::{self, Batch, Ending, LeaseAnswer, Page};
 use common::engines::{batch, job, line, queued};
 use common::server::TestServer;
 use common::service::{indices, request, without_elapsed};
@@ -77,7 +77,10 @@ async fn a_lost_workers_job_is_taken_over_and_its_late_writes_are_refused() {
     assert_eq!(lost.append(&claim.lease, &batch(&late), minute).await.expect("an answer"), LeaseAnswer::Lost);
     assert_eq!(lost.renew(&claim.lease, minute).await.expect("an answer"), LeaseAnswer::Lost);
     assert_eq!(lost.release(&claim.lease).await.expect("an answer"), LeaseAnswer::Lost);
-    assert_eq!(lost.finish(&claim.lease, Ending::failed("late")).await.expect("an answer"), LeaseAnswer::Lost);
+    assert_eq!(
+        lost.finish(&claim.lease, &Batch::default(), &Ending::failed("late")).await.expect("an answer"),
+        LeaseAnswer::Lost
+    );
     assert_eq!(server.ended(&id.to_string()).await, job);
     assert_eq!(lost.increments(id, None, ALL).await.expect("increments").len(), 6);
 }

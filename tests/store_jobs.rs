@@ -41,7 +41,7 @@ async fn completed(store: &dyn Store, lines: &[Line]) -> Uuid {
     let claim = store.claim("worker", MINUTE).await.expect("an answer").expect("a job");
     store.append(&claim.lease, &batch(lines), MINUTE).await.expect("stored");
     let ending = Ending { status: Status::Completed, stop_reason: None, report: Some("{}".to_owned()), error: None };
-    store.finish(&claim.lease, ending).await.expect("an answer");
+    store.finish(&claim.lease, &Batch::default(), &ending).await.expect("an answer");
     claim.lease.job
 }
 
@@ -91,7 +91,7 @@ async fn a_sweep_ends_with_its_runs_however_they_do(database: Database) {
     }
     let stop_reason = Some("stages_completed".to_owned());
     let ending = Ending { status: Status::Completed, stop_reason, report: Some("{}".to_owned()), error: None };
-    store.finish(&claim.lease, ending).await.expect("an answer");
+    store.finish(&claim.lease, &Batch::default(), &ending).await.expect("an answer");
     store.claim("lost", Duration::ZERO).await.expect("an answer").expect("a job");
     tokio::time::sleep(Duration::from_millis(5)).await;
     assert_eq!(store.reclaim_expired().await.expect("an answer"), 1);
@@ -242,7 +242,7 @@ async fn an_exploration_queues_each_direction_once_in_order(database: Database) 
     assert_eq!(store.explore().await.expect("an answer"), 0);
     store.append(&one.lease, &batch(&[branching(7, None, &[5])]), MINUTE).await.expect("stored");
     let stopped = Ending { status: Status::Stopped, ..Ending::failed("") };
-    store.finish(&one.lease, stopped).await.expect("an answer");
+    store.finish(&one.lease, &Batch::default(), &stopped).await.expect("an answer");
     assert_eq!(store.explore().await.expect("an answer"), 1, "there is room for one more");
     completed(store.as_ref(), &[branching(9, None, &[9])]).await;
     // Too deep.

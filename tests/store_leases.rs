@@ -29,10 +29,11 @@ async fn a_lease_that_has_run_out_writes_nothing_even_if_nobody_has_taken_the_jo
     let lost = async |store: &dyn Store| {
         for lines in [&lines[..], &[]] {
             assert_eq!(store.append(&stopped, &batch(lines), MINUTE).await.expect("an answer"), LeaseAnswer::Lost);
+            let finished = store.finish(&stopped, &batch(lines), &Ending::failed("late")).await;
+            assert_eq!(finished.expect("an answer"), LeaseAnswer::Lost);
         }
         assert_eq!(store.renew(&stopped, MINUTE).await.expect("an answer"), LeaseAnswer::Lost);
         assert_eq!(store.release(&stopped).await.expect("an answer"), LeaseAnswer::Lost);
-        assert_eq!(store.finish(&stopped, Ending::failed("late")).await.expect("an answer"), LeaseAnswer::Lost);
     };
     lost(store.as_ref()).await;
     let job = found(store.as_ref(), id).await;
@@ -43,7 +44,7 @@ async fn a_lease_that_has_run_out_writes_nothing_even_if_nobody_has_taken_the_jo
     lost(store.as_ref()).await;
     assert_eq!(store.append(&next, &batch(&lines), MINUTE).await.expect("an answer"), HELD);
     assert_eq!(found(store.as_ref(), id).await.losses, 0, "a loss counts until something is stored");
-    assert_eq!(store.finish(&next, Ending::failed("so")).await.expect("an answer"), HELD);
+    assert_eq!(store.finish(&next, &Batch::default(), &Ending::failed("so")).await.expect("an answer"), HELD);
     lost(store.as_ref()).await;
     assert_eq!(store.increments(id, None, ALL).await.expect("increments"), lines);
 }
@@ -70,7 +71,7 @@ async fn a_claim_brings_what_an_earlier_attempt_stored(database: Database) {
     let checkpoint = second.checkpoint.expect("a checkpoint");
     assert_eq!((checkpoint.body.as_str(), checkpoint.trail.as_str()), ("at 4", "a\nb"));
     assert_eq!((second.waited, second.stored_bytes), (None, 9));
-    store.finish(&second.lease, Ending::failed("so")).await.expect("an answer");
+    store.finish(&second.lease, &Batch::default(), &Ending::failed("so")).await.expect("an answer");
     assert_eq!(store.standing(id).await.expect("an answer").expect("a job").last_index, Some(3));
 }
 
@@ -95,6 +96,15 @@ async fn a_batch_is_stored_whole_or_not_at_all(database: Database) {
     );
     assert!(store.increments(id, Some(1199), ALL).await.expect("increments").is_empty());
     assert!(store.increments(id, Some(u64::MAX), ALL).await.expect("increments").is_empty());
+    // So it is with those that come with the end.
+    let refused = store.finish(&claim.lease, &batch(&with_repeat), &Ending::failed("so")).await;
+    assert!(matches!(refused, Err(StoreError::Refused(_))), "{refused:?}");
+    assert_eq!(found(store.as_ref(), id).await.status, Status::Running);
+    let last = [line(1200, "{}"), line(1201, "last")];
+    assert_eq!(store.finish(&claim.lease, &batch(&last), &Ending::failed("so")).await.expect("an answer"), HELD);
+    let job = found(store.as_ref(), id).await;
+    assert_eq!((job.status, job.last_index), (Status::Failed, Some(1201)));
+    assert_eq!(store.increments(id, Some(1199), ALL).await.expect("increments"), last);
 }
 
 async fn an_append_whose_answer_was_lost_is_repeated_and_stored_once(database: Database) {

@@ -4,7 +4,7 @@
 
 mod common;
 
-use arcslip::store::{Ending, LeaseAnswer, Location, Status, Store, Submitted, Task};
+use arcslip::store::{Batch, Ending, LeaseAnswer, Location, Status, Store, Submitted, Task};
 use common::engines::{Database, batch, found, job, line, queued};
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
@@ -110,7 +110,7 @@ async fn a_full_queue_takes_no_more(database: Database) {
     let claim = store.claim("worker", MINUTE).await.expect("an answer").expect("a job");
     queued(store.as_ref(), next).await;
     assert_eq!(tally(store.as_ref()).await, [(Status::Queued, 2), (Status::Running, 1)]);
-    store.finish(&claim.lease, Ending::failed("no")).await.expect("an answer");
+    store.finish(&claim.lease, &Batch::default(), &Ending::failed("no")).await.expect("an answer");
     assert_eq!(tally(store.as_ref()).await, [(Status::Queued, 2), (Status::Failed, 1)]);
 }
 
@@ -157,7 +157,7 @@ async fn many_claims_at_once_take_every_job_once(database: Database) {
                 let lines = [line(0, "{}"), line(1, "{}")];
                 assert_eq!(store.append(&claim.lease, &batch(&lines), MINUTE).await.expect("an answer"), HELD);
                 let ending = Ending { status: Status::Completed, ..Ending::failed("") };
-                assert_eq!(store.finish(&claim.lease, ending).await.expect("an answer"), HELD);
+                assert_eq!(store.finish(&claim.lease, &Batch::default(), &ending).await.expect("an answer"), HELD);
                 taken.push(claim.lease.job);
             }
             taken
@@ -229,7 +229,7 @@ async fn of_many_claims_at_once_one_takes_a_suspect(database: Database) {
             taken.extend(claim.await.expect("it ends").expect("an answer"));
         }
         assert_eq!(taken.len(), 1);
-        store.finish(&taken[0].lease, Ending::failed("so")).await.expect("an answer");
+        store.finish(&taken[0].lease, &Batch::default(), &Ending::failed("so")).await.expect("an answer");
     }
 }
 
@@ -244,7 +244,7 @@ async fn a_queued_job_is_cancelled_at_once_and_a_running_one_told(database: Data
     let cancel = LeaseAnswer::Held { cancel_requested: true };
     assert_eq!(store.renew(&lease, MINUTE).await.expect("an answer"), cancel);
     assert_eq!(store.append(&lease, &batch(&[line(0, "{}")]), MINUTE).await.expect("an answer"), cancel);
-    store.finish(&lease, Ending::failed("so")).await.expect("an answer");
+    store.finish(&lease, &Batch::default(), &Ending::failed("so")).await.expect("an answer");
     let ended = store.request_cancel(running).await.expect("an answer").expect("a job");
     assert_eq!(ended.status, Status::Failed, "what has ended is left alone");
     assert!(store.request_cancel(uuid::Uuid::now_v7()).await.expect("an answer").is_none());
@@ -263,7 +263,7 @@ async fn what_another_process_changes_is_told(database: Database) {
         queued(there.as_ref(), job(3)).await;
     }
     while let Some(claim) = there.claim("worker", MINUTE).await.expect("an answer") {
-        there.finish(&claim.lease, Ending::failed("so")).await.expect("an answer");
+        there.finish(&claim.lease, &Batch::default(), &Ending::failed("so")).await.expect("an answer");
     }
     tokio::time::sleep(Duration::from_millis(300)).await;
     queue.borrow_and_update();

@@ -15,22 +15,19 @@ CREATE FUNCTION row_of_an_ended_run() RETURNS trigger LANGUAGE plpgsql AS $$
 DECLARE
     place BIGINT;
 BEGIN
-    UPDATE jobs SET
-        last_index = coalesce(last_index + 1, 0),
-        updated_at = NEW.updated_at,
-        ended_at = CASE WHEN coalesce(last_index, -1) + 2 < max_increments THEN NULL ELSE NEW.updated_at END,
-        worker = CASE WHEN coalesce(last_index, -1) + 2 < max_increments THEN worker END,
-        lease_until = CASE WHEN coalesce(last_index, -1) + 2 < max_increments THEN lease_until END,
-        stop_reason = CASE WHEN cancel_requested <> 0 AND coalesce(last_index, -1) + 2 >= max_increments THEN 'cancelled' END,
-        status = CASE WHEN coalesce(last_index, -1) + 2 < max_increments THEN status
-                      WHEN cancel_requested <> 0 THEN 'cancelled' ELSE 'completed' END
-    WHERE id = NEW.sweep
+    UPDATE jobs SET last_index = coalesce(last_index + 1, 0), updated_at = NEW.updated_at WHERE id = NEW.sweep
     RETURNING last_index INTO place;
     IF FOUND THEN
         INSERT INTO increments (job, increment_index, body) VALUES (NEW.sweep, place, json_build_object(
             'run', NEW.sweep_run, 'job', NEW.id::text, 'values', NEW.sweep_values::json, 'status', NEW.status,
             'stop_reason', NEW.stop_reason, 'error', NEW.error, 'last_index', NEW.last_index,
             'first_limit', NEW.first_limit::json)::text);
+        -- The last one ends the sweep.
+        UPDATE jobs SET
+            status = CASE WHEN cancel_requested <> 0 THEN 'cancelled' ELSE 'completed' END,
+            stop_reason = CASE WHEN cancel_requested <> 0 THEN 'cancelled' END,
+            ended_at = NEW.updated_at, worker = NULL, lease_until = NULL
+        WHERE id = NEW.sweep AND last_index + 1 >= max_increments;
     END IF;
     RETURN NULL;
 END
@@ -38,34 +35,6 @@ $$;
 CREATE TRIGGER row_of_an_ended_run AFTER UPDATE OF status ON jobs
 FOR EACH ROW WHEN (NEW.sweep IS NOT NULL AND OLD.status IN ('queued', 'running') AND NEW.status NOT IN ('queued', 'running'))
 EXECUTE FUNCTION row_of_an_ended_run();
-
--- A run that is deleted before its end is a cancelled one.
-CREATE FUNCTION row_of_a_dropped_run() RETURNS trigger LANGUAGE plpgsql AS $$
-DECLARE
-    place BIGINT;
-BEGIN
-    UPDATE jobs SET
-        last_index = coalesce(last_index + 1, 0),
-        ended_at = CASE WHEN coalesce(last_index, -1) + 2 < max_increments THEN NULL ELSE OLD.updated_at END,
-        worker = CASE WHEN coalesce(last_index, -1) + 2 < max_increments THEN worker END,
-        lease_until = CASE WHEN coalesce(last_index, -1) + 2 < max_increments THEN lease_until END,
-        stop_reason = CASE WHEN cancel_requested <> 0 AND coalesce(last_index, -1) + 2 >= max_increments THEN 'cancelled' END,
-        status = CASE WHEN coalesce(last_index, -1) + 2 < max_increments THEN status
-                      WHEN cancel_requested <> 0 THEN 'cancelled' ELSE 'completed' END
-    WHERE id = OLD.sweep
-    RETURNING last_index INTO place;
-    IF FOUND THEN
-        INSERT INTO increments (job, increment_index, body) VALUES (OLD.sweep, place, json_build_object(
-            'run', OLD.sweep_run, 'job', OLD.id::text, 'values', OLD.sweep_values::json, 'status', 'cancelled',
-            'stop_reason', NULL, 'error', 'it was deleted', 'last_index', OLD.last_index,
-            'first_limit', OLD.first_limit::json)::text);
-    END IF;
-    RETURN NULL;
-END
-$$;
-CREATE TRIGGER row_of_a_dropped_run AFTER DELETE ON jobs
-FOR EACH ROW WHEN (OLD.sweep IS NOT NULL AND OLD.status IN ('queued', 'running'))
-EXECUTE FUNCTION row_of_a_dropped_run();
 
 -- What is counted are jobs that are worked on.
 CREATE OR REPLACE FUNCTION tally_job() RETURNS trigger LANGUAGE plpgsql AS $$

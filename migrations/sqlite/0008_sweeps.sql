@@ -19,48 +19,21 @@ CREATE INDEX jobs_by_sweep ON jobs (sweep, id) WHERE sweep IS NOT NULL;
 CREATE TRIGGER row_of_an_ended_run AFTER UPDATE OF status ON jobs
 WHEN NEW.sweep IS NOT NULL AND OLD.status IN ('queued', 'running') AND NEW.status NOT IN ('queued', 'running')
 BEGIN
+    UPDATE jobs SET last_index = coalesce(last_index + 1, 0), updated_at = NEW.updated_at WHERE id = NEW.sweep;
     INSERT INTO increments (job, increment_index, body)
-    SELECT id, coalesce(last_index + 1, 0), json_object(
+    SELECT id, last_index, json_object(
         'run', NEW.sweep_run,
         'job', lower(substr(hex(NEW.id), 1, 8) || '-' || substr(hex(NEW.id), 9, 4) || '-' || substr(hex(NEW.id), 13, 4) || '-'
                || substr(hex(NEW.id), 17, 4) || '-' || substr(hex(NEW.id), 21)),
         'values', json(NEW.sweep_values), 'status', NEW.status, 'stop_reason', NEW.stop_reason, 'error', NEW.error,
         'last_index', NEW.last_index, 'first_limit', json(NEW.first_limit))
     FROM jobs WHERE id = NEW.sweep;
+    -- The last one ends the sweep.
     UPDATE jobs SET
-        last_index = coalesce(last_index + 1, 0),
-        updated_at = NEW.updated_at,
-        ended_at = CASE WHEN coalesce(last_index, -1) + 2 < max_increments THEN NULL ELSE NEW.updated_at END,
-        worker = CASE WHEN coalesce(last_index, -1) + 2 < max_increments THEN worker END,
-        lease_until = CASE WHEN coalesce(last_index, -1) + 2 < max_increments THEN lease_until END,
-        stop_reason = CASE WHEN cancel_requested AND coalesce(last_index, -1) + 2 >= max_increments THEN 'cancelled' END,
-        status = CASE WHEN coalesce(last_index, -1) + 2 < max_increments THEN status
-                      WHEN cancel_requested THEN 'cancelled' ELSE 'completed' END
-    WHERE id = NEW.sweep;
-END;
-
--- A run that is deleted before its end is a cancelled one.
-CREATE TRIGGER row_of_a_dropped_run AFTER DELETE ON jobs
-WHEN OLD.sweep IS NOT NULL AND OLD.status IN ('queued', 'running')
-BEGIN
-    INSERT INTO increments (job, increment_index, body)
-    SELECT id, coalesce(last_index + 1, 0), json_object(
-        'run', OLD.sweep_run,
-        'job', lower(substr(hex(OLD.id), 1, 8) || '-' || substr(hex(OLD.id), 9, 4) || '-' || substr(hex(OLD.id), 13, 4) || '-'
-               || substr(hex(OLD.id), 17, 4) || '-' || substr(hex(OLD.id), 21)),
-        'values', json(OLD.sweep_values), 'status', 'cancelled', 'stop_reason', NULL, 'error', 'it was deleted',
-        'last_index', OLD.last_index, 'first_limit', json(OLD.first_limit))
-    FROM jobs WHERE id = OLD.sweep;
-    UPDATE jobs SET
-        last_index = coalesce(last_index + 1, 0),
-        updated_at = OLD.updated_at,
-        ended_at = CASE WHEN coalesce(last_index, -1) + 2 < max_increments THEN NULL ELSE OLD.updated_at END,
-        worker = CASE WHEN coalesce(last_index, -1) + 2 < max_increments THEN worker END,
-        lease_until = CASE WHEN coalesce(last_index, -1) + 2 < max_increments THEN lease_until END,
-        stop_reason = CASE WHEN cancel_requested AND coalesce(last_index, -1) + 2 >= max_increments THEN 'cancelled' END,
-        status = CASE WHEN coalesce(last_index, -1) + 2 < max_increments THEN status
-                      WHEN cancel_requested THEN 'cancelled' ELSE 'completed' END
-    WHERE id = OLD.sweep;
+        status = CASE WHEN cancel_requested THEN 'cancelled' ELSE 'completed' END,
+        stop_reason = CASE WHEN cancel_requested THEN 'cancelled' END,
+        ended_at = NEW.updated_at, worker = NULL, lease_until = NULL
+    WHERE id = NEW.sweep AND last_index + 1 >= max_increments;
 END;
 
 -- What is counted are jobs that are worked on.

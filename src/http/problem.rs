@@ -18,7 +18,7 @@ use std::time::Duration;
 const MEDIA_TYPE: &str = "application/problem+json";
 /// When what is unavailable is worth asking for again.
 const RETRY_AFTER: Duration = Duration::from_secs(2);
-/// A queue as long as it may be takes longer.
+/// A queue as long as it may be takes longer, and so does a full disk.
 const RETRY_WHEN_FULL: Duration = Duration::from_secs(10);
 
 /// Every kind of problem: the last part of its `type`, its status, its title.
@@ -172,7 +172,7 @@ impl Problem {
     pub fn new(kind: Kind, detail: impl Into<String>) -> Self {
         let retry_after = match kind {
             Kind::Unavailable => Some(RETRY_AFTER),
-            Kind::QueueFull => Some(RETRY_WHEN_FULL),
+            Kind::QueueFull | Kind::StorageFull => Some(RETRY_WHEN_FULL),
             _ => None,
         };
         Self { kind, detail: detail.into(), errors: Vec::new(), retry_after }

@@ -187,12 +187,16 @@ fn follow(service: Service, until: Until, id: Uuid, mut after: Option<u64>) -> i
                 stored = change.at;
                 let Some(latest) = change.latest else { break };
                 let Some(lines) = latest.beyond(after) else { break };
-                let Some(last) = lines.last() else { continue };
-                after = Some(last.index);
-                if let Some(at) = stored.take() {
-                    streams.sent_after(at.elapsed());
+                if let Some(last) = lines.last() {
+                    after = Some(last.index);
+                    if let Some(at) = stored.take() {
+                        streams.sent_after(at.elapsed());
+                    }
+                    yield Happening::Lines(lines.to_vec());
                 }
-                yield Happening::Lines(lines.to_vec());
+                if change.ended {
+                    break;
+                }
             }
         }
     }

@@ -22,8 +22,8 @@ const LONGEST_PAUSE: Duration = Duration::from_secs(1);
 /// Why no more increments are stored.
 #[derive(Debug)]
 pub enum Drained {
-    /// The solver has sent its last one, and it is stored.
-    Complete,
+    /// The solver has sent its last one; these have still to be stored, with the job's end.
+    Complete(Batch),
     /// The service is going down; what is not stored yet is computed again by the next attempt.
     ShuttingDown,
     /// The job is gone or another's, or nothing could be written for as long as the lease was held.
@@ -68,7 +68,7 @@ impl Allowance {
     }
 }
 
-/// Stores increments until the solver ends or one of the reasons above stops it; the lease is prolonged on the way.
+/// Stores increments, but for the last, until the solver ends or one of the reasons above stops it; the lease is prolonged on the way.
 pub async fn drain(
     jobs: &Jobs,
     claim: &Claim,
@@ -104,7 +104,11 @@ pub async fn drain(
         if allowance.take(&mut gathered) {
             reached = Some(Reached::Storage);
         }
-        match append(jobs, lease, &batch(&mut gathered), shutdown).await {
+        let batch = batch(&mut gathered);
+        if complete && reached.is_none() {
+            return Drained::Complete(batch);
+        }
+        match append(jobs, lease, &batch, shutdown).await {
             Ok(LeaseAnswer::Held { cancel_requested }) => {
                 if cancel_requested {
                     cancel.cancel();
@@ -120,9 +124,6 @@ pub async fn drain(
         }
         if let Some(reached) = reached {
             return Drained::Reached(reached);
-        }
-        if complete {
-            return Drained::Complete;
         }
     }
 }

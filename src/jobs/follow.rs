@@ -5,7 +5,7 @@ use super::{Caller, Jobs, JobsError, Limits, Posted, Solver, branches, queued};
 use crate::metrics::Write;
 use crate::model::{InputError, InputErrors, decode};
 use crate::path::Increment;
-use crate::store::{JobRecord, NewFollower, Page, Parent, Task};
+use crate::store::{JobRecord, NewFollower, Page, Parent, Submitted, Task};
 use uuid::Uuid;
 
 impl Jobs {
@@ -23,8 +23,25 @@ impl Jobs {
         if let Some(past) = asked.max_increments.and_then(|most| limits.past_increments("/max_increments", most)) {
             return Err(JobsError::Follow(InputErrors(vec![past])));
         }
-        let job = self.find(caller, Task::Path, id).await?;
         let parent = Parent { job: id, increment: asked.increment, direction: asked.direction };
+        let owner = caller.owner().map(str::to_owned);
+        let follower = |max_increments| NewFollower {
+            parent,
+            owner: owner.clone(),
+            max_increments,
+            idempotency_key: idempotency_key.clone(),
+            most_queued: limits.queued,
+        };
+        let job = match self.find(caller, Task::Path, id).await {
+            // Nothing can be queued; but a call that was answered before the parent went is answered as then.
+            Err(absent) if idempotency_key.is_some() && self.store.job(id).await?.is_none() => {
+                return match self.store.follow(follower(asked.max_increments)).await? {
+                    Some(known @ (Submitted::Repeated(_) | Submitted::KeyReused)) => queued(known),
+                    _ => Err(absent),
+                };
+            }
+            found => found?,
+        };
         self.check_listed(&job, asked.increment).await?;
         let Some(origin) = self.store.branch(id, asked.increment).await? else {
             let increment = asked.increment;
@@ -50,9 +67,7 @@ impl Jobs {
         // The service may have taken more when the other one was queued.
         let max_increments = Some(asked.max_increments.unwrap_or(job.max_increments.min(limits.increments)));
         // Nothing to be found here any more: the parent was deleted just now.
-        let owner = caller.owner().map(str::to_owned);
-        let follower = NewFollower { parent, owner, max_increments, idempotency_key, most_queued: limits.queued };
-        let submitted = self.metrics.work.timed(Write::Submit, self.store.follow(follower)).await?;
+        let submitted = self.metrics.work.timed(Write::Submit, self.store.follow(follower(max_increments))).await?;
         queued(submitted.ok_or(JobsError::NoJob(id))?)
     }
 

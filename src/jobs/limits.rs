@@ -110,6 +110,7 @@ impl fmt::Display for Limits {
             ("elements", self.elements.to_string(), refused),
             ("contacts", self.contacts.to_string(), refused),
             ("`max_increments`", self.increments.to_string(), refused),
+            ("bytes of the requests of a sweep's runs", super::sweeps::MOST_BYTES.to_string(), refused),
             ("jobs and studies that wait", self.queued.to_string(), "refused, 429 with `Retry-After`"),
             ("seconds that a job runs", self.wall_time.as_secs_f64().to_string(), "`stopped`, `time_limit`"),
             ("bytes stored of a job", self.stored_bytes.to_string(), "`stopped`, `storage_limit`"),

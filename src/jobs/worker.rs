@@ -8,7 +8,7 @@ use crate::judged::JudgedReport;
 use crate::metrics::Write;
 use crate::output::columns::name_of;
 use crate::path::Outcome;
-use crate::store::{Claim, Ending, Lease, LeaseAnswer, Status, StoreError, Task};
+use crate::store::{Batch, Claim, Ending, Lease, LeaseAnswer, Status, StoreError, Task};
 use crate::studies;
 use std::time::Duration;
 use tokio_util::sync::CancellationToken;
@@ -55,7 +55,7 @@ async fn guarded(jobs: &Jobs, claim: Claim, shutdown: &CancellationToken) {
     };
     let Err(error) = AbortOnDropHandle::new(task).await else { return };
     let ending = Ending::failed(format!("the service has a defect: {error}"));
-    match finish(jobs, &lease, &ending, shutdown).await {
+    match finish(jobs, &lease, &Batch::default(), &ending, shutdown).await {
         Ok(_) => tracing::error!(%error, "a worker panicked; the job failed"),
         Err(unstored) => tracing::error!(%error, %unstored, "a worker panicked, and the end was not stored"),
     }
@@ -98,14 +98,15 @@ async fn trace(jobs: &Jobs, claim: &Claim, shutdown: &CancellationToken) -> Resu
     let mut solve = match solve::start(jobs, claim, stored, cancel.clone()) {
         Ok(solve) => solve,
         Err(error) => {
-            return end(jobs, claim, Ending::failed(format!("no thread could be started: {error}")), shutdown).await;
+            let ending = Ending::failed(format!("no thread could be started: {error}"));
+            return end(jobs, claim, Batch::default(), ending, shutdown).await;
         }
     };
     let store = jobs.store.as_ref();
     match batch::drain(jobs, claim, &mut solve.sent, &cancel, shutdown).await {
-        Drained::Complete => {
+        Drained::Complete(batch) => {
             let ending = ending(solve.end.await.unwrap_or(SolveEnd::Silent));
-            end(jobs, claim, ending, shutdown).await
+            end(jobs, claim, batch, ending, shutdown).await
         }
         Drained::ShuttingDown => {
             cancel.cancel();
@@ -130,7 +131,7 @@ async fn trace(jobs: &Jobs, claim: &Claim, shutdown: &CancellationToken) -> Resu
                 report: None,
                 error: Some(jobs.settings.limits.sentence(reached)),
             };
-            let answer = end(jobs, claim, ending, shutdown).await;
+            let answer = end(jobs, claim, Batch::default(), ending, shutdown).await;
             stop(solve).await;
             answer
         }
@@ -142,8 +143,7 @@ async fn trace(jobs: &Jobs, claim: &Claim, shutdown: &CancellationToken) -> Resu
         Drained::Failed(error) => {
             cancel.cancel();
             stop(solve).await;
-            tracing::error!(%error, source = ?std::error::Error::source(&error), "increments could not be stored");
-            end(jobs, claim, Ending::failed(format!("increments could not be stored: {error}")), shutdown).await
+            end(jobs, claim, Batch::default(), not_stored(&error), shutdown).await
         }
     }
 }
@@ -155,14 +155,32 @@ async fn stop(solve: Solve) {
     let _ = solve.end.await;
 }
 
-/// Stores how a job ended. On a full disk that waits for room, and otherwise for as long as the lease may be held: if the end
-/// is not stored until then, the job is taken up again from its last checkpoint.
-async fn end(jobs: &Jobs, claim: &Claim, ending: Ending, shutdown: &CancellationToken) -> Result<Finished, StoreError> {
-    let status = ending.status;
+fn not_stored(error: &StoreError) -> Ending {
+    tracing::error!(%error, source = ?std::error::Error::source(error), "increments could not be stored");
+    Ending::failed(format!("increments could not be stored: {error}"))
+}
+
+/// Stores how a job ended, and its last increments with that; where those cannot be stored, that they could not. On a full
+/// disk the end waits for room, and otherwise for as long as the lease may be held: if it is not stored until then, the job
+/// is taken up again from its last checkpoint.
+async fn end(
+    jobs: &Jobs,
+    claim: &Claim,
+    mut batch: Batch,
+    mut ending: Ending,
+    shutdown: &CancellationToken,
+) -> Result<Finished, StoreError> {
     loop {
-        match finish(jobs, &claim.lease, &ending, shutdown).await {
-            Ok(LeaseAnswer::Held { .. }) => return Ok(Finished::Ended(status)),
+        match finish(jobs, &claim.lease, &batch, &ending, shutdown).await {
+            Ok(LeaseAnswer::Held { .. }) => {
+                jobs.metrics.work.stored(batch.lines.len());
+                return Ok(Finished::Ended(ending.status));
+            }
             Ok(LeaseAnswer::Lost) => return Ok(Finished::Lost),
+            Err(error) if !error.is_passing() && !batch.is_empty() => {
+                ending = not_stored(&error);
+                batch = Batch::default();
+            }
             Err(error @ StoreError::Full(_)) => {
                 tracing::error!(%error, "how the job ended waits for room to be stored");
                 tokio::select! {
@@ -178,10 +196,11 @@ async fn end(jobs: &Jobs, claim: &Claim, ending: Ending, shutdown: &Cancellation
 async fn finish(
     jobs: &Jobs,
     lease: &Lease,
+    batch: &Batch,
     ending: &Ending,
     shutdown: &CancellationToken,
 ) -> Result<LeaseAnswer, StoreError> {
-    let finish = || jobs.metrics.work.timed(Write::Finish, jobs.store.finish(lease, ending.clone()));
+    let finish = || jobs.metrics.work.timed(Write::Finish, jobs.store.finish(lease, batch, ending));
     batch::retry(jobs.settings.lease, shutdown, finish).await
 }
 

@@ -91,8 +91,8 @@ pub trait Store: Send + Sync + 'static {
     /// Where no answer came to such a call, the same call again stores nothing twice and is answered as the first.
     async fn append(&self, lease: &Lease, batch: &Batch, duration: Duration) -> Result<LeaseAnswer>;
 
-    /// Ends a job.
-    async fn finish(&self, lease: &Lease, ending: Ending) -> Result<LeaseAnswer>;
+    /// Ends a job, with these increments as its last, all or nothing. Checkpoints are of no more use and are not stored.
+    async fn finish(&self, lease: &Lease, batch: &Batch, ending: &Ending) -> Result<LeaseAnswer>;
 
     /// Hands a job back to the queue with its attempt, for a worker that is going away in good order.
     async fn release(&self, lease: &Lease) -> Result<LeaseAnswer>;

@@ -27,6 +27,8 @@ pub struct Change {
     pub latest: Option<Arc<Latest>>,
     /// When lines were stored.
     pub at: Option<Instant>,
+    /// The job has ended with that.
+    pub ended: bool,
 }
 
 /// The lines of one write.
@@ -105,14 +107,27 @@ impl Signals {
 
     /// Lines were stored.
     pub fn job_appended(&self, lease: &Lease, lines: &[Line]) {
+        self.stored(lease, lines, false);
+    }
+
+    /// A job has ended, with these lines as its last.
+    pub fn job_ended(&self, lease: &Lease, lines: &[Line]) {
+        self.stored(lease, lines, true);
+    }
+
+    fn stored(&self, lease: &Lease, lines: &[Line], ended: bool) {
         self.announce_job(lease.job);
         let mut jobs = self.jobs();
-        let (Some(heard), Some(last)) = (jobs.get_mut(&lease.job), lines.last()) else { return };
+        let Some(heard) = jobs.get_mut(&lease.job) else { return };
+        let Some(last) = lines.last() else {
+            heard.changes.send_replace(Change { ended, ..Change::default() });
+            return;
+        };
         // Between two writes of one lease nobody else writes; between those of two others may have.
         let after = heard.holder.take().filter(|holder| holder.lease == *lease).map(|holder| holder.last_index);
         heard.holder = Some(Holder { lease: lease.clone(), last_index: Some(last.index) });
         let latest = after.map(|after| Arc::new(Latest { after, lines: lines.iter().map(Line::alone).collect() }));
-        heard.changes.send_replace(Change { latest, at: Some(Instant::now()) });
+        heard.changes.send_replace(Change { latest, at: Some(Instant::now()), ended });
     }
 
     pub fn queue_changed(&self) {
@@ -180,6 +195,11 @@ mod tests {
         assert_eq!(beyond(&mut changes, Some(0)), None, "5 is missing");
         signals.job_changed(Uuid::nil());
         assert_eq!(beyond(&mut changes, Some(5)), None);
+        signals.job_ended(&lease(1), &lines(&[11]));
+        assert_eq!(beyond(&mut changes, Some(10)), Some(vec![11]), "the last ones come with the end");
+        assert!(changes.borrow().ended);
+        signals.job_ended(&lease(1), &[]);
+        assert!(changes.borrow().ended && changes.borrow().latest.is_none());
     }
 
     #[test]

@@ -152,7 +152,7 @@ async fn calls(location: Location) -> Vec<(String, Duration)> {
         note("renew", began.elapsed());
         let began = Instant::now();
         let ending = Ending { status: Status::Completed, ..Ending::failed("") };
-        store.finish(&lease, ending).await.expect("an answer");
+        store.finish(&lease, &Batch::default(), &ending).await.expect("an answer");
         note("finish", began.elapsed());
     }
     store.close().await;

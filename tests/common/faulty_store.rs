@@ -13,11 +13,11 @@ use uuid::Uuid;
 
 pub struct FaultyStore {
     inner: Arc<dyn Store>,
-    /// So many appends fail as if the database were locked.
+    /// So many writes of lines fail as if the database were locked.
     pub locked_appends: AtomicU32,
-    /// So many appends panic.
+    /// So many writes of lines panic.
     pub panicking_appends: AtomicU32,
-    /// Appends and submissions fail as if the disk were full.
+    /// Writes of lines and submissions fail as if the disk were full.
     pub full: AtomicBool,
     /// Probes and tallies fail.
     pub down: AtomicBool,
@@ -43,6 +43,22 @@ impl FaultyStore {
         } else {
             Ok(())
         }
+    }
+
+    fn before_lines(&self) -> Result<()> {
+        self.room()?;
+        let one_of = |faults: &AtomicU32| {
+            faults.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1)).is_ok()
+        };
+        assert!(!one_of(&self.panicking_appends), "a made-up defect of the store");
+        if one_of(&self.locked_appends) {
+            return Err(StoreError::Unavailable("locked".into()));
+        }
+        Ok(())
+    }
+
+    fn note(&self, batch: &Batch) {
+        self.stored.lock().expect("no panic under the lock").extend(batch.lines.iter().map(|line| line.index));
     }
 }
 
@@ -119,21 +135,19 @@ impl Store for FaultyStore {
     }
 
     async fn append(&self, lease: &Lease, batch: &Batch, duration: Duration) -> Result<LeaseAnswer> {
-        self.room()?;
-        let one_of = |faults: &AtomicU32| {
-            faults.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1)).is_ok()
-        };
-        assert!(!one_of(&self.panicking_appends), "a made-up defect of the store");
-        if one_of(&self.locked_appends) {
-            return Err(StoreError::Unavailable("locked".into()));
-        }
+        self.before_lines()?;
         let answer = self.inner.append(lease, batch, duration).await?;
-        self.stored.lock().expect("no panic under the lock").extend(batch.lines.iter().map(|line| line.index));
+        self.note(batch);
         Ok(answer)
     }
 
-    async fn finish(&self, lease: &Lease, ending: Ending) -> Result<LeaseAnswer> {
-        self.inner.finish(lease, ending).await
+    async fn finish(&self, lease: &Lease, batch: &Batch, ending: &Ending) -> Result<LeaseAnswer> {
+        if !batch.is_empty() {
+            self.before_lines()?;
+        }
+        let answer = self.inner.finish(lease, batch, ending).await?;
+        self.note(batch);
+        Ok(answer)
     }
 
     async fn release(&self, lease: &Lease) -> Result<LeaseAnswer> {

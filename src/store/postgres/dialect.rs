@@ -13,6 +13,8 @@ impl Dialect for Postgres {
     const WAITING: &'static str = "";
     const FREE: &'static str = "FOR UPDATE SKIP LOCKED";
     const THERE: &'static str = "FOR KEY SHARE";
+    // Until the end of the transaction, which is the statement.
+    const UNSYNCED: &'static str = ", set_config('synchronous_commit', 'off', true) AS unsynced";
     // The server sends all that it is asked for, so the bytes are counted there; what has not been sent costs it no reading.
     const PAGE: &'static str = "SELECT increment_index, body FROM (SELECT increment_index, body, \
                                 sum(octet_length(body)) OVER (ORDER BY increment_index) - octet_length(body) AS before \

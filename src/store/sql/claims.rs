@@ -11,10 +11,10 @@
 //! at a time, next to others that have none. One that ends every process is then alone among the suspects at each of its
 //! attempts; a job that was beside it at the first is not beside it at the next.
 
-use super::dialect::{Dialect, Value, values};
+use super::dialect::{Cells, Dialect, Value, values};
 use super::store::{Engine, Of, writer};
 use super::{followers, increments, rows};
-use crate::store::{Claim, Ending, Lease, LeaseAnswer, Result, StoreError};
+use crate::store::{Claim, Lease, LeaseAnswer, Result, StoreError};
 use std::time::Duration;
 
 /// The lease is held: `$1` job, `$2` worker, `$3` attempt.
@@ -33,12 +33,14 @@ macro_rules! ran {
 }
 pub(super) use ran;
 
-/// What a claim is made of.
+/// What a claim is made of. One that a break-down of the database takes back is one that never was: the job waits, and what is
+/// written under it is refused.
 macro_rules! claimed {
     () => {
         " RETURNING id, task, attempt, request, max_increments, last_index, parent, parent_increment, parent_direction, \
          family, ran_ms, stored_bytes, CASE WHEN started_at > created_at THEN started_at - created_at ELSE 0 END AS waited, \
-         CAST(CASE WHEN started_at = {now} THEN 1 ELSE 0 END AS BIGINT) AS is_first"
+         CAST(CASE WHEN started_at = {now} THEN 1 ELSE 0 END AS BIGINT) AS is_first \
+         {unsynced}"
     };
 }
 
@@ -104,7 +106,7 @@ pub(super) async fn claim<E: Engine>(engine: &E, worker: &str, lease: Duration, 
         last_branch,
         checkpoint,
         origin,
-        explores: super::dialect::Cells::id(&row, "family")?.is_some(),
+        explores: row.id("family")?.is_some(),
         waited: if is_first { Some(rows::milliseconds(&row, "waited")?) } else { None },
         ran: rows::milliseconds(&row, "ran_ms")?,
         stored_bytes: rows::number(&row, "stored_bytes")?,
@@ -125,39 +127,10 @@ pub(super) fn milliseconds(duration: Duration) -> Value<'static> {
 }
 
 pub(super) async fn renew<E: Engine>(engine: &E, lease: &Lease, duration: Duration) -> Result<LeaseAnswer> {
-    let update = concat!("UPDATE jobs SET lease_until = {now} + $4, ", ran!(), held!(), "RETURNING cancel_requested");
+    let update =
+        concat!("UPDATE jobs SET lease_until = {now} + $4, ", ran!(), held!(), "RETURNING cancel_requested {unsynced}");
     let values = values![lease.job, &lease.worker, lease.attempt, milliseconds(duration)];
     answer(Of::<E>::first(&mut *writer(engine).await?, update, values).await?.as_ref())
-}
-
-pub(super) async fn finish<E: Engine>(engine: &E, lease: &Lease, ending: Ending) -> Result<LeaseAnswer> {
-    let row = Of::<E>::first(
-        &mut *writer(engine).await?,
-        concat!(
-            "UPDATE jobs SET status = $4, stop_reason = $5, report = $6, error = $7, worker = NULL, lease_until = NULL, \
-             losses = 0, ended_at = {now}, ",
-            ran!(),
-            held!(),
-            "RETURNING cancel_requested, sweep"
-        ),
-        values![
-            lease.job,
-            &lease.worker,
-            lease.attempt,
-            ending.status.name(),
-            &ending.stop_reason,
-            &ending.report,
-            &ending.error
-        ],
-    )
-    .await?;
-    engine.signals().job_changed(lease.job);
-    if let Some(sweep) = row.as_ref().map(|row| super::dialect::Cells::id(row, "sweep")).transpose()?.flatten() {
-        engine.signals().job_changed(sweep);
-    }
-    // Where the job had lost workers, others of the kind may have waited for its end.
-    engine.signals().queue_changed();
-    answer(row.as_ref())
 }
 
 pub(super) async fn release<E: Engine>(engine: &E, lease: &Lease) -> Result<LeaseAnswer> {
@@ -171,12 +144,13 @@ pub(super) async fn release<E: Engine>(engine: &E, lease: &Lease) -> Result<Leas
              attempt = attempt - 1, worker = NULL, lease_until = NULL, ",
             ran!(),
             held!(),
-            "RETURNING cancel_requested"
+            "RETURNING cancel_requested, sweep"
         ),
         values![lease.job, &lease.worker, lease.attempt],
     )
     .await?;
     engine.signals().job_changed(lease.job);
+    tell_sweep(engine, row.as_ref())?;
     engine.signals().queue_changed();
     answer(row.as_ref())
 }
@@ -194,12 +168,13 @@ pub(super) async fn reclaim_expired<E: Engine>(engine: &E) -> Result<u64> {
 works on the job ends, or does not answer in time' END, \
          ended_at = CASE WHEN cancel_requested <> 0 OR losses + 1 >= max_attempts THEN {now} END, \
          worker = NULL, lease_until = NULL, updated_at = {now} \
-         WHERE id IN (SELECT id FROM jobs WHERE status = 'running' AND lease_until < {clock} {free}) RETURNING id",
+         WHERE id IN (SELECT id FROM jobs WHERE status = 'running' AND lease_until < {clock} {free}) RETURNING id, sweep",
         values![],
     )
     .await?;
     for row in &touched {
         engine.signals().job_changed(rows::id(row, "id")?);
+        tell_sweep(engine, Some(row))?;
     }
     if !touched.is_empty() {
         engine.signals().queue_changed();
@@ -210,8 +185,16 @@ works on the job ends, or does not answer in time' END, \
     u64::try_from(touched.len()).map_err(|error| StoreError::Refused(Box::new(error)))
 }
 
+/// Tells those who follow a sweep that one of its runs may have ended; of a row with the column `sweep`.
+pub(super) fn tell_sweep<E: Engine>(engine: &E, row: Option<&impl Cells>) -> Result<()> {
+    if let Some(sweep) = row.map(|row| row.id("sweep")).transpose()?.flatten() {
+        engine.signals().job_changed(sweep);
+    }
+    Ok(())
+}
+
 /// Of a row with the column `cancel_requested`, which is there where the lease is held.
-pub(super) fn answer(row: Option<&impl super::dialect::Cells>) -> Result<LeaseAnswer> {
+pub(super) fn answer(row: Option<&impl Cells>) -> Result<LeaseAnswer> {
     match row {
         Some(row) => Ok(LeaseAnswer::Held { cancel_requested: rows::flag(row, "cancel_requested")? }),
         None => Ok(LeaseAnswer::Lost),

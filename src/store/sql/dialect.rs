@@ -95,6 +95,9 @@ pub(in crate::store) trait Dialect: Database<Row: Cells> {
     const FREE: &'static str;
     /// After a selection: nobody drops these rows until the end.
     const THERE: &'static str;
+    /// At the end of what a statement answers: nobody waits until the disk has it. It is written before anything that comes
+    /// later, or lost with that when the server breaks down.
+    const UNSYNCED: &'static str;
     /// Increments of job `$1` past `$2`, in order: at most `$3`, and few past `$4` bytes.
     const PAGE: &'static str;
     /// What is to be tidied now and then.
@@ -145,6 +148,7 @@ pub(in crate::store) trait Dialect: Database<Row: Cells> {
             ("{waiting}", Self::WAITING),
             ("{free}", Self::FREE),
             ("{there}", Self::THERE),
+            ("{unsynced}", Self::UNSYNCED),
         ];
         let mut said = statement.to_owned();
         for (word, meaning) in words {

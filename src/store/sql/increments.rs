@@ -4,7 +4,7 @@ use super::claims::{self, held, milliseconds, ran};
 use super::dialect::{Dialect, values};
 use super::rows;
 use super::store::{Engine, Of, begin, reader};
-use crate::store::{Batch, Checkpoint, Lease, LeaseAnswer, Line, Origin, Page, Result};
+use crate::store::{Batch, Checkpoint, Ending, Lease, LeaseAnswer, Line, Origin, Page, Result};
 use std::time::Duration;
 use tokio_stream::StreamExt;
 use uuid::Uuid;
@@ -20,7 +20,6 @@ pub(super) async fn append<E: Engine>(
     }
     let lines = batch.lines.as_slice();
     let mut transaction = begin(engine).await?;
-    let bytes: u64 = lines.iter().map(Line::bytes).sum();
     let row = Of::<E>::first(
         &mut transaction,
         concat!(
@@ -35,7 +34,7 @@ pub(super) async fn append<E: Engine>(
             &lease.worker,
             lease.attempt,
             lines.last().map(|line| line.index),
-            bytes,
+            bytes(lines),
             milliseconds(duration),
             &batch.first_limit
         ],
@@ -63,6 +62,54 @@ pub(super) async fn append<E: Engine>(
     }
     engine.signals().job_appended(lease, lines);
     Ok(answer)
+}
+
+/// Ends a job, with its last lines.
+pub(super) async fn finish<E: Engine>(
+    engine: &E,
+    lease: &Lease,
+    batch: &Batch,
+    ending: &Ending,
+) -> Result<LeaseAnswer> {
+    let lines = batch.lines.as_slice();
+    let mut transaction = begin(engine).await?;
+    let row = Of::<E>::first(
+        &mut transaction,
+        concat!(
+            "UPDATE jobs SET status = $4, stop_reason = $5, report = $6, error = $7, last_index = coalesce($8, last_index), \
+             stored_bytes = stored_bytes + $9, first_limit = coalesce(first_limit, $10), worker = NULL, lease_until = NULL, \
+             losses = 0, ended_at = {now}, ",
+            ran!(),
+            held!(),
+            "RETURNING cancel_requested, sweep"
+        ),
+        values![
+            lease.job,
+            &lease.worker,
+            lease.attempt,
+            ending.status.name(),
+            &ending.stop_reason,
+            &ending.report,
+            &ending.error,
+            lines.last().map(|line| line.index),
+            bytes(lines),
+            &batch.first_limit,
+        ],
+    )
+    .await?;
+    if row.is_some() {
+        Of::<E>::insert_lines(&mut transaction, lease.job, lines).await?;
+        transaction.commit().await?;
+        engine.signals().job_ended(lease, lines);
+    }
+    claims::tell_sweep(engine, row.as_ref())?;
+    // Where the job had lost workers, others of the kind may have waited for its end.
+    engine.signals().queue_changed();
+    claims::answer(row.as_ref())
+}
+
+fn bytes(lines: &[Line]) -> u64 {
+    lines.iter().map(Line::bytes).sum()
 }
 
 /// Whether these lines, all of them and nothing after them, are what a job ends with.

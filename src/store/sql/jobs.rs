@@ -1,6 +1,7 @@
 //! Jobs as clients see them: submitted, read, listed, cancelled, deleted.
 
-use super::dialect::{Dialect, Value, values};
+use super::claims;
+use super::dialect::{Cells, Dialect, Value, values};
 use super::rows::{self, job_columns};
 use super::store::{Engine, Of, begin, reader, writer};
 use crate::store::{JobRecord, Keep, ListFilter, NewJob, Result, Standing, Status, Submitted};
@@ -128,17 +129,18 @@ pub(super) async fn tally<E: Engine>(engine: &E) -> Result<Vec<(Status, u64)>> {
 }
 
 pub(super) async fn request_cancel<E: Engine>(engine: &E, id: Uuid) -> Result<Option<JobRecord>> {
-    Of::<E>::run(
+    let row = Of::<E>::first(
         &mut *writer(engine).await?,
         "UPDATE jobs SET cancel_requested = 1, updated_at = {now}, \
          stop_reason = CASE status WHEN 'queued' THEN 'cancelled' ELSE stop_reason END, \
          ended_at = CASE status WHEN 'queued' THEN {now} ELSE ended_at END, \
          status = CASE status WHEN 'queued' THEN 'cancelled' ELSE status END \
-         WHERE id = $1 AND status IN ('queued', 'running')",
+         WHERE id = $1 AND status IN ('queued', 'running') RETURNING sweep",
         values![id],
     )
     .await?;
     engine.signals().job_changed(id);
+    claims::tell_sweep(engine, row.as_ref())?;
     get(engine, id).await
 }
 
@@ -147,12 +149,17 @@ pub(super) async fn delete<E: Engine>(engine: &E, id: Uuid) -> Result<bool> {
     // The family before the job, as everybody takes them.
     let hold = "UPDATE families SET queued = queued WHERE id = (SELECT family FROM jobs WHERE id = $1)";
     Of::<E>::run(&mut transaction, hold, values![id]).await?;
-    let delete = "DELETE FROM jobs WHERE id = $1 RETURNING family";
+    // A run of a sweep that is deleted before its end is a cancelled one, and the sweep has a row that says so.
+    let end = "UPDATE jobs SET status = 'cancelled', error = 'it was deleted', ended_at = {now}, updated_at = {now}, \
+               worker = NULL, lease_until = NULL WHERE id = $1 AND sweep IS NOT NULL AND status IN ('queued', 'running') \
+               RETURNING sweep";
+    let ended = Of::<E>::first(&mut transaction, end, values![id]).await?;
     // Of a sweep: its runs before it, as where they end.
     Of::<E>::run(&mut transaction, "DELETE FROM jobs WHERE sweep = $1", values![id]).await?;
+    let delete = "DELETE FROM jobs WHERE id = $1 RETURNING family";
     let deleted = Of::<E>::first(&mut transaction, delete, values![id]).await?;
     if let Some(row) = &deleted
-        && let Some(family) = super::dialect::Cells::id(row, "family")?
+        && let Some(family) = row.id("family")?
     {
         // The last of a family takes it along.
         let last = "DELETE FROM families WHERE id = $1 AND NOT EXISTS (SELECT 1 FROM jobs WHERE family = $1)";
@@ -160,6 +167,7 @@ pub(super) async fn delete<E: Engine>(engine: &E, id: Uuid) -> Result<bool> {
     }
     transaction.commit().await?;
     engine.signals().job_changed(id);
+    claims::tell_sweep(engine, ended.as_ref())?;
     Ok(deleted.is_some())
 }
 
@@ -168,7 +176,7 @@ pub(super) async fn retire<E: Engine>(engine: &E, keep: Keep) -> Result<u64> {
         Keep::For(length) => (
             "SELECT id FROM jobs WHERE ended_at < {now} - $1 AND (family IS NULL OR explored = 1) \
              ORDER BY ended_at LIMIT $2",
-            super::claims::milliseconds(length),
+            claims::milliseconds(length),
         ),
         Keep::Newest(count) => (
             "SELECT id FROM jobs WHERE ended_at IS NOT NULL AND (family IS NULL OR explored = 1) \

@@ -202,8 +202,8 @@ impl<E: Engine> Store for SqlStore<E> {
         self.call(increments::append(&self.engine, lease, batch, duration)).await
     }
 
-    async fn finish(&self, lease: &Lease, ending: Ending) -> Result<LeaseAnswer> {
-        self.call(claims::finish(&self.engine, lease, ending)).await
+    async fn finish(&self, lease: &Lease, batch: &Batch, ending: &Ending) -> Result<LeaseAnswer> {
+        self.call(increments::finish(&self.engine, lease, batch, ending)).await
     }
 
     async fn release(&self, lease: &Lease) -> Result<LeaseAnswer> {

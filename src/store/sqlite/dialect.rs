@@ -19,6 +19,7 @@ impl Dialect for Sqlite {
     // One writer at a time.
     const FREE: &'static str = "";
     const THERE: &'static str = "";
+    const UNSYNCED: &'static str = "";
     const PAGE: &'static str = "SELECT increment_index, body FROM increments WHERE job = $1 AND increment_index > $2 \
                                 ORDER BY increment_index LIMIT $3";
     const SWEEP: Option<&'static str> = None;
