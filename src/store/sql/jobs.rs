@@ -23,14 +23,15 @@ pub(super) use waiting;
 pub(in crate::store) async fn insert<D: Dialect>(connection: &mut D::Connection, job: &NewJob) -> Result<Submitted> {
     let id = Uuid::now_v7();
     let key = owned_key(job.owner.as_deref(), job.idempotency_key.as_deref());
-    let inserted = D::run(
+    let inserted = D::first(
         connection,
         concat!(
             "INSERT INTO jobs (id, name, status, priority, request, idempotency_key, plan, max_increments, max_attempts, \
              created_at, updated_at, family, task, owner) \
              SELECT $2, $3, 'queued', $4, $5, $6, $7, $8, $9, {now}, {now}, $10, $11, $12 WHERE ",
             waiting!(),
-            " < $1 ON CONFLICT (idempotency_key) DO NOTHING",
+            " < $1 ON CONFLICT (idempotency_key) DO NOTHING RETURNING ",
+            job_columns!(),
         ),
         values![
             job.most_queued,
@@ -48,11 +49,10 @@ pub(in crate::store) async fn insert<D: Dialect>(connection: &mut D::Connection,
         ],
     )
     .await?;
-    if inserted > 0 {
-        if let Some(explore) = job.explore {
-            let insert = "INSERT INTO families (id, depth, max_jobs) VALUES ($1, $2, $3)";
-            D::run(connection, insert, values![id, explore.depth, explore.max_jobs]).await?;
-        }
+    if let Some(row) = inserted {
+        let Some(explore) = job.explore else { return Ok(Submitted::Created(rows::job(&row)?)) };
+        let insert = "INSERT INTO families (id, depth, max_jobs) VALUES ($1, $2, $3)";
+        D::run(connection, insert, values![id, explore.depth, explore.max_jobs]).await?;
         return Ok(Submitted::Created(record::<D>(connection, id).await?));
     }
     let select = concat!("SELECT request, ", job_columns!(), " FROM jobs WHERE idempotency_key = $1");
