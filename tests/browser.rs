@@ -138,3 +138,28 @@ async fn a_path_goes_on_growing_without_a_gap_after_a_restart() {
     assert!(drawn == stored, "without gap or repeat: {} of {}", drawn.len(), stored.len());
     browser.close(&url, &["net::ERR_"]).await;
 }
+
+#[tokio::test]
+async fn a_service_that_goes_while_an_ended_job_is_looked_at_is_told_and_found_again() {
+    let Some(browser) = Browser::open().await else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let database = folder.path().join("jobs.db");
+    let port = TcpListener::bind("127.0.0.1:0").and_then(|listener| listener.local_addr()).expect("a port").port();
+    let service = serve_on(port, &database);
+    let (client, url) = (process::client(), service.url.clone());
+    let id = process::submit(&client, &url, "/v1/jobs", &scene("klarbring")).await;
+    process::until(&client, &url, &format!("/v1/jobs/{id}"), process::has_ended).await;
+    browser.page.goto(&format!("{url}/?jobs={id}")).await.expect("a page");
+    browser.until("document.getElementById('structure-plot').data?.length > 2").await;
+    service.terminated().await;
+    // It has to be asked for what was not asked for before.
+    browser.put("#ordinate", "/energy/dissipated").await;
+    browser.until("document.getElementById('connection').textContent.startsWith('Disconnected')").await;
+    browser.until("document.getElementById('notice').textContent.includes('The service cannot be reached.')").await;
+    let _again = serve_on(port, &database);
+    browser.until("document.getElementById('connection').textContent === ''").await;
+    let title = "document.getElementById('path-plot').layout.yaxis.title.text";
+    browser.until(&format!("{title} === 'dissipated energy'")).await;
+    browser.until("document.getElementById('notice').hidden").await;
+    browser.close(&url, &["net::ERR_"]).await;
+}

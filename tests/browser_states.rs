@@ -9,7 +9,9 @@ mod common;
 use arcslip::http::access::tokens;
 use common::browser::Browser;
 use common::process::{self, Process, Served};
-use common::service::scene;
+use common::server::TestServer;
+use common::service::{in_short_steps, request, scene};
+use common::solver::MadeUp;
 use serde_json::{Value, json};
 use std::process::Command;
 
@@ -78,6 +80,66 @@ async fn what_is_not_recorded_is_not_drawn_as_if_it_were() {
         browser.until(&format!("{STATUS} !== undefined && !document.getElementById('job').hidden")).await;
     }
     browser.close(served.url(), &["status of 404"]).await;
+}
+
+#[tokio::test]
+async fn an_address_that_asks_for_what_there_is_not_shows_what_there_is_and_says_so() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    let id = served.ended(&scene("klarbring")).await;
+    let twice = format!("{id},{}", id.to_uppercase());
+    browser.visit(&format!("{}/?jobs={twice}&abscissa=arc_length,/arc_length&status=nothing", served.url())).await;
+    browser
+        .until("document.getElementById('notice').textContent.includes('There is no “arc_length,/arc_length” here')")
+        .await;
+    browser.until("document.getElementById('path-plot').layout?.xaxis.title.text === 'displacement x of node'").await;
+    assert_eq!(browser.ask("document.querySelectorAll('#path .legend li').length").await, 1, "the exact path alone");
+    assert_eq!(browser.ask("document.getElementById('filter').value").await, "");
+    browser.until("document.querySelectorAll('#lists a').length === 1").await;
+    browser.close(served.url(), &[]).await;
+}
+
+#[tokio::test]
+async fn the_structure_of_a_job_that_waits_is_drawn_as_the_model_has_it() {
+    let Some(browser) = Browser::open().await else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let service = Process::serve(&folder.path().join("jobs.db"), &["--workers", "1"]);
+    let client = process::client();
+    let mut long = in_short_steps("one-bar-truss", 400_000, 250_000);
+    long["analysis"]["record"] = json!({"every": 1000, "directions": false});
+    let running = process::submit(&client, &service.url, "/v1/jobs", &long).await;
+    let id = process::submit(&client, &service.url, "/v1/jobs", &scene("one-bar-truss")).await;
+    browser.visit(&format!("{}/?jobs={id}", service.url)).await;
+    browser.until("document.getElementById('structure').textContent.includes('No increment yet')").await;
+    let node = format!("{STRUCTURE}.data?.find(({{name}}) => name === 'node')");
+    assert_eq!(browser.ask(&format!("(({{x, y}}) => [x, y])({node})")).await, json!([[0, -1.5], [1, 0]]));
+    assert_eq!(browser.ask(STATUS).await, "queued");
+    let cancel = client.post(format!("{}/v1/jobs/{running}/cancel", service.url)).send().await.expect("an answer");
+    assert!(cancel.status().is_success());
+    browser.until(&format!("{STATUS} === 'stopped'")).await;
+    browser.until("document.getElementById('structure').textContent.includes('Increment 79')").await;
+    browser.close(&service.url, &[]).await;
+}
+
+#[tokio::test]
+async fn what_has_been_read_of_a_long_path_is_drawn_while_the_rest_is_read() {
+    let Some(browser) = Browser::open().await else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let server = TestServer::start(&folder.path().join("jobs.db"), MadeUp::default()).await;
+    let url = format!("http://{}", server.address());
+    let id = server.submit(&request("long", 12_000)).await;
+    server.ended(&id).await;
+    let held = "const whole = window.fetch; window.fetch = async (place, ...more) => { \
+                if (/columns.*after=/.test(place)) await new Promise((go) => { window.letGo = go; }); \
+                return whole(place, ...more); };";
+    browser.devtools("Page.addScriptToEvaluateOnNewDocument", json!({"source": held})).await;
+    browser.visit(&format!("{url}/?jobs={id}")).await;
+    let drawn = "document.getElementById('path-plot').data?.[0]?.x.length";
+    browser.until(&format!("{drawn} === 10000 && window.letGo !== undefined")).await;
+    browser.ask("window.letGo()").await;
+    browser.until(&format!("{drawn} === 12000")).await;
+    browser.close(&url, &[]).await;
+    assert!(server.stop().await);
 }
 
 #[tokio::test]

@@ -6,7 +6,7 @@
 mod common;
 
 use common::browser::Browser;
-use common::process::Served;
+use common::process::{self, Served};
 use common::service::scene;
 use serde_json::{Value, json};
 
@@ -227,5 +227,68 @@ async fn paths_drawn_together_are_told_apart_by_what_differs() {
     browser.ask("document.querySelectorAll('#lists a')[0].click()").await;
     browser.until(&format!("location.search === '?jobs={rough}'")).await;
     browser.until(&format!("{PATH}.data.length < 5")).await;
+    browser.close(served.url(), &[]).await;
+}
+
+/// Names below the plot of the paths.
+const LEGEND: &str = "[...document.querySelectorAll('#path .legend li')].map(({textContent}) => textContent)";
+
+#[tokio::test]
+async fn a_path_keeps_its_colour_and_the_reader_the_zoom_when_another_becomes_the_first() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    let one = served.ended(&scene("one-bar-truss")).await;
+    let mut rough = scene("one-bar-truss");
+    rough["model"]["contacts"][0]["friction"] = json!(0.6);
+    let other = served.ended(&rough).await;
+    browser.visit(&format!("{}/?jobs={one},{other}", served.url())).await;
+    browser.until(&format!("{PATH}.data?.length === 6")).await;
+    browser.ask(&format!("{PATH}.querySelector('[data-title=\"Zoom in\"]').click()")).await;
+    let colour = |job: usize| format!("{PATH}.data[{}].line.color", 2 * job);
+    let ranges = format!("[{PATH}.layout.xaxis.range, {PATH}.layout.yaxis.range]");
+    browser.until(&format!("{PATH}.layout.xaxis.autorange === false")).await;
+    let before = browser.ask(&format!("[{}, {}, ...{ranges}]", colour(0), colour(1))).await;
+    assert_ne!(before[0], before[1]);
+    // As a click on a point of the other path does.
+    browser.ask(&format!("void {PATH}.emit('plotly_click', {{points: [{{curveNumber: 2, customdata: 5}}]}})")).await;
+    browser.until(&format!("location.search.startsWith('?jobs={other},{one}')")).await;
+    browser.until(&format!("{} === '{}'", colour(0), before[1].as_str().expect("a colour"))).await;
+    let after = browser.ask(&format!("[{}, {}, ...{ranges}]", colour(1), colour(0))).await;
+    assert_eq!(after, before);
+    // One that goes takes its colour along.
+    browser.ask(&format!("document.querySelector('[data-key=\"draw {other}\"]').click()")).await;
+    browser
+        .until(&format!("{PATH}.data.length === 4 && {} === '{}'", colour(0), before[0].as_str().expect("a colour")))
+        .await;
+    browser.close(served.url(), &[]).await;
+}
+
+#[tokio::test]
+async fn many_paths_differ_in_colour_or_dash_and_in_name_and_one_that_is_not_drawn_says_so() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    let mut ids = Vec::new();
+    for _ in 0..9 {
+        ids.push(served.ended(&scene("klarbring")).await);
+    }
+    let direction = json!({"increment": 7, "direction": 0, "max_increments": 3});
+    let branch =
+        process::submit(&served.client, served.url(), &format!("/v1/jobs/{}/follow", ids[0]), &direction).await;
+    process::until(&served.client, served.url(), &format!("/v1/jobs/{branch}"), process::has_ended).await;
+    ids.insert(1, branch);
+    ids.insert(2, served.ended(&scene("one-bar-truss")).await);
+    browser.visit(&format!("{}/?jobs={}", served.url(), ids.join(","))).await;
+    browser.until(&format!("{PATH}.data?.length >= 23")).await;
+    let looks = format!(
+        "new Set({PATH}.data.slice(0, 22).filter(({{line}}) => line).map(({{line}}) => line.color + line.dash)).size"
+    );
+    assert_eq!(browser.ask(&looks).await, 11);
+    let names = browser.ask(LEGEND).await;
+    let names: Vec<&str> = names.as_array().expect("names").iter().filter_map(Value::as_str).take(11).collect();
+    for (place, name) in names.iter().enumerate() {
+        assert!(!names[..place].contains(name), "{names:?}");
+    }
+    assert!(names[1].contains("branch at ") && names[1].contains("direction 0"), "{names:?}");
+    assert!(names[2].ends_with("(not drawn: it has no displacement x of node)"), "{names:?}");
     browser.close(served.url(), &[]).await;
 }

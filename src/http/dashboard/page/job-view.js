@@ -6,6 +6,7 @@ import { Diagnostics } from "./diagnostics.js";
 import { Directions } from "./directions.js";
 import { atMostEvery, byId, element, fill, onceAFrame } from "./dom.js";
 import { jobActions } from "./job-actions.js";
+import { abscissaWords, isOrdinate, ordinateWords } from "./path-axes.js";
 import { PathData } from "./path-data.js";
 import { PathPlot } from "./path-plot.js";
 import { plotlyLoaded } from "./plotly-loaded.js";
@@ -88,6 +89,14 @@ export class JobView {
     return this.draw();
   }
 
+  /** The service is back: what could not be fetched meanwhile is fetched now. */
+  async recover() {
+    if (!this.isWanted) return;
+    this.hold();
+    await this.draw();
+    this.choose();
+  }
+
   get isWanted() {
     return state().jobs.length > 0 && !state().run && state().study === null && state().sweep === null;
   }
@@ -126,12 +135,14 @@ export class JobView {
 
   chooseAt(id, index) {
     const { jobs } = state();
-    // A point of another path makes that one the first.
-    change(id === jobs[0] ? { at: index } : { jobs: [id, ...jobs.filter((other) => other !== id)], at: index });
+    // A point of another path makes that one the first; what is drawn, and against what, stays.
+    change(id === jobs[0] ? { at: index }
+      : { jobs: [id, ...jobs.filter((other) => other !== id)], at: index, abscissa: this.axes(this.paths()).abscissa });
   }
 
   hold() {
     const wanted = state().jobs;
+    this.pathPlot.keep(wanted);
     for (const [id, path] of this.held) {
       if (!wanted.includes(id)) {
         path.close();
@@ -159,6 +170,23 @@ export class JobView {
     }
   }
 
+  /** What is drawn against what: as chosen, where any of the paths has it, or else as the first has it; `refused` says so. */
+  axes(paths) {
+    const { abscissa, ordinate } = state();
+    const refused = [];
+    const usual = { abscissa: paths[0].ownAbscissa(), ordinate: "load_factor" };
+    const taken = (chosen, isKnown, standard, words) => {
+      if (chosen === null || isKnown) return chosen ?? standard;
+      refused.push(`There is no “${chosen}” here; ${words(standard)} is drawn in its place.`);
+      return standard;
+    };
+    return {
+      abscissa: taken(abscissa, paths.some((path) => path.knows(abscissa)), usual.abscissa, abscissaWords),
+      ordinate: taken(ordinate, isOrdinate(ordinate), usual.ordinate, ordinateWords),
+      refused: refused.join(" "),
+    };
+  }
+
   hears(what, path) {
     if (!state().jobs.includes(path.id)) return;
     if (what === "connection") this.told.connection();
@@ -179,7 +207,7 @@ export class JobView {
     section.hidden = false;
     section.classList.remove("loading");
     const shown = this.paths();
-    const axes = axesOf(first);
+    const axes = this.axes(shown);
     this.heading();
     try {
       await Promise.all([plotlyLoaded(), ...shown.map((path) => path.need([axes.abscissa, axes.ordinate]))]);
@@ -188,7 +216,7 @@ export class JobView {
       return;
     }
     if (this.first !== first) return;
-    this.told.said(this.missing ?? "");
+    this.told.said([this.missing, axes.refused].filter(Boolean).join(" "));
     this.missing = null;
     await this.pathPlot.draw(shown, axes, state().at);
     measureFirstPath();
@@ -212,7 +240,7 @@ export class JobView {
       return;
     }
     if (path.exact === before || !path.exact.path || this.first !== path) return;
-    await this.pathPlot.draw(this.paths(), axesOf(path), state().at);
+    await this.pathPlot.draw(this.paths(), this.axes(this.paths()), state().at);
   }
 
   heading() {
@@ -240,8 +268,6 @@ export class JobView {
     fill(this.actions, job ? jobActions(job, this.told.changed, (problem) => this.told.said(problem.message)) : null);
   }
 }
-
-const axesOf = (path) => ({ abscissa: state().abscissa ?? path.ownAbscissa(), ordinate: state().ordinate ?? "load_factor" });
 
 const frame = () => new Promise((resume) => requestAnimationFrame(() => setTimeout(resume)));
 

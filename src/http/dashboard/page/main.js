@@ -5,6 +5,7 @@ import { button, byId, element, fill } from "./dom.js";
 import { JobView } from "./job-view.js";
 import { onThemeChange } from "./plot-style.js";
 import { plotlyLoaded, warmPlotlyUp } from "./plotly-loaded.js";
+import { isReached, onReach } from "./reach.js";
 import { RunForm } from "./run-form.js";
 import { change, isSameView, onChange, openJob, openStudy, openSweep, state } from "./state.js";
 import { StudyView } from "./study-view.js";
@@ -21,7 +22,7 @@ function say(words, again) {
 }
 
 function connection() {
-  const isLost = [jobView, studyView, sweepView].some((one) => !one.isConnected);
+  const isLost = !isReached() || [jobView, studyView, sweepView].some((one) => !one.isConnected);
   const place = byId("connection");
   place.textContent = isLost ? "Disconnected; trying again …" : "";
   place.classList.toggle("bad", isLost);
@@ -60,6 +61,13 @@ function view(before) {
 }
 
 onChange(view);
+onReach((isBack) => {
+  connection();
+  if (!isBack) return;
+  lists.load();
+  // What could not be fetched meanwhile is fetched now.
+  for (const one of [runForm, studyView, sweepView, jobView]) one.recover();
+});
 onThemeChange(() => { jobView.repaint(); studyView.draw(); sweepView.draw(); });
 byId("open-run").addEventListener("click", () => change({ run: true }));
 addEventListener("keydown", (event) => {

@@ -67,6 +67,11 @@ export class RunForm {
     return state().as === "sweep";
   }
 
+  /** The service is back. */
+  recover() {
+    if (!this.panel.hidden) this.show();
+  }
+
   async show() {
     this.panel.hidden = !state().run;
     if (this.panel.hidden) return;

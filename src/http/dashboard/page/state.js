@@ -10,6 +10,8 @@ const EMPTY = {
   jobs: [], study: null, sweep: null, abscissa: null, ordinate: null, at: null, turn: null, figures: false, status: "", run: false, scene: "",
   as: "",
 };
+/** What jobs, studies and sweeps can be filtered by. */
+export const STATUSES = ["queued", "running", "completed", "stopped", "cancelled", "failed"];
 /** Milliseconds between changes of the address that are no steps: browsers take no more of them than so many. */
 const PAUSE = 250;
 const ID = /^[0-9a-f-]{36}$/i;
@@ -20,7 +22,7 @@ function ofAddress() {
   const at = Number.parseInt(given.get("at") ?? "", 10);
   const idOf = (name) => (ID.test(given.get(name) ?? "") ? given.get(name) : null);
   return {
-    jobs: (given.get("jobs") ?? "").split(",").filter((id) => ID.test(id)),
+    jobs: [...new Set((given.get("jobs") ?? "").toLowerCase().split(",").filter((id) => ID.test(id)))],
     study: idOf("study"),
     sweep: idOf("sweep"),
     abscissa: given.get("abscissa"),
@@ -28,7 +30,7 @@ function ofAddress() {
     at: Number.isSafeInteger(at) && at >= 0 ? at : null,
     turn: angles(given.get("turn") ?? ""),
     figures: given.has("figures"),
-    status: given.get("status") ?? "",
+    status: STATUSES.find((status) => status === given.get("status")) ?? "",
     run: given.has("run"),
     scene: given.get("scene") ?? "",
     as: ["study", "sweep"].find((kind) => kind === given.get("as")) ?? "",

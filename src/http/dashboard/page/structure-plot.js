@@ -87,7 +87,12 @@ export class StructurePlot {
   async choose(at) {
     const { path } = this;
     this.at = at;
-    if (!path || path.index.length === 0) return;
+    if (!path) return;
+    if (path.index.length === 0) {
+      this.shown = atRest(path.request.model);
+      await this.redraw();
+      return;
+    }
     const place = at === null ? path.index.length - 1 : path.placeOf(at);
     if (place < 0) {
       this.words.textContent = `There is no increment ${at} among those that are kept.`;
@@ -101,14 +106,18 @@ export class StructurePlot {
     this.asked = true;
     try {
       // While one is fetched others may be wanted: the last of them is drawn.
-      while (this.shown?.index !== this.wanted) {
+      while (this.shown?.index !== this.wanted || this.isStale) {
         const found = await path.increment(this.wanted);
         if (path !== this.path || !found) break;
         this.shown = found;
+        this.isStale = false;
         await this.redraw();
       }
     } catch (problem) {
-      if (!isGivenUp(problem)) this.words.textContent = problem.message;
+      if (!isGivenUp(problem)) {
+        this.isStale = true;
+        this.words.textContent = problem.message;
+      }
     } finally {
       this.asked = false;
     }
@@ -128,10 +137,12 @@ export class StructurePlot {
   }
 
   slid() {
-    this.told.chosen(this.path.index[Number(this.slider.value)]);
+    const index = this.path.index[Number(this.slider.value)];
+    if (index !== undefined) this.told.chosen(index);
   }
 
   play() {
+    if (!this.playing && this.path.index.length < 2) return;
     if (this.playing) {
       clearInterval(this.playing);
       this.playing = null;
@@ -191,7 +202,7 @@ export class StructurePlot {
     });
     this.largest = largest;
     const { point } = shown;
-    this.words.textContent = `Increment ${shown.index}, ${kindWords(point.kind)}, stage “${shown.stage}”, load factor `
+    this.words.textContent = shown.index === null ? "No increment yet: the structure as the model has it." : `Increment ${shown.index}, ${kindWords(point.kind)}, stage “${shown.stage}”, load factor `
       + `${short(shown.load_factor)}${point.event ? `: ${point.event}` : ""}${leftOut(model, shown)}`;
     const plain = { ...axis(""), zeroline: false, visible: !this.isInSpace };
     const [x, y] = this.range(flat);
@@ -205,6 +216,15 @@ export class StructurePlot {
     const half = HALF[this.path.request.model.dimension] * this.extent.size;
     return flat(this.extent.middle).map((middle) => [middle - half, middle + half]);
   }
+}
+
+/** A structure before its first increment. */
+function atRest(model) {
+  const still = Object.keys(model.nodes).map((name) => [name, Array(model.dimension).fill(0)]);
+  return {
+    index: null, stage: model.stages[0]?.name, load_factor: 0, displacements: Object.fromEntries(still), contacts: [],
+    point: { kind: "start", bifurcation: false, event: null },
+  };
 }
 
 /** What a request has left out of its increments is not drawn, and that is said. */

@@ -51,6 +51,14 @@ export class StudyView {
     }).catch((problem) => this.failed(problem));
   }
 
+  /** The service is back. */
+  recover() {
+    const { id } = this;
+    if (!id || this.study) return;
+    this.id = null;
+    this.show(id);
+  }
+
   failed(problem) {
     if (!isGivenUp(problem)) this.told.failed(problem);
   }
