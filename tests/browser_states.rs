@@ -246,6 +246,7 @@ async fn nothing_is_wider_than_a_phone() {
     let Some(browser) = Browser::open().await else { return };
     let served = Served::start();
     let id = served.ended(&scene("curving-slip")).await;
+    let branching = served.ended(&scene("one-bar-truss")).await;
     let study = json!({"model": scene("von-mises-truss")["model"], "study": {"repeats": 1, "arc_lengths": [0.2, 0.1]}});
     let study = process::submit(&served.client, served.url(), "/v1/studies", &study).await;
     process::until(&served.client, served.url(), &format!("/v1/studies/{study}"), process::has_ended).await;
@@ -259,9 +260,23 @@ async fn nothing_is_wider_than_a_phone() {
     ] {
         browser.visit(&format!("{}{address}", served.url())).await;
         browser.until(is_there).await;
-        browser.until("document.querySelectorAll('#lists a').length === 2").await;
+        browser.until("document.querySelectorAll('#lists a').length === 3").await;
         let width = browser.ask("document.documentElement.scrollWidth").await;
         assert!(width.as_u64().is_some_and(|width| width <= 390), "{address}: {width}");
+        // Words end where what they are of begins.
+        let overlapping = "[...document.querySelectorAll('.setting label')].filter((label) => label.scrollWidth > \
+                           label.clientWidth).map(({textContent}) => textContent)";
+        assert_eq!(browser.ask(overlapping).await, json!([]), "{address}");
     }
+    browser.visit(&format!("{}/?jobs={branching}", served.url())).await;
+    browser.until("document.querySelector('#directions button[aria-label]') !== null").await;
+    let follow = browser
+        .ask(
+            "(({left, right, height}) => [left, right, height])\
+             (document.querySelector('#directions button[aria-label]').getBoundingClientRect())",
+        )
+        .await;
+    let [left, right, height] = [0, 1, 2].map(|place| follow[place].as_f64().expect("a number"));
+    assert!(left > 0.0 && right < 390.0 && height < 40.0, "{follow}");
     browser.close(served.url(), &[]).await;
 }

@@ -4,15 +4,15 @@
 import { isGivenUp } from "./api.js";
 import { Diagnostics } from "./diagnostics.js";
 import { Directions } from "./directions.js";
-import { atMostEvery, byId, element, fill, onceAFrame } from "./dom.js";
-import { jobActions } from "./job-actions.js";
+import { atMostEvery, byId, onceAFrame } from "./dom.js";
+import { JobHeading } from "./job-heading.js";
 import { abscissaWords, isOrdinate, ordinateWords } from "./path-axes.js";
 import { PathData } from "./path-data.js";
 import { PathPlot } from "./path-plot.js";
 import { plotlyLoaded } from "./plotly-loaded.js";
-import { addressOfJob, change, state } from "./state.js";
+import { change, state } from "./state.js";
 import { StructurePlot } from "./structure-plot.js";
-import { isGoingOn, statusWords, stopSentence } from "./words.js";
+import { isGoingOn } from "./words.js";
 
 /** Milliseconds between pictures of the structure of a path that grows: the path itself is drawn first. */
 const STRUCTURE = 300;
@@ -22,14 +22,13 @@ const FIGURES = 2000;
 const FIRST_PATH = "first path";
 
 export class JobView {
-  /** Tells `said(words, again)`: what stands in the place of a job, and how to try again; `changed()`; `connection()`. */
+  /** Tells `said(words, again)`: what stands in the place of a job, and how to try again; `titled(words)`; `changed()`;
+   *  `connection()`. */
   constructor(told) {
     this.told = told;
     /** Paths that are held, drawn or not: id to path. */
     this.held = new Map();
-    this.summary = element("div", {});
-    this.actions = element("div", {});
-    fill(byId("heading"), this.summary, this.actions);
+    this.top = new JobHeading(byId("heading"), told);
     const chosen = (index) => change({ at: index });
     this.pathPlot = new PathPlot(byId("path"), {
       chosen: (id, index) => this.chooseAt(id, index),
@@ -78,9 +77,16 @@ export class JobView {
   /** The view has changed in more than the chosen increment. */
   view() {
     this.structure.rest();
+    this.look();
     this.hold();
     this.draw();
     if (this.isWanted && !this.first) this.prepare();
+  }
+
+  /** From where the structure is seen, and whether the figures are open, as the address says: one may have gone back. */
+  look() {
+    this.structure.seen.lookFrom(state().turn);
+    this.diagnostics.open(state().figures);
   }
 
   /** The page's colours have changed. */
@@ -105,8 +111,7 @@ export class JobView {
   async prepare() {
     byId("job").hidden = false;
     byId("job").classList.add("loading");
-    fill(this.summary, element("p", { class: "quiet" }, "Loading the path …"));
-    this.drawActions(null);
+    this.top.prepare();
     try {
       await plotlyLoaded();
       if (!byId("job").hidden && !this.first) await this.pathPlot.prepare();
@@ -244,28 +249,7 @@ export class JobView {
   }
 
   heading() {
-    const { first } = this;
-    if (!first) return;
-    const { job } = first;
-    const kept = first.index.length;
-    const all = (first.last() ?? -1) + 1;
-    const many = kept === all ? `${all} increments. ` : `${all} increments, ${kept} of them kept. `;
-    fill(this.summary, element("div", { class: "bar" }, element("h2", {}, job.name),
-      element("span", { class: `status ${job.status}`, id: "status" }, job.status)),
-    element("p", { id: "stop" }, many, isGoingOn(job) ? `The job ${statusWords(job.status)}.` : stopSentence(job),
-      job.parent ? element("span", {}, " It follows ", element("a", {
-        href: addressOfJob(job.parent.job, job.id), "data-key": "parent",
-      }, "another job"), ` from increment ${job.parent.increment} in direction ${job.parent.direction}.`) : null),
-    first.problem ? element("p", { class: "bad", role: "alert" }, first.problem) : null);
-    this.drawActions(job);
-  }
-
-  /** Made anew only where they change, so that focus stays on them while a path grows. */
-  drawActions(job) {
-    const key = job ? `${job.id} ${job.status}` : "";
-    if (this.actions.dataset.of === key) return;
-    this.actions.dataset.of = key;
-    fill(this.actions, job ? jobActions(job, this.told.changed, (problem) => this.told.said(problem.message)) : null);
+    if (this.first && this.isWanted) this.top.show(this.first, state().jobs.length - 1);
   }
 }
 

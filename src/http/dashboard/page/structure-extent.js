@@ -30,6 +30,11 @@ export class StructureExtent {
     }
   }
 
+  /** Of the box around all of it. */
+  get corners() {
+    return this.low.reduce((found, low, axis) => found.flatMap((corner) => [[...corner, low], [...corner, this.high[axis]]]), [[]]);
+  }
+
   diagonal() {
     return length(plus(this.high, this.low, -1));
   }

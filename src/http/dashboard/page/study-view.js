@@ -76,7 +76,7 @@ export class StudyView {
     if (!study) return;
     const { report, plan, progress } = study;
     this.section.hidden = false;
-    this.told.shown();
+    this.told.shown(`Study ${study.name}`);
     fill(this.summary, element("div", { class: "bar" }, element("h2", {}, study.name),
       element("span", { class: `status ${study.status}`, id: "study-status" }, study.status)),
     element("p", {}, `${progress.runs} of ${progress.of} paths. The study ${statusWords(study.status)}. `, study.error ?? "",

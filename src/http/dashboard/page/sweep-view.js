@@ -82,7 +82,7 @@ export class SweepView {
     const { sweep } = this;
     if (!sweep) return;
     this.section.hidden = false;
-    this.told.shown();
+    this.told.shown(sweep.name ? `Sweep ${sweep.name}` : "Sweep");
     const { progress, parameters } = sweep;
     fill(this.summary, element("div", { class: "bar" }, element("h2", {}, sweep.name ?? "sweep"),
       element("span", { class: `status ${sweep.status}`, id: "sweep-status" }, sweep.status)),
