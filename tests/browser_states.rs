@@ -114,8 +114,14 @@ async fn the_structure_of_a_job_that_waits_is_drawn_as_the_model_has_it() {
     let node = format!("{STRUCTURE}.data?.find(({{name}}) => name === 'node')");
     assert_eq!(browser.ask(&format!("(({{x, y}}) => [x, y])({node})")).await, json!([[0, -1.5], [1, 0]]));
     assert_eq!(browser.ask(STATUS).await, "queued");
-    let cancel = client.post(format!("{}/v1/jobs/{running}/cancel", service.url)).send().await.expect("an answer");
-    assert!(cancel.status().is_success());
+    // The one before it is cancelled by the keyboard, and what can be done then has the focus.
+    browser.ask(&format!("document.querySelector('#lists a[href=\"/?jobs={running}\"]').click()")).await;
+    let cancel = "[...document.querySelectorAll('#heading button')].find(({textContent}) => textContent === 'Cancel')";
+    browser.until(&format!("{cancel} !== undefined && ({cancel}.focus(), true)")).await;
+    browser.keys(ENTER).await;
+    browser.until(&format!("{STATUS} === 'cancelled'")).await;
+    browser.until("document.querySelector('#heading button') === document.activeElement").await;
+    browser.ask("history.back()").await;
     browser.until(&format!("{STATUS} === 'stopped'")).await;
     browser.until("document.getElementById('structure').textContent.includes('Increment 79')").await;
     browser.close(&service.url, &[]).await;

@@ -292,3 +292,57 @@ async fn many_paths_differ_in_colour_or_dash_and_in_name_and_one_that_is_not_dra
     assert!(names[2].ends_with("(not drawn: it has no displacement x of node)"), "{names:?}");
     browser.close(served.url(), &[]).await;
 }
+
+#[tokio::test]
+async fn going_back_restores_from_where_a_structure_was_seen_and_the_title_says_what_is_shown() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    let one = served.ended(&scene("curving-slip")).await;
+    let other = served.ended(&scene("turning-drag")).await;
+    browser.visit(&format!("{}/?jobs={one}", served.url())).await;
+    browser.until("document.getElementById('azimuth') !== null").await;
+    browser.until("document.title === 'curving slip, mu = 0.8 – arcslip'").await;
+    browser.put("#azimuth", "35").await;
+    browser.until("location.search.includes('turn=35,25')").await;
+    let open = |id: &str| format!("document.querySelector('#lists a[href=\"/?jobs={id}\"]').click()");
+    browser.ask(&open(&other)).await;
+    browser.until(&format!("location.search.startsWith('?jobs={other}')")).await;
+    browser.until("!document.title.startsWith('curving slip')").await;
+    browser.put("#azimuth", "-80").await;
+    browser.until("location.search.includes('turn=-80,25')").await;
+    browser.ask("document.querySelector('#diagnostics summary').click()").await;
+    browser.until("location.search.includes('figures')").await;
+    browser.ask("history.back()").await;
+    browser.until("document.title === 'curving slip, mu = 0.8 – arcslip'").await;
+    browser.until("document.getElementById('azimuth').value === '35'").await;
+    assert_eq!(browser.ask("document.querySelector('#diagnostics details').open").await, false);
+    // The whole of the plane is in the picture, from wherever it is looked at.
+    let inside = "(({data, layout: {xaxis, yaxis}}) => { const {x, y} = data.find(({name}) => name === 'obstacle'); \
+                  const within = (values, [low, high]) => values.every((value) => value === null || (value > low && value < high)); \
+                  return within(x, xaxis.range) && within(y, yaxis.range); })(document.getElementById('structure-plot'))";
+    browser.until(inside).await;
+    browser.close(served.url(), &[]).await;
+}
+
+#[tokio::test]
+async fn of_very_many_nodes_one_is_named_to_be_drawn_against() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    let mut request = scene("one-bar-truss");
+    for number in 0..300 {
+        request["model"]["nodes"][format!("n{number}")] = json!([number, 3]);
+        request["model"]["supports"][format!("n{number}")] = json!(["x", "y"]);
+    }
+    let id = served.ended(&request).await;
+    browser.visit(&format!("{}/?jobs={id}", served.url())).await;
+    browser.until("document.getElementById('abscissa-node')?.value === 'tip'").await;
+    assert_eq!(browser.ask("document.getElementById('abscissa').options.length").await, 3);
+    browser.put("#abscissa-node", "n29").await;
+    browser.until(&format!("{PATH}.layout.xaxis.title.text === 'displacement x of n29'")).await;
+    let proposed = "[...document.querySelectorAll('#nodes option')].map(({value}) => value).includes('n291')";
+    assert_eq!(browser.ask(proposed).await, true);
+    browser.put("#abscissa", "arc_length").await;
+    browser.until(&format!("{PATH}.layout.xaxis.title.text === 'arc length'")).await;
+    assert_eq!(browser.ask("document.getElementById('abscissa-node').disabled").await, true);
+    browser.close(served.url(), &[]).await;
+}

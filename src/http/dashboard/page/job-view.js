@@ -5,9 +5,9 @@ import { isGivenUp } from "./api.js";
 import { Diagnostics } from "./diagnostics.js";
 import { Directions } from "./directions.js";
 import { atMostEvery, byId, onceAFrame } from "./dom.js";
+import { pathOnItsWay } from "./early.js";
 import { JobHeading } from "./job-heading.js";
-import { abscissaWords, isOrdinate, ordinateWords } from "./path-axes.js";
-import { PathData } from "./path-data.js";
+import { axesOf } from "./path-axes.js";
 import { PathPlot } from "./path-plot.js";
 import { plotlyLoaded } from "./plotly-loaded.js";
 import { change, state } from "./state.js";
@@ -142,7 +142,7 @@ export class JobView {
     const { jobs } = state();
     // A point of another path makes that one the first; what is drawn, and against what, stays.
     change(id === jobs[0] ? { at: index }
-      : { jobs: [id, ...jobs.filter((other) => other !== id)], at: index, abscissa: this.axes(this.paths()).abscissa });
+      : { jobs: [id, ...jobs.filter((other) => other !== id)], at: index, abscissa: axesOf(this.paths(), state()).abscissa });
   }
 
   hold() {
@@ -154,11 +154,11 @@ export class JobView {
         this.held.delete(id);
       }
     }
-    const { abscissa, ordinate } = state();
     for (const id of wanted.filter((one) => !this.held.has(one))) {
-      const path = new PathData(id, (what, which) => this.hears(what, which));
+      const path = pathOnItsWay(id);
+      path.told = (what, which) => this.hears(what, which);
       this.held.set(id, path);
-      path.load([abscissa, ordinate].filter(Boolean)).catch((problem) => {
+      path.loading.catch((problem) => {
         if (isGivenUp(problem)) return;
         path.close();
         this.held.delete(id);
@@ -173,23 +173,6 @@ export class JobView {
         this.told.said(`The job cannot be shown: ${problem.message}`, () => this.view());
       });
     }
-  }
-
-  /** What is drawn against what: as chosen, where any of the paths has it, or else as the first has it; `refused` says so. */
-  axes(paths) {
-    const { abscissa, ordinate } = state();
-    const refused = [];
-    const usual = { abscissa: paths[0].ownAbscissa(), ordinate: "load_factor" };
-    const taken = (chosen, isKnown, standard, words) => {
-      if (chosen === null || isKnown) return chosen ?? standard;
-      refused.push(`There is no “${chosen}” here; ${words(standard)} is drawn in its place.`);
-      return standard;
-    };
-    return {
-      abscissa: taken(abscissa, paths.some((path) => path.knows(abscissa)), usual.abscissa, abscissaWords),
-      ordinate: taken(ordinate, isOrdinate(ordinate), usual.ordinate, ordinateWords),
-      refused: refused.join(" "),
-    };
   }
 
   hears(what, path) {
@@ -212,7 +195,7 @@ export class JobView {
     section.hidden = false;
     section.classList.remove("loading");
     const shown = this.paths();
-    const axes = this.axes(shown);
+    const axes = axesOf(shown, state());
     this.heading();
     try {
       await Promise.all([plotlyLoaded(), ...shown.map((path) => path.need([axes.abscissa, axes.ordinate]))]);
@@ -245,7 +228,7 @@ export class JobView {
       return;
     }
     if (path.exact === before || !path.exact.path || this.first !== path) return;
-    await this.pathPlot.draw(this.paths(), this.axes(this.paths()), state().at);
+    await this.pathPlot.draw(this.paths(), axesOf(this.paths(), state()), state().at);
   }
 
   heading() {

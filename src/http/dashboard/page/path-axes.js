@@ -45,6 +45,22 @@ export function abscissaWords(name) {
   return of ? `displacement ${LETTERS[of.component]} of ${of.node}` : name === ARC_LENGTH ? "arc length" : name;
 }
 
+/** What of these paths is drawn against what: as chosen, where any of them has it, or else as the first has it; `refused` says
+ *  so. */
+export function axesOf(paths, { abscissa, ordinate }) {
+  const refused = [];
+  const taken = (chosen, isKnown, usual, words) => {
+    if (chosen === null || isKnown) return chosen ?? usual;
+    refused.push(`There is no “${chosen}” here; ${words(usual)} is drawn in its place.`);
+    return usual;
+  };
+  return {
+    abscissa: taken(abscissa, paths.some((path) => path.knows(abscissa)), paths[0].ownAbscissa(), abscissaWords),
+    ordinate: taken(ordinate, isOrdinate(ordinate), ORDINATES[0][0], ordinateWords),
+    refused: refused.join(" "),
+  };
+}
+
 function recorded({ model, analysis }) {
   const nodes = analysis?.record?.nodes;
   return Array.isArray(nodes) ? nodes : Object.keys(model.nodes);

@@ -13,9 +13,12 @@ const HELD = 20000;
 const ALWAYS = ["stage", "load_factor", "arc_length"];
 
 export class PathData {
-  constructor(id, told) {
+  constructor(id) {
     this.id = id;
-    this.told = told;
+    /** Who is told `(what, path)`: "loaded", "grown", "ended", "connection". */
+    this.told = () => {};
+    /** Resolves when what is stored has been read. */
+    this.loading = null;
     this.job = null;
     this.request = null;
     this.index = [];
