@@ -72,6 +72,14 @@ async fn what_is_not_recorded_is_not_drawn_as_if_it_were() {
     for words in words.as_array().expect("a list").iter().filter_map(Value::as_str) {
         assert!(!words.contains("tip0") && !words.contains("tip1"), "{words}");
     }
+    // Directions without contacts have no column of them.
+    let mut bare = scene("klarbring");
+    bare["analysis"] = json!({"record": {"contacts": []}});
+    let bare = served.ended(&bare).await;
+    browser.visit(&format!("{}/?jobs={bare}&at=7", served.url())).await;
+    browser.until("document.querySelector('#directions table') !== null").await;
+    let head = "[...document.querySelectorAll('#directions th')].map(({textContent}) => textContent)";
+    assert_eq!(browser.ask(head).await, json!(["", "", "load rate", "dissipation rate"]));
     // One that is gone does not hide the other, whichever stands first.
     let gone = "00000000-0000-7000-8000-000000000000";
     for shared in [format!("{gone},{id}"), format!("{id},{gone}")] {
@@ -181,6 +189,9 @@ async fn a_job_is_deleted_after_a_question_and_by_the_keyboard_alone() {
     browser.until("new URLSearchParams(location.search).get('at') === '4'").await;
     browser.until("document.querySelector('#structure .slider + p').textContent.startsWith('Increment 4,')").await;
     // Every control is reached in turn, with its focus to be seen, and none keeps it.
+    browser.ask("document.getElementById('skip').focus()").await;
+    browser.keys(ENTER).await;
+    browser.until(&format!("{focused} === 'view'")).await;
     browser.ask("document.querySelector('h1 a').focus()").await;
     let mut passed = Vec::new();
     for _ in 0..80 {
