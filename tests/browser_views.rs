@@ -290,6 +290,8 @@ async fn many_paths_differ_in_colour_or_dash_and_in_name_and_one_that_is_not_dra
     }
     assert!(names[1].contains("branch at ") && names[1].contains("direction 0"), "{names:?}");
     assert!(names[2].ends_with("(not drawn: it has no displacement x of node)"), "{names:?}");
+    let drawn = browser.ask(&format!("{PATH}.data[4].y.filter((value) => value !== null).length")).await;
+    assert_eq!(drawn, 0, "it does not widen the range of the loads either");
     browser.close(served.url(), &[]).await;
 }
 

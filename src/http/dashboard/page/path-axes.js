@@ -103,7 +103,8 @@ function ofManyNodes(nodes, { model }, abscissa, chosen) {
     onchange: () => choose(),
   });
   const component = choice({ id: "abscissa", "data-key": "abscissa", onchange: () => choose() }, [
-    [ARC_LENGTH, "arc length"], ...[...LETTERS.slice(0, model.dimension)].map((letter, place) => [String(place), `${letter} of node`]),
+    [ARC_LENGTH, "arc length"],
+    ...[...LETTERS.slice(0, model.dimension)].map((letter, place) => [String(place), `${letter} of node`]),
   ], of ? String(of.component) : ARC_LENGTH);
   const choose = () => {
     const isOfNode = component.value !== ARC_LENGTH;

@@ -1,4 +1,5 @@
-// What stands below the plot of the paths: which line is whose, which have nothing to be drawn, and the named points of the first.
+// What stands below the plot of the paths: which line is whose, which have nothing to be drawn, and the named points of the
+// first.
 
 import { element, fill } from "./dom.js";
 import { pathNames } from "./path-names.js";
@@ -9,7 +10,8 @@ import { pointWords, short } from "./words.js";
 /** Named points in the list. */
 const LISTED = 60;
 
-/** `lacks(path)`: what the path has no values of, in words, or null; `exact`: the path in closed form that is laid over, or null. */
+/** `lacks(path)`: what the path has no values of, in words, or null; `exact`: the path in closed form that is laid over, or
+ *  null. */
 export function pathLegend(place, paths, looks, lacks, exact) {
   const names = paths.length > 1 ? pathNames(paths) : [];
   fill(place, names.map((name, which) => {

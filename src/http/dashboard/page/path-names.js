@@ -49,5 +49,6 @@ function branchWords({ job: { parent } }, paths) {
   if (!parent) return "";
   const origin = paths.find(({ id }) => id === parent.job);
   const point = origin ? named(origin).find(({ index }) => index === parent.increment) : null;
-  return `branch at ${point ? `${point.name} (increment ${parent.increment})` : `increment ${parent.increment}`}, direction ${parent.direction}`;
+  const place = point ? `${point.name} (increment ${parent.increment})` : `increment ${parent.increment}`;
+  return `branch at ${place}, direction ${parent.direction}`;
 }

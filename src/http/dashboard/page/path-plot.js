@@ -51,8 +51,9 @@ export class PathPlot {
       const colour = this.looks.colour(path);
       return [
         {
-          ...this.line(path, 0), type: "scatter", mode: mode(path), line: { color: colour, width: 2, dash: this.looks.dash(path) },
-          marker: { color: colour, size: 4 }, hovertemplate: "%{x:.5g}, %{y:.5g}<br>increment %{customdata}<extra></extra>",
+          ...this.line(path, 0), type: "scatter", mode: mode(path),
+          line: { color: colour, width: 2, dash: this.looks.dash(path) }, marker: { color: colour, size: 4 },
+          hovertemplate: "%{x:.5g}, %{y:.5g}<br>increment %{customdata}<extra></extra>",
         },
         this.points(path, colour),
       ];
@@ -111,15 +112,21 @@ export class PathPlot {
     return path.columns.get(this.axes.ordinate) ?? [];
   }
 
+  /** The places of a path in the plot; one that has no abscissa has no place, and does not widen the range of the ordinate. */
+  placesOf(path) {
+    const [abscissa, ordinate] = [this.abscissaOf(path), this.ordinateOf(path)];
+    return { x: (place) => abscissa[place], y: (place) => (abscissa[place] === null ? null : ordinate[place]) };
+  }
+
   /** From this increment on; where a stage begins the load factor does so, too, and the line is broken. */
   line(path, from) {
     const line = { x: [], y: [], customdata: [] };
-    const [abscissa, ordinate] = [this.abscissaOf(path), this.ordinateOf(path)];
+    const { x, y } = this.placesOf(path);
     const stages = path.columns.get("stage");
     for (let place = from; place < path.index.length; place++) {
       if (place > 0 && stages[place] !== stages[place - 1]) for (const part of Object.values(line)) part.push(null);
-      line.x.push(abscissa[place]);
-      line.y.push(ordinate[place]);
+      line.x.push(x(place));
+      line.y.push(y(place));
       line.customdata.push(path.index[place]);
     }
     return line;
@@ -128,9 +135,9 @@ export class PathPlot {
   points(path, colour) {
     const found = named(path);
     const places = found.map(({ index }) => path.placeOf(index));
-    const [abscissa, ordinate] = [this.abscissaOf(path), this.ordinateOf(path)];
+    const { x, y } = this.placesOf(path);
     return {
-      x: places.map((place) => abscissa[place]), y: places.map((place) => ordinate[place]),
+      x: places.map(x), y: places.map(y),
       text: found.map(({ name }) => name), customdata: found.map(({ index }) => index),
       meta: found.map(({ kind }) => kind), type: "scatter", mode: "markers+text", textposition: "top center",
       hovertext: found.map((point) => `${point.name}: ${pointWords(point)}${point.event ? `, ${verbatim(point.event)}` : ""}`),

@@ -41,7 +41,8 @@ export class RunForm {
       type: "file", accept: ".json,application/json", onchange: (event) => this.take(event.target.files),
     });
     const others = element("label", {}, "Or paste a model, drop a file here, or choose one: ", file);
-    fill(panel, element("h2", {}, "New run"), element("div", { class: "choices" }, this.scenes.place, this.kinds), this.shows, this.scenes.note,
+    fill(panel, element("h2", {}, "New run"), element("div", { class: "choices" }, this.scenes.place, this.kinds), this.shows,
+      this.scenes.note,
       element("div", { class: "sides" },
         element("div", {}, element("p", { class: "quiet" }, others),
           this.text.place,

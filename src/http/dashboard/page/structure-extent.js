@@ -32,7 +32,8 @@ export class StructureExtent {
 
   /** Of the box around all of it. */
   get corners() {
-    return this.low.reduce((found, low, axis) => found.flatMap((corner) => [[...corner, low], [...corner, this.high[axis]]]), [[]]);
+    const both = (corner, low, axis) => [[...corner, low], [...corner, this.high[axis]]];
+    return this.low.reduce((found, low, axis) => found.flatMap((corner) => both(corner, low, axis)), [[]]);
   }
 
   diagonal() {

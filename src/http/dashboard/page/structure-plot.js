@@ -164,7 +164,8 @@ export class StructurePlot {
     });
     this.largest = largest;
     const { point } = shown;
-    this.words.textContent = shown.index === null ? "No increment yet: the structure as the model has it." : `Increment ${shown.index}, ${kindWords(point.kind)}, stage “${shown.stage}”, load factor `
+    this.words.textContent = shown.index === null ? "No increment yet: the structure as the model has it."
+      : `Increment ${shown.index}, ${kindWords(point.kind)}, stage “${shown.stage}”, load factor `
       + `${short(shown.load_factor)}${point.event ? `: ${point.event}` : ""}${leftOut(model, shown)}`;
     const plain = { ...axis(""), zeroline: false, visible: !this.isInSpace };
     const [x, y] = this.isInSpace ? this.rangeInSpace(flat, sheets) : this.range();
