@@ -165,7 +165,7 @@ export class JobView {
         const others = state().jobs.filter((other) => other !== id);
         if (problem.status === 404 && others.length > 0) {
           // Those that are there are shown.
-          this.missing = `Not all jobs can be shown: ${problem.message}`;
+          this.missing = { words: `Not all jobs can be shown: ${problem.message}`, beside: others.join() };
           change({ jobs: others });
           return;
         }
@@ -204,8 +204,8 @@ export class JobView {
       return;
     }
     if (this.first !== first) return;
-    this.told.said([this.missing, axes.refused].filter(Boolean).join(" "));
-    this.missing = null;
+    const missing = this.missing?.beside === state().jobs.join() ? this.missing.words : "";
+    this.told.said([missing, axes.refused].filter(Boolean).join(" "));
     await this.pathPlot.draw(shown, axes, state().at);
     measureFirstPath();
     // Each in a frame of its own: the page answers between them.
