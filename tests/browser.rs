@@ -80,6 +80,72 @@ async fn a_broken_model_is_refused_at_its_line() {
     browser.close(&service.url, &["status of 422", "status of 400"]).await;
 }
 
+const TEXT: &str = "document.getElementById('request').value";
+
+#[tokio::test]
+async fn a_mistake_after_other_letters_than_ascii_is_found_at_its_character() {
+    let Some(browser) = Browser::open().await else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let service = Process::serve(&folder.path().join("jobs.db"), &[]);
+    browser.page.goto(&format!("{}/?run&scene=klarbring", service.url)).await.expect("a page");
+    browser.until("document.getElementById('queue')?.disabled === false").await;
+    browser.put("#request", "{\n\"\u{e4}\u{1f600}\" 1}").await;
+    browser.until("document.querySelector('#verdict .mistakes')?.textContent.includes('line 2 column 6')").await;
+    browser.ask("document.querySelector('#verdict .mistakes button').click()").await;
+    let selected = "(({value, selectionStart, selectionEnd}) => value.slice(selectionStart, selectionEnd))\
+                    (document.getElementById('request'))";
+    assert_eq!(browser.ask(selected).await, "1");
+    browser.close(&service.url, &["status of 400"]).await;
+}
+
+#[tokio::test]
+async fn a_text_of_the_readers_own_is_named_so_and_brought_back_where_another_takes_its_place() {
+    let Some(browser) = Browser::open().await else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let service = Process::serve(&folder.path().join("jobs.db"), &[]);
+    let client = process::client();
+    let id = process::submit(&client, &service.url, "/v1/jobs", &scene("von-mises-truss")).await;
+    process::until(&client, &service.url, &format!("/v1/jobs/{id}"), process::has_ended).await;
+    browser.page.goto(&format!("{}/?run&scene=klarbring", service.url)).await.expect("a page");
+    browser.until("document.getElementById('queue')?.disabled === false").await;
+    let chosen = "document.getElementById('scene').selectedOptions[0].textContent";
+    browser.put("#request", "{\"model\": 1}").await;
+    assert_eq!(browser.ask(chosen).await, "klarbring, changed");
+    browser.put("#scene", "one-bar-truss").await;
+    browser.until(&format!("{TEXT}.includes('one-bar truss') && {chosen} === 'one-bar-truss'")).await;
+    browser.press("#bring-back").await;
+    assert_eq!(browser.ask(TEXT).await, "{\"model\": 1}");
+    // Dropped beside the form: the browser does not leave the page for it.
+    let dropped = "(() => { const dataTransfer = new DataTransfer(); \
+                   dataTransfer.items.add(new File(['{\"model\": 2}'], 'own.json')); \
+                   const event = new DragEvent('drop', { dataTransfer, bubbles: true, cancelable: true }); \
+                   document.querySelector('header').dispatchEvent(event); return event.defaultPrevented; })()";
+    assert_eq!(browser.ask(dropped).await, true);
+    browser.until(&format!("{TEXT} === '{{\"model\": 2}}' && {chosen} === 'a text of your own'")).await;
+    // There and back leaves a text as it was written.
+    browser.put("#scene", "klarbring").await;
+    browser.until(&format!("{chosen} === 'klarbring'")).await;
+    let before = browser.ask(TEXT).await;
+    browser.put("#kind", "sweep").await;
+    browser.until(&format!("{TEXT}.includes('\"sweep\"')")).await;
+    browser.put("#kind", "").await;
+    browser.until(&format!("!{TEXT}.includes('\"sweep\"')")).await;
+    assert_eq!(browser.ask(TEXT).await, before);
+    assert_eq!(browser.ask(chosen).await, "klarbring");
+    // The model of a job, though a text of one's own stands in the form.
+    let again =
+        "[...document.querySelectorAll('#heading button')].find(({textContent}) => /^Run again/.test(textContent))";
+    browser.ask(&format!("document.querySelector('#lists a[href=\"/?jobs={id}\"]').click()")).await;
+    for _ in 0..2 {
+        browser.until(&format!("{again} !== undefined && !document.getElementById('job').hidden")).await;
+        browser.ask(&format!("{again}.click()")).await;
+        browser.until(&format!("{TEXT}.includes('von Mises truss') && {chosen} === 'the model of a job'")).await;
+        browser.put("#request", "{}").await;
+        browser.ask("[...document.querySelectorAll('#run button')].find(({textContent}) => textContent === 'Close').click()").await;
+    }
+    browser.close(&service.url, &["status of 422"]).await;
+}
+
 #[tokio::test]
 async fn another_direction_is_followed_and_drawn_beside_the_path() {
     let Some(browser) = Browser::open().await else { return };
@@ -136,5 +202,30 @@ async fn a_path_goes_on_growing_without_a_gap_after_a_restart() {
     let stored: Vec<f64> = indices(lines.iter().map(String::as_str)).into_iter().map(|index| index as f64).collect();
     assert!(before.as_u64().is_some_and(|before| before < stored.len() as u64), "it was cut: {before}");
     assert!(drawn == stored, "without gap or repeat: {} of {}", drawn.len(), stored.len());
+    browser.close(&url, &["net::ERR_"]).await;
+}
+
+#[tokio::test]
+async fn a_service_that_goes_while_an_ended_job_is_looked_at_is_told_and_found_again() {
+    let Some(browser) = Browser::open().await else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let database = folder.path().join("jobs.db");
+    let port = TcpListener::bind("127.0.0.1:0").and_then(|listener| listener.local_addr()).expect("a port").port();
+    let service = serve_on(port, &database);
+    let (client, url) = (process::client(), service.url.clone());
+    let id = process::submit(&client, &url, "/v1/jobs", &scene("klarbring")).await;
+    process::until(&client, &url, &format!("/v1/jobs/{id}"), process::has_ended).await;
+    browser.page.goto(&format!("{url}/?jobs={id}")).await.expect("a page");
+    browser.until("document.getElementById('structure-plot').data?.length > 2").await;
+    service.terminated().await;
+    // It has to be asked for what was not asked for before.
+    browser.put("#ordinate", "/energy/dissipated").await;
+    browser.until("document.getElementById('connection').textContent.startsWith('Disconnected')").await;
+    browser.until("document.getElementById('notice').textContent.includes('The service cannot be reached.')").await;
+    let _again = serve_on(port, &database);
+    browser.until("document.getElementById('connection').textContent === ''").await;
+    let title = "document.getElementById('path-plot').layout.yaxis.title.text";
+    browser.until(&format!("{title} === 'dissipated energy'")).await;
+    browser.until("document.getElementById('notice').hidden").await;
     browser.close(&url, &["net::ERR_"]).await;
 }

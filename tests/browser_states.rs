@@ -9,7 +9,9 @@ mod common;
 use arcslip::http::access::tokens;
 use common::browser::Browser;
 use common::process::{self, Process, Served};
-use common::service::scene;
+use common::server::TestServer;
+use common::service::{in_short_steps, request, scene};
+use common::solver::MadeUp;
 use serde_json::{Value, json};
 use std::process::Command;
 
@@ -70,6 +72,14 @@ async fn what_is_not_recorded_is_not_drawn_as_if_it_were() {
     for words in words.as_array().expect("a list").iter().filter_map(Value::as_str) {
         assert!(!words.contains("tip0") && !words.contains("tip1"), "{words}");
     }
+    // Directions without contacts have no column of them.
+    let mut bare = scene("klarbring");
+    bare["analysis"] = json!({"record": {"contacts": []}});
+    let bare = served.ended(&bare).await;
+    browser.visit(&format!("{}/?jobs={bare}&at=7", served.url())).await;
+    browser.until("document.querySelector('#directions table') !== null").await;
+    let head = "[...document.querySelectorAll('#directions th')].map(({textContent}) => textContent)";
+    assert_eq!(browser.ask(head).await, json!(["", "", "load rate", "dissipation rate"]));
     // One that is gone does not hide the other, whichever stands first.
     let gone = "00000000-0000-7000-8000-000000000000";
     for shared in [format!("{gone},{id}"), format!("{id},{gone}")] {
@@ -78,6 +88,72 @@ async fn what_is_not_recorded_is_not_drawn_as_if_it_were() {
         browser.until(&format!("{STATUS} !== undefined && !document.getElementById('job').hidden")).await;
     }
     browser.close(served.url(), &["status of 404"]).await;
+}
+
+#[tokio::test]
+async fn an_address_that_asks_for_what_there_is_not_shows_what_there_is_and_says_so() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    let id = served.ended(&scene("klarbring")).await;
+    let twice = format!("{id},{}", id.to_uppercase());
+    browser.visit(&format!("{}/?jobs={twice}&abscissa=arc_length,/arc_length&status=nothing", served.url())).await;
+    browser
+        .until("document.getElementById('notice').textContent.includes('There is no “arc_length,/arc_length” here')")
+        .await;
+    browser.until("document.getElementById('path-plot').layout?.xaxis.title.text === 'displacement x of node'").await;
+    assert_eq!(browser.ask("document.querySelectorAll('#path .legend li').length").await, 1, "the exact path alone");
+    assert_eq!(browser.ask("document.getElementById('filter').value").await, "");
+    browser.until("document.querySelectorAll('#lists a').length === 1").await;
+    browser.close(served.url(), &[]).await;
+}
+
+#[tokio::test]
+async fn the_structure_of_a_job_that_waits_is_drawn_as_the_model_has_it() {
+    let Some(browser) = Browser::open().await else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let service = Process::serve(&folder.path().join("jobs.db"), &["--workers", "1"]);
+    let client = process::client();
+    let mut long = in_short_steps("one-bar-truss", 400_000, 250_000);
+    long["analysis"]["record"] = json!({"every": 1000, "directions": false});
+    let running = process::submit(&client, &service.url, "/v1/jobs", &long).await;
+    let id = process::submit(&client, &service.url, "/v1/jobs", &scene("one-bar-truss")).await;
+    browser.visit(&format!("{}/?jobs={id}", service.url)).await;
+    browser.until("document.getElementById('structure').textContent.includes('No increment yet')").await;
+    let node = format!("{STRUCTURE}.data?.find(({{name}}) => name === 'node')");
+    assert_eq!(browser.ask(&format!("(({{x, y}}) => [x, y])({node})")).await, json!([[0, -1.5], [1, 0]]));
+    assert_eq!(browser.ask(STATUS).await, "queued");
+    // The one before it is cancelled by the keyboard, and what can be done then has the focus.
+    browser.ask(&format!("document.querySelector('#lists a[href=\"/?jobs={running}\"]').click()")).await;
+    let cancel = "[...document.querySelectorAll('#heading button')].find(({textContent}) => textContent === 'Cancel')";
+    browser.until(&format!("{cancel} !== undefined && ({cancel}.focus(), true)")).await;
+    browser.keys(ENTER).await;
+    browser.until(&format!("{STATUS} === 'cancelled'")).await;
+    browser.until("document.querySelector('#heading button') === document.activeElement").await;
+    browser.ask("history.back()").await;
+    browser.until(&format!("{STATUS} === 'stopped'")).await;
+    browser.until("document.getElementById('structure').textContent.includes('Increment 79')").await;
+    browser.close(&service.url, &[]).await;
+}
+
+#[tokio::test]
+async fn what_has_been_read_of_a_long_path_is_drawn_while_the_rest_is_read() {
+    let Some(browser) = Browser::open().await else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let server = TestServer::start(&folder.path().join("jobs.db"), MadeUp::default()).await;
+    let url = format!("http://{}", server.address());
+    let id = server.submit(&request("long", 12_000)).await;
+    server.ended(&id).await;
+    let held = "const whole = window.fetch; window.fetch = async (place, ...more) => { \
+                if (/columns.*after=/.test(place)) await new Promise((go) => { window.letGo = go; }); \
+                return whole(place, ...more); };";
+    browser.devtools("Page.addScriptToEvaluateOnNewDocument", json!({"source": held})).await;
+    browser.visit(&format!("{url}/?jobs={id}")).await;
+    let drawn = "document.getElementById('path-plot').data?.[0]?.x.length";
+    browser.until(&format!("{drawn} === 10000 && window.letGo !== undefined")).await;
+    browser.ask("window.letGo()").await;
+    browser.until(&format!("{drawn} === 12000")).await;
+    browser.close(&url, &[]).await;
+    assert!(server.stop().await);
 }
 
 #[tokio::test]
@@ -113,6 +189,9 @@ async fn a_job_is_deleted_after_a_question_and_by_the_keyboard_alone() {
     browser.until("new URLSearchParams(location.search).get('at') === '4'").await;
     browser.until("document.querySelector('#structure .slider + p').textContent.startsWith('Increment 4,')").await;
     // Every control is reached in turn, with its focus to be seen, and none keeps it.
+    browser.ask("document.getElementById('skip').focus()").await;
+    browser.keys(ENTER).await;
+    browser.until(&format!("{focused} === 'view'")).await;
     browser.ask("document.querySelector('h1 a').focus()").await;
     let mut passed = Vec::new();
     for _ in 0..80 {
@@ -184,6 +263,7 @@ async fn nothing_is_wider_than_a_phone() {
     let Some(browser) = Browser::open().await else { return };
     let served = Served::start();
     let id = served.ended(&scene("curving-slip")).await;
+    let branching = served.ended(&scene("one-bar-truss")).await;
     let study = json!({"model": scene("von-mises-truss")["model"], "study": {"repeats": 1, "arc_lengths": [0.2, 0.1]}});
     let study = process::submit(&served.client, served.url(), "/v1/studies", &study).await;
     process::until(&served.client, served.url(), &format!("/v1/studies/{study}"), process::has_ended).await;
@@ -197,9 +277,23 @@ async fn nothing_is_wider_than_a_phone() {
     ] {
         browser.visit(&format!("{}{address}", served.url())).await;
         browser.until(is_there).await;
-        browser.until("document.querySelectorAll('#lists a').length === 2").await;
+        browser.until("document.querySelectorAll('#lists a').length === 3").await;
         let width = browser.ask("document.documentElement.scrollWidth").await;
         assert!(width.as_u64().is_some_and(|width| width <= 390), "{address}: {width}");
+        // Words end where what they are of begins.
+        let overlapping = "[...document.querySelectorAll('.setting label')].filter((label) => label.scrollWidth > \
+                           label.clientWidth).map(({textContent}) => textContent)";
+        assert_eq!(browser.ask(overlapping).await, json!([]), "{address}");
     }
+    browser.visit(&format!("{}/?jobs={branching}", served.url())).await;
+    browser.until("document.querySelector('#directions button[aria-label]') !== null").await;
+    let follow = browser
+        .ask(
+            "(({left, right, height}) => [left, right, height])\
+             (document.querySelector('#directions button[aria-label]').getBoundingClientRect())",
+        )
+        .await;
+    let [left, right, height] = [0, 1, 2].map(|place| follow[place].as_f64().expect("a number"));
+    assert!(left > 0.0 && right < 390.0 && height < 40.0, "{follow}");
     browser.close(served.url(), &[]).await;
 }

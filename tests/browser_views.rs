@@ -6,7 +6,7 @@
 mod common;
 
 use common::browser::Browser;
-use common::process::Served;
+use common::process::{self, Served};
 use common::service::scene;
 use serde_json::{Value, json};
 
@@ -227,5 +227,124 @@ async fn paths_drawn_together_are_told_apart_by_what_differs() {
     browser.ask("document.querySelectorAll('#lists a')[0].click()").await;
     browser.until(&format!("location.search === '?jobs={rough}'")).await;
     browser.until(&format!("{PATH}.data.length < 5")).await;
+    browser.close(served.url(), &[]).await;
+}
+
+/// Names below the plot of the paths.
+const LEGEND: &str = "[...document.querySelectorAll('#path .legend li')].map(({textContent}) => textContent)";
+
+#[tokio::test]
+async fn a_path_keeps_its_colour_and_the_reader_the_zoom_when_another_becomes_the_first() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    let one = served.ended(&scene("one-bar-truss")).await;
+    let mut rough = scene("one-bar-truss");
+    rough["model"]["contacts"][0]["friction"] = json!(0.6);
+    let other = served.ended(&rough).await;
+    browser.visit(&format!("{}/?jobs={one},{other}", served.url())).await;
+    browser.until(&format!("{PATH}.data?.length === 6")).await;
+    browser.ask(&format!("{PATH}.querySelector('[data-title=\"Zoom in\"]').click()")).await;
+    let colour = |job: usize| format!("{PATH}.data[{}].line.color", 2 * job);
+    let ranges = format!("[{PATH}.layout.xaxis.range, {PATH}.layout.yaxis.range]");
+    browser.until(&format!("{PATH}.layout.xaxis.autorange === false")).await;
+    let before = browser.ask(&format!("[{}, {}, ...{ranges}]", colour(0), colour(1))).await;
+    assert_ne!(before[0], before[1]);
+    // As a click on a point of the other path does.
+    browser.ask(&format!("void {PATH}.emit('plotly_click', {{points: [{{curveNumber: 2, customdata: 5}}]}})")).await;
+    browser.until(&format!("location.search.startsWith('?jobs={other},{one}')")).await;
+    browser.until(&format!("{} === '{}'", colour(0), before[1].as_str().expect("a colour"))).await;
+    let after = browser.ask(&format!("[{}, {}, ...{ranges}]", colour(1), colour(0))).await;
+    assert_eq!(after, before);
+    // One that goes takes its colour along.
+    browser.ask(&format!("document.querySelector('[data-key=\"draw {other}\"]').click()")).await;
+    browser
+        .until(&format!("{PATH}.data.length === 4 && {} === '{}'", colour(0), before[0].as_str().expect("a colour")))
+        .await;
+    browser.close(served.url(), &[]).await;
+}
+
+#[tokio::test]
+async fn many_paths_differ_in_colour_or_dash_and_in_name_and_one_that_is_not_drawn_says_so() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    let mut ids = Vec::new();
+    for _ in 0..9 {
+        ids.push(served.ended(&scene("klarbring")).await);
+    }
+    let direction = json!({"increment": 7, "direction": 0, "max_increments": 3});
+    let branch =
+        process::submit(&served.client, served.url(), &format!("/v1/jobs/{}/follow", ids[0]), &direction).await;
+    process::until(&served.client, served.url(), &format!("/v1/jobs/{branch}"), process::has_ended).await;
+    ids.insert(1, branch);
+    ids.insert(2, served.ended(&scene("one-bar-truss")).await);
+    browser.visit(&format!("{}/?jobs={}", served.url(), ids.join(","))).await;
+    browser.until(&format!("{PATH}.data?.length >= 23")).await;
+    let looks = format!(
+        "new Set({PATH}.data.slice(0, 22).filter(({{line}}) => line).map(({{line}}) => line.color + line.dash)).size"
+    );
+    assert_eq!(browser.ask(&looks).await, 11);
+    let names = browser.ask(LEGEND).await;
+    let names: Vec<&str> = names.as_array().expect("names").iter().filter_map(Value::as_str).take(11).collect();
+    for (place, name) in names.iter().enumerate() {
+        assert!(!names[..place].contains(name), "{names:?}");
+    }
+    assert!(names[1].contains("branch at ") && names[1].contains("direction 0"), "{names:?}");
+    assert!(names[2].ends_with("(not drawn: it has no displacement x of node)"), "{names:?}");
+    let drawn = browser.ask(&format!("{PATH}.data[4].y.filter((value) => value !== null).length")).await;
+    assert_eq!(drawn, 0, "it does not widen the range of the loads either");
+    browser.close(served.url(), &[]).await;
+}
+
+#[tokio::test]
+async fn going_back_restores_from_where_a_structure_was_seen_and_the_title_says_what_is_shown() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    let one = served.ended(&scene("curving-slip")).await;
+    let other = served.ended(&scene("turning-drag")).await;
+    browser.visit(&format!("{}/?jobs={one}", served.url())).await;
+    browser.until("document.getElementById('azimuth') !== null").await;
+    browser.until("document.title === 'curving slip, mu = 0.8 – arcslip'").await;
+    browser.put("#azimuth", "35").await;
+    browser.until("location.search.includes('turn=35,25')").await;
+    let open = |id: &str| format!("document.querySelector('#lists a[href=\"/?jobs={id}\"]').click()");
+    browser.ask(&open(&other)).await;
+    browser.until(&format!("location.search.startsWith('?jobs={other}')")).await;
+    browser.until("!document.title.startsWith('curving slip')").await;
+    browser.put("#azimuth", "-80").await;
+    browser.until("location.search.includes('turn=-80,25')").await;
+    browser.ask("document.querySelector('#diagnostics summary').click()").await;
+    browser.until("location.search.includes('figures')").await;
+    browser.ask("history.back()").await;
+    browser.until("document.title === 'curving slip, mu = 0.8 – arcslip'").await;
+    browser.until("document.getElementById('azimuth').value === '35'").await;
+    assert_eq!(browser.ask("document.querySelector('#diagnostics details').open").await, false);
+    // The whole of the plane is in the picture, from wherever it is looked at.
+    let inside = "(({data, layout: {xaxis, yaxis}}) => { const {x, y} = data.find(({name}) => name === 'obstacle'); \
+                  const within = (values, [low, high]) => values.every((value) => value === null || (value > low && value < high)); \
+                  return within(x, xaxis.range) && within(y, yaxis.range); })(document.getElementById('structure-plot'))";
+    browser.until(inside).await;
+    browser.close(served.url(), &[]).await;
+}
+
+#[tokio::test]
+async fn of_very_many_nodes_one_is_named_to_be_drawn_against() {
+    let Some(browser) = Browser::open().await else { return };
+    let served = Served::start();
+    let mut request = scene("one-bar-truss");
+    for number in 0..300 {
+        request["model"]["nodes"][format!("n{number}")] = json!([number, 3]);
+        request["model"]["supports"][format!("n{number}")] = json!(["x", "y"]);
+    }
+    let id = served.ended(&request).await;
+    browser.visit(&format!("{}/?jobs={id}", served.url())).await;
+    browser.until("document.getElementById('abscissa-node')?.value === 'tip'").await;
+    assert_eq!(browser.ask("document.getElementById('abscissa').options.length").await, 3);
+    browser.put("#abscissa-node", "n29").await;
+    browser.until(&format!("{PATH}.layout.xaxis.title.text === 'displacement x of n29'")).await;
+    let proposed = "[...document.querySelectorAll('#nodes option')].map(({value}) => value).includes('n291')";
+    assert_eq!(browser.ask(proposed).await, true);
+    browser.put("#abscissa", "arc_length").await;
+    browser.until(&format!("{PATH}.layout.xaxis.title.text === 'arc length'")).await;
+    assert_eq!(browser.ask("document.getElementById('abscissa-node').disabled").await, true);
     browser.close(served.url(), &[]).await;
 }

@@ -18,6 +18,8 @@ use std::borrow::Cow;
 use std::fmt;
 use utoipa::ToSchema;
 
+/// The member that tells which points are not regular.
+const POINT: &str = "point";
 const ROWS: u32 = 10_000;
 const COLUMNS: usize = 32;
 /// Read from the store at a time.
@@ -135,22 +137,28 @@ fn unescaped(step: &str) -> String {
 
 impl Columns {
     fn take(&mut self, index: u64, body: &str, members: &[Member]) -> serde_json::Result<()> {
-        // Looked through once; what is asked for of it is looked through again.
-        let Top(top) = serde_json::from_str(body)?;
+        let firsts = members.iter().filter_map(|member| member.steps.first().map(String::as_str));
+        let mut names = vec![POINT];
+        for first in firsts {
+            if !names.contains(&first) {
+                names.push(first);
+            }
+        }
+        let top = pick(body, &names)?;
+        let found = |name: &str| names.iter().position(|known| *known == name).and_then(|place| *top.get(place)?);
         self.index.push(index);
         for (member, column) in members.iter().zip(self.columns.values_mut()) {
             let mut steps = member.steps.iter();
-            let first = steps.next().and_then(|name| top.iter().find(|(known, _)| known == name));
-            let mut value = first.map(|(_, value)| *value);
+            let mut value = steps.next().and_then(|name| found(name));
             for step in steps {
                 let Some(within) = value else { break };
-                value = Step(step).deserialize(&mut serde_json::Deserializer::from_str(within.get()))?;
+                value = pick(within.get(), &[step])?.pop().flatten();
             }
             let value = value.filter(|value| value.get() != "null");
             self.bytes += value.map_or(0, |value| value.get().len()) + size_of::<Box<RawValue>>();
             column.push(value.map(ToOwned::to_owned));
         }
-        if let Some((_, point)) = top.iter().find(|(name, _)| name == "point") {
+        if let Some(point) = found(POINT) {
             #[derive(Deserialize)]
             struct Kind<'a> {
                 #[serde(borrow)]
@@ -158,105 +166,120 @@ impl Columns {
                 #[serde(default)]
                 bifurcation: bool,
             }
-            let found: Kind = serde_json::from_str(point.get())?;
-            if found.kind != "regular" || found.bifurcation {
-                self.points.push(PointAt { index, point: (*point).to_owned() });
+            let kind: Kind = serde_json::from_str(point.get())?;
+            if kind.kind != "regular" || kind.bifurcation {
+                self.points.push(PointAt { index, point: point.to_owned() });
             }
         }
         Ok(())
     }
 }
 
-/// The members of an object, as they are written.
-struct Top<'a>(Vec<(Cow<'a, str>, &'a RawValue)>);
-
-impl<'de> Deserialize<'de> for Top<'de> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Members;
-        impl<'de> Visitor<'de> for Members {
-            type Value = Top<'de>;
-
-            fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-                formatter.write_str("an object")
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
-                let mut members = Vec::new();
-                while let Some(entry) = map.next_entry()? {
-                    members.push(entry);
-                }
-                Ok(Top(members))
-            }
-        }
-        deserializer.deserialize_map(Members)
+/// The members of that name of an object, or the elements in those places of an array, as they are written; `None` where
+/// there are none. What stands after the last of them is not looked at.
+fn pick<'de>(text: &'de str, names: &[&str]) -> serde_json::Result<Vec<Option<&'de RawValue>>> {
+    let mut found = vec![None; names.len()];
+    let picked = Pick { names, found: &mut found }.deserialize(&mut serde_json::Deserializer::from_str(text));
+    if found.iter().any(Option::is_none) {
+        picked?;
     }
+    Ok(found)
 }
 
-/// One step of a JSON Pointer: a member of an object, or an element of an array; `None` where there is none.
-struct Step<'a>(&'a str);
+/// Puts what is asked for into its place, until all of it is there.
+struct Pick<'a, 'de> {
+    names: &'a [&'a str],
+    found: &'a mut [Option<&'de RawValue>],
+}
 
-impl<'de> DeserializeSeed<'de> for Step<'_> {
-    type Value = Option<&'de RawValue>;
+impl<'de> DeserializeSeed<'de> for Pick<'_, 'de> {
+    type Value = ();
 
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
         deserializer.deserialize_any(self)
     }
 }
 
-impl<'de> Visitor<'de> for Step<'_> {
-    type Value = Option<&'de RawValue>;
+impl<'de> Visitor<'de> for Pick<'_, 'de> {
+    type Value = ();
 
     fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
         formatter.write_str("a value")
     }
 
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
-        let mut found = None;
-        while let Some(name) = map.next_key::<Cow<str>>()? {
-            if name == self.0 {
-                found = Some(map.next_value()?);
-            } else {
-                map.next_value::<IgnoredAny>()?;
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
+        while let Some(place) = map.next_key_seed(PlaceOf(self.names))? {
+            match place.and_then(|place| self.found.get_mut(place)) {
+                Some(found) => *found = Some(map.next_value()?),
+                None => _ = map.next_value::<IgnoredAny>()?,
+            }
+            if self.found.iter().all(Option::is_some) {
+                break;
             }
         }
-        Ok(found)
+        Ok(())
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, mut sequence: A) -> Result<Self::Value, A::Error> {
-        let wanted = self.0.parse::<usize>().ok();
-        let mut found = None;
+    fn visit_seq<A: SeqAccess<'de>>(self, mut sequence: A) -> Result<(), A::Error> {
+        let wanted: Vec<Option<usize>> = self.names.iter().map(|name| name.parse().ok()).collect();
         let mut place = 0;
         while let Some(element) = sequence.next_element::<&RawValue>()? {
-            if wanted == Some(place) {
-                found = Some(element);
+            for (found, _) in self.found.iter_mut().zip(&wanted).filter(|(_, wanted)| **wanted == Some(place)) {
+                *found = Some(element);
+            }
+            if self.found.iter().all(Option::is_some) {
+                break;
             }
             place += 1;
         }
-        Ok(found)
+        Ok(())
     }
 
-    fn visit_unit<E>(self) -> Result<Self::Value, E> {
-        Ok(None)
+    fn visit_unit<E>(self) -> Result<(), E> {
+        Ok(())
     }
 
-    fn visit_bool<E>(self, _: bool) -> Result<Self::Value, E> {
-        Ok(None)
+    fn visit_bool<E>(self, _: bool) -> Result<(), E> {
+        Ok(())
     }
 
-    fn visit_i64<E>(self, _: i64) -> Result<Self::Value, E> {
-        Ok(None)
+    fn visit_i64<E>(self, _: i64) -> Result<(), E> {
+        Ok(())
     }
 
-    fn visit_u64<E>(self, _: u64) -> Result<Self::Value, E> {
-        Ok(None)
+    fn visit_u64<E>(self, _: u64) -> Result<(), E> {
+        Ok(())
     }
 
-    fn visit_f64<E>(self, _: f64) -> Result<Self::Value, E> {
-        Ok(None)
+    fn visit_f64<E>(self, _: f64) -> Result<(), E> {
+        Ok(())
     }
 
-    fn visit_str<E>(self, _: &str) -> Result<Self::Value, E> {
-        Ok(None)
+    fn visit_str<E>(self, _: &str) -> Result<(), E> {
+        Ok(())
+    }
+}
+
+/// Where among the names a member's is; compared in place, as there are very many of them.
+struct PlaceOf<'a>(&'a [&'a str]);
+
+impl<'de> DeserializeSeed<'de> for PlaceOf<'_> {
+    type Value = Option<usize>;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
+        deserializer.deserialize_str(self)
+    }
+}
+
+impl Visitor<'_> for PlaceOf<'_> {
+    type Value = Option<usize>;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.write_str("a name")
+    }
+
+    fn visit_str<E>(self, name: &str) -> Result<Self::Value, E> {
+        Ok(self.0.iter().position(|known| *known == name))
     }
 }
 

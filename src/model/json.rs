@@ -55,7 +55,7 @@ impl Json {
         let left = Cell::new(MAX_VALUES);
         let mut source = serde_json::Deserializer::from_slice(text);
         let parsed = Value { left: &left }.deserialize(&mut source).and_then(|value| source.end().map(|()| value));
-        parsed.or_else(|error| whole(format!("not a JSON document that can be read: {error}")))
+        parsed.or_else(|error| whole(format!("not a JSON document that can be read: {}", told(text, &error))))
     }
 
     /// What was found, for a message: its type and, where short, its value.
@@ -101,6 +101,16 @@ impl fmt::Display for Number {
             Self::Real(value) => write!(formatter, "{value:?}"),
         }
     }
+}
+
+/// What is wrong and where, as `serde_json` says it, but with the column in characters: it counts bytes.
+fn told(text: &[u8], error: &serde_json::Error) -> String {
+    let (line, column) = (error.line(), error.column());
+    let message = error.to_string();
+    let Some(what) = message.strip_suffix(&format!(" at line {line} column {column}")) else { return message };
+    let row = text.split(|&byte| byte == b'\n').nth(line.saturating_sub(1)).unwrap_or_default();
+    let before = row.get(..column).unwrap_or(row);
+    format!("{what} at line {line} column {}", String::from_utf8_lossy(before).chars().count())
 }
 
 /// Line and column (in characters), both from 1, of a byte.
@@ -204,6 +214,7 @@ mod tests {
         assert!(refusal(b"{\n  \"a\" 1}").contains("line 2 column 7"));
         assert!(refusal(b"[1e999]").contains("number out of range at line 1"));
         assert!(refusal(b"[NaN]").contains("line 1 column 2"));
+        assert!(refusal("{\"\u{e4}\u{1f600}\" 1}".as_bytes()).contains("line 1 column 7"));
         assert!(refusal(b"{} {}").contains("trailing characters at line 1 column 4"));
         assert!(refusal(b"[\n\"\xc3\xa4\xff\"]").contains("not UTF-8 at line 2 column 3"));
         assert!(refusal(b" \n").contains("empty"));

@@ -1,5 +1,7 @@
 // Calls of the service: JSON in and out, problems (RFC 9457) as errors, the bearer token where the service asks for one.
 
+import { reached } from "./reach.js";
+
 const TOKEN = "arcslip token";
 let asks = () => {};
 
@@ -44,8 +46,11 @@ export async function call(place, { method = "GET", body, headers = {}, signal }
   try {
     answer = await fetch(place, { method, body, headers: sent, signal });
   } catch (problem) {
-    throw problem instanceof TypeError ? new Unreachable() : problem;
+    if (!(problem instanceof TypeError)) throw problem;
+    reached(false);
+    throw new Unreachable();
   }
+  reached(true);
   if (answer.ok) return answer;
   const told = await answer.json().catch(() => ({}));
   if (answer.status === 401) asks(told.detail ?? "");

@@ -4,7 +4,7 @@ import { isGivenUp } from "./api.js";
 import { element, fill, table } from "./dom.js";
 import { analysisDefaults } from "./schema.js";
 import { axis, colourOf, CONFIGURATION, layout } from "./plot-style.js";
-import { settingsSentences, short } from "./words.js";
+import { leftOutSentence, settingsSentences, short } from "./words.js";
 
 const ERRORS = [
   ["residual", "residual"], ["complementarity", "complementarity"], ["energy_error", "energy balance"],
@@ -32,6 +32,11 @@ export class Diagnostics {
       element("p", { class: "quiet" }, "Errors that are exactly zero have no place on this axis."), this.work,
       this.settings, this.events);
     fill(panel, this.whole);
+  }
+
+  /** As the address says. */
+  open(yes) {
+    this.whole.open = yes;
   }
 
   show(path) {
@@ -80,6 +85,6 @@ export class Diagnostics {
     const { left_out: leftOut = [] } = path.job.plan ?? {};
     fill(this.settings, element("h3", {}, "Settings"), element("ul", {},
       settingsSentences(path.request, path.job.plan, defaults).map((words) => element("li", {}, words)),
-      leftOut.map(({ what, why }) => element("li", {}, `Left out: ${what}, because ${why}.`))));
+      leftOut.map((one) => element("li", {}, `Left out: ${leftOutSentence(one)}`))));
   }
 }

@@ -58,18 +58,21 @@ export class Directions {
       }
       pressed.disabled = false;
     };
+    const hasContacts = directions.some((direction) => direction.contacts.length > 0);
+    // What can be done stands first: on a phone the last columns are out of sight.
     const rows = directions.map((direction, place) => element("tr", { class: direction.taken ? "taken" : null },
-      element("td", {}, String(place)), element("td", {}, states(direction)),
-      element("td", { class: "number" }, short(direction.load_rate)),
-      element("td", { class: "number" }, short(direction.dissipation_rate)),
+      element("td", {}, String(place)),
       element("td", {}, direction.taken ? "taken" : button("Follow", (event) => follow(place, event.target), {
         "aria-label": `follow direction ${place}`, "data-key": `follow ${place}`,
-      }))));
+      })),
+      hasContacts ? element("td", {}, states(direction)) : null,
+      element("td", { class: "number" }, short(direction.load_rate)),
+      element("td", { class: "number" }, short(direction.dissipation_rate))));
     const where = at === null ? [` at increment ${index}, the last bifurcation of the path`] : [` at increment ${index}`];
     fill(this.panel, element("h2", {}, "Directions", where),
       element("p", { class: "quiet" }, "Each is a way in which the path can go on from this point, in both senses of the load. ",
         at !== null ? null
           : button("Show the structure there", () => this.told.chosen(index), { class: "plain", "data-key": "there" })),
-      table(["", "contacts", "load rate", "dissipation rate", ""], rows), problem);
+      table(["", "", ...(hasContacts ? ["contacts"] : []), "load rate", "dissipation rate"], rows), problem);
   }
 }

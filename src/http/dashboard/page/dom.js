@@ -16,13 +16,17 @@ export function element(name, attributes = {}, ...children) {
 
 export const byId = (id) => document.getElementById(id);
 
-/** Puts children in the place of those there were; what has focus and a `data-key` has it again in the new ones. */
+/** Puts children in the place of those there were. What has focus and a `data-key` has it again in the new ones; where that is
+ *  not among them any more, or had none, the first control has it. */
 export function fill(parent, ...children) {
-  const focused = parent.contains(document.activeElement) ? document.activeElement.dataset.key : undefined;
+  const hadFocus = parent !== document.activeElement && parent.contains(document.activeElement);
+  const focused = hadFocus ? document.activeElement.dataset.key : undefined;
   const fresh = document.createDocumentFragment();
   for (const child of children.flat().filter(isThere)) fresh.append(child);
   parent.replaceChildren(fresh);
-  if (focused !== undefined) parent.querySelector(`[data-key="${CSS.escape(focused)}"]`)?.focus();
+  if (!hadFocus) return;
+  const same = focused === undefined ? null : parent.querySelector(`[data-key="${CSS.escape(focused)}"]`);
+  (same ?? parent.querySelector("button, a[href], input, select, summary"))?.focus({ preventScroll: same === null });
 }
 
 /** A select with options `[value, text]`. */

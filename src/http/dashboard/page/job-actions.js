@@ -3,7 +3,7 @@
 import { call } from "./api.js";
 import { askingButton, button, element } from "./dom.js";
 import { download, downloadIncrements } from "./downloads.js";
-import { change, state } from "./state.js";
+import { change, openModelOf, state } from "./state.js";
 import { isGoingOn } from "./words.js";
 
 /** `done()` is called after what changes the lists, `failed(problem)` where something is refused. */
@@ -15,7 +15,7 @@ export function jobActions(job, done, failed) {
     button("Path (csv)", then(() => download(`/v1/jobs/${id}/path.csv`, `path-${id}.csv`))),
     button("Increments (json)", then(() => downloadIncrements(id))),
     button("Model (json)", then(() => download(`/v1/jobs/${id}/request`, `request-${id}.json`))),
-    button("Run again, changed", () => change({ run: true, scene: `job:${id}`, as: "" })),
+    button("Run again, changed", () => openModelOf(id)),
     askingButton("Delete", `Delete “${job.name}” and all its increments?`, then(async () => {
       await call(`/v1/jobs/${id}`, { method: "DELETE" });
       change({ jobs: state().jobs.filter((other) => other !== id), at: null });

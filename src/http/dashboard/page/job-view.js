@@ -4,14 +4,15 @@
 import { isGivenUp } from "./api.js";
 import { Diagnostics } from "./diagnostics.js";
 import { Directions } from "./directions.js";
-import { atMostEvery, byId, element, fill, onceAFrame } from "./dom.js";
-import { jobActions } from "./job-actions.js";
-import { PathData } from "./path-data.js";
+import { atMostEvery, byId, onceAFrame } from "./dom.js";
+import { pathOnItsWay } from "./early.js";
+import { JobHeading } from "./job-heading.js";
+import { axesOf } from "./path-axes.js";
 import { PathPlot } from "./path-plot.js";
 import { plotlyLoaded } from "./plotly-loaded.js";
-import { addressOfJob, change, state } from "./state.js";
+import { change, state } from "./state.js";
 import { StructurePlot } from "./structure-plot.js";
-import { isGoingOn, statusWords, stopSentence } from "./words.js";
+import { isGoingOn } from "./words.js";
 
 /** Milliseconds between pictures of the structure of a path that grows: the path itself is drawn first. */
 const STRUCTURE = 300;
@@ -21,14 +22,13 @@ const FIGURES = 2000;
 const FIRST_PATH = "first path";
 
 export class JobView {
-  /** Tells `said(words, again)`: what stands in the place of a job, and how to try again; `changed()`; `connection()`. */
+  /** Tells `said(words, again)`: what stands in the place of a job, and how to try again; `titled(words)`; `changed()`;
+   *  `connection()`. */
   constructor(told) {
     this.told = told;
     /** Paths that are held, drawn or not: id to path. */
     this.held = new Map();
-    this.summary = element("div", {});
-    this.actions = element("div", {});
-    fill(byId("heading"), this.summary, this.actions);
+    this.top = new JobHeading(byId("heading"), told);
     const chosen = (index) => change({ at: index });
     this.pathPlot = new PathPlot(byId("path"), {
       chosen: (id, index) => this.chooseAt(id, index),
@@ -77,15 +77,30 @@ export class JobView {
   /** The view has changed in more than the chosen increment. */
   view() {
     this.structure.rest();
+    this.look();
     this.hold();
     this.draw();
     if (this.isWanted && !this.first) this.prepare();
+  }
+
+  /** From where the structure is seen, and whether the figures are open, as the address says: one may have gone back. */
+  look() {
+    this.structure.seen.lookFrom(state().turn);
+    this.diagnostics.open(state().figures);
   }
 
   /** The page's colours have changed. */
   repaint() {
     this.structure.repaint();
     return this.draw();
+  }
+
+  /** The service is back: what could not be fetched meanwhile is fetched now. */
+  async recover() {
+    if (!this.isWanted) return;
+    this.hold();
+    await this.draw();
+    this.choose();
   }
 
   get isWanted() {
@@ -96,8 +111,7 @@ export class JobView {
   async prepare() {
     byId("job").hidden = false;
     byId("job").classList.add("loading");
-    fill(this.summary, element("p", { class: "quiet" }, "Loading the path …"));
-    this.drawActions(null);
+    this.top.prepare();
     try {
       await plotlyLoaded();
       if (!byId("job").hidden && !this.first) await this.pathPlot.prepare();
@@ -126,30 +140,32 @@ export class JobView {
 
   chooseAt(id, index) {
     const { jobs } = state();
-    // A point of another path makes that one the first.
-    change(id === jobs[0] ? { at: index } : { jobs: [id, ...jobs.filter((other) => other !== id)], at: index });
+    // A point of another path makes that one the first; what is drawn, and against what, stays.
+    change(id === jobs[0] ? { at: index }
+      : { jobs: [id, ...jobs.filter((other) => other !== id)], at: index, abscissa: axesOf(this.paths(), state()).abscissa });
   }
 
   hold() {
     const wanted = state().jobs;
+    this.pathPlot.keep(wanted);
     for (const [id, path] of this.held) {
       if (!wanted.includes(id)) {
         path.close();
         this.held.delete(id);
       }
     }
-    const { abscissa, ordinate } = state();
     for (const id of wanted.filter((one) => !this.held.has(one))) {
-      const path = new PathData(id, (what, which) => this.hears(what, which));
+      const path = pathOnItsWay(id);
+      path.told = (what, which) => this.hears(what, which);
       this.held.set(id, path);
-      path.load([abscissa, ordinate].filter(Boolean)).catch((problem) => {
+      path.loading.catch((problem) => {
         if (isGivenUp(problem)) return;
         path.close();
         this.held.delete(id);
         const others = state().jobs.filter((other) => other !== id);
         if (problem.status === 404 && others.length > 0) {
           // Those that are there are shown.
-          this.missing = `Not all jobs can be shown: ${problem.message}`;
+          this.missing = { words: `Not all jobs can be shown: ${problem.message}`, beside: others.join() };
           change({ jobs: others });
           return;
         }
@@ -179,7 +195,7 @@ export class JobView {
     section.hidden = false;
     section.classList.remove("loading");
     const shown = this.paths();
-    const axes = axesOf(first);
+    const axes = axesOf(shown, state());
     this.heading();
     try {
       await Promise.all([plotlyLoaded(), ...shown.map((path) => path.need([axes.abscissa, axes.ordinate]))]);
@@ -188,8 +204,8 @@ export class JobView {
       return;
     }
     if (this.first !== first) return;
-    this.told.said(this.missing ?? "");
-    this.missing = null;
+    const missing = this.missing?.beside === state().jobs.join() ? this.missing.words : "";
+    this.told.said([missing, axes.refused].filter(Boolean).join(" "));
     await this.pathPlot.draw(shown, axes, state().at);
     measureFirstPath();
     // Each in a frame of its own: the page answers between them.
@@ -212,36 +228,13 @@ export class JobView {
       return;
     }
     if (path.exact === before || !path.exact.path || this.first !== path) return;
-    await this.pathPlot.draw(this.paths(), axesOf(path), state().at);
+    await this.pathPlot.draw(this.paths(), axesOf(this.paths(), state()), state().at);
   }
 
   heading() {
-    const { first } = this;
-    if (!first) return;
-    const { job } = first;
-    const kept = first.index.length;
-    const all = (first.last() ?? -1) + 1;
-    const many = kept === all ? `${all} increments. ` : `${all} increments, ${kept} of them kept. `;
-    fill(this.summary, element("div", { class: "bar" }, element("h2", {}, job.name),
-      element("span", { class: `status ${job.status}`, id: "status" }, job.status)),
-    element("p", { id: "stop" }, many, isGoingOn(job) ? `The job ${statusWords(job.status)}.` : stopSentence(job),
-      job.parent ? element("span", {}, " It follows ", element("a", {
-        href: addressOfJob(job.parent.job, job.id), "data-key": "parent",
-      }, "another job"), ` from increment ${job.parent.increment} in direction ${job.parent.direction}.`) : null),
-    first.problem ? element("p", { class: "bad", role: "alert" }, first.problem) : null);
-    this.drawActions(job);
-  }
-
-  /** Made anew only where they change, so that focus stays on them while a path grows. */
-  drawActions(job) {
-    const key = job ? `${job.id} ${job.status}` : "";
-    if (this.actions.dataset.of === key) return;
-    this.actions.dataset.of = key;
-    fill(this.actions, job ? jobActions(job, this.told.changed, (problem) => this.told.said(problem.message)) : null);
+    if (this.first && this.isWanted) this.top.show(this.first, state().jobs.length - 1);
   }
 }
-
-const axesOf = (path) => ({ abscissa: state().abscissa ?? path.ownAbscissa(), ordinate: state().ordinate ?? "load_factor" });
 
 const frame = () => new Promise((resume) => requestAnimationFrame(() => setTimeout(resume)));
 

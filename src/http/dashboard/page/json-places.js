@@ -6,9 +6,13 @@ export function placeIn(text, { pointer = "", detail = "" }) {
   const told = /line (\d+)(?:,? column (\d+))?/.exec(detail);
   if (!pointer && told) {
     const line = Number(told[1]);
-    const start = text.split("\n").slice(0, line - 1).reduce((sum, row) => sum + row.length + 1, 0);
+    const rows = text.split("\n");
+    const start = rows.slice(0, line - 1).reduce((sum, row) => sum + row.length + 1, 0);
+    // The service counts characters, a text's places here are halves of some of them.
+    const characters = [...rows[line - 1] ?? ""];
     const column = Math.max(0, Number(told[2] ?? 1) - 1);
-    return { line, start: start + column, end: start + column + 1 };
+    const at = start + characters.slice(0, column).join("").length;
+    return { line, start: at, end: at + (characters[column] ?? " ").length };
   }
   const steps = pointer.split("/").slice(1).map((step) => step.replaceAll("~1", "/").replaceAll("~0", "~"));
   let found = { start: 0, end: 1 };
@@ -33,6 +37,20 @@ export function withMember(text, name, value) {
   const end = text.trimEnd().length - 1;
   const before = text.slice(0, end).trimEnd();
   return `${before}${before.endsWith("{") ? "" : ","}\n  ${JSON.stringify(name)}: ${written}\n${text.slice(end)}`;
+}
+
+/** The text without a member of its outermost object, the rest as it was written. */
+export function withoutMember(text, name) {
+  let start = null;
+  let end = null;
+  new Reader(text).value([name], (from, to, isWhole) => {
+    if (isWhole) end = to;
+    else start ??= from;
+  });
+  if (start === null || end === null) return text;
+  const before = text.slice(0, start).trimEnd();
+  if (before.endsWith(",")) return `${before.slice(0, -1)}${text.slice(end)}`;
+  return `${text.slice(0, start)}${text.slice(end).replace(/^\s*,\s*/, "")}`;
 }
 
 /** A member of the outermost object: its own members on a line each. */

@@ -5,6 +5,7 @@ import { button, byId, element, fill } from "./dom.js";
 import { JobView } from "./job-view.js";
 import { onThemeChange } from "./plot-style.js";
 import { plotlyLoaded, warmPlotlyUp } from "./plotly-loaded.js";
+import { isReached, onReach } from "./reach.js";
 import { RunForm } from "./run-form.js";
 import { change, isSameView, onChange, openJob, openStudy, openSweep, state } from "./state.js";
 import { StudyView } from "./study-view.js";
@@ -21,17 +22,21 @@ function say(words, again) {
 }
 
 function connection() {
-  const isLost = [jobView, studyView, sweepView].some((one) => !one.isConnected);
+  const isLost = !isReached() || [jobView, studyView, sweepView].some((one) => !one.isConnected);
   const place = byId("connection");
   place.textContent = isLost ? "Disconnected; trying again …" : "";
   place.classList.toggle("bad", isLost);
 }
 
+function titled(words) {
+  document.title = words ? `${words} – arcslip` : "arcslip";
+}
+
 tokenPrompt(byId("token"));
 const lists = new TaskLists(byId("lists"));
 const changed = () => lists.load();
-const jobView = new JobView({ said: say, changed, connection });
-const told = { failed: (problem) => say(problem.message), shown: () => say(""), changed, connection };
+const jobView = new JobView({ said: say, titled, changed, connection });
+const told = { failed: (problem) => say(problem.message), shown: (words) => { say(""); titled(words); }, changed, connection };
 const studyView = new StudyView(byId("study"), told);
 const sweepView = new SweepView(byId("sweep"), told);
 const runForm = new RunForm(byId("run"), {
@@ -45,8 +50,10 @@ function view(before) {
   const now = state();
   const isOther = !before || !isSameView(before, now);
   if (before) lists.changed(before);
-  if (!before || before.run !== now.run || before.scene !== now.scene || before.as !== now.as) runForm.show();
+  if (!before || before.run !== now.run || before.scene !== now.scene || before.as !== now.as
+    || before.again !== now.again) runForm.show();
   if (isOther) {
+    titled(now.run ? "New run" : "");
     say(now.run || now.jobs.length ? "" : now.study || now.sweep ? "Loading …" : "Choose a job, or start one with New run.");
     studyView.show(now.run ? null : now.study);
     sweepView.show(now.run ? null : now.sweep);
@@ -60,7 +67,18 @@ function view(before) {
 }
 
 onChange(view);
+onReach((isBack) => {
+  connection();
+  if (!isBack) return;
+  lists.load();
+  // What could not be fetched meanwhile is fetched now.
+  for (const one of [runForm, studyView, sweepView, jobView]) one.recover();
+});
 onThemeChange(() => { jobView.repaint(); studyView.draw(); sweepView.draw(); });
+byId("skip").addEventListener("click", (event) => {
+  event.preventDefault();
+  byId("view").focus();
+});
 byId("open-run").addEventListener("click", () => change({ run: true }));
 addEventListener("keydown", (event) => {
   if (event.target.matches("input, textarea, select") || event.ctrlKey || event.metaKey || event.altKey) return;

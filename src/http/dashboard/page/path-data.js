@@ -2,6 +2,7 @@
 // increments where a view has asked for them.
 
 import { get } from "./api.js";
+import { displacement, isAbscissa, isOrdinate, unescaped } from "./path-axes.js";
 import { follow } from "./stream.js";
 import { isGoingOn } from "./words.js";
 
@@ -10,20 +11,14 @@ const WHOLE = 64;
 /** Increments that are held whole as they stream in; those past it are fetched again where they are looked at. */
 const HELD = 20000;
 const ALWAYS = ["stage", "load_factor", "arc_length"];
-const escaped = (name) => name.replaceAll("~", "~0").replaceAll("/", "~1").replaceAll(",", "~2");
-
-/** What can be drawn over the path: [name, words]. */
-export const ORDINATES = [
-  ["load_factor", "load factor"], ["/energy/dissipated", "dissipated energy"], ["/energy/strain", "strain energy"],
-  ["/energy/external_work", "external work"],
-];
-
-export const displacement = (node, component) => `/displacements/${escaped(node)}/${component}`;
 
 export class PathData {
-  constructor(id, told) {
+  constructor(id) {
     this.id = id;
-    this.told = told;
+    /** Who is told `(what, path)`: "loaded", "grown", "ended", "connection". */
+    this.told = () => {};
+    /** Resolves when what is stored has been read. */
+    this.loading = null;
     this.job = null;
     this.request = null;
     this.index = [];
@@ -34,25 +29,29 @@ export class PathData {
     this.isLoaded = false;
     this.isConnected = true;
     this.stop = () => {};
+    this.turn = Promise.resolve();
     this.given = new AbortController();
   }
 
-  /** Reads what is stored, with these columns, and goes on with what comes. */
+  /** Reads what is stored, with those of these columns that it has, and goes on with what comes. */
   async load(columns) {
     const place = `/v1/jobs/${this.id}`;
     const { signal } = this.given;
     [this.job, this.request] = await Promise.all([get(place, signal), get(`${place}/request`, signal)]);
-    const wanted = [...new Set([...ALWAYS, ...columns, ...(columns.length ? [] : [this.ownAbscissa()])])];
-    for (const name of wanted) this.columns.set(name, []);
+    const known = columns.filter((name) => isOrdinate(name) || this.knows(name));
+    const own = columns.some((name) => this.knows(name)) ? [] : [this.ownAbscissa()];
+    for (const name of [...ALWAYS, ...known, ...own]) this.columns.set(name, []);
     let after = null;
-    for (;;) {
-      const page = await this.page(wanted, after);
-      this.append(page.index, wanted.map((name) => page.columns[name]), wanted, page.points);
-      if (page.index.length === 0 || page.next_after === this.job.progress.last_index) break;
+    for (let pages = 1; ; pages++) {
+      const page = await this.inTurn(() => this.readOn(after));
       after = page.next_after;
+      const isLast = page.index.length === 0 || after === this.job.progress.last_index;
+      // What has been read is shown; a path may grow as fast as it is read.
+      this.isLoaded = true;
+      if (pages === 1 || isLast) this.told("loaded", this);
+      else this.told("grown", this);
+      if (isLast) break;
     }
-    this.isLoaded = true;
-    this.told("loaded", this);
     if (signal.aborted || !isGoingOn(this.job)) return;
     this.stop = follow(place, this.index.at(-1) ?? null, {
       come: (increments) => this.take(increments),
@@ -72,13 +71,24 @@ export class PathData {
     return get(`/v1/jobs/${this.id}/columns?of=${of}${after === null ? "" : `&after=${after}`}`, this.given.signal);
   }
 
-  append(index, values, names, points) {
-    for (const number of index) this.index.push(number);
-    names.forEach((name, place) => {
+  /** Readings of columns go one after the other: each page belongs to all of those that are held. */
+  inTurn(read) {
+    const done = this.turn.then(read);
+    this.turn = done.catch(() => {});
+    return done;
+  }
+
+  /** Another page. */
+  async readOn(after) {
+    const names = [...this.columns.keys()];
+    const page = await this.page(names, after);
+    for (const number of page.index) this.index.push(number);
+    for (const name of names) {
       const column = this.columns.get(name);
-      for (const value of values[place]) column.push(value);
-    });
-    for (const point of points) this.points.push(point);
+      for (const value of page.columns[name]) column.push(value);
+    }
+    for (const point of page.points) this.points.push(point);
+    return page;
   }
 
   take(increments) {
@@ -93,7 +103,11 @@ export class PathData {
   }
 
   /** Columns that are not held yet, up to what is held of the others. */
-  async need(names) {
+  need(names) {
+    return names.every((name) => this.columns.has(name)) ? null : this.inTurn(() => this.readMissing(names));
+  }
+
+  async readMissing(names) {
     const missing = names.filter((name) => !this.columns.has(name));
     if (missing.length === 0) return;
     const found = missing.map(() => []);
@@ -118,6 +132,11 @@ export class PathData {
     const { increments } = await get(`/v1/jobs/${this.id}/increments?limit=${WHOLE}${after}`, this.given.signal);
     for (const found of increments) this.whole.set(found.index, found);
     return this.whole.get(index) ?? null;
+  }
+
+  /** Whether any increment that is held has a value of this column. */
+  has(name) {
+    return this.index.length === 0 || (this.columns.get(name) ?? []).some((value) => value !== null);
   }
 
   /** Where an increment stands in the columns; -1 where it is not among them (not every increment need be kept). */
@@ -184,13 +203,9 @@ export class PathData {
     return "arc_length";
   }
 
-  /** What can be drawn against: [name, words]. */
-  abscissae() {
-    const recorded = this.request.analysis?.record?.nodes;
-    const nodes = Array.isArray(recorded) ? recorded : Object.keys(this.request.model.nodes);
-    const components = "xyz".slice(0, this.request.model.dimension);
-    return [["arc_length", "arc length"], ...nodes.flatMap((node) =>
-      [...components].map((letter, component) => [displacement(node, component), `${letter} of ${node}`]))];
+  /** Whether there is such a column to be drawn against. */
+  knows(abscissa) {
+    return isAbscissa(abscissa, this.request);
   }
 
   close() {
@@ -210,7 +225,7 @@ export function pick(increment, name) {
   const steps = name.startsWith("/") ? name.slice(1).split("/") : [name];
   let value = increment;
   for (const step of steps) {
-    value = value?.[step.replaceAll("~2", ",").replaceAll("~1", "/").replaceAll("~0", "~")];
+    value = value?.[unescaped(step)];
   }
   return value ?? null;
 }

@@ -1,11 +1,13 @@
 // Load, or an energy, against a displacement, of one job or several: lines that grow while they stream, named points, the
 // chosen increment.
 
-import { choice, element, fill } from "./dom.js";
-import { ORDINATES } from "./path-data.js";
-import { axis, colourOf, CONFIGURATION, fromSheet, layout } from "./plot-style.js";
+import { element, fill } from "./dom.js";
+import { abscissaWords, axesControls, ofDisplacement, ordinateWords } from "./path-axes.js";
+import { namedPoints, pathLegend } from "./path-legend.js";
+import { PathLooks } from "./path-names.js";
+import { axis, CONFIGURATION, fromSheet, layout } from "./plot-style.js";
 import { named } from "./points.js";
-import { differences, pointWords, short, verbatim } from "./words.js";
+import { pointWords, verbatim } from "./words.js";
 
 /** Markers at every increment up to so many. */
 const MARKED = 400;
@@ -13,8 +15,6 @@ const MARKED = 400;
 const SHARE = 0.25;
 /** Traces of a job: its line, its named points. */
 const OF_A_JOB = 2;
-/** Named points in the list below the plot. */
-const LISTED = 60;
 const MARK = { plain: 13, pointedAt: 22 };
 
 export class PathPlot {
@@ -27,6 +27,8 @@ export class PathPlot {
     this.list = element("ol", { class: "named", "aria-label": "named points" });
     fill(panel, element("h2", {}, "Path"), this.choices, this.place, this.legend, this.list);
     this.paths = [];
+    this.looks = new PathLooks();
+    this.revision = 0;
     this.drawn = [];
     this.waits = false;
     this.listens = false;
@@ -42,16 +44,16 @@ export class PathPlot {
 
   /** Draws everything anew; `axes`: names of the abscissa and of the ordinate. */
   async draw(paths, axes, at) {
-    this.paths = paths;
-    this.axes = axes;
+    this.follow(paths, axes);
     this.at = at;
     this.controls();
-    const traces = paths.flatMap((path, place) => {
-      const colour = colourOf(place);
+    const traces = paths.flatMap((path) => {
+      const colour = this.looks.colour(path);
       return [
         {
-          ...this.line(path, 0), type: "scatter", mode: mode(path), line: { color: colour, width: 2 },
-          marker: { color: colour, size: 4 }, hovertemplate: "%{x:.5g}, %{y:.5g}<br>increment %{customdata}<extra></extra>",
+          ...this.line(path, 0), type: "scatter", mode: mode(path),
+          line: { color: colour, width: 2, dash: this.looks.dash(path) }, marker: { color: colour, size: 4 },
+          hovertemplate: "%{x:.5g}, %{y:.5g}<br>increment %{customdata}<extra></extra>",
         },
         this.points(path, colour),
       ];
@@ -64,14 +66,25 @@ export class PathPlot {
     });
     const exact = this.exact();
     if (exact) traces.push(exact);
-    const words = (known, name) => known.find(([one]) => one === name)?.[1] ?? name;
-    const kind = axes.abscissa.startsWith("/displacements/") ? "displacement " : "";
     await Plotly.react(this.place, traces, layout({
-      xaxis: axis(`${kind}${words(paths[0].abscissae(), axes.abscissa)}`), yaxis: axis(words(ORDINATES, axes.ordinate)),
-      uirevision: `${paths.map(({ id }) => id)} ${axes.abscissa} ${axes.ordinate}`,
+      xaxis: axis(abscissaWords(axes.abscissa)), yaxis: axis(ordinateWords(axes.ordinate)), uirevision: this.revision,
     }), CONFIGURATION);
     this.listen();
-    this.names();
+    namedPoints(this.list, paths[0], (index) => this.told.chosen(paths[0].id, index));
+  }
+
+  /** A reader's zoom stays as long as something of what is drawn does, along the same axes. */
+  follow(paths, axes) {
+    const stays = this.axes?.abscissa === axes.abscissa && this.axes?.ordinate === axes.ordinate
+      && paths.some(({ id }) => this.paths.some((before) => before.id === id));
+    if (!stays) this.revision++;
+    this.paths = paths;
+    this.axes = axes;
+  }
+
+  /** Jobs that are to be drawn from now on: each keeps its look as long as it is among them. */
+  keep(ids) {
+    this.looks.keep(ids);
   }
 
   isDrawn() {
@@ -99,15 +112,21 @@ export class PathPlot {
     return path.columns.get(this.axes.ordinate) ?? [];
   }
 
+  /** The places of a path in the plot; one that has no abscissa has no place, and does not widen the range of the ordinate. */
+  placesOf(path) {
+    const [abscissa, ordinate] = [this.abscissaOf(path), this.ordinateOf(path)];
+    return { x: (place) => abscissa[place], y: (place) => (abscissa[place] === null ? null : ordinate[place]) };
+  }
+
   /** From this increment on; where a stage begins the load factor does so, too, and the line is broken. */
   line(path, from) {
     const line = { x: [], y: [], customdata: [] };
-    const [abscissa, ordinate] = [this.abscissaOf(path), this.ordinateOf(path)];
+    const { x, y } = this.placesOf(path);
     const stages = path.columns.get("stage");
     for (let place = from; place < path.index.length; place++) {
       if (place > 0 && stages[place] !== stages[place - 1]) for (const part of Object.values(line)) part.push(null);
-      line.x.push(abscissa[place]);
-      line.y.push(ordinate[place]);
+      line.x.push(x(place));
+      line.y.push(y(place));
       line.customdata.push(path.index[place]);
     }
     return line;
@@ -116,9 +135,9 @@ export class PathPlot {
   points(path, colour) {
     const found = named(path);
     const places = found.map(({ index }) => path.placeOf(index));
-    const [abscissa, ordinate] = [this.abscissaOf(path), this.ordinateOf(path)];
+    const { x, y } = this.placesOf(path);
     return {
-      x: places.map((place) => abscissa[place]), y: places.map((place) => ordinate[place]),
+      x: places.map(x), y: places.map(y),
       text: found.map(({ name }) => name), customdata: found.map(({ index }) => index),
       meta: found.map(({ kind }) => kind), type: "scatter", mode: "markers+text", textposition: "top center",
       hovertext: found.map((point) => `${point.name}: ${pointWords(point)}${point.event ? `, ${verbatim(point.event)}` : ""}`),
@@ -135,13 +154,12 @@ export class PathPlot {
   /** The first path in closed form, laid over all. */
   exact() {
     const [path] = this.paths;
-    const steps = this.axes.abscissa.split("/");
+    const of = ofDisplacement(this.axes.abscissa);
     const found = path?.exact?.path;
-    if (!found || steps[1] !== "displacements" || this.axes.ordinate !== "load_factor") return null;
-    const node = steps[2].replaceAll("~2", ",").replaceAll("~1", "/").replaceAll("~0", "~");
+    if (!found || !of || this.axes.ordinate !== "load_factor") return null;
     const [x, y] = [[], []];
     for (const stage of found.stages) {
-      x.push(...(stage.displacements[node]?.[Number(steps[3])] ?? []), null);
+      x.push(...(stage.displacements[of.node]?.[of.component] ?? []), null);
       y.push(...stage.load_factor, null);
     }
     return {
@@ -218,35 +236,10 @@ export class PathPlot {
     const key = `${path.id} ${abscissa} ${ordinate}`;
     if (this.choices.dataset.of !== key) {
       this.choices.dataset.of = key;
-      fill(this.choices,
-        element("label", {}, "Plot ", choice({
-          id: "ordinate", "data-key": "ordinate", onchange: (event) => this.told.axes({ ordinate: event.target.value }),
-        }, ORDINATES, ordinate)),
-        element("label", {}, "against ", choice({
-          id: "abscissa", "data-key": "abscissa", onchange: (event) => this.told.axes({ abscissa: event.target.value }),
-        }, path.abscissae(), abscissa)));
+      axesControls(this.choices, path.request, this.axes, (axes) => this.told.axes(axes));
     }
-    const several = this.paths.length > 1;
-    const apart = differences(this.paths.map(({ request }) => request));
-    fill(this.legend, several ? this.paths.map(({ job }, place) =>
-      element("li", {}, element("span", { class: "swatch", style: `background:${colourOf(place)}` }), job.name,
-        apart[place] ? `, ${apart[place]}` : "",
-        job.parent ? ` from increment ${job.parent.increment}, direction ${job.parent.direction}` : "")) : [],
-    path.exact?.path && this.exact() ? element("li", { title: path.exact.path.formula },
-      element("span", { class: "swatch dashed" }), `exact (${path.exact.path.name})`) : null);
-  }
-
-  names() {
-    const [path] = this.paths;
-    if (!path) return;
-    const found = named(path);
-    const loads = path.columns.get("load_factor");
-    fill(this.list, found.slice(0, LISTED).map((point) => element("li", {},
-      element("button", {
-        type: "button", class: "plain", "data-key": point.name, onclick: () => this.told.chosen(path.id, point.index),
-      }, element("b", {}, point.name), ` ${pointWords(point)} at load ${short(loads[path.placeOf(point.index)])}`,
-      point.event ? `: ${point.event}` : ""))),
-    found.length > LISTED ? element("li", {}, `and ${found.length - LISTED} more`) : null);
+    const lacks = (one) => (!one.has(abscissa) ? abscissaWords(abscissa) : !one.has(ordinate) ? ordinateWords(ordinate) : null);
+    pathLegend(this.legend, this.paths, this.looks, lacks, this.exact() ? path.exact.path : null);
   }
 }
 

@@ -5,7 +5,25 @@ import { verbatim } from "./words.js";
 const dark = matchMedia("(prefers-color-scheme: dark)");
 const COLOURS = ["#3486cc", "#d2691e", "#2e9a5b", "#a44fb0", "#c23b4e", "#7f7a1f", "#1f9aa3", "#7a6a5d"];
 
+/** As Plotly names them, and as a sheet's background: lengths of line and gap in turn. */
+const DASHES = [["solid", []], ["dash", [6, 3]], ["dot", [2, 2]], ["dashdot", [6, 2, 2, 2]]];
+
 export const colourOf = (place) => COLOURS[place % COLOURS.length];
+/** Where the colours begin anew, another dash. */
+export const dashOf = (place) => DASHES[Math.floor(place / COLOURS.length) % DASHES.length][0];
+
+/** The style of a swatch with that colour and dash. */
+export function dashedSwatch(colour, dash) {
+  const [, lengths] = DASHES.find(([name]) => name === dash);
+  let at = 0;
+  const stops = lengths.map((length, place) => {
+    const stop = `${place % 2 ? "transparent" : colour} ${at}px ${at + length}px`;
+    at += length;
+    return stop;
+  });
+  return `background:${stops.length ? `repeating-linear-gradient(to right, ${stops.join(", ")})` : colour}`;
+}
+
 export const onThemeChange = (listener) => dark.addEventListener("change", listener);
 
 /** A colour of the style sheet. */

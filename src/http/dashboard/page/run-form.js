@@ -3,11 +3,13 @@
 
 import { call, get, post } from "./api.js";
 import { button, choice, element, fill } from "./dom.js";
-import { placeIn, withMember } from "./json-places.js";
+import { placeIn, withMember, withoutMember } from "./json-places.js";
+import { RequestText } from "./request-text.js";
+import { SceneChoice } from "./scene-choice.js";
 import { analysisDefaults, description } from "./schema.js";
 import { SettingsFields } from "./settings-fields.js";
-import { change, state } from "./state.js";
-import { plainWords, settingsSentences } from "./words.js";
+import { change, jobOf, state } from "./state.js";
+import { leftOutSentence, plainWords, settingsSentences } from "./words.js";
 
 /** Milliseconds without a key before the text is checked. */
 const PAUSE = 400;
@@ -19,8 +21,6 @@ const KINDS = [
 const PLACES = { "": "/v1/jobs", study: "/v1/studies", sweep: "/v1/sweeps" };
 /** What is put into a text that is to be a sweep and says nothing of it yet. */
 const FIRST_SWEEP = { replace: { "/model/contacts/0/friction": [0.1, 0.2, 0.3, 0.4, 0.5] } };
-/** Lines above a mistake that stay in sight. */
-const ABOVE = 4;
 
 export class RunForm {
   /** Tells `queued(job)`, `queuedStudy(study)` and `queuedSweep(sweep)`. */
@@ -30,14 +30,10 @@ export class RunForm {
     this.scene = null;
     this.asked = 0;
     this.fields = new Map();
-    this.text = element("textarea", {
-      id: "request", spellcheck: "false", rows: 22, "aria-label": "job request (JSON)", oninput: () => this.edited(),
-    });
-    this.lines = element("pre", { class: "line-numbers", "aria-hidden": "true" });
-    this.text.addEventListener("scroll", () => { this.lines.scrollTop = this.text.scrollTop; });
+    this.text = new RequestText({ edited: () => this.edited(), pasted: () => this.scenes.isOwn() });
+    this.scenes = new SceneChoice(this.text, { chosen: (scene) => this.choose(scene), edited: () => this.edited() });
     this.button = button("Run", () => this.queue(), { id: "queue", class: "main", disabled: true });
     this.verdict = element("div", { id: "verdict", "aria-live": "polite" });
-    this.scenes = element("label", {});
     this.kinds = element("label", {});
     this.shows = element("p", { class: "quiet" });
     this.settings = element("div", { id: "settings" });
@@ -45,17 +41,19 @@ export class RunForm {
       type: "file", accept: ".json,application/json", onchange: (event) => this.take(event.target.files),
     });
     const others = element("label", {}, "Or paste a model, drop a file here, or choose one: ", file);
-    fill(panel, element("h2", {}, "New run"), element("div", { class: "choices" }, this.scenes, this.kinds), this.shows,
+    fill(panel, element("h2", {}, "New run"), element("div", { class: "choices" }, this.scenes.place, this.kinds), this.shows,
+      this.scenes.note,
       element("div", { class: "sides" },
         element("div", {}, element("p", { class: "quiet" }, others),
-          element("div", { class: "editor" }, this.lines, this.text),
+          this.text.place,
           element("div", { class: "actions" }, this.button, button("Close", () => change({ run: false }))), this.verdict),
         element("div", {}, element("h3", {}, "Settings"), this.settings)));
-    panel.addEventListener("dragover", (event) => event.preventDefault());
-    panel.addEventListener("drop", (event) => {
-      if (event.dataTransfer.files.length === 0) return;
+    // Beside the form, too: a browser leaves the page for a file that is dropped on it.
+    addEventListener("dragover", (event) => { if (event.dataTransfer?.types.includes("Files")) event.preventDefault(); });
+    addEventListener("drop", (event) => {
+      if (!event.dataTransfer?.types.includes("Files")) return;
       event.preventDefault();
-      this.take(event.dataTransfer.files);
+      if (!panel.hidden) this.take(event.dataTransfer.files);
     });
   }
 
@@ -67,35 +65,51 @@ export class RunForm {
     return state().as === "sweep";
   }
 
+  /** The scene whose request is asked for. */
+  get wanted() {
+    return state().scene || (this.known?.[0].name ?? "");
+  }
+
+  /** The service is back. */
+  recover() {
+    if (!this.panel.hidden) this.show();
+  }
+
   async show() {
     this.panel.hidden = !state().run;
     if (this.panel.hidden) return;
     try {
       this.known ??= (await get("/v1/scenes")).scenes;
       await this.drawSettings();
-      const wanted = state().scene || this.known[0].name;
-      fill(this.scenes, "Scene ", choice({
-        id: "scene", "data-key": "scene", onchange: (event) => change({ scene: event.target.value }),
-      }, [
-        ...(wanted.startsWith("job:") ? [[wanted, "the model of a job"]] : []), ...this.known.map(({ name }) => [name, name]),
-      ], wanted));
+      const { wanted } = this;
       fill(this.kinds, "Trace ", choice({
         id: "kind", "data-key": "kind", onchange: (event) => change({ as: event.target.value }),
       }, KINDS, state().as));
       this.shows.textContent = this.known.find(({ name }) => name === wanted)?.shows ?? "";
-      if (this.scene !== wanted) {
-        const place = wanted.startsWith("job:") ? `/v1/jobs/${wanted.slice(4)}/request`
-          : `/v1/scenes/${encodeURIComponent(wanted)}`;
-        // As it is written: who wrote it has put on one line what belongs together.
-        this.text.value = await (await call(place)).text();
-        this.scene = wanted;
-      }
+      if (this.scene !== wanted || this.again !== state().again) await this.load(wanted);
       this.sweepOrNot();
       this.edited();
     } catch (problem) {
       fill(this.verdict, element("p", { class: "bad", role: "alert" }, problem.message),
         button("Try again", () => this.show()));
     }
+  }
+
+  /** Puts a scene's request into the text, as it is written: who wrote it has put on one line what belongs together. */
+  async load(scene) {
+    const { again } = state();
+    const id = jobOf(scene);
+    const text = await (await call(id ? `/v1/jobs/${id}/request` : `/v1/scenes/${encodeURIComponent(scene)}`)).text();
+    Object.assign(this, { scene, again, sweep: FIRST_SWEEP, switched: null });
+    this.scenes.put(text, scene);
+  }
+
+  /** A scene is chosen, or the one that there is once more: it comes anew. */
+  choose(scene) {
+    if (!scene) return;
+    this.scene = null;
+    if (scene === state().scene) this.show();
+    else change({ scene });
   }
 
   /** Fields for each part of the request that holds settings. */
@@ -126,58 +140,39 @@ export class RunForm {
     } catch {
       return;
     }
-    if (request === null || typeof request !== "object" || this.isSweep === "sweep" in request) return;
-    if (this.isSweep) {
-      this.text.value = withMember(this.text.value, "sweep", FIRST_SWEEP);
-    } else {
-      delete request.sweep;
-      this.text.value = JSON.stringify(request, null, 2);
-    }
+    if (!isObject(request) || this.isSweep === "sweep" in request) return;
+    const before = this.text.value;
+    if (!this.isSweep) this.sweep = request.sweep;
+    // Back to what it was: that text, if nothing has been changed since.
+    const now = this.switched?.now === before ? this.switched.before
+      : this.isSweep ? withMember(before, "sweep", this.sweep) : withoutMember(before, "sweep");
+    this.switched = { before, now };
+    this.scenes.adapt(now);
   }
 
   async take([file]) {
     if (!file) return;
-    this.text.value = await file.text();
+    this.scenes.put(await file.text(), null);
     this.edited();
   }
 
   edited() {
     this.button.disabled = true;
     this.button.textContent = this.isStudy ? "Run the study" : this.isSweep ? "Run the sweep" : "Run";
-    this.number(new Map());
+    this.text.number([]);
+    this.scenes.draw(this.known ?? [], this.wanted);
     let request = null;
     try {
       request = JSON.parse(this.text.value);
     } catch {
       // The service says what is wrong; until then no field can be put into the text.
     }
-    const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
     for (const [name, fields] of this.fields) {
       const value = isObject(request) ? request[name] ?? {} : null;
       fields.show(isObject(value) ? value : null);
     }
     clearTimeout(this.soon);
     this.soon = setTimeout(() => this.check(), PAUSE);
-  }
-
-  number(mistakes) {
-    const many = this.text.value.split("\n").length;
-    // Texts between the marked ones: a line of its own for each of many lines takes the page seconds.
-    const marked = [...mistakes.keys()].filter((line) => line <= many).sort((a, b) => a - b);
-    const pieces = [];
-    let next = 1;
-    const plain = (until) => {
-      if (next < until) pieces.push(Array.from({ length: until - next }, (_, place) => `${next + place}\n`).join(""));
-      next = until;
-    };
-    for (const line of marked) {
-      plain(line);
-      pieces.push(element("span", { class: "mistake" }, `${line}\n`));
-      next = line + 1;
-    }
-    plain(many + 1);
-    fill(this.lines, pieces);
-    this.lines.scrollTop = this.text.scrollTop;
   }
 
   get place() {
@@ -200,7 +195,7 @@ export class RunForm {
       const sentences = settingsSentences(JSON.parse(text), scene, defaults);
       fill(this.verdict, element("h3", {}, "Plan"), element("ul", { class: "plan" },
         [...(isStudy ? [studySentence(plan)] : []), ...sentences].map((words) => element("li", {}, words)),
-        scene.left_out.map(({ what, why }) => element("li", {}, element("b", {}, `Left out: ${what}. `), `${why}.`))));
+        scene.left_out.map((one) => element("li", {}, element("b", {}, "Left out: "), leftOutSentence(one)))));
       this.button.disabled = false;
     } catch (problem) {
       if (asked === this.asked) this.refused(problem, text);
@@ -209,15 +204,12 @@ export class RunForm {
 
   refused(problem, text) {
     const found = (problem.errors ?? []).map((mistake) => ({ ...mistake, ...placeIn(text, mistake) }));
-    this.number(new Map(found.map(({ line }) => [line, true])));
+    this.text.number(new Set(found.map(({ line }) => line)));
     fill(this.verdict, element("h3", { class: "bad" }, problem.title || "Not accepted"),
       found.length === 0 ? element("p", { class: "bad" }, problem.message) : element("ul", { class: "mistakes" },
-        found.map(({ line, start, end, pointer, detail }) => element("li", {}, button([element("b", {}, `Line ${line}`),
-          pointer ? ` (${pointer})` : "", `: ${detail}`], () => {
-          this.text.focus();
-          this.text.setSelectionRange(start, end);
-          this.text.scrollTop = (line - ABOVE) * (this.text.scrollHeight / text.split("\n").length);
-        }, { class: "plain" })))));
+        found.map((mistake) => element("li", {}, button([element("b", {}, `Line ${mistake.line}`),
+          mistake.pointer ? ` (${mistake.pointer})` : "", `: ${mistake.detail}`], () => this.text.select(mistake),
+        { class: "plain" })))));
   }
 
   async queue() {
@@ -231,6 +223,8 @@ export class RunForm {
     this.button.disabled = false;
   }
 }
+
+const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
 
 function studySentence({ methods, values, parameter, repeats, runs, reference_is: reference }) {
   return `${runs} paths: ${methods.join(", ")}, each with ${plainWords(parameter)} ${values.join(", ")}, timed ${repeats} times; `

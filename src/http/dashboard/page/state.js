@@ -4,12 +4,17 @@
 // is shown in their place. abscissa and ordinate: a member of the increments or a JSON Pointer to one; null for the job's own
 // choice. at: the chosen increment, null for the last. turn: azimuth and elevation (degrees) from which a structure in space
 // is seen, null for the usual ones. figures: the diagnostics are open. status: the lists' filter. run: the form for a new run is
-// open; scene: what is in it; as: "study" or "sweep" where it queues one.
+// open; scene: what is in it; as: "study" or "sweep" where it queues one; again: how often the model of a job has been asked
+// for, which is not in the address.
 
 const EMPTY = {
   jobs: [], study: null, sweep: null, abscissa: null, ordinate: null, at: null, turn: null, figures: false, status: "", run: false, scene: "",
-  as: "",
+  as: "", again: 0,
 };
+/** What jobs, studies and sweeps can be filtered by. */
+export const STATUSES = ["queued", "running", "completed", "stopped", "cancelled", "failed"];
+/** In the place of a scene's name: the model of a job. */
+const OF_A_JOB = "job:";
 /** Milliseconds between changes of the address that are no steps: browsers take no more of them than so many. */
 const PAUSE = 250;
 const ID = /^[0-9a-f-]{36}$/i;
@@ -20,7 +25,7 @@ function ofAddress() {
   const at = Number.parseInt(given.get("at") ?? "", 10);
   const idOf = (name) => (ID.test(given.get(name) ?? "") ? given.get(name) : null);
   return {
-    jobs: (given.get("jobs") ?? "").split(",").filter((id) => ID.test(id)),
+    jobs: [...new Set((given.get("jobs") ?? "").toLowerCase().split(",").filter((id) => ID.test(id)))],
     study: idOf("study"),
     sweep: idOf("sweep"),
     abscissa: given.get("abscissa"),
@@ -28,7 +33,7 @@ function ofAddress() {
     at: Number.isSafeInteger(at) && at >= 0 ? at : null,
     turn: angles(given.get("turn") ?? ""),
     figures: given.has("figures"),
-    status: given.get("status") ?? "",
+    status: STATUSES.find((status) => status === given.get("status")) ?? "",
     run: given.has("run"),
     scene: given.get("scene") ?? "",
     as: ["study", "sweep"].find((kind) => kind === given.get("as")) ?? "",
@@ -106,6 +111,14 @@ export function openSweep(id) {
   change({ jobs: [], study: null, sweep: id, at: null, run: false });
 }
 
+/** The job whose model is asked for in a scene's place; null for a scene. */
+export const jobOf = (scene) => (scene.startsWith(OF_A_JOB) ? scene.slice(OF_A_JOB.length) : null);
+
+/** Shows the model of a job in the form, whatever stands there. */
+export function openModelOf(id) {
+  change({ run: true, scene: `${OF_A_JOB}${id}`, as: "", again: now.again + 1 });
+}
+
 export const addressOfJob = (...ids) => `/?jobs=${ids.join(",")}`;
 export const addressOfStudy = (id) => `/?study=${id}`;
 export const addressOfSweep = (id) => `/?sweep=${id}`;
@@ -117,6 +130,6 @@ export function onChange(listener) {
 addEventListener("popstate", () => {
   clearTimeout(later);
   const before = now;
-  now = { ...EMPTY, ...ofAddress() };
+  now = { ...EMPTY, ...ofAddress(), again: before.again };
   for (const listener of listeners) listener(before);
 });

@@ -28,7 +28,7 @@ export const STATES = [["free", "circle-open", "--free"], ["stick", "square", "-
 /**
  * Traces of `increment` of a model. `flat`: the projection; `extent`: of what is in the picture, widened by this; `reached`:
  * load factor that each stage came to; `largest`: reaction that has been drawn so far, for the length of arrows. Answers
- * `{traces, largest}`.
+ * `{traces, largest, sheets}`, the last being corners of the pieces of planes in space.
  */
 export function structureDrawing(model, increment, { flat, extent, reached, largest }) {
   const now = places(model, increment);
@@ -39,7 +39,7 @@ export function structureDrawing(model, increment, { flat, extent, reached, larg
   drawing.elements(now);
   const most = drawing.contacts(increment, now, moved, largest);
   drawing.traces.nodes(now, model.supports ?? {});
-  return { traces: drawing.traces.all, largest: most };
+  return { traces: drawing.traces.all, largest: most, sheets: drawing.sheets };
 }
 
 class Drawing {
@@ -47,6 +47,7 @@ class Drawing {
     this.model = model;
     this.extent = extent;
     this.traces = traces;
+    this.sheets = [];
   }
 
   elements(now) {
@@ -133,6 +134,7 @@ class Drawing {
     const sheet = [[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]].map(([a, b]) => corner(SHEET * a, SHEET * b));
     traces.lines("obstacle", [sheet], line, name);
     traces.area(sheet);
+    this.sheets.push(...sheet);
   }
 
   ball(name, obstacle, center, line) {

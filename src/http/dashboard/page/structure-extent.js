@@ -30,6 +30,12 @@ export class StructureExtent {
     }
   }
 
+  /** Of the box around all of it. */
+  get corners() {
+    const both = (corner, low, axis) => [[...corner, low], [...corner, this.high[axis]]];
+    return this.low.reduce((found, low, axis) => found.flatMap((corner) => both(corner, low, axis)), [[]]);
+  }
+
   diagonal() {
     return length(plus(this.high, this.low, -1));
   }

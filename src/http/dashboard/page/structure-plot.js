@@ -1,11 +1,11 @@
-// The structure at the chosen increment, with a slider and a play button that go along the path; turned by dragging, or by two
-// more sliders, where it is in space.
+// The structure at the chosen increment, with a slider and a play button that go along the path.
 
 import { element, fill, onceAFrame } from "./dom.js";
 import { projection } from "./geometry.js";
 import { axis, CONFIGURATION, fromSheet, layout } from "./plot-style.js";
 import { COMPRESSION, STATES, structureDrawing, TENSION } from "./structure-drawing.js";
 import { StructureExtent } from "./structure-extent.js";
+import { StructureTurn } from "./structure-turn.js";
 import { isGivenUp } from "./api.js";
 import { kindWords, short } from "./words.js";
 
@@ -13,34 +13,31 @@ import { kindWords, short } from "./words.js";
 const PACE = 60;
 /** Increments that are played of a path, however long. */
 const PLAYED = 300;
-/** The half of the picture's side, as a part of the structure's extent. */
-const HALF = { 2: 0.62, 3: 0.74 };
-const ANGLES = { azimuth: 180, elevation: 90 };
-/** Azimuth and elevation where none are asked for. */
-const USUAL = [-60, 25];
-/** Degrees that dragging over a pixel turns. */
-const TURN = 0.5;
+/** The half of the picture's side in a plane, as a part of the structure's extent. */
+const HALF = 0.62;
+/** What is left around a structure in space, for arrows and cones, and around pieces of planes. */
+const AROUND = 0.12;
+const EDGE = 0.02;
 
 export class StructurePlot {
   /** Tells `chosen(index)`, `pointedAt(yes)` and `turned([azimuth, elevation])`; `turn`: from where it is seen, or null. */
   constructor(panel, told, turn) {
     this.told = told;
     this.path = null;
-    const [azimuth, elevation] = turn ?? USUAL;
-    this.view = { azimuth, elevation };
     this.largest = 0;
     this.slider = element("input", {
       type: "range", min: 0, max: 0, value: 0, id: "increment", "aria-label": "increment", oninput: () => this.slid(),
     });
     this.button = element("button", { type: "button", onclick: () => this.play(), "aria-label": "play" }, "▶");
     this.words = element("p", { class: "quiet" });
-    this.turns = element("div", { class: "choices" });
     this.place = element("div", { class: "plot", id: "structure-plot" });
     this.key = element("ul", { class: "legend", "aria-label": "key" });
     this.again = onceAFrame(() => this.redraw());
+    this.seen = new StructureTurn(this.place, turn, { turned: told.turned, again: () => this.again() });
     fill(panel, element("h2", {}, "Structure"), element("div", { class: "slider" }, this.button, this.slider), this.words,
-      this.turns, this.place, this.key);
-    this.turnByDragging();
+      this.seen.sliders, this.place, this.key);
+    this.place.addEventListener("pointerenter", () => told.pointedAt(true));
+    this.place.addEventListener("pointerleave", () => told.pointedAt(false));
   }
 
   show(path, at) {
@@ -60,11 +57,7 @@ export class StructurePlot {
   }
 
   controls() {
-    this.place.classList.toggle("turns", this.isInSpace);
-    fill(this.turns, this.isInSpace ? Object.keys(ANGLES).map((angle) => element("label", {}, `${angle} `, element("input", {
-      type: "range", id: angle, min: -ANGLES[angle], max: ANGLES[angle], value: this.view[angle],
-      oninput: (event) => this.turn({ [angle]: Number(event.target.value) }),
-    }))) : []);
+    this.seen.allow(this.isInSpace);
     const { model } = this.path.request;
     const swatch = (style, words, kind = "") =>
       element("li", {}, element("span", { class: `swatch ${kind}`, style }), words);
@@ -87,7 +80,12 @@ export class StructurePlot {
   async choose(at) {
     const { path } = this;
     this.at = at;
-    if (!path || path.index.length === 0) return;
+    if (!path) return;
+    if (path.index.length === 0) {
+      this.shown = atRest(path.request.model);
+      await this.redraw();
+      return;
+    }
     const place = at === null ? path.index.length - 1 : path.placeOf(at);
     if (place < 0) {
       this.words.textContent = `There is no increment ${at} among those that are kept.`;
@@ -101,14 +99,18 @@ export class StructurePlot {
     this.asked = true;
     try {
       // While one is fetched others may be wanted: the last of them is drawn.
-      while (this.shown?.index !== this.wanted) {
+      while (this.shown?.index !== this.wanted || this.isStale) {
         const found = await path.increment(this.wanted);
         if (path !== this.path || !found) break;
         this.shown = found;
+        this.isStale = false;
         await this.redraw();
       }
     } catch (problem) {
-      if (!isGivenUp(problem)) this.words.textContent = problem.message;
+      if (!isGivenUp(problem)) {
+        this.isStale = true;
+        this.words.textContent = problem.message;
+      }
     } finally {
       this.asked = false;
     }
@@ -128,10 +130,12 @@ export class StructurePlot {
   }
 
   slid() {
-    this.told.chosen(this.path.index[Number(this.slider.value)]);
+    const index = this.path.index[Number(this.slider.value)];
+    if (index !== undefined) this.told.chosen(index);
   }
 
   play() {
+    if (!this.playing && this.path.index.length < 2) return;
     if (this.playing) {
       clearInterval(this.playing);
       this.playing = null;
@@ -150,61 +154,48 @@ export class StructurePlot {
     this.button.setAttribute("aria-label", this.playing ? "pause" : "play");
   }
 
-  turn(view) {
-    Object.assign(this.view, view);
-    for (const angle of Object.keys(ANGLES)) {
-      const slider = this.turns.querySelector(`#${angle}`);
-      if (slider) slider.value = this.view[angle];
-    }
-    this.told.turned([this.view.azimuth, this.view.elevation]);
-    this.again();
-  }
-
-  turnByDragging() {
-    let from = null;
-    this.place.addEventListener("pointerdown", (event) => {
-      if (!this.isInSpace || event.button !== 0 || event.target.closest(".modebar")) return;
-      from = { x: event.clientX, y: event.clientY, ...this.view };
-      this.place.setPointerCapture(event.pointerId);
-    });
-    this.place.addEventListener("pointermove", (event) => {
-      if (!from) return;
-      const azimuth = from.azimuth - TURN * (event.clientX - from.x);
-      const elevation = from.elevation + TURN * (event.clientY - from.y);
-      this.turn({
-        azimuth: ((azimuth + 540) % 360 + 360) % 360 - 180,
-        elevation: Math.min(ANGLES.elevation, Math.max(-ANGLES.elevation, elevation)),
-      });
-    });
-    for (const end of ["pointerup", "pointercancel"]) this.place.addEventListener(end, () => { from = null; });
-    this.place.addEventListener("pointerenter", () => this.told.pointedAt(true));
-    this.place.addEventListener("pointerleave", () => this.told.pointedAt(false));
-  }
-
   async redraw() {
     const { path, shown } = this;
     if (!shown) return;
     const { model } = path.request;
-    const flat = projection(model.dimension, this.view);
-    const { traces, largest } = structureDrawing(model, shown, {
+    const flat = projection(model.dimension, this.seen.view);
+    const { traces, largest, sheets } = structureDrawing(model, shown, {
       flat, extent: this.extent, reached: reached(path), largest: this.largest,
     });
     this.largest = largest;
     const { point } = shown;
-    this.words.textContent = `Increment ${shown.index}, ${kindWords(point.kind)}, stage “${shown.stage}”, load factor `
+    this.words.textContent = shown.index === null ? "No increment yet: the structure as the model has it."
+      : `Increment ${shown.index}, ${kindWords(point.kind)}, stage “${shown.stage}”, load factor `
       + `${short(shown.load_factor)}${point.event ? `: ${point.event}` : ""}${leftOut(model, shown)}`;
     const plain = { ...axis(""), zeroline: false, visible: !this.isInSpace };
-    const [x, y] = this.range(flat);
+    const [x, y] = this.isInSpace ? this.rangeInSpace(flat, sheets) : this.range();
     await Plotly.react(this.place, traces, layout({
       margin: { l: 40, r: 8, t: 30, b: 30 }, dragmode: this.isInSpace ? false : "pan",
       xaxis: { ...plain, range: x }, yaxis: { ...plain, range: y, scaleanchor: "x" }, uirevision: path.id,
     }), CONFIGURATION);
   }
 
-  range(flat) {
-    const half = HALF[this.path.request.model.dimension] * this.extent.size;
-    return flat(this.extent.middle).map((middle) => [middle - half, middle + half]);
+  range() {
+    const half = HALF * this.extent.size;
+    return this.extent.middle.map((middle) => [middle - half, middle + half]);
   }
+
+  /** All of the structure and of the planes, as they are seen from where they are looked at. */
+  rangeInSpace(flat, sheets) {
+    const { corners, size } = this.extent;
+    const places = [[corners, AROUND], [sheets, EDGE]].flatMap(([of, around]) => of.map(flat).flatMap(([x, y]) =>
+      [[x - around * size, y - around * size], [x + around * size, y + around * size]]));
+    return [0, 1].map((axis) => [Math.min, Math.max].map((end) => end(...places.map((place) => place[axis]))));
+  }
+}
+
+/** A structure before its first increment. */
+function atRest(model) {
+  const still = Object.keys(model.nodes).map((name) => [name, Array(model.dimension).fill(0)]);
+  return {
+    index: null, stage: model.stages[0]?.name, load_factor: 0, displacements: Object.fromEntries(still), contacts: [],
+    point: { kind: "start", bifurcation: false, event: null },
+  };
 }
 
 /** What a request has left out of its increments is not drawn, and that is said. */

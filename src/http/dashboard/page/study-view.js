@@ -51,6 +51,14 @@ export class StudyView {
     }).catch((problem) => this.failed(problem));
   }
 
+  /** The service is back. */
+  recover() {
+    const { id } = this;
+    if (!id || this.study) return;
+    this.id = null;
+    this.show(id);
+  }
+
   failed(problem) {
     if (!isGivenUp(problem)) this.told.failed(problem);
   }
@@ -68,7 +76,7 @@ export class StudyView {
     if (!study) return;
     const { report, plan, progress } = study;
     this.section.hidden = false;
-    this.told.shown();
+    this.told.shown(`Study ${study.name}`);
     fill(this.summary, element("div", { class: "bar" }, element("h2", {}, study.name),
       element("span", { class: `status ${study.status}`, id: "study-status" }, study.status)),
     element("p", {}, `${progress.runs} of ${progress.of} paths. The study ${statusWords(study.status)}. `, study.error ?? "",

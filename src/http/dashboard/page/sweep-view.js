@@ -47,6 +47,14 @@ export class SweepView {
     this.load().catch((problem) => { if (!isGivenUp(problem)) this.told.failed(problem); });
   }
 
+  /** The service is back. */
+  recover() {
+    const { id } = this;
+    if (!id || this.isLoaded) return;
+    this.id = null;
+    this.show(id);
+  }
+
   async load() {
     const { id } = this;
     const { signal } = this.given;
@@ -59,6 +67,7 @@ export class SweepView {
       after = page.next_after;
       if (page.rows.length === 0) break;
     }
+    this.isLoaded = true;
     await this.draw();
     if (signal.aborted || !isGoingOn(this.sweep)) return;
     this.stop = follow(`/v1/sweeps/${id}`, after, {
@@ -73,7 +82,7 @@ export class SweepView {
     const { sweep } = this;
     if (!sweep) return;
     this.section.hidden = false;
-    this.told.shown();
+    this.told.shown(sweep.name ? `Sweep ${sweep.name}` : "Sweep");
     const { progress, parameters } = sweep;
     fill(this.summary, element("div", { class: "bar" }, element("h2", {}, sweep.name ?? "sweep"),
       element("span", { class: `status ${sweep.status}`, id: "sweep-status" }, sweep.status)),
@@ -121,6 +130,7 @@ export class SweepView {
     this.stop();
     this.stop = () => {};
     this.sweep = null;
+    this.isLoaded = false;
     this.isConnected = true;
   }
 }

@@ -2,12 +2,10 @@
 
 import { choice, element, fill } from "./dom.js";
 import {
-  addressOfJob, addressOfStudy, addressOfSweep, change, isSameView, openJob, openStudy, openSweep, state,
+  addressOfJob, addressOfStudy, addressOfSweep, change, isSameView, openJob, openStudy, openSweep, state, STATUSES,
 } from "./state.js";
 import { TaskList } from "./task-list.js";
 import { ago, isGoingOn } from "./words.js";
-
-const STATUSES = ["queued", "running", "completed", "stopped", "cancelled", "failed"];
 
 export class TaskLists {
   constructor(place) {
@@ -86,7 +84,8 @@ function jobRow(job) {
   });
   const link = within(addressOfJob(job.id), () => openJob(job.id),
     { "data-key": `open ${job.id}`, "aria-current": place === 0 ? "true" : null }, job.name);
-  const told = `${increments} increments, ${ago(job.created_at)}${job.parent ? ", a branch" : ""}${job.sweep ? `, run ${job.sweep.run} of a sweep` : ""}`;
+  const branch = job.parent ? `, branch at increment ${job.parent.increment}, direction ${job.parent.direction}` : "";
+  const told = `${increments} increments, ${ago(job.created_at)}${branch}${job.sweep ? `, run ${job.sweep.run} of a sweep` : ""}`;
   return row(job, place === 0, draw, link, told, increments, most);
 }
 

@@ -38,6 +38,8 @@ export function stopSentence(job) {
   return job.stop_reason ? STOPPED[job.stop_reason] ?? plainWords(job.stop_reason) : "";
 }
 
+export const leftOutSentence = ({ what, why }) => `${what}, because ${why}.`;
+
 /** Settings as they are, the defaults said as such. */
 export function settingsSentences(request, plan, defaults) {
   const given = request.analysis ?? {};

@@ -1,0 +1,47 @@
+// What stands above the pictures of a job: its name, how far it is, why it ended, what can be done with it.
+
+import { element, fill } from "./dom.js";
+import { jobActions } from "./job-actions.js";
+import { addressOfJob } from "./state.js";
+import { isGoingOn, statusWords, stopSentence } from "./words.js";
+
+export class JobHeading {
+  /** Tells `changed()` where the lists are to be read again, `said(words)` what is refused, `titled(words)`. */
+  constructor(place, told) {
+    this.told = told;
+    this.summary = element("div", {});
+    this.actions = element("div", {});
+    fill(place, this.summary, this.actions);
+  }
+
+  /** The path is on its way. */
+  prepare() {
+    fill(this.summary, element("p", { class: "quiet" }, "Loading the path …"));
+    this.draw(null);
+  }
+
+  /** `others`: paths that are drawn with it. */
+  show(path, others) {
+    const { job } = path;
+    const kept = path.index.length;
+    const all = (path.last() ?? -1) + 1;
+    const many = kept === all ? `${all} increments. ` : `${all} increments, ${kept} of them kept. `;
+    this.told.titled(others ? `${job.name} and ${others} more` : job.name);
+    fill(this.summary, element("div", { class: "bar" }, element("h2", {}, job.name),
+      element("span", { class: `status ${job.status}`, id: "status" }, job.status)),
+    element("p", { id: "stop" }, many, isGoingOn(job) ? `The job ${statusWords(job.status)}.` : stopSentence(job),
+      job.parent ? element("span", {}, " It follows ", element("a", {
+        href: addressOfJob(job.parent.job, job.id), "data-key": "parent",
+      }, "another job"), ` from increment ${job.parent.increment} in direction ${job.parent.direction}.`) : null),
+    path.problem ? element("p", { class: "bad", role: "alert" }, path.problem) : null);
+    this.draw(job);
+  }
+
+  /** What can be done is made anew only where it changes, so that focus stays on it while a path grows. */
+  draw(job) {
+    const key = job ? `${job.id} ${job.status}` : "";
+    if (this.actions.dataset.of === key) return;
+    this.actions.dataset.of = key;
+    fill(this.actions, job ? jobActions(job, this.told.changed, (problem) => this.told.said(problem.message)) : null);
+  }
+}

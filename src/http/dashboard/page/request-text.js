@@ -1,0 +1,58 @@
+// The text of a request with the numbers of its lines, those with mistakes marked.
+
+import { element, fill } from "./dom.js";
+
+/** Lines above a mistake that stay in sight. */
+const ABOVE = 4;
+
+export class RequestText {
+  /** Tells `edited()`, and `pasted()` before it where all of the text is replaced by what is pasted. */
+  constructor({ edited, pasted }) {
+    this.area = element("textarea", {
+      id: "request", spellcheck: "false", rows: 22, "aria-label": "job request (JSON)", oninput: () => edited(),
+      onscroll: () => { this.lines.scrollTop = this.area.scrollTop; },
+      onpaste: () => {
+        const { selectionStart, selectionEnd, value } = this.area;
+        if (selectionStart === 0 && selectionEnd === value.length) pasted();
+      },
+    });
+    this.lines = element("pre", { class: "line-numbers", "aria-hidden": "true" });
+    this.place = element("div", { class: "editor" }, this.lines, this.area);
+  }
+
+  get value() {
+    return this.area.value;
+  }
+
+  set value(text) {
+    this.area.value = text;
+  }
+
+  /** Numbers the lines; `mistakes`: a set of those that are marked. */
+  number(mistakes) {
+    const many = this.value.split("\n").length;
+    // Texts between the marked ones: a line of its own for each of many lines takes the page seconds.
+    const marked = [...mistakes].filter((line) => line <= many).sort((a, b) => a - b);
+    const pieces = [];
+    let next = 1;
+    const plain = (until) => {
+      if (next < until) pieces.push(Array.from({ length: until - next }, (_, place) => `${next + place}\n`).join(""));
+      next = until;
+    };
+    for (const line of marked) {
+      plain(line);
+      pieces.push(element("span", { class: "mistake" }, `${line}\n`));
+      next = line + 1;
+    }
+    plain(many + 1);
+    fill(this.lines, pieces);
+    this.lines.scrollTop = this.area.scrollTop;
+  }
+
+  /** Goes to a place in the text. */
+  select({ line, start, end }) {
+    this.area.focus();
+    this.area.setSelectionRange(start, end);
+    this.area.scrollTop = (line - ABOVE) * (this.area.scrollHeight / this.value.split("\n").length);
+  }
+}
