@@ -47,7 +47,7 @@ async fn the_queue_is_bounded_and_says_when_to_come_back() {
     let seconds = answer.headers()["retry-after"].to_str().expect("text").parse::<u64>();
     assert!(seconds.is_ok_and(|seconds| seconds > 0));
     let problem = refusal(answer, 429, "queue-full").await;
-    assert!(problem["detail"].as_str().expect("text").contains("3 jobs wait"), "{problem}");
+    assert!(problem["detail"].as_str().expect("text").contains("at most 3 jobs may wait"), "{problem}");
     refusal(keyed("four", "four").await.expect("an answer"), 429, "queue-full").await;
     refusal(server.post("/v1/studies", &scene("klarbring")).await, 429, "queue-full").await;
     // What is queued already is answered, and a check queues nothing.

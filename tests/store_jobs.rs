@@ -9,7 +9,7 @@ use arcslip::store::{
     Batch, Branch, Ending, Keep, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, NewRun, NewSweep, Page, Parent,
     Status, Store, Submitted, Task,
 };
-use common::engines::{Database, batch, job, line, queued};
+use common::engines::{Database, batch, found, job, line, queued};
 use std::time::Duration;
 use uuid::Uuid;
 
@@ -53,6 +53,7 @@ fn all(task: Task) -> ListFilter {
 async fn a_sweep_ends_with_its_runs_however_they_do(database: Database) {
     let store = database.open().await;
     let run = |number: u64| NewRun {
+        name: Some(format!("name {number}")),
         request: format!("request {number}"),
         plan: "{}".to_owned(),
         values: format!("[{number}.50,\"a \\\"name\\\"\"]"),
@@ -103,14 +104,20 @@ async fn a_sweep_ends_with_its_runs_however_they_do(database: Database) {
     assert_eq!((standing().await.status, standing().await.last_index), (Status::Running, Some(3)), "one is at work");
     assert_eq!(store.release(&working.lease).await.expect("an answer"), LeaseAnswer::Held { cancel_requested: true });
     assert_eq!((standing().await.status, standing().await.last_index), (Status::Cancelled, Some(4)));
-    let rows = store.increments(sweep.id, None, ALL).await.expect("rows");
-    let rows: Vec<serde_json::Value> = rows.iter().map(|row| serde_json::from_str(&row.body).expect("JSON")).collect();
+    let lines = store.increments(sweep.id, None, ALL).await.expect("rows");
+    let rows: Vec<serde_json::Value> = lines.iter().map(|row| serde_json::from_str(&row.body).expect("JSON")).collect();
     let told: Vec<(u64, &str)> = rows
         .iter()
         .map(|row| (row["run"].as_u64().expect("a number"), row["status"].as_str().expect("text")))
         .collect();
     assert_eq!(told, [(0, "completed"), (1, "failed"), (4, "cancelled"), (3, "cancelled"), (2, "cancelled")]);
     assert_eq!(rows[0]["job"], claim.lease.job.to_string());
+    let (first, job) = (&lines[0].body, claim.lease.job);
+    assert!(
+        first.starts_with(&format!("{{\"run\":0,\"job\":\"{job}\",\"values\":[")),
+        "as any engine writes it: {first}"
+    );
+    assert_eq!(found(store.as_ref(), job).await.name.as_deref(), Some("name 0"));
     assert_eq!(rows[0]["values"], serde_json::json!([0.5, "a \"name\""]));
     assert_eq!((&rows[0]["first_limit"]["load_factor"], &rows[0]["last_index"]), (&0.1.into(), &1.into()));
     assert_eq!(rows[0]["stop_reason"], "stages_completed");
@@ -118,6 +125,17 @@ async fn a_sweep_ends_with_its_runs_however_they_do(database: Database) {
     assert_eq!(rows[2]["error"], "it was deleted");
     let ended = store.job(sweep.id).await.expect("an answer").expect("a sweep");
     assert!(ended.ended_at.is_some() && ended.stop_reason.as_deref() == Some("cancelled"));
+    assert_eq!(tally().await, (0, 0));
+
+    // More than end in one statement.
+    let many = NewSweep {
+        whole: NewJob { max_increments: 1_200, most_queued: 2_000, ..whole("many") },
+        runs: (0..1_200).map(run).collect(),
+    };
+    let Ok(Submitted::Created(many)) = store.submit_sweep(many).await else { panic!("not stored") };
+    assert!(store.cancel_sweep(many.id).await.expect("an answer").is_empty(), "nobody is at work");
+    let standing = store.standing(many.id).await.expect("an answer").expect("a sweep");
+    assert_eq!((standing.status, standing.last_index), (Status::Cancelled, Some(1_199)));
     assert_eq!(tally().await, (0, 0));
 
     // Dropped while its runs wait and work: all of it is gone.

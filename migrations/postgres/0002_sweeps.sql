@@ -18,10 +18,11 @@ BEGIN
     UPDATE jobs SET last_index = coalesce(last_index + 1, 0), updated_at = NEW.updated_at WHERE id = NEW.sweep
     RETURNING last_index INTO place;
     IF FOUND THEN
-        INSERT INTO increments (job, increment_index, body) VALUES (NEW.sweep, place, json_build_object(
-            'run', NEW.sweep_run, 'job', NEW.id::text, 'values', NEW.sweep_values::json, 'status', NEW.status,
-            'stop_reason', NEW.stop_reason, 'error', NEW.error, 'last_index', NEW.last_index,
-            'first_limit', NEW.first_limit::json)::text);
+        INSERT INTO increments (job, increment_index, body)
+        SELECT NEW.sweep, place, row_to_json(told)::text FROM (SELECT
+            NEW.sweep_run AS run, NEW.id AS job, NEW.sweep_values::json AS "values", NEW.status AS status,
+            NEW.stop_reason AS stop_reason, NEW.error AS error, NEW.last_index AS last_index,
+            NEW.first_limit::json AS first_limit) AS told;
         -- The last one ends the sweep.
         UPDATE jobs SET
             status = CASE WHEN cancel_requested <> 0 THEN 'cancelled' ELSE 'completed' END,

@@ -5,7 +5,7 @@ use super::written::{one_on_standard_output, write};
 use crate::picture::findings::Findings;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Where findings go.
 #[derive(Debug, clap::Args)]
@@ -34,9 +34,16 @@ impl Written {
     /// Before anything is traced.
     ///
     /// # Errors
-    /// Two things that go to the same place.
+    /// Two things that go to the same place, or a place in a folder that is not there.
     pub fn check(&self) -> Result<(), Failure> {
-        one_on_standard_output(&[("--out", Some(&self.out)), ("--plot", self.plot.as_deref())])
+        let places = [("--out", Some(self.out.as_path())), ("--plot", self.plot.as_deref())];
+        for (option, place) in places {
+            let folder = place.and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
+            if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+                return Err(Failure::Input(vec![format!("{option}: there is no folder {}", folder.display())]));
+            }
+        }
+        one_on_standard_output(&places)
     }
 
     /// # Errors

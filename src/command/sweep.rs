@@ -2,7 +2,7 @@
 
 use super::{Failure, Outcome, findings, input};
 use crate::judged::JudgedIncrement;
-use crate::model::Sweep;
+use crate::model::{Sweep, decode};
 use crate::output::json_line;
 use crate::sweeps::{self, Found, Row};
 use std::collections::HashMap;
@@ -46,12 +46,14 @@ enum CombineName {
     List,
 }
 
-/// Values are JSON where they can be read as such, and texts otherwise.
+/// Values with commas between: JSON where all of them can be read as such, and otherwise each one that can, the others texts.
 fn replacement(argument: &str) -> Result<(String, Vec<serde_json::Value>), String> {
     let (pointer, values) = argument.split_once('=').ok_or("POINTER=VALUE,VALUE,... is expected")?;
-    let values =
-        values.split(',').map(|text| serde_json::from_str(text).unwrap_or_else(|_| serde_json::Value::from(text)));
-    Ok((pointer.to_owned(), values.collect()))
+    let values = serde_json::from_str(&format!("[{values}]")).unwrap_or_else(|_| {
+        let read = |text: &str| serde_json::from_str(text).unwrap_or_else(|_| serde_json::Value::from(text));
+        values.split(',').map(read).collect()
+    });
+    Ok((pointer.to_owned(), values))
 }
 
 pub fn run(arguments: &Arguments) -> Outcome {
@@ -88,20 +90,26 @@ impl Arguments {
         if self.replace.is_empty() && self.combine.is_none() {
             return Ok(text);
         }
-        // What cannot be read as an object is told with its place where the sweep is read.
-        let Ok(serde_json::Value::Object(mut document)) = serde_json::from_slice(&text) else { return Ok(text) };
+        let mut replace = serde_json::Map::new();
+        for (pointer, values) in &self.replace {
+            if replace.insert(pointer.clone(), values.clone().into()).is_some() {
+                let mistake = format!("--replace: `{pointer}` is given twice; all of its values belong together");
+                return Err(Failure::Input(vec![mistake]));
+            }
+        }
+        let mut document = decode::object(&text).map_err(input::refused)?;
         let sweep = document.entry("sweep").or_insert_with(|| serde_json::json!({}));
-        if !self.replace.is_empty() {
-            let replace: serde_json::Map<_, _> =
-                self.replace.iter().map(|(pointer, values)| (pointer.clone(), values.clone().into())).collect();
-            sweep["replace"] = replace.into();
+        // What it is instead of an object is told where the sweep is read.
+        let Some(sweep) = sweep.as_object_mut() else { return Ok(text) };
+        if !replace.is_empty() {
+            sweep.insert("replace".to_owned(), replace.into());
         }
         if let Some(combine) = self.combine {
             let name = match combine {
                 CombineName::Grid => "grid",
                 CombineName::List => "list",
             };
-            sweep["combine"] = name.into();
+            sweep.insert("combine".to_owned(), name.into());
         }
         serde_json::to_vec(&document).map_err(Failure::other)
     }

@@ -210,9 +210,10 @@ impl From<JobsError> for Problem {
             JobsError::KeyReused => {
                 Self::new(Kind::KeyReused, "repeat the first request byte for byte, or send another Idempotency-Key")
             }
-            JobsError::QueueFull(most) => {
-                Self::new(Kind::QueueFull, format!("{most} jobs wait, as many as this service queues; come back later"))
-            }
+            JobsError::QueueFull(most) => Self::new(
+                Kind::QueueFull,
+                format!("at most {most} jobs may wait here, and there is no room for more now; come back later"),
+            ),
             JobsError::NoJob(id) => Self::not_found(format_args!("job {id}")),
             JobsError::NoStudy(id) => Self::not_found(format_args!("study {id}")),
             JobsError::NoSweep(id) => Self::not_found(format_args!("sweep {id}")),

@@ -3,9 +3,8 @@
 use super::submission::{not_text, wrong_input};
 use super::{Caller, Jobs, JobsError, Limits, Posted, Solver, queued};
 use crate::metrics::Write;
-use crate::model::limits::MAX_LISTED_MISTAKES;
 use crate::model::sweep::Variation;
-use crate::model::{InputError, InputErrors, Sweep};
+use crate::model::{InputError, InputErrors, RunMistakes, Sweep};
 use crate::store::{JobRecord, NewJob, NewRun, NewSweep, Task};
 use crate::sweeps::{Found, Row};
 
@@ -71,7 +70,7 @@ fn prepare(solver: &dyn Solver, limits: &Limits, request: Vec<u8>) -> Result<Pre
         let most = limits.queued;
         return Err(refused(format!("these are {} runs; this service queues at most {most} jobs", sweep.runs())));
     }
-    let (mut runs, mut bytes, mut mistakes) = (Vec::new(), 0, Vec::new());
+    let (mut runs, mut bytes, mut mistakes) = (Vec::new(), 0, RunMistakes::of(&sweep));
     for run in 0..sweep.runs() {
         match prepare_run(solver, limits, &sweep, run) {
             Ok(new) => {
@@ -80,21 +79,16 @@ fn prepare(solver: &dyn Solver, limits: &Limits, request: Vec<u8>) -> Result<Pre
                     return Err(refused(format!("the requests of its runs have more than {MOST_BYTES} bytes in all")));
                 }
                 runs.push(new);
+                mistakes.note(run, None);
             }
-            Err(JobsError::Input(errors)) => {
-                // What several share is told once.
-                let new: Vec<_> = errors.0.into_iter().filter(|error| !mistakes.contains(error)).collect();
-                mistakes.extend(new);
-            }
+            Err(JobsError::Input(errors)) => mistakes.note(run, Some(errors)),
             Err(other) => return Err(other),
         }
-        if mistakes.len() >= MAX_LISTED_MISTAKES {
+        if mistakes.are_enough() {
             break;
         }
     }
-    if !mistakes.is_empty() {
-        return Err(JobsError::Input(InputErrors(mistakes)));
-    }
+    mistakes.result().map_err(JobsError::Input)?;
     let Sweep { name, variation, .. } = sweep;
     Ok(Prepared { text: String::from_utf8(request).map_err(not_text)?, name, variation, runs })
 }
@@ -104,11 +98,7 @@ fn prepare_run(solver: &dyn Solver, limits: &Limits, sweep: &Sweep, run: u64) ->
     let crate::model::sweep::Run { text, request } = sweep.run(run).map_err(JobsError::Input)?;
     let max_increments = request.analysis.max_increments;
     limits.check(&request.model, max_increments).map_err(wrong)?;
-    if request.analysis.explore.is_some() {
-        let detail = "a sweep follows no other directions; leave it out";
-        return Err(wrong(InputErrors(vec![InputError::new("/analysis/explore", detail)])));
-    }
     let plan = serde_json::to_string(&solver.plan(&request).map_err(wrong)?)?;
     let values = serde_json::to_string(&sweep.variation.values(run))?;
-    Ok(NewRun { request: text, plan, values, max_increments })
+    Ok(NewRun { name: request.model.name, request: text, plan, values, max_increments })
 }

@@ -12,11 +12,13 @@ pub mod limits;
 mod mistakes;
 pub(crate) mod names;
 pub mod request;
+pub mod run_mistakes;
 pub mod study;
 pub mod sweep;
 
 pub use error::{InputError, InputErrors};
 pub use request::{Analysis, FollowRequest, JobRequest, Model};
+pub use run_mistakes::RunMistakes;
 pub use study::StudyRequest;
 pub use sweep::{Sweep, SweepRequest};
 

@@ -160,6 +160,10 @@ impl Sweep {
         let text = document.to_string();
         let request = decode::decode(text.as_bytes()).map_err(|errors| self.located(run, errors))?;
         check::check(&request).map_err(|errors| self.located(run, errors))?;
+        if request.analysis.explore.is_some() {
+            let detail = "a sweep follows no other directions; leave it out";
+            return Err(self.located(run, InputErrors(vec![InputError::new("/analysis/explore", detail)])));
+        }
         Ok(Run { text, request })
     }
 
@@ -229,6 +233,12 @@ fn count(combine: Combine, parameters: &[Parameter]) -> Result<u64, InputError> 
     Ok(runs)
 }
 
+/// The place of an item as RFC 6901 writes it: digits, and no zero before others.
+fn item(name: &str) -> Option<usize> {
+    let is_plain = name.bytes().all(|byte| byte.is_ascii_digit()) && (name == "0" || !name.starts_with('0'));
+    if is_plain { name.parse().ok() } else { None }
+}
+
 /// Whether something can be put there: members of objects may be missing, items of arrays not.
 fn can_hold(document: &Value, pointer: &str) -> Result<(), String> {
     if !["/model/", "/analysis/"].iter().any(|root| pointer.starts_with(root)) {
@@ -244,7 +254,7 @@ fn can_hold(document: &Value, pointer: &str) -> Result<(), String> {
                 None => return Ok(()),
             },
             Value::Array(items) => {
-                let item = name.parse().ok().and_then(|index: usize| items.get(index));
+                let item = item(&name).and_then(|index| items.get(index));
                 item.ok_or_else(|| format!("`{walked}` has {} items, and none `{name}`", items.len()))?
             }
             Value::Null => return Ok(()),
@@ -266,7 +276,7 @@ fn put(document: &mut Value, pointer: &str, value: Value) {
         }
         at = match at {
             Value::Object(members) => members.entry(name).or_insert(Value::Null),
-            Value::Array(items) => match name.parse().ok().and_then(|index: usize| items.get_mut(index)) {
+            Value::Array(items) => match item(&name).and_then(|index| items.get_mut(index)) {
                 Some(item) => item,
                 None => return,
             },
@@ -333,6 +343,10 @@ mod tests {
         assert!(one(refused(json!({FRICTION: [0.1], "/model/contacts/0": [{}]}), "grid")).1.contains("within"));
         let many: Vec<f64> = (1..2_000).map(f64::from).collect();
         assert!(one(refused(json!({FRICTION: many, LONGEST: many}), "grid")).1.contains("at most"));
+        for name in ["00", "+0", "-", "", "1"] {
+            let pointer = format!("/model/contacts/{name}/friction");
+            assert!(one(refused(json!({pointer: [0.1]}), "grid")).1.contains("and none"), "{name}");
+        }
         assert!(one(refused(json!({}), "grid")).1.contains("at least one"));
         assert!(one(refused(json!([1]), "grid")).1.contains("an object"));
         assert!(one(refused(json!({FRICTION: [0.1]}), "all")).1.contains("`all` is not"));
@@ -342,5 +356,7 @@ mod tests {
         let wrong = sweep.run(1).unwrap_err().0;
         assert_eq!(wrong[0].pointer, "/sweep/replace/~1model~1contacts~10~1friction/1");
         assert!(wrong[0].detail.starts_with("model.contacts[0].friction: "), "{}", wrong[0].detail);
+        let explore = self::sweep(json!({"/analysis/explore": [{}]}), "grid").unwrap();
+        assert_eq!(explore.run(0).unwrap_err().0[0].pointer, "/sweep/replace/~1analysis~1explore/0");
     }
 }

@@ -107,6 +107,8 @@ pub struct NewSweep {
 /// A run of a sweep to be queued.
 #[derive(Debug, Clone)]
 pub struct NewRun {
+    /// The model's own.
+    pub name: Option<String>,
     pub request: String,
     /// JSON.
     pub plan: String,

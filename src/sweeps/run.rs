@@ -3,7 +3,7 @@
 use super::{LimitLoad, Row};
 use crate::cancel::CancelFlag;
 use crate::judged::{JudgedIncrement, JudgedPath};
-use crate::model::{InputErrors, Sweep};
+use crate::model::{InputErrors, RunMistakes, Sweep};
 use crate::output::columns::name_of;
 use crate::panics;
 use crate::path::{Outcome, Scene};
@@ -40,19 +40,17 @@ pub fn run(
     rows.into_iter().collect()
 }
 
-/// Checks every run; mistakes that several share are told once.
+/// Checks every run.
 fn check(sweep: &Sweep, threads: NonZeroUsize) -> Result<(), InputErrors> {
     let checked = on_threads(sweep.runs(), threads, |run| {
         let request = sweep.run(run)?.request;
         Scene::new(&request).map_err(|errors| sweep.located(run, errors)).map(|_| ())
     });
-    let mut told = Vec::new();
-    for error in checked.into_iter().filter_map(Result::err).flat_map(|errors| errors.0) {
-        if !told.contains(&error) && told.len() < crate::model::limits::MAX_LISTED_MISTAKES {
-            told.push(error);
-        }
+    let mut mistakes = RunMistakes::of(sweep);
+    for (run, checked) in (0..).zip(checked) {
+        mistakes.note(run, checked.err());
     }
-    if told.is_empty() { Ok(()) } else { Err(InputErrors(told)) }
+    mistakes.result()
 }
 
 fn trace(sweep: &Sweep, run: u64, accept: Accept<'_>) -> Result<Row, InputErrors> {

@@ -49,6 +49,15 @@ pub fn replacements(text: &[u8]) -> Result<sweep::Form, InputErrors> {
     })
 }
 
+/// The outermost object of a document, for whoever changes something in it before it is read.
+///
+/// # Errors
+/// Text that is no JSON object, and members that stand twice in it: who reads them otherwise takes one of them.
+pub fn object(text: &[u8]) -> Result<serde_json::Map<String, serde_json::Value>, InputErrors> {
+    read(text, "an object", |input, mistakes| input.map(mistakes, |_, _| Some(())).map(drop))?;
+    serde_json::from_slice(text).map_err(|error| InputErrors(vec![InputError::new("", error.to_string())]))
+}
+
 /// Reads a request to follow a direction from JSON text, and checks it as far as it goes by itself.
 ///
 /// # Errors

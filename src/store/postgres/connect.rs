@@ -67,6 +67,12 @@ pub(super) fn options(url: &Url) -> Result<PgConnectOptions> {
             ));
         }
     }
+    // An address of version 6 stands in brackets in a URL, and nowhere else.
+    let bare = options.get_host().strip_prefix('[').and_then(|host| host.strip_suffix(']')).map(str::to_owned);
+    let options = match bare {
+        Some(host) => options.host(&host),
+        None => options,
+    };
     let named = options.get_application_name().is_some();
     let options = if named { options } else { options.application_name("arcslip") };
     Ok(options.ssl_mode(PgSslMode::Disable).options(SERVER_SETTINGS))

@@ -2,8 +2,12 @@
 
 use crate::store::Line;
 use crate::store::sql::dialect::{Dialect, alternatives, speaks};
+use crate::store::sql::sweeps::Runs;
 use sqlx::postgres::{PgConnection, PgRow, Postgres};
 use uuid::Uuid;
+
+/// Rows of one INSERT of jobs: their requests are sent together.
+const ROWS_A_STATEMENT: usize = 500;
 
 speaks!(PgRow);
 
@@ -15,6 +19,8 @@ impl Dialect for Postgres {
     const THERE: &'static str = "FOR KEY SHARE";
     // Until the end of the transaction, which is the statement.
     const UNSYNCED: &'static str = ", set_config('synchronous_commit', 'off', true) AS unsynced";
+    /// Until the end of the transaction; the number is this program's own.
+    const IN_TURN: Option<&'static str> = Some("SELECT pg_advisory_xact_lock(6099041150377221921)");
     // The server sends all that it is asked for, so the bytes are counted there; what has not been sent costs it no reading.
     const PAGE: &'static str = "SELECT increment_index, body FROM (SELECT increment_index, body, \
                                 sum(octet_length(body)) OVER (ORDER BY increment_index) - octet_length(body) AS before \
@@ -59,6 +65,33 @@ impl Dialect for Postgres {
         .bind(others)
         .execute(connection)
         .await?;
+        Ok(())
+    }
+
+    async fn insert_runs(connection: &mut PgConnection, runs: &Runs<'_>) -> sqlx::Result<()> {
+        let insert = "INSERT INTO jobs (id, name, status, priority, request, plan, max_increments, max_attempts, \
+                      created_at, updated_at, task, owner, sweep, sweep_run, sweep_values) \
+                      SELECT given.id, given.name, 'queued', $1, given.request, given.plan, given.increments, $2, \
+                      {now}, {now}, 'path', $3, $4, given.number, given.chosen \
+                      FROM unnest($5::uuid[], $6::text[], $7::text[], $8::text[], $9::bigint[], $10::bigint[], $11::text[]) \
+                      AS given (id, name, request, plan, increments, number, chosen)";
+        for (chunk, new) in (0_i64..).zip(runs.runs.chunks(ROWS_A_STATEMENT)) {
+            let first = chunk * ROWS_A_STATEMENT as i64;
+            sqlx::query(Self::said(insert))
+                .bind(runs.priority)
+                .bind(runs.max_attempts)
+                .bind(runs.owner)
+                .bind(runs.sweep)
+                .bind(new.iter().map(|_| Uuid::now_v7()).collect::<Vec<_>>())
+                .bind(new.iter().map(|run| run.name.as_deref()).collect::<Vec<_>>())
+                .bind(new.iter().map(|run| run.request.as_str()).collect::<Vec<_>>())
+                .bind(new.iter().map(|run| run.plan.as_str()).collect::<Vec<_>>())
+                .bind(new.iter().map(|run| run.max_increments as i64).collect::<Vec<_>>())
+                .bind((first..).take(new.len()).collect::<Vec<_>>())
+                .bind(new.iter().map(|run| run.values.as_str()).collect::<Vec<_>>())
+                .execute(&mut *connection)
+                .await?;
+        }
         Ok(())
     }
 }

@@ -82,8 +82,10 @@ pub(super) fn fault(code: &str) -> fn(Source) -> StoreError {
         // lock not available, cancelled by a timeout, idle in a transaction, read-only (a standby), input/output, serialisation,
         // deadlock
         "55P03" | "57014" | "25P03" | "25006" | "58030" | "40001" | "40P01" => StoreError::Unavailable,
-        // connections lost or refused; the server going down or coming up; out of memory, or of connections
-        _ if code.starts_with("08") || code.starts_with("57P") || code.starts_with("53") => StoreError::Unavailable,
+        // connections lost or refused; a role, a password or rights that do not hold now, a database that is closed or not there;
+        // the server going down or coming up; out of memory, or of connections
+        "3D000" | "42501" | "55000" => StoreError::Unavailable,
+        _ if ["08", "28", "57P", "53"].iter().any(|class| code.starts_with(class)) => StoreError::Unavailable,
         _ => StoreError::Refused,
     }
 }
@@ -141,5 +143,21 @@ impl Engine for PostgresEngine {
         // Others need not wait for their next look.
         let _ = timeout(TO_ANSWER, listen::send(&self.pool, self.announcements.take())).await;
         self.pool.close().await;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A job whose increments cannot be stored for such a reason is not at fault, and does not fail.
+    #[test]
+    fn what_keeps_a_process_out_for_a_while_passes() {
+        for code in ["08006", "28000", "28P01", "3D000", "42501", "53300", "55000", "57P01", "57P03"] {
+            assert!(fault(code)("refused".into()).is_passing(), "{code}");
+        }
+        for code in ["22021", "23505", "42P01", "53100", "XX001"] {
+            assert!(!fault(code)("refused".into()).is_passing(), "{code}");
+        }
     }
 }

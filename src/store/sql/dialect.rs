@@ -2,6 +2,7 @@
 //!
 //! Statements are texts with `$1`, `$2`, ... for values and a few words in braces for what the engines say differently.
 
+use super::sweeps::Runs;
 use crate::store::Line;
 use sqlx::{Database, Row};
 use std::future::Future;
@@ -43,6 +44,12 @@ impl<'a> From<&'a String> for Value<'a> {
 impl<'a> From<&'a Option<String>> for Value<'a> {
     fn from(text: &'a Option<String>) -> Self {
         Self::Text(text.as_deref())
+    }
+}
+
+impl<'a> From<Option<&'a str>> for Value<'a> {
+    fn from(text: Option<&'a str>) -> Self {
+        Self::Text(text)
     }
 }
 
@@ -98,6 +105,8 @@ pub(in crate::store) trait Dialect: Database<Row: Cells> {
     /// At the end of what a statement answers: nobody waits until the disk has it. It is written before anything that comes
     /// later, or lost with that when the server breaks down.
     const UNSYNCED: &'static str;
+    /// Begins a transaction of which there may be one at a time, where there are several.
+    const IN_TURN: Option<&'static str>;
     /// Increments of job `$1` past `$2`, in order: at most `$3`, and few past `$4` bytes.
     const PAGE: &'static str;
     /// What is to be tidied now and then.
@@ -130,6 +139,10 @@ pub(in crate::store) trait Dialect: Database<Row: Cells> {
         job: Uuid,
         lines: &[Line],
     ) -> impl Future<Output = sqlx::Result<()>> + Send;
+
+    /// Queues the runs of a sweep, in order.
+    fn insert_runs(connection: &mut Self::Connection, runs: &Runs<'_>)
+    -> impl Future<Output = sqlx::Result<()>> + Send;
 
     /// Runs a statement and answers its first row.
     fn first(

@@ -12,4 +12,4 @@ mod increments;
 pub(super) mod jobs;
 mod rows;
 pub(super) mod store;
-mod sweeps;
+pub(super) mod sweeps;

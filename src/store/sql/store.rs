@@ -90,8 +90,8 @@ impl<E: Engine> SqlStore<E> {
         self.within(E::PATIENCE, call).await
     }
 
-    /// A call that drops a job, which may have millions of rows.
-    async fn drop_rows<T>(&self, call: impl Future<Output = Result<T>>) -> Result<T> {
+    /// A call that drops a job, which may have millions of rows, or queues many.
+    async fn at_length<T>(&self, call: impl Future<Output = Result<T>>) -> Result<T> {
         self.within(E::PATIENCE.map(|patience| 4 * patience), call).await
     }
 
@@ -128,7 +128,8 @@ impl<E: Engine> Store for SqlStore<E> {
     }
 
     async fn submit_sweep(&self, sweep: NewSweep) -> Result<Submitted> {
-        let submitted = self.begin(sweeps::submit(&self.engine, sweep)).await;
+        self.allow()?;
+        let submitted = self.at_length(sweeps::submit(&self.engine, sweep)).await;
         if matches!(submitted, Ok(Submitted::Created(_))) {
             self.engine.signals().queue_changed();
         }
@@ -136,7 +137,10 @@ impl<E: Engine> Store for SqlStore<E> {
     }
 
     async fn cancel_sweep(&self, id: Uuid) -> Result<Vec<Uuid>> {
-        self.call(sweeps::cancel(&self.engine, id)).await
+        let at_work = self.at_length(sweeps::mark_cancelled(&self.engine, id)).await?;
+        // What an end in between leaves behind is cancelled by whoever takes it.
+        while self.call(sweeps::end_some(&self.engine, id)).await? > 0 {}
+        Ok(at_work)
     }
 
     async fn follow(&self, job: NewFollower) -> Result<Option<Submitted>> {
@@ -180,7 +184,7 @@ impl<E: Engine> Store for SqlStore<E> {
     }
 
     async fn delete(&self, id: Uuid) -> Result<bool> {
-        self.drop_rows(jobs::delete(&self.engine, id)).await
+        self.at_length(jobs::delete(&self.engine, id)).await
     }
 
     async fn claim(&self, worker: &str, lease: Duration) -> Result<Option<Claim>> {
@@ -216,7 +220,7 @@ impl<E: Engine> Store for SqlStore<E> {
 
     async fn retire(&self, keep: Keep) -> Result<u64> {
         self.allow()?;
-        self.drop_rows(jobs::retire(&self.engine, keep)).await
+        self.at_length(jobs::retire(&self.engine, keep)).await
     }
 
     async fn shrink(&self) -> Result<bool> {

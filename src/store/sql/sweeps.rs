@@ -3,17 +3,32 @@
 //! Its lines are its runs as they end; triggers store them with the end of each, whoever brings that about.
 
 use super::dialect::{Dialect, values};
-use super::store::{Engine, Of, begin};
+use super::store::{Engine, Of, begin, writer};
 use super::{jobs, rows};
-use crate::store::{NewSweep, Result, Submitted};
+use crate::store::{NewRun, NewSweep, Result, Submitted};
 use uuid::Uuid;
 
 /// Holds the sweep, under a lease that does not run out: the year 142,000 or so.
 const HOLDER: &str = "its runs";
 const FOR_EVER: i64 = 1 << 52;
+/// Runs that one statement ends: each end changes the row of the sweep, whose versions pile up until the commit.
+const ENDED_AT_ONCE: u32 = 500;
+
+/// The runs of a sweep, as they are queued.
+pub(in crate::store) struct Runs<'r> {
+    pub sweep: Uuid,
+    pub priority: i64,
+    pub max_attempts: i64,
+    pub owner: Option<&'r str>,
+    pub runs: &'r [NewRun],
+}
 
 pub(super) async fn submit<E: Engine>(engine: &E, sweep: NewSweep) -> Result<Submitted> {
     let mut transaction = begin(engine).await?;
+    // Two that do not see each other's would both find room.
+    if let Some(in_turn) = <Of<E> as Dialect>::IN_TURN {
+        Of::<E>::run(&mut transaction, in_turn, values![]).await?;
+    }
     let mut whole = sweep.whole;
     // Either there is room for all of them, or none is queued.
     let most = whole.most_queued;
@@ -32,40 +47,25 @@ pub(super) async fn submit<E: Engine>(engine: &E, sweep: NewSweep) -> Result<Sub
         values![record.id, HOLDER, FOR_EVER],
     )
     .await?;
-    for (run, job) in (0_u64..).zip(&sweep.runs) {
-        Of::<E>::run(
-            &mut transaction,
-            "INSERT INTO jobs (id, name, status, priority, request, plan, max_increments, max_attempts, created_at, updated_at, \
-             task, owner, sweep, sweep_run, sweep_values) \
-             VALUES ($1, $2, 'queued', $3, $4, $5, $6, $7, {now}, {now}, 'path', $8, $9, $10, $11)",
-            values![
-                Uuid::now_v7(),
-                &whole.name,
-                i64::from(whole.priority),
-                &job.request,
-                &job.plan,
-                job.max_increments,
-                whole.max_attempts,
-                &whole.owner,
-                record.id,
-                run,
-                &job.values,
-            ],
-        )
-        .await?;
-    }
+    let runs = Runs {
+        sweep: record.id,
+        priority: whole.priority.into(),
+        max_attempts: whole.max_attempts.into(),
+        owner: whole.owner.as_deref(),
+        runs: &sweep.runs,
+    };
+    Of::<E>::insert_runs(&mut transaction, &runs).await?;
     let record = jobs::record::<Of<E>>(&mut transaction, record.id).await?;
     transaction.commit().await?;
     Ok(Submitted::Created(record))
 }
 
-/// Marks a sweep and its runs, ends those that wait, and answers those at work. The runs come before the sweep, as where they end by themselves.
-pub(super) async fn cancel<E: Engine>(engine: &E, id: Uuid) -> Result<Vec<Uuid>> {
+/// Marks a sweep and its runs, and answers those at work. The runs come before the sweep, as where they end by themselves.
+pub(super) async fn mark_cancelled<E: Engine>(engine: &E, id: Uuid) -> Result<Vec<Uuid>> {
     let mut transaction = begin(engine).await?;
     for statement in [
         "UPDATE jobs SET cancel_requested = 1, updated_at = {now} WHERE sweep = $1 AND status IN ('queued', 'running')",
         "UPDATE jobs SET cancel_requested = 1, updated_at = {now} WHERE id = $1 AND status = 'running'",
-        "UPDATE jobs SET status = 'cancelled', stop_reason = 'cancelled', ended_at = {now} WHERE sweep = $1 AND status = 'queued'",
     ] {
         Of::<E>::run(&mut transaction, statement, values![id]).await?;
     }
@@ -74,4 +74,14 @@ pub(super) async fn cancel<E: Engine>(engine: &E, id: Uuid) -> Result<Vec<Uuid>>
     transaction.commit().await?;
     engine.signals().job_changed(id);
     at_work.iter().map(|row| rows::id(row, "id")).collect()
+}
+
+/// Ends some of the runs that wait, and answers how many. Those that others hold have been taken just now, and end as those at
+/// work do.
+pub(super) async fn end_some<E: Engine>(engine: &E, id: Uuid) -> Result<u64> {
+    let end = "UPDATE jobs SET status = 'cancelled', stop_reason = 'cancelled', ended_at = {now} WHERE id IN \
+               (SELECT id FROM jobs WHERE sweep = $1 AND status = 'queued' AND cancel_requested <> 0 ORDER BY id LIMIT $2 {free})";
+    let ended = Of::<E>::run(&mut *writer(engine).await?, end, values![id, ENDED_AT_ONCE]).await?;
+    engine.signals().job_changed(id);
+    Ok(ended)
 }

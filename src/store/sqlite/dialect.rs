@@ -1,7 +1,8 @@
 //! What SQLite says in its own way.
 
 use crate::store::Line;
-use crate::store::sql::dialect::{Dialect, alternatives, speaks};
+use crate::store::sql::dialect::{Dialect, alternatives, speaks, values};
+use crate::store::sql::sweeps::Runs;
 use sqlx::QueryBuilder;
 use sqlx::sqlite::{Sqlite, SqliteConnection, SqliteRow};
 use uuid::Uuid;
@@ -20,6 +21,7 @@ impl Dialect for Sqlite {
     const FREE: &'static str = "";
     const THERE: &'static str = "";
     const UNSYNCED: &'static str = "";
+    const IN_TURN: Option<&'static str> = None;
     const PAGE: &'static str = "SELECT increment_index, body FROM increments WHERE job = $1 AND increment_index > $2 \
                                 ORDER BY increment_index LIMIT $3";
     const SWEEP: Option<&'static str> = None;
@@ -49,6 +51,33 @@ impl Dialect for Sqlite {
                 row.push_bind(branch.trail.as_deref()).push_bind(alternatives);
             });
             insert.build().execute(&mut *connection).await?;
+        }
+        Ok(())
+    }
+
+    async fn insert_runs(connection: &mut SqliteConnection, runs: &Runs<'_>) -> sqlx::Result<()> {
+        let insert = "INSERT INTO jobs (id, name, status, priority, request, plan, max_increments, max_attempts, created_at, updated_at, \
+             task, owner, sweep, sweep_run, sweep_values) \
+             VALUES ($1, $2, 'queued', $3, $4, $5, $6, $7, {now}, {now}, 'path', $8, $9, $10, $11)";
+        for (number, run) in (0_u64..).zip(runs.runs) {
+            Self::run(
+                connection,
+                insert,
+                values![
+                    Uuid::now_v7(),
+                    &run.name,
+                    runs.priority,
+                    &run.request,
+                    &run.plan,
+                    run.max_increments,
+                    runs.max_attempts,
+                    runs.owner,
+                    runs.sweep,
+                    number,
+                    &run.values,
+                ],
+            )
+            .await?;
         }
         Ok(())
     }

@@ -1,0 +1,88 @@
+//! What is wrong with the runs of a sweep: what several share is told once. Used wherever a sweep is taken.
+
+use super::limits::MAX_LISTED_MISTAKES;
+use super::{InputError, InputErrors, Sweep};
+
+/// Mistakes in runs that were checked, as mistakes in the sweep.
+pub struct RunMistakes<'s> {
+    sweep: &'s Sweep,
+    checked: u64,
+    told: Vec<Told>,
+}
+
+struct Told {
+    error: InputError,
+    /// The first run that has it.
+    first: u64,
+    runs: u64,
+}
+
+impl<'s> RunMistakes<'s> {
+    pub fn of(sweep: &'s Sweep) -> Self {
+        Self { sweep, checked: 0, told: Vec::new() }
+    }
+
+    /// What checking a run gave; runs come in order.
+    pub fn note(&mut self, run: u64, mistakes: Option<InputErrors>) {
+        self.checked += 1;
+        for error in mistakes.into_iter().flat_map(|errors| errors.0) {
+            match self.told.iter_mut().find(|told| told.error == error) {
+                Some(told) => told.runs += 1,
+                None => self.told.push(Told { error, first: run, runs: 1 }),
+            }
+        }
+    }
+
+    /// As many as are told: further runs need not be checked.
+    pub fn are_enough(&self) -> bool {
+        self.told.len() >= MAX_LISTED_MISTAKES
+    }
+
+    /// All of them; a mistake that some runs have and others have not, and that is not at a value of its own, says which.
+    ///
+    /// # Errors
+    /// There are mistakes.
+    pub fn result(self) -> Result<(), InputErrors> {
+        let Self { sweep, checked, mut told } = self;
+        told.truncate(MAX_LISTED_MISTAKES);
+        let located = told.into_iter().map(|Told { error, first, runs }| {
+            if runs == checked || error.pointer.starts_with("/sweep/") {
+                return error;
+            }
+            let values = sweep.variation.parameters.iter().zip(sweep.variation.values(first));
+            let values: Vec<String> =
+                values.map(|(parameter, value)| format!("{} = {value}", parameter.pointer)).collect();
+            let detail =
+                format!("{} (so it is in {runs} of {checked} runs; the first has {})", error.detail, values.join(", "));
+            InputError::new(error.pointer, detail)
+        });
+        let located: Vec<InputError> = located.collect();
+        if located.is_empty() { Ok(()) } else { Err(InputErrors(located)) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenes;
+    use serde_json::{Value, json};
+
+    #[test]
+    fn a_mistake_of_some_runs_says_of_which() {
+        let mut document: Value = serde_json::from_str(scenes::find("one-bar-truss").unwrap().request).unwrap();
+        document["sweep"] = json!({"replace": {"/analysis/max_modes": [5, 6, 7]}});
+        let sweep = Sweep::read(document.to_string().as_bytes()).unwrap();
+        let mistake = |pointer: &str| Some(InputErrors(vec![InputError::new(pointer, "wrong")]));
+        let mut mistakes = RunMistakes::of(&sweep);
+        mistakes.note(0, None);
+        mistakes.note(1, mistake("/model/nodes"));
+        mistakes.note(2, mistake("/model/nodes"));
+        let told = mistakes.result().unwrap_err().0;
+        assert_eq!(told.len(), 1);
+        assert_eq!(told[0].detail, "wrong (so it is in 2 of 3 runs; the first has /analysis/max_modes = 6)");
+        let mut all = RunMistakes::of(&sweep);
+        (0..3).for_each(|run| all.note(run, mistake("/model/nodes")));
+        assert_eq!(all.result().unwrap_err().0[0].detail, "wrong");
+        assert!(RunMistakes::of(&sweep).result().is_ok());
+    }
+}
