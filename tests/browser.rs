@@ -161,6 +161,7 @@ async fn another_direction_is_followed_and_drawn_beside_the_path() {
     browser.until("document.getElementById('path-plot').data[2].customdata?.length > 1").await;
     let branch = process::get(&client, &service.url, &format!("/v1/jobs?parent={id}")).await.expect("a list");
     assert_eq!(branch["jobs"].as_array().map(Vec::len), Some(1));
+    assert_eq!(branch["jobs"][0]["progress"]["max_increments"], 20, "about as far as the path, not as far as it may");
     let begins = browser.ask("(({data: [line, , branch]}) => [line.y[line.customdata.indexOf(7)], branch.y[0]])(document.getElementById('path-plot'))").await;
     assert_eq!(begins[0], begins[1], "it begins where it leaves the other");
     browser.close(&service.url, &[]).await;

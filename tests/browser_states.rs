@@ -135,6 +135,30 @@ async fn the_structure_of_a_job_that_waits_is_drawn_as_the_model_has_it() {
     browser.close(&service.url, &[]).await;
 }
 
+/// A browser opens six connections to a host, and each of these has a stream.
+#[tokio::test]
+async fn more_jobs_than_a_browser_has_connections_are_followed_together() {
+    let Some(browser) = Browser::open().await else { return };
+    let folder = tempfile::tempdir().expect("a folder");
+    let service = Process::serve(&folder.path().join("jobs.db"), &["--workers", "0"]);
+    let client = process::client();
+    let mut ids = Vec::new();
+    for _ in 0..8 {
+        ids.push(process::submit(&client, &service.url, "/v1/jobs", &scene("klarbring")).await);
+    }
+    browser.visit(&format!("{}/?jobs={}", service.url, ids.join(","))).await;
+    browser.until("document.querySelectorAll('#lists input:checked').length === 8").await;
+    browser.until(&format!("{STATUS} === 'queued'")).await;
+    // The last to have had a turn, and the first.
+    for id in [&ids[7], &ids[0]] {
+        let cancel = client.post(format!("{}/v1/jobs/{id}/cancel", service.url)).send().await.expect("an answer");
+        assert_eq!(cancel.status(), 202);
+    }
+    browser.until("document.querySelectorAll('#lists .status.cancelled').length === 2").await;
+    browser.until(&format!("{STATUS} === 'cancelled'")).await;
+    browser.close(&service.url, &[]).await;
+}
+
 #[tokio::test]
 async fn what_has_been_read_of_a_long_path_is_drawn_while_the_rest_is_read() {
     let Some(browser) = Browser::open().await else { return };
@@ -221,6 +245,7 @@ async fn a_job_is_deleted_after_a_question_and_by_the_keyboard_alone() {
     browser.keys(ENTER).await;
     browser.until("document.getElementById('notice').textContent.startsWith('Choose a job')").await;
     assert_eq!(served.get(&format!("/v1/jobs/{id}")).await["status"], 404);
+    assert_eq!(browser.ask(focused).await, "view");
     browser.close(served.url(), &[]).await;
 }
 
@@ -244,6 +269,10 @@ async fn a_service_that_asks_for_tokens_is_given_one() {
     let asks = "document.getElementById('given-token') !== null";
     browser.visit(&format!("{}/?run&scene=klarbring", service.url)).await;
     browser.until(asks).await;
+    // No header can hold it.
+    browser.put("#given-token", "arc_\u{2022}\u{2022}").await;
+    browser.press("#use-token").await;
+    browser.until("document.querySelector('#token [role=alert]').textContent.startsWith('That is no token')").await;
     browser.put("#given-token", "arc_of_someone_else").await;
     browser.press("#use-token").await;
     browser.until("sessionStorage.length === 1").await;

@@ -42,9 +42,10 @@ export async function call(place, { method = "GET", body, headers = {}, signal }
   const token = sessionStorage.getItem(TOKEN);
   if (token) sent.Authorization = `Bearer ${token}`;
   if (body !== undefined) sent["Content-Type"] = "application/json";
+  const given = headersOf(sent);
   let answer;
   try {
-    answer = await fetch(place, { method, body, headers: sent, signal });
+    answer = await fetch(place, { method, body, headers: given, signal });
   } catch (problem) {
     if (!(problem instanceof TypeError)) throw problem;
     reached(false);
@@ -53,8 +54,20 @@ export async function call(place, { method = "GET", body, headers = {}, signal }
   reached(true);
   if (answer.ok) return answer;
   const told = await answer.json().catch(() => ({}));
-  if (answer.status === 401) asks(told.detail ?? "");
+  // Of one token that may not do this another may.
+  if (answer.status === 401 || (answer.status === 403 && token)) asks(told.detail ?? "");
   throw new Problem(answer.status, told);
+}
+
+/** No header can hold every token that was kept. */
+function headersOf(sent) {
+  try {
+    return new Headers(sent);
+  } catch {
+    sessionStorage.removeItem(TOKEN);
+    delete sent.Authorization;
+    return new Headers(sent);
+  }
 }
 
 export async function get(place, signal) {

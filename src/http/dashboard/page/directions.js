@@ -5,6 +5,9 @@ import { post } from "./api.js";
 import { button, element, fill, table } from "./dom.js";
 import { short } from "./words.js";
 
+/** Increments that a followed direction is given at least, where nothing else is asked for: else as many as the path has. */
+const FEWEST = 20;
+
 export class Directions {
   /** Tells `followed(job)` and `chosen(index)`. */
   constructor(panel, told) {
@@ -48,15 +51,22 @@ export class Directions {
     const problem = element("p", { class: "bad", role: "alert" });
     const states = (direction) => direction.contacts
       .map((status, place) => `${contacts[place] ? `${contacts[place].node}: ` : ""}${status}`).join(", ");
+    const most = element("input", {
+      type: "number", id: "follow-most", "data-key": "most", min: 1, max: path.job.progress.max_increments, step: 1,
+      value: Math.min(path.job.progress.max_increments, Math.max(FEWEST, path.index.length)),
+    });
     const follow = async (place, pressed) => {
-      pressed.disabled = true;
+      // Not disabled: focus would go.
+      if (pressed.ariaDisabled === "true") return;
+      pressed.ariaDisabled = "true";
       problem.textContent = "";
+      const asked = { increment: index, direction: place, ...(most.value ? { max_increments: Number(most.value) } : {}) };
       try {
-        this.told.followed(await post(`/v1/jobs/${path.id}/follow`, JSON.stringify({ increment: index, direction: place })));
+        this.told.followed(await post(`/v1/jobs/${path.id}/follow`, JSON.stringify(asked)));
       } catch (refused) {
         problem.textContent = [refused.message, ...(refused.errors ?? []).map(({ detail }) => detail)].join(" ");
       }
-      pressed.disabled = false;
+      pressed.ariaDisabled = "false";
     };
     const hasContacts = directions.some((direction) => direction.contacts.length > 0);
     // What can be done stands first: on a phone the last columns are out of sight.
@@ -73,6 +83,8 @@ export class Directions {
       element("p", { class: "quiet" }, "Each is a way in which the path can go on from this point, in both senses of the load. ",
         at !== null ? null
           : button("Show the structure there", () => this.told.chosen(index), { class: "plain", "data-key": "there" })),
-      table(["", "", ...(hasContacts ? ["contacts"] : []), "load rate", "dissipation rate"], rows), problem);
+      table(["", "", ...(hasContacts ? ["contacts"] : []), "load rate", "dissipation rate"], rows),
+      directions.every(({ taken }) => taken) ? null
+        : element("p", {}, element("label", {}, "Follow another for at most ", most, " increments.")), problem);
   }
 }

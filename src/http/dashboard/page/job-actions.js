@@ -1,10 +1,10 @@
 // What can be done with a job, a study or a sweep: cancel, delete, download, run again.
 
 import { call } from "./api.js";
-import { askingButton, button, element } from "./dom.js";
+import { askingButton, button, byId, element } from "./dom.js";
 import { download, downloadIncrements } from "./downloads.js";
 import { change, openModelOf, state } from "./state.js";
-import { isGoingOn } from "./words.js";
+import { isGoingOn, nameOf } from "./words.js";
 
 /** `done()` is called after what changes the lists, `failed(problem)` where something is refused. */
 export function jobActions(job, done, failed) {
@@ -16,9 +16,9 @@ export function jobActions(job, done, failed) {
     button("Increments (json)", then(() => downloadIncrements(id))),
     button("Model (json)", then(() => download(`/v1/jobs/${id}/request`, `request-${id}.json`))),
     button("Run again, changed", () => openModelOf(id)),
-    askingButton("Delete", `Delete “${job.name}” and all its increments?`, then(async () => {
+    askingButton("Delete", `Delete “${nameOf(job)}” and all its increments?`, then(async () => {
       await call(`/v1/jobs/${id}`, { method: "DELETE" });
-      change({ jobs: state().jobs.filter((other) => other !== id), at: null });
+      leaveFor({ jobs: state().jobs.filter((other) => other !== id), at: null });
     }), { class: "danger", id: "delete" }));
 }
 
@@ -33,9 +33,9 @@ export function studyActions(study, done, failed) {
       button("Table (text)", then(() => download(`/v1/studies/${id}/table.txt`, `study-${id}.txt`))),
       button("Picture (svg)", then(() => download(`/v1/studies/${id}/picture.svg`, `study-${id}.svg`))),
     ] : [],
-    askingButton("Delete", `Delete the study “${study.name}” and all that it has found?`, then(async () => {
+    askingButton("Delete", `Delete the study “${nameOf(study)}” and all that it has found?`, then(async () => {
       await call(`/v1/studies/${id}`, { method: "DELETE" });
-      change({ study: null });
+      leaveFor({ study: null });
     }), { class: "danger", id: "delete" }));
 }
 
@@ -49,10 +49,16 @@ export function sweepActions(sweep, hasFound, done, failed) {
       button("Table (text)", then(() => download(`/v1/sweeps/${id}/table.txt`, `sweep-${id}.txt`))),
       button("Picture (svg)", then(() => download(`/v1/sweeps/${id}/picture.svg`, `sweep-${id}.svg`))),
     ] : [],
-    askingButton("Delete", `Delete the sweep “${sweep.name}” and all its jobs?`, then(async () => {
+    askingButton("Delete", `Delete the sweep “${nameOf(sweep)}” and all its jobs?`, then(async () => {
       await call(`/v1/sweeps/${id}`, { method: "DELETE" });
-      change({ sweep: null });
+      leaveFor({ sweep: null });
     }), { class: "danger", id: "delete" }));
+}
+
+/** What had focus is gone: what is shown instead has it. */
+function leaveFor(changes) {
+  change(changes);
+  byId("view").focus();
 }
 
 const doing = (done, failed) => (what) => async () => {

@@ -3,7 +3,7 @@
 import { element, fill } from "./dom.js";
 import { jobActions } from "./job-actions.js";
 import { addressOfJob } from "./state.js";
-import { isGoingOn, statusWords, stopSentence } from "./words.js";
+import { isGoingOn, nameOf, statusWords, stopSentence } from "./words.js";
 
 export class JobHeading {
   /** Tells `changed()` where the lists are to be read again, `said(words)` what is refused, `titled(words)`. */
@@ -26,8 +26,9 @@ export class JobHeading {
     const kept = path.index.length;
     const all = (path.last() ?? -1) + 1;
     const many = kept === all ? `${all} increments. ` : `${all} increments, ${kept} of them kept. `;
-    this.told.titled(others ? `${job.name} and ${others} more` : job.name);
-    fill(this.summary, element("div", { class: "bar" }, element("h2", {}, job.name),
+    const name = nameOf(job);
+    this.told.titled(others ? `${name} and ${others} more` : name);
+    fill(this.summary, element("div", { class: "bar" }, element("h2", {}, name),
       element("span", { class: `status ${job.status}`, id: "status" }, job.status)),
     element("p", { id: "stop" }, many, isGoingOn(job) ? `The job ${statusWords(job.status)}.` : stopSentence(job),
       job.parent ? element("span", {}, " It follows ", element("a", {

@@ -134,7 +134,9 @@ export class JobView {
   step(by) {
     const { first } = this;
     if (!first?.index.length) return;
-    const place = Math.max(0, first.placeOf(state().at ?? first.last()));
+    const at = state().at ?? first.last();
+    // Where it is not among those that are kept, from the one before.
+    const place = Math.max(0, first.index.findLastIndex((index) => index <= at));
     change({ at: first.index[Math.min(first.index.length - 1, Math.max(0, place + by))] });
   }
 

@@ -56,14 +56,18 @@ export class PathData {
     this.stop = follow(place, this.index.at(-1) ?? null, {
       come: (increments) => this.take(increments),
       end: (job) => { this.job = job; this.told("ended", this); },
-      deleted: () => {
-        this.problem = "This job has been deleted.";
-        this.job = { ...this.job, status: "deleted" };
-        this.isConnected = true;
-        this.told("ended", this);
-      },
+      deleted: () => this.gone(),
       connected: (yes) => { this.isConnected = yes; this.told("connection", this); },
     });
+  }
+
+  /** Somebody has deleted the job: what is held stays. */
+  gone() {
+    if (this.job.status === "deleted") return;
+    this.problem = "This job has been deleted.";
+    this.job = { ...this.job, status: "deleted" };
+    this.isConnected = true;
+    this.told("ended", this);
   }
 
   page(names, after) {
@@ -129,7 +133,11 @@ export class PathData {
     if (this.whole.has(index)) return this.whole.get(index);
     const from = Math.max(-1, index - WHOLE / 2 - 1);
     const after = from < 0 ? "" : `&after=${from}`;
-    const { increments } = await get(`/v1/jobs/${this.id}/increments?limit=${WHOLE}${after}`, this.given.signal);
+    const place = `/v1/jobs/${this.id}/increments?limit=${WHOLE}${after}`;
+    const { increments } = await get(place, this.given.signal).catch((problem) => {
+      if (problem.status === 404) this.gone();
+      throw problem;
+    });
     for (const found of increments) this.whole.set(found.index, found);
     return this.whole.get(index) ?? null;
   }

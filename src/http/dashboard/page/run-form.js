@@ -19,8 +19,6 @@ const KINDS = [
   ["", "one path"], ["study", "a study: error against run time"], ["sweep", "a sweep: limit loads against what is varied"],
 ];
 const PLACES = { "": "/v1/jobs", study: "/v1/studies", sweep: "/v1/sweeps" };
-/** What is put into a text that is to be a sweep and says nothing of it yet. */
-const FIRST_SWEEP = { replace: { "/model/contacts/0/friction": [0.1, 0.2, 0.3, 0.4, 0.5] } };
 
 export class RunForm {
   /** Tells `queued(job)`, `queuedStudy(study)` and `queuedSweep(sweep)`. */
@@ -38,7 +36,12 @@ export class RunForm {
     this.shows = element("p", { class: "quiet" });
     this.settings = element("div", { id: "settings" });
     const file = element("input", {
-      type: "file", accept: ".json,application/json", onchange: (event) => this.take(event.target.files),
+      type: "file", accept: ".json,application/json", onchange: (event) => {
+        const files = [...event.target.files];
+        // The same file once more, edited meanwhile, is a change too.
+        event.target.value = "";
+        this.take(files);
+      },
     });
     const others = element("label", {}, "Or paste a model, drop a file here, or choose one: ", file);
     fill(panel, element("h2", {}, "New run"), element("div", { class: "choices" }, this.scenes.place, this.kinds), this.shows,
@@ -100,7 +103,7 @@ export class RunForm {
     const { again } = state();
     const id = jobOf(scene);
     const text = await (await call(id ? `/v1/jobs/${id}/request` : `/v1/scenes/${encodeURIComponent(scene)}`)).text();
-    Object.assign(this, { scene, again, sweep: FIRST_SWEEP, switched: null });
+    Object.assign(this, { scene, again, sweep: null, switched: null });
     this.scenes.put(text, scene);
   }
 
@@ -145,7 +148,7 @@ export class RunForm {
     if (!this.isSweep) this.sweep = request.sweep;
     // Back to what it was: that text, if nothing has been changed since.
     const now = this.switched?.now === before ? this.switched.before
-      : this.isSweep ? withMember(before, "sweep", this.sweep) : withoutMember(before, "sweep");
+      : this.isSweep ? withMember(before, "sweep", this.sweep ?? firstSweep(request)) : withoutMember(before, "sweep");
     this.switched = { before, now };
     this.scenes.adapt(now);
   }
@@ -222,6 +225,14 @@ export class RunForm {
     }
     this.button.disabled = false;
   }
+}
+
+/** What is put into a text that is to be a sweep and says nothing of it yet: the friction, or else the first stiffness. */
+function firstSweep({ model }) {
+  if (model?.contacts?.length) return { replace: { "/model/contacts/0/friction": [0.1, 0.2, 0.3, 0.4, 0.5] } };
+  const [name, stiffness] = Object.entries(model?.elements?.[0] ?? {}).find(([key]) => key.endsWith("stiffness")) ?? [];
+  if (typeof stiffness !== "number") return { replace: { "/analysis/arc_length/max": [0.1, 0.05, 0.025] } };
+  return { replace: { [`/model/elements/0/${name}`]: [0.5, 1, 2].map((times) => times * stiffness) } };
 }
 
 const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value);

@@ -104,11 +104,11 @@ export function openJobs(jobs) {
 export const openJob = (id) => openJobs([id]);
 
 export function openStudy(id) {
-  change({ jobs: [], study: id, sweep: null, at: null, run: false });
+  change({ jobs: [], study: id, sweep: null, at: null, abscissa: null, ordinate: null, run: false });
 }
 
 export function openSweep(id) {
-  change({ jobs: [], study: null, sweep: id, at: null, run: false });
+  change({ jobs: [], study: null, sweep: id, at: null, abscissa: null, ordinate: null, run: false });
 }
 
 /** The job whose model is asked for in a scene's place; null for a scene. */

@@ -2,6 +2,7 @@
 // index that came, without gap or repeat, whatever ends the connection.
 
 import { call, Problem } from "./api.js";
+import { turn } from "./stream-turns.js";
 
 const SOON = 500;
 const LATEST = 8000;
@@ -17,9 +18,21 @@ export function follow(place, after, { come, end, deleted, connected }) {
   let isOver = false;
   let last = after;
   let wait = SOON;
+  /** The connection was given up for others, and not lost. */
+  let hasPassedOn = false;
 
   async function once() {
+    const done = await turn(() => { hasPassedOn = true; given.abort(); });
+    try {
+      if (!isOver) await hold();
+    } finally {
+      done();
+    }
+  }
+
+  async function hold() {
     given = new AbortController();
+    hasPassedOn = false;
     let silence = setTimeout(() => given.abort(), SILENCE);
     try {
       const headers = { Accept: "text/event-stream" };
@@ -70,6 +83,7 @@ export function follow(place, after, { come, end, deleted, connected }) {
         }
       }
       if (isOver) return;
+      if (hasPassedOn) continue;
       connected(false);
       await new Promise((resume) => setTimeout(resume, wait));
       wait = Math.min(2 * wait, LATEST);

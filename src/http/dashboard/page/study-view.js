@@ -6,7 +6,7 @@ import { studyActions } from "./job-actions.js";
 import { axis, colourOf, CONFIGURATION, layout } from "./plot-style.js";
 import { plotlyLoaded } from "./plotly-loaded.js";
 import { follow } from "./stream.js";
-import { isGoingOn, plainWords, short, statusWords } from "./words.js";
+import { isGoingOn, nameOf, plainWords, short, statusWords } from "./words.js";
 
 /** Milliseconds between readings of a report that grows. */
 const AGAIN = 700;
@@ -45,7 +45,7 @@ export class StudyView {
       this.stop = follow(`/v1/studies/${id}`, null, {
         come: () => this.again(),
         end: (study) => { this.study = study; this.draw(); this.told.changed(); },
-        deleted: () => this.failed(new Error("This study has been deleted.")),
+        deleted: () => this.gone(),
         connected: (yes) => { this.isConnected = yes; this.told.connection(); },
       });
     }).catch((problem) => this.failed(problem));
@@ -71,13 +71,22 @@ export class StudyView {
     await this.draw();
   }
 
+  /** Somebody has deleted it: what is shown stays, and says so. */
+  async gone() {
+    this.study = { ...this.study, status: "deleted" };
+    this.isConnected = true;
+    await this.draw();
+    this.failed(new Error("This study has been deleted."));
+    this.told.changed();
+  }
+
   async draw() {
     const { study } = this;
     if (!study) return;
     const { report, plan, progress } = study;
     this.section.hidden = false;
-    this.told.shown(`Study ${study.name}`);
-    fill(this.summary, element("div", { class: "bar" }, element("h2", {}, study.name),
+    this.told.shown(`Study ${nameOf(study)}`);
+    fill(this.summary, element("div", { class: "bar" }, element("h2", {}, nameOf(study)),
       element("span", { class: `status ${study.status}`, id: "study-status" }, study.status)),
     element("p", {}, `${progress.runs} of ${progress.of} paths. The study ${statusWords(study.status)}. `, study.error ?? "",
       ` Errors are measured against the ${plan.reference_is}.`));

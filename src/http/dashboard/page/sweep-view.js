@@ -8,7 +8,7 @@ import { axis, colourOf, CONFIGURATION, layout } from "./plot-style.js";
 import { plotlyLoaded } from "./plotly-loaded.js";
 import { addressOfJob, openJobs } from "./state.js";
 import { follow } from "./stream.js";
-import { isGoingOn, plainWords, short, statusWords, verbatim } from "./words.js";
+import { isGoingOn, nameOf, plainWords, short, statusWords, verbatim } from "./words.js";
 
 /** Milliseconds between drawings while rows come in. */
 const AGAIN = 500;
@@ -73,18 +73,27 @@ export class SweepView {
     this.stop = follow(`/v1/sweeps/${id}`, after, {
       come: (rows) => { this.rows.push(...rows); this.sweep.progress.ended = this.rows.length; this.again(); },
       end: (sweep) => { this.sweep = sweep; this.draw(); this.told.changed(); },
-      deleted: () => this.told.failed(new Error("This sweep has been deleted.")),
+      deleted: () => this.gone(),
       connected: (yes) => { this.isConnected = yes; this.told.connection(); },
     });
+  }
+
+  /** Somebody has deleted it: what is shown stays, and says so. */
+  async gone() {
+    this.sweep = { ...this.sweep, status: "deleted" };
+    this.isConnected = true;
+    await this.draw();
+    this.told.failed(new Error("This sweep has been deleted."));
+    this.told.changed();
   }
 
   async draw() {
     const { sweep } = this;
     if (!sweep) return;
     this.section.hidden = false;
-    this.told.shown(sweep.name ? `Sweep ${sweep.name}` : "Sweep");
+    this.told.shown(`Sweep ${nameOf(sweep)}`);
     const { progress, parameters } = sweep;
-    fill(this.summary, element("div", { class: "bar" }, element("h2", {}, sweep.name ?? "sweep"),
+    fill(this.summary, element("div", { class: "bar" }, element("h2", {}, nameOf(sweep)),
       element("span", { class: `status ${sweep.status}`, id: "sweep-status" }, sweep.status)),
     element("p", {}, `${progress.ended} of ${progress.of} runs have ended. The sweep ${statusWords(sweep.status)}.`));
     const key = `${sweep.id} ${sweep.status} ${this.rows.length > 0}`;
@@ -99,18 +108,20 @@ export class SweepView {
     const without = rows.filter(({ first_limit: limit }) => !limit).length;
     this.words.textContent = `The load at the first limit point of each path.${without ? ` ${without} have none.` : ""}`;
     await plotlyLoaded();
-    const lines = Object.groupBy(rows, ({ values }) => JSON.stringify(values.slice(1)));
+    const isNumbers = rows.every(({ values }) => typeof values[0] === "number");
+    const inOrder = isNumbers ? rows.toSorted((a, b) => a.values[0] - b.values[0]) : rows;
+    const lines = Object.groupBy(inOrder, ({ values }) => JSON.stringify(values.slice(1)));
     const traces = Object.values(lines).map((line, place) => ({
       type: "scatter", mode: "lines+markers",
       name: line[0].values.slice(1).map((value, other) => `${verbatim(names[other + 1])} ${verbatim(shown(value))}`).join(", ") || "first limit load",
-      x: line.map(({ values }) => (typeof values[0] === "number" ? values[0] : shown(values[0]))),
+      x: line.map(({ values }) => (isNumbers ? values[0] : verbatim(shown(values[0])))),
       y: line.map(({ first_limit: limit }) => limit?.load_factor ?? null),
       text: line.map(({ run, first_limit: limit }) => `run ${run}${limit ? `, ${plainWords(limit.kind)}` : ""}`),
       hovertemplate: "%{text}<br>%{x}: %{y:.6g}<extra></extra>",
       line: { color: colourOf(place) }, marker: { size: 7 },
     }));
     await Plotly.react(this.place, traces, layout({
-      xaxis: axis(names[0]), yaxis: { ...axis("first limit load factor"), rangemode: "tozero" },
+      xaxis: { ...axis(names[0]), ...(isNumbers ? {} : { type: "category" }) }, yaxis: { ...axis("first limit load factor"), rangemode: "tozero" },
       showlegend: traces.length > 1, legend: { orientation: "h", y: 1.12 }, uirevision: sweep.id,
     }), CONFIGURATION);
     const drawn = rows.filter(({ last_index: last }) => last !== null).slice(0, OVERLAID);

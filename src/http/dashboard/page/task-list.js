@@ -6,6 +6,8 @@ import { state } from "./state.js";
 import { isGoingOn } from "./words.js";
 
 const PAGE = 40;
+/** As many as the service answers at once. */
+const LARGEST_PAGE = 200;
 /** Milliseconds between readings. */
 const AGAIN = 3000;
 /** So many times as seldom where nothing goes on. */
@@ -32,23 +34,22 @@ export class TaskList {
 
   async load(cursor = null) {
     const { status } = state();
-    const asked = new URLSearchParams({ limit: PAGE, ...(status ? { status } : {}), ...(cursor ? { cursor } : {}) });
-    const place = `/v1/${this.of}?${asked}`;
+    // Older ones that have been asked for are read again with the others.
+    const wanted = cursor ? PAGE : Math.max(PAGE, this.tasks?.length ?? 0);
+    const found = [];
+    let from = cursor;
     try {
-      const page = await get(place);
-      // The filter is another meanwhile: what was asked for after this counts.
-      if (status !== state().status) return;
-      const found = page[this.of];
-      if (cursor) {
-        this.tasks = [...this.tasks, ...found];
-        this.cursor = page.next_cursor;
-      } else {
-        // Older ones that have been asked for stay.
-        const last = found.at(-1)?.id;
-        const older = page.next_cursor ? (this.tasks ?? []).filter(({ id }) => id < last) : [];
-        this.tasks = [...found, ...older];
-        if (older.length === 0) this.cursor = page.next_cursor;
-      }
+      do {
+        const limit = Math.min(LARGEST_PAGE, wanted - found.length);
+        const asked = new URLSearchParams({ limit, ...(status ? { status } : {}), ...(from ? { cursor: from } : {}) });
+        const page = await get(`/v1/${this.of}?${asked}`);
+        // The filter is another meanwhile: what was asked for after this counts.
+        if (status !== state().status) return;
+        found.push(...page[this.of]);
+        from = page.next_cursor;
+      } while (from && found.length < wanted);
+      this.tasks = cursor ? [...this.tasks, ...found] : found;
+      this.cursor = from;
       this.problem = null;
     } catch (problem) {
       this.problem = problem;

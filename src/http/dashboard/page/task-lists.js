@@ -5,7 +5,7 @@ import {
   addressOfJob, addressOfStudy, addressOfSweep, change, isSameView, openJob, openStudy, openSweep, state, STATUSES,
 } from "./state.js";
 import { TaskList } from "./task-list.js";
-import { ago, isGoingOn } from "./words.js";
+import { ago, isGoingOn, nameOf } from "./words.js";
 
 export class TaskLists {
   constructor(place) {
@@ -76,14 +76,15 @@ function jobRow(job) {
   const { increments, max_increments: most } = job.progress;
   const others = shown.filter((id) => id !== job.id);
   const draw = element("input", {
-    type: "checkbox", checked: place >= 0, "data-key": `draw ${job.id}`, "aria-label": `draw ${job.name} with the others`,
+    type: "checkbox", checked: place >= 0, "data-key": `draw ${job.id}`, "aria-label": `draw ${nameOf(job)} with the others`,
     title: "draw with the others",
     onchange: (event) => change({
       jobs: event.target.checked ? [...others, job.id] : others, run: false, study: null, sweep: null, ...(place === 0 ? { at: null } : {}),
+      ...(study || sweep ? { abscissa: null, ordinate: null } : {}),
     }),
   });
   const link = within(addressOfJob(job.id), () => openJob(job.id),
-    { "data-key": `open ${job.id}`, "aria-current": place === 0 ? "true" : null }, job.name);
+    { "data-key": `open ${job.id}`, "aria-current": place === 0 ? "true" : null }, nameOf(job));
   const branch = job.parent ? `, branch at increment ${job.parent.increment}, direction ${job.parent.direction}` : "";
   const told = `${increments} increments, ${ago(job.created_at)}${branch}${job.sweep ? `, run ${job.sweep.run} of a sweep` : ""}`;
   return row(job, place === 0, draw, link, told, increments, most);
@@ -93,7 +94,7 @@ function studyRow(study) {
   const isChosen = state().study === study.id;
   const { runs, of } = study.progress;
   const link = within(addressOfStudy(study.id), () => openStudy(study.id),
-    { "data-key": `open ${study.id}`, "aria-current": isChosen ? "true" : null }, study.name);
+    { "data-key": `open ${study.id}`, "aria-current": isChosen ? "true" : null }, nameOf(study));
   return row(study, isChosen, element("span", {}), link, `${runs} of ${of} paths, ${ago(study.created_at)}`, runs, of);
 }
 
@@ -101,6 +102,6 @@ function sweepRow(sweep) {
   const isChosen = state().sweep === sweep.id;
   const { ended, of } = sweep.progress;
   const link = within(addressOfSweep(sweep.id), () => openSweep(sweep.id),
-    { "data-key": `open ${sweep.id}`, "aria-current": isChosen ? "true" : null }, sweep.name ?? "sweep");
+    { "data-key": `open ${sweep.id}`, "aria-current": isChosen ? "true" : null }, nameOf(sweep));
   return row(sweep, isChosen, element("span", {}), link, `${ended} of ${of} runs, ${ago(sweep.created_at)}`, ended, of);
 }

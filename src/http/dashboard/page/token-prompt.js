@@ -3,6 +3,9 @@
 import { keepToken, onTokenAsked } from "./api.js";
 import { button, element, fill } from "./dom.js";
 
+/** What a header can hold. */
+const WRITTEN = /^[!-~]+$/;
+
 export function tokenPrompt(place) {
   onTokenAsked((told) => {
     if (!place.hidden) return;
@@ -11,15 +14,21 @@ export function tokenPrompt(place) {
       type: "password", id: "given-token", autocomplete: "off", size: 40, required: true,
       onkeydown: (event) => { if (event.key === "Enter") take(); },
     });
+    const wrong = element("p", { class: "bad", role: "alert" });
     const take = () => {
-      if (!given.value.trim()) return;
-      keepToken(given.value.trim());
+      const token = given.value.trim();
+      if (!token) return;
+      if (!WRITTEN.test(token)) {
+        wrong.textContent = "That is no token of this service: they have letters, digits and plain signs alone.";
+        return;
+      }
+      keepToken(token);
       location.reload();
     };
     const label = element("label", { for: "given-token" }, "This service asks for a token");
     fill(place, element("p", {}, label, told ? `: ${told}` : "."),
       element("div", { class: "actions" }, given, button("Use it", take, { class: "main", id: "use-token" })),
-      element("p", { class: "quiet" }, "It is kept as long as this tab is open."));
+      wrong, element("p", { class: "quiet" }, "It is kept as long as this tab is open."));
     given.focus();
   });
 }

@@ -19,6 +19,8 @@ const KINDS = {
   smooth_bifurcation: "bifurcation point", contact_change: "contact change", bifurcation: "bifurcation point", end: "end",
 };
 
+/** What a job, a study or a sweep is called. */
+export const nameOf = ({ name }) => name || "(no name)";
 /** A text of a user's where Plotly would read markup and templates in it. */
 export const verbatim = (text) => String(text).replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;")
   .replaceAll("%{", "%\u200b{");
