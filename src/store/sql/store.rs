@@ -139,7 +139,10 @@ impl<E: Engine> Store for SqlStore<E> {
     async fn cancel_sweep(&self, id: Uuid) -> Result<Vec<Uuid>> {
         let at_work = self.at_length(sweeps::mark_cancelled(&self.engine, id)).await?;
         // What an end in between leaves behind is cancelled by whoever takes it.
-        while self.call(sweeps::end_some(&self.engine, id)).await? > 0 {}
+        let mut after = Uuid::nil();
+        while let Some(last) = self.call(sweeps::end_some(&self.engine, id, after)).await? {
+            after = last;
+        }
         Ok(at_work)
     }
 

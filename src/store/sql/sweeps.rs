@@ -76,12 +76,13 @@ pub(super) async fn mark_cancelled<E: Engine>(engine: &E, id: Uuid) -> Result<Ve
     at_work.iter().map(|row| rows::id(row, "id")).collect()
 }
 
-/// Ends some of the runs that wait, and answers how many. Those that others hold have been taken just now, and end as those at
-/// work do.
-pub(super) async fn end_some<E: Engine>(engine: &E, id: Uuid) -> Result<u64> {
+/// Ends some of the runs past that one that wait, and answers the last of them. Those that others hold have been taken just now,
+/// and end as those at work do.
+pub(super) async fn end_some<E: Engine>(engine: &E, id: Uuid, after: Uuid) -> Result<Option<Uuid>> {
     let end = "UPDATE jobs SET status = 'cancelled', stop_reason = 'cancelled', ended_at = {now} WHERE id IN \
-               (SELECT id FROM jobs WHERE sweep = $1 AND status = 'queued' AND cancel_requested <> 0 ORDER BY id LIMIT $2 {free})";
-    let ended = Of::<E>::run(&mut *writer(engine).await?, end, values![id, ENDED_AT_ONCE]).await?;
+               (SELECT id FROM jobs WHERE sweep = $1 AND id > $2 AND status = 'queued' AND cancel_requested <> 0 \
+               ORDER BY id LIMIT $3 {free}) RETURNING id";
+    let ended = Of::<E>::rows(&mut *writer(engine).await?, end, values![id, after, ENDED_AT_ONCE]).await?;
     engine.signals().job_changed(id);
-    Ok(ended)
+    ended.iter().map(|row| rows::id(row, "id")).try_fold(None, |last, id| Ok(last.max(Some(id?))))
 }
