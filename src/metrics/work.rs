@@ -21,7 +21,7 @@ pub enum Write {
     Append,
     /// A lease is prolonged.
     Renew,
-    /// A job's end is stored.
+    /// A job's end is stored, with its last increments.
     Finish,
 }
 
