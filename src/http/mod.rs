@@ -2,9 +2,10 @@
 //!
 //! [`listen`] takes connections, [`access`] says who may call, [`problem`] is the one edge where errors become answers,
 //! [`extract`], [`parameters`] and [`accept`] read requests, [`view`], [`view_study`] and [`view_sweep`] hold what is
-//! answered, [`tag`] spares it to those who have it, [`tasks`] and [`findings`] are what several calls share; [`jobs`], [`request`], [`follow`], [`increments`], [`columns`], [`exact`], [`stream`], [`csv`],
-//! [`studies`], [`sweeps`], [`scenes`], [`probes`], [`metrics`] and [`pages`] are the calls, [`dashboard`] what a browser sees,
-//! [`document`] their OpenAPI description, [`request_id`] what names each request, [`server`] all of it, and going down in good order.
+//! answered, [`tag`] spares it to those who have it, [`tasks`] and [`findings`] are what several calls share; [`jobs`],
+//! [`request`], [`follow`], [`increments`], [`columns`], [`exact`], [`stream`], [`csv`], [`studies`], [`sweeps`], [`scenes`],
+//! [`probes`], [`metrics`] and [`pages`] are the calls, [`dashboard`] what a browser sees, [`document`] their OpenAPI
+//! description, [`request_id`] what names each request, [`server`] all of it, and going down in good order.
 //! Called by `command`; knows `jobs` and, for reading, `store`.
 
 pub mod accept;

@@ -68,7 +68,8 @@ impl Allowance {
     }
 }
 
-/// Stores increments, but for the last, until the solver ends or one of the reasons above stops it; the lease is prolonged on the way.
+/// Stores increments, but for the last, until the solver ends or one of the reasons above stops it; the lease is prolonged on
+/// the way.
 pub async fn drain(
     jobs: &Jobs,
     claim: &Claim,

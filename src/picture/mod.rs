@@ -2,7 +2,8 @@
 //!
 //! [`path`] is load against displacement, [`study`] error against run time (or what is varied), [`sweep`] limit load against what is
 //! varied; [`findings`] is what both of the latter can be read as. [`shapes`] is what all are drawn with, [`chart`] two of them
-//! into, [`axis`] finds ranges and tick texts, [`labels`] room for letters. Called by `command` and `http`; knows `path`, `model`, `studies` and `sweeps`.
+//! into, [`axis`] finds ranges and tick texts, [`labels`] room for letters. Called by `command` and `http`;
+//! knows `path`, `model`, `studies` and `sweeps`.
 
 mod axis;
 mod chart;

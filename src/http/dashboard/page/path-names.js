@@ -3,7 +3,7 @@
 
 import { colourOf, dashOf } from "./plot-style.js";
 import { named } from "./points.js";
-import { differences } from "./words.js";
+import { differences, nameOf } from "./words.js";
 
 /** Characters at the end of a job's id, where ids of jobs queued together differ. */
 const SHORT = 6;
@@ -39,7 +39,7 @@ export class PathLooks {
 /** A name for each of the paths, with what is not the same in all of them, and the end of the id where that is not enough. */
 export function pathNames(paths) {
   const apart = differences(paths.map(({ request }) => request));
-  const names = paths.map((path, place) => [path.job.name, apart[place], branchWords(path, paths)].filter(Boolean).join(", "));
+  const names = paths.map((path, place) => [nameOf(path.job), apart[place], branchWords(path, paths)].filter(Boolean).join(", "));
   return names.map((name, place) => (names.indexOf(name) === names.lastIndexOf(name) ? name
     : `${name}, job …${paths[place].id.slice(-SHORT)}`));
 }
