@@ -54,6 +54,8 @@ pub(super) struct Attempt {
     pub passed: Vec<Watch>,
     /// The points that it is made of, where something is passed.
     pub stretch: Option<Stretch>,
+    /// What is zero at the farthest point, where that was solved for.
+    pub met: Option<Watch>,
 }
 
 /// Work done, whether it led to a point or not.
@@ -129,7 +131,7 @@ impl Start<'_> {
         self.settle_by(system, guess, place, &mut None, work)
     }
 
-    fn settle_by(
+    pub(super) fn settle_by(
         &self,
         system: ModeSystem<'_>,
         guess: State,
@@ -230,26 +232,32 @@ impl Start<'_> {
         if turn > MOST_TURN {
             return Err(Refused::Turned(turn));
         }
-        let mut watches = watch::of_mode(self.loading, self.modes, self.state, self.rate);
-        if load_sign != 0.0 {
-            watches.push(Watch::LoadRate { sign: load_sign });
-        }
-        watches.extend(ends.iter().map(|end| Watch::End(*end)));
+        let watches = self.watches(ends, load_sign);
         let mut passed = self.passed(&watches, &reached);
         let mut stretch = (!passed.is_empty()).then(|| Stretch::new(self, &reached, serving.take()));
         if stretch.is_none() {
             (passed, stretch) = self.dips(&watches, &mut reached, serving, work)?;
         }
-        Ok(Attempt { reached, watches, passed, stretch })
+        Ok(Attempt { reached, watches, passed, stretch, met: None })
+    }
+
+    /// What may end a step.
+    pub(super) fn watches(&self, ends: &[End], load_sign: f64) -> Vec<Watch> {
+        let mut watches = watch::of_mode(self.loading, self.modes, self.state, self.rate);
+        if load_sign != 0.0 {
+            watches.push(Watch::LoadRate { sign: load_sign });
+        }
+        watches.extend(ends.iter().map(|end| Watch::End(*end)));
+        watches
     }
 
     /// Ends a step at the first event in it.
     pub(super) fn stop_at_event(&self, tried: Attempt, ends: &[End], work: &mut Work) -> Result<Reached, Refused> {
-        let Attempt { mut reached, watches, mut passed, mut stretch } = tried;
+        let Attempt { mut reached, watches, mut passed, mut stretch, met } = tried;
         // How hard the step is shows in its first solve.
         let hardness = reached.corrected.iterations_to_small;
         // Each round finds the first zero of one quantity; whatever else is negative there came before it.
-        let mut event = None;
+        let mut event = met;
         while let Some(stretch) = &mut stretch
             && let Some(&watch) = self.earliest(&passed, stretch, |watch| self.zero(watch, &reached))
         {
@@ -307,11 +315,11 @@ impl Start<'_> {
         drift.or_else(|| before.cloned())
     }
 
-    fn value(&self, watch: Watch, state: &State, rate: &Rate) -> f64 {
+    pub(super) fn value(&self, watch: Watch, state: &State, rate: &Rate) -> f64 {
         watch.value(self.loading, self.modes, state, rate)
     }
 
-    fn zero(&self, watch: Watch, reached: &Reached) -> f64 {
+    pub(super) fn zero(&self, watch: Watch, reached: &Reached) -> f64 {
         PASSED * self.scale(watch, reached)
     }
 
@@ -320,7 +328,7 @@ impl Start<'_> {
         watch.scale(self.loading, &reached.corrected.state, force_scale)
     }
 
-    fn passed(&self, watches: &[Watch], reached: &Reached) -> Vec<Watch> {
+    pub(super) fn passed(&self, watches: &[Watch], reached: &Reached) -> Vec<Watch> {
         let negative = |watch: &Watch| {
             let value = self.value(*watch, &reached.corrected.state, &reached.rate);
             value < 0.0 && value < -self.zero(*watch, reached)
@@ -342,7 +350,7 @@ impl Start<'_> {
 
     /// Looks where a quantity may have dipped inside the step; shortens the step to that place if it did, and answers what
     /// is negative there with the points reached.
-    fn dips(
+    pub(super) fn dips(
         &self,
         watches: &[Watch],
         reached: &mut Reached,

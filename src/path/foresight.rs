@@ -5,16 +5,34 @@
 //! place. A step that ends just past it needs less of Newton's method, and its factorisation serves at the change. Where
 //! nothing has changed by then its end is a point like others, and the next step is as long as this one was to be.
 
-use super::advance::PASSED;
+use super::advance::{Attempt, MOST_TURN, PASSED, Start, Work};
 use super::at_once::may_join_at;
+use super::interpolation::Placed;
+use super::locate::Stretch;
+use super::mode_system::ModeSystem;
+use super::newton::Place;
+use super::scene::End;
 use super::stepping::quantised;
 use super::tracer::Path;
-use super::watch;
+use super::watch::{self, Watch};
 
 /// How far past the change the step is to end, over the way there: rates are not all that tells where it is.
 const PAST: f64 = 1.25;
+/// The change is where it was foreseen if it is not nearer than this part of the way there, and not past that end.
+const LEAST_OF_WAY: f64 = 0.5;
 /// No step is cut to less than this part of what it was to be.
 const LEAST: f64 = 1.0 / 256.0;
+
+/// A contact change that the rates foresee.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Foreseen {
+    /// What falls to zero there.
+    pub watch: Watch,
+    /// Arc length up to there.
+    pub way: f64,
+    /// To just past it.
+    pub step: f64,
+}
 
 impl Path<'_> {
     /// A shorter step that ends just past the change that comes first. `may_join`: those that may be taken together are
@@ -22,7 +40,7 @@ impl Path<'_> {
     ///
     /// Only where matrices are sparse: the factorisations that are saved of a dense one cost as little as the points that
     /// come on top.
-    pub(super) fn step_to_foreseen_change(&self, step: f64, may_join: bool) -> Option<f64> {
+    pub(super) fn step_to_foreseen_change(&self, step: f64, may_join: bool) -> Option<Foreseen> {
         let (loading, here) = (self.loading(), &self.at.here);
         loading.structure.layout()?;
         let rate = here.rate.as_ref()?;
@@ -40,6 +58,45 @@ impl Path<'_> {
             return None;
         }
         let part = PAST * way / step;
-        (part < 1.0).then(|| step * quantised(part.max(LEAST)))
+        (part < 1.0).then(|| Foreseen { watch: first, way, step: step * quantised(part.max(LEAST)) })
+    }
+}
+
+impl Start<'_> {
+    /// The step that ends at a change foreseen, which is solved for at once; `None` where that leads elsewhere.
+    pub(super) fn meet_change(
+        &self,
+        foreseen: Foreseen,
+        before: Option<&Placed>,
+        ends: &[End],
+        load_sign: f64,
+        work: &mut Work,
+    ) -> Option<Attempt> {
+        let Foreseen { watch, way, step } = foreseen;
+        let system = ModeSystem::new(self.loading, self.modes, self.state);
+        if system.has_tracks() {
+            return None;
+        }
+        let guess = before.and_then(|before| before.foresee(self.state, self.rate, way));
+        let guess = guess.unwrap_or_else(|| self.state.advanced(self.rate, way));
+        let scale = watch.scale(self.loading, &guess, self.force_scale);
+        let place = Place::Zero { watch, scale, towards: self.rate };
+        let mut serving = None;
+        let mut reached = self.settle_by(system, guess, place, &mut serving, work).ok()?;
+        let state = &reached.corrected.state;
+        let falls = watch.slope(self.loading, state, &reached.rate).is_some_and(|slope| slope < 0.0);
+        let is_zero = self.value(watch, state, &reached.rate).abs() <= self.zero(watch, &reached);
+        let turn = self.rate.product(&reached.rate).clamp(-1.0, 1.0).acos();
+        if !falls || !is_zero || turn > MOST_TURN || reached.step > step || reached.step < LEAST_OF_WAY * way {
+            return None;
+        }
+        let watches = self.watches(ends, load_sign);
+        let others: Vec<Watch> = watches.iter().copied().filter(|other| *other != watch).collect();
+        let mut passed = self.passed(&others, &reached);
+        let mut stretch = (!passed.is_empty()).then(|| Stretch::new(self, &reached, serving.take()));
+        if stretch.is_none() {
+            (passed, stretch) = self.dips(&others, &mut reached, serving, work).ok()?;
+        }
+        Some(Attempt { reached, watches, passed, stretch, met: Some(watch) })
     }
 }

@@ -5,6 +5,7 @@ use super::mode_system::{Iterate, Kind, ModeSystem, Role};
 use super::singular::UNCERTAIN;
 use super::state::{Rate, State};
 use super::track;
+use super::watch::Watch;
 use crate::contact::Mode;
 use crate::contact::vector::{Vector, add, dot};
 use crate::linear_algebra::sparse::SparseFactorisation;
@@ -20,6 +21,8 @@ pub enum Place<'a> {
     Load(f64),
     /// `u = value` at a degree of freedom.
     Displacement { freedom: usize, value: f64 },
+    /// Where a watched quantity is zero that has a slope, over its scale; `towards` is about the path's direction.
+    Zero { watch: Watch, scale: f64, towards: &'a Rate },
 }
 
 /// A converged point and what it took.
@@ -122,6 +125,8 @@ impl ModeSystem<'_> {
         // Near the solution the last factorisation serves on: what it is off by is as small as the error was.
         let mut last_factorisation = serving.take();
         let (mut factorisations, mut reused) = (0, false);
+        // With the last factorisation, where the place is no equation of its own.
+        let mut along = None;
         loop {
             let (largest, forces) = self.residual(&iterate, &mut values, &mut force);
             let scale = forces.max(force_scale).max(NO_FORCE);
@@ -204,11 +209,16 @@ impl ModeSystem<'_> {
             if !reused {
                 last_factorisation = self.factorise(&iterate, Kind::Increment, put_place);
                 factorisations += 1;
+                along = None;
+            }
+            let left_of_place = values[last];
+            if let Place::Zero { .. } = place {
+                values[last] = 0.0;
             }
             let factorisation = last_factorisation.as_ref().ok_or(Failure::Singular)?;
             // What one from elsewhere leaves over is more than rounding anyway.
             let solved = if reused { factorisation.solve_once(&mut values) } else { factorisation.solve(&mut values) };
-            if !solved {
+            if !solved || !self.bring_to_zero(place, left_of_place, &iterate, factorisation, &mut along, &mut values) {
                 return Err(Failure::Singular);
             }
             (before, correction) = (correction, values.rows(0, self.loading.structure.unknowns() + 1).norm());
@@ -223,7 +233,7 @@ impl ModeSystem<'_> {
         let Some((_, mut iterate, figures)) = best else { return Err(Failure::NotConverged) };
         let wrong_side = match place {
             Place::ArcLength { from, step } => iterate.state.distance(from) < 0.5 * step,
-            Place::Load(_) | Place::Displacement { .. } => false,
+            Place::Load(_) | Place::Displacement { .. } | Place::Zero { .. } => false,
         };
         if wrong_side {
             return Err(Failure::NotConverged);
@@ -241,6 +251,35 @@ impl ModeSystem<'_> {
             left_over: figures.left_over,
             force_scale: figures.force_scale,
         })
+    }
+
+    /// Where the place is a zero, a correction goes on along the path until the quantity is zero at first order: its
+    /// gradient, which may have entries at forces that the factorisation eliminates, need not be a row (bordering, as H. B.
+    /// Keller has it). `along` is the way with this factorisation. `false` where the quantity does not change along it.
+    fn bring_to_zero(
+        &self,
+        place: Place<'_>,
+        left_over: f64,
+        iterate: &Iterate,
+        factorisation: &SystemFactorisation,
+        along: &mut Option<(DVector<f64>, f64)>,
+        correction: &mut DVector<f64>,
+    ) -> bool {
+        let Place::Zero { watch, scale, .. } = place else { return true };
+        let slope = |values: &DVector<f64>| {
+            let rate = self.rate_at(iterate, values, Kind::Increment);
+            watch.slope(self.loading, &iterate.state, &rate).map(|slope| slope / scale)
+        };
+        if along.is_none() {
+            let mut values = self.bordering();
+            if !factorisation.solve_once(&mut values) {
+                return false;
+            }
+            *along = slope(&values).filter(|slope| slope.is_finite() && *slope != 0.0).map(|slope| (values, slope));
+        }
+        let (Some((way, by_way)), Some(by_correction)) = (along, slope(correction)) else { return false };
+        correction.axpy((left_over - by_correction) / *by_way, way, 1.0);
+        true
     }
 
     /// The largest equilibrium residual over the forces of its own row, of the rows where these are far below the force

@@ -159,7 +159,7 @@ impl Path<'_> {
             _ => self.program_joins_changes(rate, step, &accepted.reached.corrected.modes),
         });
         if sought.jump != Some(step) {
-            let was_cut = sought.foreseen == Some(step) && factor >= 1.0;
+            let was_cut = sought.foreseen.is_some_and(|foreseen| foreseen.step == step) && factor >= 1.0;
             let next = if was_cut { sought.ordinary } else { step * factor };
             self.at.step = next.clamp(least, most);
         }

@@ -5,6 +5,7 @@ use super::at_once::Joined;
 use super::bound;
 use super::contact_law;
 use super::critical::{self, Crossing, Located};
+use super::foresight::Foreseen;
 use super::progress::Here;
 use super::singular::{self, Change, Signature};
 use super::state::Rate;
@@ -25,8 +26,8 @@ pub(super) struct Sought {
     pub ordinary: f64,
     /// To the next event of a path that is straight up to there.
     pub jump: Option<f64>,
-    /// To just past the next contact change that the rates foresee.
-    pub foreseen: Option<f64>,
+    /// The next contact change that the rates foresee.
+    pub foreseen: Option<Foreseen>,
     /// Contact changes in it may be taken together.
     pub may_join: bool,
 }
@@ -34,7 +35,7 @@ pub(super) struct Sought {
 impl Sought {
     /// The first length to try.
     pub fn step(&self) -> f64 {
-        self.jump.or(self.foreseen).unwrap_or(self.ordinary)
+        self.jump.or(self.foreseen.map(|foreseen| foreseen.step)).unwrap_or(self.ordinary)
     }
 }
 
@@ -105,7 +106,10 @@ impl Path<'_> {
             (!tried.passed.is_empty()).then_some(tried)
         });
         let before = here.before.as_ref();
-        let tried = next.map_or_else(|| start.attempt(step, before, None, ends, here.load_sign, work), Ok);
+        let foreseen = sought.foreseen.filter(|foreseen| foreseen.step == step && next.is_none());
+        let met = foreseen.and_then(|foreseen| start.meet_change(foreseen, before, ends, here.load_sign, work));
+        let ordinary = || start.attempt(step, before, None, ends, here.load_sign, work);
+        let tried = met.or(next).map_or_else(ordinary, Ok);
         let mut joined = None;
         let outcome = tried.and_then(|tried| {
             let first = may_join.then(|| start.changes_to_join(&tried)).flatten();

@@ -94,6 +94,12 @@ impl ModeSystem<'_> {
                 }
                 state.displacement[freedom] - value
             }
+            Place::Zero { watch, scale, towards } => {
+                if let Some(matrix) = matrix {
+                    self.border(matrix, towards);
+                }
+                watch.value(self.loading, self.modes, state, towards) / scale
+            }
         }
     }
 
