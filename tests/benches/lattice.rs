@@ -90,7 +90,7 @@ fn compare(arches: &[LatticeArch]) {
             touched: None,
         })
         .collect();
-    while runs.iter_mut().fold(false, |any, run| run.advance() || any) {}
+    while runs.iter_mut().map(Run::advance).filter(|goes_on| *goes_on).count() > 0 {}
     let without = runs[0].times();
     runs.iter().for_each(|run| run.print(&without));
 }
