@@ -67,6 +67,11 @@ pub enum Failure {
 
 /// Newton iterations before a step is given up.
 const MOST_ITERATIONS: u64 = 16;
+/// Iterations of it, each with a factorisation of its own, whose corrections are no smaller than those before: a method that
+/// converges has one on its way in at the most.
+const MOST_RISES: u64 = 2;
+/// A correction above this part of the one before has not fallen. At a singular point each is half of it.
+const RISES: f64 = 0.9;
 /// Relative residual that an accepted point must have.
 pub const ACCEPTED_RESIDUAL: f64 = 1e-11;
 /// Forces (dimensionless) below this are none: what rounding leaves where nothing is loaded.
@@ -114,6 +119,7 @@ impl ModeSystem<'_> {
         let mut force = vec![0.0; self.loading.structure.freedoms()];
         let mut iterations = 0;
         let mut iterations_to_small = None;
+        let mut rises = 0;
         let mut best: Option<(f64, Iterate, Figures)> = None;
         // Sizes of the last correction and the one before.
         let (mut correction, mut before) = (f64::INFINITY, f64::INFINITY);
@@ -222,6 +228,12 @@ impl ModeSystem<'_> {
                 return Err(Failure::Singular);
             }
             (before, correction) = (correction, values.rows(0, self.loading.structure.unknowns() + 1).norm());
+            if !reused && correction > SMALL && before.is_finite() && correction > RISES * before {
+                rises += 1;
+                if rises == MOST_RISES {
+                    return Err(Failure::NotConverged);
+                }
+            }
             if correction <= SMALL {
                 small_by_correction.get_or_insert(iterations);
             }

@@ -42,9 +42,11 @@ impl SparseFactorisation {
             if !self.solve_once(&mut correction) {
                 return None;
             }
+            // What is left of borders follows from the unknowns, and is of another size.
+            let change = correction.rows(0, matrix.pattern.size()).amax();
             match round {
-                0 => first = correction.amax(),
-                1 if correction.amax() > NEAR * first => return None,
+                0 => first = change,
+                1 if change > NEAR * first => return None,
                 _ => {}
             }
             least = least.min(error);
