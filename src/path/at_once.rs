@@ -28,6 +28,7 @@ use super::advance::{Attempt, COINCIDING, MOST_TURN, PASSED, Reached, Start, Wor
 use super::loading::Loading;
 use super::mode_system::ModeSystem;
 use super::newton::{Corrected, Place};
+use super::scene::End;
 use super::singular::{Signature, negative_eigenvalues};
 use super::standing::{Standing, standings};
 use super::state::{Rate, State};
@@ -78,6 +79,14 @@ pub(super) struct Joined {
     pub unchanged: Rate,
 }
 
+/// About where a step would end if no contact changed.
+#[derive(Clone, Copy)]
+struct Far<'a> {
+    state: &'a State,
+    rate: &'a Rate,
+    step: f64,
+}
+
 /// The contact that touches or lifts off where a quantity is zero, if it has no friction and its node no other contact.
 fn smooth(loading: Loading<'_>, watch: Watch) -> Option<usize> {
     let (Watch::Gap(contact) | Watch::Normal(contact)) = watch else { return None };
@@ -97,28 +106,72 @@ pub(super) fn may_join_at(loading: Loading<'_>, modes: &[Mode], watch: Watch) ->
 }
 
 impl Start<'_> {
-    /// The contacts that change in a step, if they are several and may be taken together.
+    /// The contacts that change in a step that was tried, if they are several and may be taken together.
     pub(super) fn changes_to_join(&self, tried: &Attempt) -> Option<BTreeSet<usize>> {
-        let turns = tried.watches.iter().any(|watch| matches!(watch, Watch::LoadRate { .. }));
-        if tried.passed.len() < 2 || !turns || !self.may_join() {
-            return None;
-        }
-        tried.passed.iter().map(|watch| self.smooth(*watch)).collect()
+        self.to_join(&tried.watches, &tried.passed)
     }
 
-    /// The end of a step that passes these contact changes, if they can be taken together.
+    /// The end of a step that was tried and passes these contact changes, if they can be taken together.
     pub(super) fn join_changes(&self, first: &BTreeSet<usize>, tried: &Attempt, work: &mut Work) -> Option<Joined> {
-        let Attempt { reached: far, watches, .. } = tried;
+        let Attempt { reached, watches, .. } = tried;
+        self.join(
+            first,
+            Far { state: &reached.corrected.state, rate: &reached.rate, step: reached.step },
+            watches,
+            work,
+        )
+    }
+
+    /// The same of a step in which the rates foresee such changes, which is not tried any further then. `None` where they
+    /// foresee none, `Some(None)` where they cannot be taken together.
+    pub(super) fn join_foreseen(
+        &self,
+        step: f64,
+        ends: &[End],
+        load_sign: f64,
+        work: &mut Work,
+    ) -> Option<Option<Joined>> {
+        self.loading.structure.layout()?;
+        let watches = self.watches(ends, load_sign);
+        let passes = |watch: &Watch| {
+            let slope = watch.slope(self.loading, self.state, self.rate).filter(|slope| *slope < 0.0);
+            slope.is_some_and(|slope| self.value(*watch, self.state, self.rate) < -slope * step)
+        };
+        let foreseen: Vec<Watch> = watches.iter().copied().filter(passes).collect();
+        self.to_join(&watches, &foreseen)?;
+        let system = ModeSystem::new(self.loading, self.modes, self.state);
+        let place = Place::ArcLength { from: self.state, step };
+        let (state, factorisation) = system.iterated_once(self.state.advanced(self.rate, step), place, work)?;
+        let rate = system.direction_about(&state, &factorisation, self.rate)?;
+        let negative = |watch: &Watch| {
+            self.value(*watch, &state, &rate) < -PASSED * watch.scale(self.loading, &state, self.force_scale)
+        };
+        let passed: Vec<Watch> = watches.iter().copied().filter(negative).collect();
+        let first = self.to_join(&watches, &passed)?;
+        Some(self.join(&first, Far { state: &state, rate: &rate, step }, &watches, work))
+    }
+
+    fn to_join(&self, watches: &[Watch], passed: &[Watch]) -> Option<BTreeSet<usize>> {
+        let turns = watches.iter().any(|watch| matches!(watch, Watch::LoadRate { .. }));
+        if passed.len() < 2 || !turns || !self.may_join() {
+            return None;
+        }
+        passed.iter().map(|watch| self.smooth(*watch)).collect()
+    }
+
+    fn join(&self, first: &BTreeSet<usize>, far: Far<'_>, watches: &[Watch], work: &mut Work) -> Option<Joined> {
         // What holds at neither end is not worth the solves.
         let negative = self.negative_where_held_or_free(first, self.state)?;
         let mut serving = None;
-        let (modes, corrected, asked) = self.end_modes(first, negative, far, &mut serving, work)?;
+        let (modes, corrected, asked) = self.end_modes(first, far, &mut serving, work)?;
+        // What holds with more contacts held or free holds with fewer.
+        if asked.len() > first.len() && self.negative_where_held_or_free(&asked, self.state) != Some(negative) {
+            return None;
+        }
         let end = Start { modes: &modes, ..*self };
         let system = ModeSystem::new(self.loading, &modes, self.state);
-        let hardness = far.corrected.iterations_to_small;
         let place = Place::ArcLength { from: self.state, step: far.step };
-        let mut reached = end.directed(system, corrected, place, &mut serving, work).ok()?;
-        reached.corrected.iterations_to_small = hardness;
+        let reached = end.directed(system, corrected, place, &mut serving, work).ok()?;
         let mut restless: BTreeSet<usize> =
             (0..modes.len()).filter(|contact| modes[*contact] != self.modes[*contact]).collect();
         let changes = restless.len();
@@ -127,7 +180,6 @@ impl Start<'_> {
             return None;
         }
         let same = |state: &State| self.negative_where_held_or_free(&restless, state) == Some(negative);
-        // What holds with more contacts held or free holds with fewer.
         if (!restless.is_subset(&asked) && !same(self.state)) || !same(&reached.corrected.state) {
             return None;
         }
@@ -147,18 +199,18 @@ impl Start<'_> {
     }
 
     /// The modes that hold at the end of the step, and the point there, with the `last` factorisation, and all contacts
-    /// that were changed on the way to them: with these held and free the tangent at the start has the `negative`
-    /// eigenvalues that it has with the `first` of them.
+    /// that were changed on the way to them, the `first` of them as the mode just now has it.
     fn end_modes(
         &self,
         first: &BTreeSet<usize>,
-        negative: usize,
-        far: &Reached,
+        far: Far<'_>,
         last: &mut Option<SystemFactorisation>,
         work: &mut Work,
     ) -> Option<(Vec<Mode>, Corrected, BTreeSet<usize>)> {
         let mut modes = self.modes.to_vec();
-        let mut state = far.corrected.state.clone();
+        let mut state = far.state.clone();
+        // In most modes on the way one iteration tells what breaks them.
+        let mut roughly = self.loading.structure.layout().is_some();
         let mut wrong: Vec<usize> = first.iter().copied().collect();
         let mut asked = first.clone();
         let mut tried = BTreeSet::new();
@@ -167,34 +219,46 @@ impl Start<'_> {
                 let held = modes[*contact].is_active();
                 modes[*contact] = if held { Mode::Free } else { Mode::Slip { direction: [0.0; 3] } };
             }
-            if !tried.insert(modes.iter().map(|mode| mode.is_active()).collect::<Vec<bool>>()) {
-                return None;
+            if !tried.insert((roughly, modes.iter().map(|mode| mode.is_active()).collect::<Vec<bool>>())) {
+                if !roughly {
+                    return None;
+                }
+                roughly = false;
             }
             let system = ModeSystem::new(self.loading, &modes, self.state);
             let place = Place::ArcLength { from: self.state, step: far.step };
+            if roughly {
+                state = system.iterated_once(state, place, work)?.0;
+                wrong = self.broken(&modes, &state, self.force_scale)?;
+                asked.extend(&wrong);
+                if !wrong.is_empty() {
+                    continue;
+                }
+                roughly = false;
+            }
             // Each mode has equations of its own.
             *last = None;
             let corrected = system.correct_from(system.iterate(state), place, self.force_scale, last).ok()?;
             work.newton_iterations += corrected.iterations;
             work.factorisations += corrected.factorisations;
             let forces = self.force_scale.max(corrected.force_scale);
-            let broken =
-                watch::of_mode(self.loading, &modes, &corrected.state, self.rate).into_iter().filter(|watch| {
-                    let value = watch.value(self.loading, &modes, &corrected.state, self.rate);
-                    value < -PASSED * watch.scale(self.loading, &corrected.state, forces)
-                });
-            wrong = broken.map(|watch| self.smooth(watch)).collect::<Option<Vec<usize>>>()?;
+            wrong = self.broken(&modes, &corrected.state, forces)?;
             if wrong.is_empty() {
                 return Some((modes, corrected, asked));
             }
-            let known = asked.len();
             asked.extend(&wrong);
-            if asked.len() > known && self.negative_where_held_or_free(&asked, self.state) != Some(negative) {
-                return None;
-            }
             state = corrected.state;
         }
         None
+    }
+
+    /// The contacts whose modes do not hold at a state; `None` where some other quantity is negative.
+    fn broken(&self, modes: &[Mode], state: &State, forces: f64) -> Option<Vec<usize>> {
+        let broken = watch::of_mode(self.loading, modes, state, self.rate).into_iter().filter(|watch| {
+            let value = watch.value(self.loading, modes, state, self.rate);
+            value < -PASSED * watch.scale(self.loading, state, forces)
+        });
+        broken.map(|watch| self.smooth(watch)).collect()
     }
 
     /// Whether no stage ends within the step or at its end, the load rate keeps its sign, the other contacts keep their

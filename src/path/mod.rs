@@ -54,6 +54,7 @@ mod exhaustive;
 mod folded;
 mod follow;
 mod foresight;
+mod glance;
 mod going_on;
 mod history;
 mod incoming;

@@ -1,6 +1,6 @@
 //! One try of a step: how far its mode goes, and whether what is reached can be a point of the path.
 
-use super::advance::{Reached, Refused, Start, Work};
+use super::advance::{Attempt, Reached, Refused, Start, Work};
 use super::at_once::Joined;
 use super::bound;
 use super::contact_law;
@@ -58,6 +58,21 @@ impl Tries {
     }
 }
 
+/// Where a step ends.
+enum Ending {
+    Joined(Joined),
+    AtEvent(Reached),
+}
+
+impl Ending {
+    fn reached(&self) -> &Reached {
+        match self {
+            Self::Joined(joined) => &joined.reached,
+            Self::AtEvent(reached) => reached,
+        }
+    }
+}
+
 /// What a try leads to.
 pub(super) struct Tried {
     pub reached: Reached,
@@ -97,51 +112,31 @@ impl Path<'_> {
             force_scale: self.at.totals.force_scale,
         };
         let ends = &self.scene.stages[self.at.stage].ends;
-        let may_join = sought.may_join && sought.jump != Some(step);
-        let next = tries.next.take().filter(|next| *next < MOST_OF_STEP * step && !(may_join && start.may_join()));
-        let next = next.and_then(|next| {
-            let mut serving = None;
-            tries.known = tries.known.or_else(|| Signature::past_start(&start, next, &mut serving, work));
-            let tried = start.attempt(next, None, serving, ends, here.load_sign, work).ok()?;
-            (!tried.passed.is_empty()).then_some(tried)
-        });
-        let before = here.before.as_ref();
-        let foreseen = sought.foreseen.filter(|foreseen| foreseen.step == step && next.is_none());
-        let met = foreseen.and_then(|foreseen| start.meet_change(foreseen, before, ends, here.load_sign, work));
-        let ordinary = || start.attempt(step, before, None, ends, here.load_sign, work);
-        let tried = met.or(next).map_or_else(ordinary, Ok);
-        let mut joined = None;
-        let outcome = tried.and_then(|tried| {
-            let first = may_join.then(|| start.changes_to_join(&tried)).flatten();
-            joined = first.as_ref().and_then(|first| start.join_changes(first, &tried, work));
-            tries.joined = first.map(|_| joined.is_some());
-            match &joined {
-                Some(joined) => Ok(joined.reached.clone()),
-                None => start.stop_at_event(tried, ends, work),
-            }
-        });
+        let outcome = self.end_of_step(&start, step, sought, tries, work);
         let is_lost = match &outcome {
-            Ok(reached) => matches!(reached.event, Some(Watch::End(_))) && reached.determinant.is_none(),
+            Ok(ending) => {
+                let reached = ending.reached();
+                matches!(reached.event, Some(Watch::End(_))) && reached.determinant.is_none()
+            }
             Err(refused) => matches!(refused, Refused::Newton(_)),
         };
         let bounded =
             is_lost.then(|| bound::beside_singular(&start, step, ends, here.load_sign, tries.known, work)).flatten();
-        let back = outcome.as_ref().ok().and_then(|reached| self.way_back(&start, reached, work));
+        let back = outcome.as_ref().ok().and_then(|ending| self.way_back(&start, ending.reached(), work));
         let tried = match (outcome, back, bounded) {
             (Ok(_), Some(back), _) => Tried { returned: true, ..Tried::plain(back, None, None) },
             (_, _, Some((reached, crossing, signature))) => Tried::plain(reached, crossing, signature),
-            (Ok(reached), None, None) => match joined {
-                Some(Joined { changes, signature, unchanged, .. }) => {
-                    Tried { joined: Some((changes, unchanged)), ..Tried::plain(reached, None, signature) }
-                }
-                None => {
-                    let known = tries.known.or_else(|| Signature::past_start(&start, reached.step, &mut None, work));
-                    tries.known = known;
-                    let may_refuse = tries.unresolved < MOST_UNRESOLVED;
-                    let (reached, crossing, signature) = first_crossing(&start, known, reached, may_refuse, work)?;
-                    Tried::plain(reached, crossing, signature)
-                }
-            },
+            (Ok(Ending::Joined(joined)), None, None) => {
+                let Joined { reached, changes, signature, unchanged } = joined;
+                Tried { joined: Some((changes, unchanged)), ..Tried::plain(reached, None, signature) }
+            }
+            (Ok(Ending::AtEvent(reached)), None, None) => {
+                let known = tries.known.or_else(|| Signature::past_start(&start, reached.step, &mut None, work));
+                tries.known = known;
+                let may_refuse = tries.unresolved < MOST_UNRESOLVED;
+                let (reached, crossing, signature) = first_crossing(&start, known, reached, may_refuse, work)?;
+                Tried::plain(reached, crossing, signature)
+            }
             (Err(refused), ..) => return Err(refused),
         };
         let corrected = &tried.reached.corrected;
@@ -153,6 +148,64 @@ impl Path<'_> {
         } else {
             Ok(tried)
         }
+    }
+
+    /// The end of a step: past changes that are taken together, or at the first event in it.
+    fn end_of_step(
+        &self,
+        start: &Start<'_>,
+        step: f64,
+        sought: &Sought,
+        tries: &mut Tries,
+        work: &mut Work,
+    ) -> Result<Ending, Refused> {
+        let (ends, load_sign) = (&self.scene.stages[self.at.stage].ends, self.at.here.load_sign);
+        let mut may_join = sought.may_join && sought.jump != Some(step);
+        let foreseen = may_join.then(|| start.join_foreseen(step, ends, load_sign, work)).flatten();
+        if let Some(joined) = foreseen {
+            tries.joined = Some(joined.is_some());
+            match joined {
+                Some(joined) => return Ok(Ending::Joined(joined)),
+                None => may_join = false,
+            }
+        }
+        let tried = self.attempt(start, step, sought, tries, work)?;
+        if may_join && let Some(first) = start.changes_to_join(&tried) {
+            let joined = start.join_changes(&first, &tried, work);
+            tries.joined = Some(joined.is_some());
+            if let Some(joined) = joined {
+                return Ok(Ending::Joined(joined));
+            }
+        }
+        start.stop_at_event(tried, ends, work).map(Ending::AtEvent)
+    }
+
+    /// How far the mode goes: to the next of several changes, if that is near, to one that is foreseen, or a whole step.
+    fn attempt(
+        &self,
+        start: &Start<'_>,
+        step: f64,
+        sought: &Sought,
+        tries: &mut Tries,
+        work: &mut Work,
+    ) -> Result<Attempt, Refused> {
+        let here = &self.at.here;
+        let (ends, load_sign) = (&self.scene.stages[self.at.stage].ends, here.load_sign);
+        let joins = sought.may_join && sought.jump != Some(step) && start.may_join();
+        let next = tries.next.take().filter(|next| *next < MOST_OF_STEP * step && !joins);
+        let next = next.and_then(|next| {
+            let mut serving = None;
+            tries.known = tries.known.or_else(|| Signature::past_start(start, next, &mut serving, work));
+            let tried = start.attempt(next, None, serving, ends, load_sign, work).ok()?;
+            (!tried.passed.is_empty()).then_some(tried)
+        });
+        if let Some(next) = next {
+            return Ok(next);
+        }
+        let before = here.before.as_ref();
+        let foreseen = sought.foreseen.filter(|foreseen| foreseen.step == step);
+        let met = foreseen.and_then(|foreseen| start.meet_change(foreseen, before, ends, load_sign, work));
+        met.map_or_else(|| start.attempt(step, before, None, ends, load_sign, work), Ok)
     }
 }
 
