@@ -1,4 +1,4 @@
-//! The work of six scenes, counted, beside what it was: more than `work.txt` says fails, and so does less, so that the file
+//! The work of seven scenes, counted, beside what it was: more than `work.txt` says fails, and so does less, so that the file
 //! stays true. The counts are the same whatever the machine does; of allocations, which a compiler may save, the file has
 //! the most that there may be.
 
@@ -20,6 +20,15 @@ const HEADER: &str =
 /// A sparse arch of some 400 unknowns that lands on its floor.
 fn lattice() -> JobRequest {
     let arch = LatticeArch { contacts: 12, increments: 30, ..LatticeArch::of_unknowns(400) };
+    arch.request().expect("a request")
+}
+
+/// One of some 1,000 unknowns that lands flat, with contacts that close and open from the middle of its path on.
+fn landing(friction: f64) -> JobRequest {
+    let mut arch =
+        LatticeArch { contacts: 10, increments: 60, spread: 0.3, friction, ..LatticeArch::of_unknowns(1_000) };
+    let outermost = (arch.contacts + 1) as f64 / arch.panels as f64;
+    arch.clearance = arch.clearance.max(1.05 * arch.rise * outermost.powi(2));
     arch.request().expect("a request")
 }
 
@@ -75,6 +84,8 @@ fn work_is_what_it_was() {
         }
     }
     all.push(Work::of("lattice-arch", Method::Auto, lattice()));
+    all.push(Work::of("landing-arch", Method::Auto, landing(0.0)));
+    all.push(Work::of("landing-arch-rough", Method::Auto, landing(0.3)));
     if std::env::var_os("ARCSLIP_RENEW_WORK").is_some() {
         let lines: Vec<String> = all.iter().map(Work::line).collect();
         std::fs::write(FILE, format!("{HEADER}\n{}\n", lines.join("\n"))).expect("the file can be written");

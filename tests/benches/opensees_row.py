@@ -20,7 +20,7 @@ for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 
 try:
     import openseespy.opensees as ops
-except ImportError as error:
+except (ImportError, RuntimeError) as error:
     print(json.dumps({"missing": f"openseespy cannot be imported ({error}); pip install openseespy"}), flush=True)
     sys.exit(0)
 
