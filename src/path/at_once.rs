@@ -9,7 +9,8 @@
 //!
 //! by Newton's method in one mode after another: what a mode breaks at its end is changed, all of it at once (a
 //! primal-dual active set: M. Hintermüller, K. Ito, K. Kunisch, SIAM J. Optim. 13 (2002) 865,
-//! doi:10.1137/S1052623401383558).
+//! doi:10.1137/S1052623401383558). In large structures one iteration a mode tells that, until nothing is broken any more;
+//! then the point is solved for, and looked at again.
 //!
 //! That end is the path's where nothing on the way leaves a choice. With `M` the stiffness that the contacts which
 //! change feel (the others as they are), each sign of the load rate has exactly one direction in any mode of theirs if

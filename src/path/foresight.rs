@@ -1,9 +1,11 @@
-//! A step no longer than to just past the next contact change, where the rates at its start foresee one.
+//! The next contact change, where the rates at the start of a step foresee it.
 //!
 //! A step that passes many changes is cut at the first of them: what was solved at its far end was solved for nothing,
 //! and is too far from the change to help to locate it. The gaps and forces of the contacts and their rates foresee the
-//! place. A step that ends just past it needs less of Newton's method, and its factorisation serves at the change. Where
-//! nothing has changed by then its end is a point like others, and the next step is as long as this one was to be.
+//! place. There the change itself is solved for, in place of an arc length: one factorisation leads to it. Where that
+//! finds no zero that lies where it should and comes first, the step goes to just past the place, and needs less of Newton's
+//! method than a whole one. Where nothing has changed by then its end is a point like others, and the next step is as long
+//! as this one was to be.
 
 use super::advance::{Attempt, MOST_TURN, PASSED, Start, Work};
 use super::at_once::may_join_at;
