@@ -109,7 +109,7 @@ pub(super) fn may_join_at(loading: Loading<'_>, modes: &[Mode], watch: Watch) ->
 impl Start<'_> {
     /// The contacts that change in a step that was tried, if they are several and may be taken together.
     pub(super) fn changes_to_join(&self, tried: &Attempt) -> Option<BTreeSet<usize>> {
-        self.to_join(&tried.watches, &tried.passed)
+        self.joinable(&tried.watches, &tried.passed)
     }
 
     /// The end of a step that was tried and passes these contact changes, if they can be taken together.
@@ -139,7 +139,7 @@ impl Start<'_> {
             slope.is_some_and(|slope| self.value(*watch, self.state, self.rate) < -slope * step)
         };
         let foreseen: Vec<Watch> = watches.iter().copied().filter(passes).collect();
-        self.to_join(&watches, &foreseen)?;
+        self.joinable(&watches, &foreseen)?;
         let system = ModeSystem::new(self.loading, self.modes, self.state);
         let place = Place::ArcLength { from: self.state, step };
         let (state, factorisation) = system.iterated_once(self.state.advanced(self.rate, step), place, work)?;
@@ -148,11 +148,11 @@ impl Start<'_> {
             self.value(*watch, &state, &rate) < -PASSED * watch.scale(self.loading, &state, self.force_scale)
         };
         let passed: Vec<Watch> = watches.iter().copied().filter(negative).collect();
-        let first = self.to_join(&watches, &passed)?;
+        let first = self.joinable(&watches, &passed)?;
         Some(self.join(&first, Far { state: &state, rate: &rate, step }, &watches, work))
     }
 
-    fn to_join(&self, watches: &[Watch], passed: &[Watch]) -> Option<BTreeSet<usize>> {
+    fn joinable(&self, watches: &[Watch], passed: &[Watch]) -> Option<BTreeSet<usize>> {
         let turns = watches.iter().any(|watch| matches!(watch, Watch::LoadRate { .. }));
         if passed.len() < 2 || !turns || !self.may_join() {
             return None;

@@ -1,0 +1,39 @@
+//! One path of a scene and nothing else, for a profiler: the increments, and the time where that says something.
+//!
+//! `cargo bench --no-default-features --bench trace -- row 100`; the README's table of where the time goes has the commands
+//! for callgrind.
+
+use arcslip::cancel::CancelFlag;
+use arcslip::model::JobRequest;
+use arcslip::path::{Path, Scene};
+use arcslip::scenes::lattice::LatticeArch;
+use arcslip::scenes::of_any_size::row_of_bars;
+use std::time::Instant;
+
+fn main() {
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect();
+    let size = words.get(1).and_then(|size| size.parse().ok());
+    let asked = match (words.first().map(String::as_str), size) {
+        (Some("row"), Some(size)) => serde_json::from_value(row_of_bars(size)).map_err(|error| error.to_string()),
+        (Some("lattice"), Some(size)) => lattice(size),
+        _ => Err("say which: `row 100` (bars) or `lattice 1000` (unknowns)".to_owned()),
+    };
+    let traced = asked.and_then(|request| trace(&request));
+    println!("{}", traced.unwrap_or_else(|why| why));
+}
+
+/// An arch that snaps onto a floor, with friction, to its hundredth increment.
+fn lattice(unknowns: usize) -> Result<JobRequest, String> {
+    let mut arch = LatticeArch { increments: 100, spread: 0.3, friction: 0.3, ..LatticeArch::of_unknowns(unknowns) };
+    arch.contacts = (unknowns / 45).min(arch.panels - 1);
+    let outermost = (arch.contacts + 1) as f64 / arch.panels as f64;
+    arch.clearance = arch.clearance.max(1.05 * arch.rise * outermost.powi(2));
+    arch.request().map_err(|error| error.to_string())
+}
+
+fn trace(request: &JobRequest) -> Result<String, String> {
+    let scene = Scene::new(request).map_err(|errors| errors.to_string())?;
+    let began = Instant::now();
+    let increments = Path::new(&scene, CancelFlag::default()).count();
+    Ok(format!("{increments} increments in {:.1} ms", began.elapsed().as_secs_f64() * 1e3))
+}
