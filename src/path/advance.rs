@@ -95,6 +95,8 @@ const SETTLED: f64 = 1e-10;
 pub(super) const PASSED: f64 = 1e-13;
 /// A bound of the stage (dimensionless) within this is reached.
 pub const AT_END: f64 = 1e-12;
+/// Times that a step is looked through for what was negative for a while.
+const MOST_LOOKS: usize = 32;
 /// Two quantities that are zero within this are zero together.
 pub(super) const COINCIDING: f64 = 1e-10;
 
@@ -258,13 +260,28 @@ impl Start<'_> {
         let hardness = reached.corrected.iterations_to_small;
         // Each round finds the first zero of one quantity; whatever else is negative there came before it.
         let mut event = met;
-        while let Some(stretch) = &mut stretch
-            && let Some(&watch) = self.earliest(&passed, stretch, |watch| self.zero(watch, &reached))
-        {
-            reached = self.locate(watch, stretch, self.zero(watch, &reached), work)?;
-            event = Some(watch);
-            passed = self.passed(&watches, &reached);
-            passed.retain(|other| *other != watch);
+        for look in 0.. {
+            if look == MOST_LOOKS {
+                return Err(Refused::Newton(Failure::NotConverged));
+            }
+            while let Some(stretch) = &mut stretch
+                && let Some(&watch) = self.earliest(&passed, stretch, |watch| self.zero(watch, &reached))
+            {
+                reached = self.locate(watch, stretch, self.zero(watch, &reached), work)?;
+                event = Some(watch);
+                passed = self.passed(&watches, &reached);
+                passed.retain(|other| *other != watch);
+            }
+            // What was negative for a while, and is so no more where another quantity falls to zero, came before that. Over a
+            // short way changes of what rates are rates of are rounding.
+            let Some(found) = event.filter(|_| reached.step.powi(3) > f64::EPSILON) else { break };
+            let others: Vec<Watch> = watches.iter().copied().filter(|other| *other != found).collect();
+            let before = reached.step;
+            let (dipped, inside) = self.dips(&others, &mut reached, None, work)?;
+            if dipped.is_empty() || reached.step >= before {
+                break;
+            }
+            (passed, stretch) = (dipped, inside);
         }
         if event.is_none() {
             // A step may end exactly where the stage does.

@@ -23,7 +23,10 @@
 //! Where a try fails, as many in a row do as a rule (an arch that rolls onto a floor leaves it where it first touched, and
 //! stands only while one of the two contacts holds it): it waits for some steps, and for longer each time.
 //!
-//! Everything else ends a step as it always does: friction remembers where a node has landed.
+//! Everything else ends a step as it always does: friction remembers where a node has landed. On the kinks of such a step
+//! a quantity may go to and fro unseen. So there is none where a contact with friction is closed or could close within the
+//! length of the path, nor where a displacement that ends the stage could get there. A contact without friction that
+//! touches and leaves again within the step is not named.
 
 use super::advance::{Attempt, COINCIDING, MOST_TURN, PASSED, Reached, Start, Work};
 use super::loading::Loading;
@@ -35,6 +38,7 @@ use super::standing::{Standing, standings};
 use super::state::{Rate, State};
 use super::watch::{self, Watch};
 use crate::contact::Mode;
+use crate::contact::vector::size;
 use crate::linear_algebra::SystemFactorisation;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -45,6 +49,9 @@ const MOST_ROUNDS: usize = 12;
 const FIRST_WAIT: u32 = 4;
 /// The longest wait.
 const MOST_WAIT: u32 = 64;
+
+/// Length of a path with kinks over that of its chord, at the most.
+const LONGEST: f64 = 4.0;
 
 /// When changes are to be taken together again, after a failure.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -95,21 +102,21 @@ fn smooth(loading: Loading<'_>, watch: Watch) -> Option<usize> {
     (alone && loading.contacts[contact].tangents() == 0).then_some(contact)
 }
 
-/// Whether a contact slips against friction.
-fn slides(loading: Loading<'_>, modes: &[Mode]) -> bool {
+/// Whether a contact with friction is closed.
+fn remembers(loading: Loading<'_>, modes: &[Mode]) -> bool {
     let mut modes = modes.iter().zip(loading.contacts);
-    modes.any(|(mode, contact)| matches!(mode, Mode::Slip { .. }) && contact.tangents() > 0)
+    modes.any(|(mode, contact)| mode.is_active() && contact.tangents() > 0)
 }
 
 /// Whether the change at which a quantity is zero may be taken together with others.
 pub(super) fn may_join_at(loading: Loading<'_>, modes: &[Mode], watch: Watch) -> bool {
-    smooth(loading, watch).is_some() && !slides(loading, modes)
+    smooth(loading, watch).is_some() && !remembers(loading, modes)
 }
 
 impl Start<'_> {
     /// The contacts that change in a step that was tried, if they are several and may be taken together.
     pub(super) fn changes_to_join(&self, tried: &Attempt) -> Option<BTreeSet<usize>> {
-        self.joinable(&tried.watches, &tried.passed)
+        self.joinable(&tried.watches, &tried.passed, tried.reached.step)
     }
 
     /// The end of a step that was tried and passes these contact changes, if they can be taken together.
@@ -139,7 +146,7 @@ impl Start<'_> {
             slope.is_some_and(|slope| self.value(*watch, self.state, self.rate) < -slope * step)
         };
         let foreseen: Vec<Watch> = watches.iter().copied().filter(passes).collect();
-        self.joinable(&watches, &foreseen)?;
+        self.joinable(&watches, &foreseen, step)?;
         let system = ModeSystem::new(self.loading, self.modes, self.state);
         let place = Place::ArcLength { from: self.state, step };
         let (state, factorisation) = system.iterated_once(self.state.advanced(self.rate, step), place, work)?;
@@ -148,13 +155,13 @@ impl Start<'_> {
             self.value(*watch, &state, &rate) < -PASSED * watch.scale(self.loading, &state, self.force_scale)
         };
         let passed: Vec<Watch> = watches.iter().copied().filter(negative).collect();
-        let first = self.joinable(&watches, &passed)?;
+        let first = self.joinable(&watches, &passed, step)?;
         Some(self.join(&first, Far { state: &state, rate: &rate, step }, &watches, work))
     }
 
-    fn joinable(&self, watches: &[Watch], passed: &[Watch]) -> Option<BTreeSet<usize>> {
+    fn joinable(&self, watches: &[Watch], passed: &[Watch], step: f64) -> Option<BTreeSet<usize>> {
         let turns = watches.iter().any(|watch| matches!(watch, Watch::LoadRate { .. }));
-        if passed.len() < 2 || !turns || !self.may_join() {
+        if passed.len() < 2 || !turns || !self.may_join() || !self.leaves_no_trace(watches, step) {
             return None;
         }
         passed.iter().map(|watch| self.smooth(*watch)).collect()
@@ -190,9 +197,26 @@ impl Start<'_> {
         Some(Joined { reached, changes: changes as u64, signature, unchanged: far.rate.clone() })
     }
 
-    /// Whether changes in a step may be taken together: not where a contact slips against friction.
+    /// Whether changes in a step may be taken together: not where a contact with friction is closed.
     pub(super) fn may_join(&self) -> bool {
-        self.drift.is_none() && !slides(self.loading, self.modes)
+        self.drift.is_none() && !remembers(self.loading, self.modes)
+    }
+
+    /// Whether within a step nothing can end that leaves a trace: on its kinks a quantity may go to and fro. The load goes
+    /// one way; no displacement goes farther than the path is long.
+    fn leaves_no_trace(&self, watches: &[Watch], step: f64) -> bool {
+        let length = LONGEST * step;
+        watches.iter().all(|watch| {
+            let value = self.value(*watch, self.state, self.rate);
+            match *watch {
+                Watch::LoadRate { .. } | Watch::End(End::Load { .. }) => true,
+                Watch::End(_) => value > length,
+                Watch::Gap(contact) if self.smooth(*watch).is_none() => {
+                    value > length * (1.0 + size(&self.loading.pattern.shifts[contact]))
+                }
+                _ => self.smooth(*watch).is_some(),
+            }
+        })
     }
 
     fn smooth(&self, watch: Watch) -> Option<usize> {

@@ -54,9 +54,10 @@ impl Path<'_> {
             is_above.then(|| value / -slope)
         };
         let watches = watch::of_mode(loading, &here.modes, &here.state, rate);
-        let ways = watches.iter().filter_map(|watch| Some((*watch, way(watch)?)));
-        let (first, way) = ways.min_by(|one, other| one.1.total_cmp(&other.1))?;
-        if may_join && may_join_at(loading, &here.modes, first) {
+        let ways = || watches.iter().filter_map(|watch| Some((*watch, way(watch)?)));
+        let (first, way) = ways().min_by(|one, other| one.1.total_cmp(&other.1))?;
+        if may_join && ways().filter(|(_, way)| *way < step).all(|(watch, _)| may_join_at(loading, &here.modes, watch))
+        {
             return None;
         }
         let part = PAST * way / step;
