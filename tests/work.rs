@@ -25,11 +25,8 @@ fn lattice() -> JobRequest {
 
 /// One of some 1,000 unknowns that lands flat, with contacts that close and open from the middle of its path on.
 fn landing(friction: f64) -> JobRequest {
-    let mut arch =
-        LatticeArch { contacts: 10, increments: 60, spread: 0.3, friction, ..LatticeArch::of_unknowns(1_000) };
-    let outermost = (arch.contacts + 1) as f64 / arch.panels as f64;
-    arch.clearance = arch.clearance.max(1.05 * arch.rise * outermost.powi(2));
-    arch.request().expect("a request")
+    let arch = LatticeArch { increments: 60, friction, ..LatticeArch::of_unknowns(1_000) };
+    arch.landing(10).request().expect("a request")
 }
 
 /// Scene and method, five counts, and allocations an increment.

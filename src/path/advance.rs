@@ -276,9 +276,8 @@ impl Start<'_> {
             // short way changes of what rates are rates of are rounding.
             let Some(found) = event.filter(|_| reached.step.powi(3) > f64::EPSILON) else { break };
             let others: Vec<Watch> = watches.iter().copied().filter(|other| *other != found).collect();
-            let before = reached.step;
             let (dipped, inside) = self.dips(&others, &mut reached, None, work)?;
-            if dipped.is_empty() || reached.step >= before {
+            if dipped.is_empty() {
                 break;
             }
             (passed, stretch) = (dipped, inside);

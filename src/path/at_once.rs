@@ -50,7 +50,7 @@ const FIRST_WAIT: u32 = 4;
 /// The longest wait.
 const MOST_WAIT: u32 = 64;
 
-/// Length of a path with kinks over that of its chord, at the most.
+/// Length of a path with kinks over that of its chord, as it is reckoned with: not proven to be the most.
 const LONGEST: f64 = 4.0;
 
 /// When changes are to be taken together again, after a failure.

@@ -1,4 +1,5 @@
-//! One iteration of Newton's method: about where a mode leads.
+//! One iteration of Newton's method on the equations of a mode (`mode_system`): about where it leads, off by the square of
+//! how far the guess was.
 
 use super::advance::Work;
 use super::mode_system::{Kind, ModeSystem};

@@ -50,6 +50,15 @@ impl LatticeArch {
         }
     }
 
+    /// The same pressed over a third of its span, so that it lands flat, with so many contacts, all of which have room over
+    /// the floor.
+    pub fn landing(self, contacts: usize) -> Self {
+        let contacts = contacts.min(self.panels - 1);
+        let outermost = (contacts + 1) as f64 / self.panels as f64;
+        let clearance = self.clearance.max(1.05 * self.rise * outermost.powi(2));
+        Self { contacts, clearance, spread: 0.3, ..self }
+    }
+
     /// Free displacement components.
     pub fn unknowns(&self) -> usize {
         2 * (self.layers + 1) * (self.panels - 1)

@@ -60,14 +60,9 @@ fn main() {
         "by arc"
     );
     for size in sizes {
-        // What is pressed over a third of the span lands flat: nearly all contacts close in the end.
-        let mut plain = LatticeArch { increments, spread: 0.3, ..LatticeArch::of_unknowns(size) };
-        let contacts = (size / 100).max(10).min(plain.panels - 1);
-        // The outermost has room over the floor.
-        let place = (contacts + 1) as f64 / plain.panels as f64;
-        plain.clearance = plain.clearance.max(1.05 * plain.rise * place.powi(2));
+        let plain = LatticeArch { increments, ..LatticeArch::of_unknowns(size) }.landing((size / 100).max(10));
         let without = LatticeArch { contacts: 0, ..plain };
-        let with = [0.0, 0.3].map(|friction| LatticeArch { contacts, friction, ..plain });
+        let with = [0.0, 0.3].map(|friction| LatticeArch { friction, ..plain });
         compare(&[without, with[0], with[1]]);
     }
 }

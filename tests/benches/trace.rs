@@ -24,11 +24,8 @@ fn main() {
 
 /// An arch that snaps onto a floor, with friction, to its hundredth increment.
 fn lattice(unknowns: usize) -> Result<JobRequest, String> {
-    let mut arch = LatticeArch { increments: 100, spread: 0.3, friction: 0.3, ..LatticeArch::of_unknowns(unknowns) };
-    arch.contacts = (unknowns / 45).min(arch.panels - 1);
-    let outermost = (arch.contacts + 1) as f64 / arch.panels as f64;
-    arch.clearance = arch.clearance.max(1.05 * arch.rise * outermost.powi(2));
-    arch.request().map_err(|error| error.to_string())
+    let arch = LatticeArch { increments: 100, friction: 0.3, ..LatticeArch::of_unknowns(unknowns) };
+    arch.landing(unknowns / 45).request().map_err(|error| error.to_string())
 }
 
 fn trace(request: &JobRequest) -> Result<String, String> {
