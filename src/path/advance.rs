@@ -207,6 +207,12 @@ impl Start<'_> {
         Ok(Reached { corrected, rate, step, error_estimate, drift: None, event: None, determinant, stopped: None })
     }
 
+    /// A converged point of a straight path, which keeps its direction.
+    pub(super) fn straight_on(&self, corrected: Corrected, error_estimate: f64) -> Reached {
+        let (rate, step) = (self.rate.clone(), corrected.state.distance(self.state));
+        Reached { corrected, rate, step, error_estimate, drift: None, event: None, determinant: None, stopped: None }
+    }
+
     /// A step of an arc length, or to the first event before.
     ///
     /// `ends` are those of the stage; `load_sign` is the sign of the load rate along the path just now.
@@ -261,6 +267,10 @@ impl Start<'_> {
         // Each round finds the first zero of one quantity; whatever else is negative there came before it.
         let mut event = met;
         for look in 0.. {
+            if look == 0 && met.is_some() && passed.is_empty() {
+                // What is solved for has been looked through on its way.
+                break;
+            }
             if look == MOST_LOOKS {
                 return Err(Refused::Newton(Failure::NotConverged));
             }

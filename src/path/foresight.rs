@@ -17,6 +17,7 @@ use super::scene::End;
 use super::stepping::quantised;
 use super::tracer::Path;
 use super::watch::{self, Watch};
+use crate::linear_algebra::SystemFactorisation;
 
 /// How far past the change the step is to end, over the way there: rates are not all that tells where it is.
 const PAST: f64 = 1.25;
@@ -25,7 +26,7 @@ const LEAST_OF_WAY: f64 = 0.5;
 /// No step is cut to less than this part of what it was to be.
 const LEAST: f64 = 1.0 / 256.0;
 
-/// A contact change that the rates foresee.
+/// A contact change, or the end of a stage, that the rates foresee.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Foreseen {
     /// What falls to zero there.
@@ -34,6 +35,8 @@ pub(super) struct Foreseen {
     pub way: f64,
     /// To just past it.
     pub step: f64,
+    /// The path is straight up to there: nothing that is not zero at its ends is so on the way.
+    pub is_straight: bool,
 }
 
 impl Path<'_> {
@@ -61,7 +64,8 @@ impl Path<'_> {
             return None;
         }
         let part = PAST * way / step;
-        (part < 1.0).then(|| Foreseen { watch: first, way, step: step * quantised(part.max(LEAST)) })
+        let step = step * quantised(part.max(LEAST));
+        (part < 1.0).then_some(Foreseen { watch: first, way, step, is_straight: false })
     }
 }
 
@@ -75,7 +79,7 @@ impl Start<'_> {
         load_sign: f64,
         work: &mut Work,
     ) -> Option<Attempt> {
-        let Foreseen { watch, way, step } = foreseen;
+        let Foreseen { watch, way, step, is_straight } = foreseen;
         let system = ModeSystem::new(self.loading, self.modes, self.state);
         if system.has_tracks() {
             return None;
@@ -85,7 +89,16 @@ impl Start<'_> {
         let scale = watch.scale(self.loading, &guess, self.force_scale);
         let place = Place::Zero { watch, scale, towards: self.rate };
         let mut serving = None;
-        let mut reached = self.settle_by(system, guess, place, &mut serving, work).ok()?;
+        let corrected = system.correct_from(system.iterate(guess), place, self.force_scale, &mut serving).ok()?;
+        work.newton_iterations += corrected.iterations;
+        work.factorisations += corrected.factorisations;
+        let mut reached = match &serving {
+            Some(SystemFactorisation::Sparse(nearby)) if is_straight => {
+                let error = system.error_by(nearby, &corrected)?;
+                self.straight_on(corrected, error)
+            }
+            _ => self.directed(system, corrected, place, &mut serving, work).ok()?,
+        };
         let state = &reached.corrected.state;
         let falls = watch.slope(self.loading, state, &reached.rate).is_some_and(|slope| slope < 0.0);
         let is_zero = self.value(watch, state, &reached.rate).abs() <= self.zero(watch, &reached);
@@ -97,7 +110,7 @@ impl Start<'_> {
         let others: Vec<Watch> = watches.iter().copied().filter(|other| *other != watch).collect();
         let mut passed = self.passed(&others, &reached);
         let mut stretch = (!passed.is_empty()).then(|| Stretch::new(self, &reached, serving.take()));
-        if stretch.is_none() {
+        if stretch.is_none() && !is_straight {
             (passed, stretch) = self.dips(&others, &mut reached, serving, work).ok()?;
         }
         Some(Attempt { reached, watches, passed, stretch, met: Some(watch) })

@@ -349,19 +349,18 @@ impl ModeSystem<'_> {
         factorisations: &mut u64,
     ) -> Option<Tangent> {
         let iterate = self.iterate_of(corrected);
-        let mut values = corrected.left_over.clone();
-        values[self.size - 1] = 0.0;
         if let Some(SystemFactorisation::Sparse(nearby)) = serving
             && let Some(rate) = self.tangent_nearby(nearby, &iterate, towards)
-            && nearby.solve_once(&mut values)
+            && let Some(error) = self.error_by(nearby, corrected)
         {
-            let error = self.rate_at(&iterate, &values, Kind::Rates).size();
             let (determinant, stiffness_across) = (Some(nearby.determinant_sign()), vec![None; self.roles.len()]);
             return Some(Tangent { rate, error, determinant, stiffness_across });
         }
         *factorisations += 1;
         let factorisation = self.bordered(&iterate, towards)?;
         let rate = self.tangent_by(&factorisation, &iterate)?;
+        let mut values = corrected.left_over.clone();
+        values[self.size - 1] = 0.0;
         let error = if factorisation.solve(&mut values) {
             self.rate_at(&iterate, &values, Kind::Rates).size()
         } else {
@@ -381,6 +380,14 @@ impl ModeSystem<'_> {
         let determinant = certain.then(|| factorisation.determinant_sign());
         *serving = self.may_serve(factorisation);
         Some(Tangent { rate, error, determinant, stiffness_across })
+    }
+
+    /// An estimate of a point's error by a factorisation nearby.
+    pub(super) fn error_by(&self, nearby: &SparseFactorisation, corrected: &Corrected) -> Option<f64> {
+        let mut values = corrected.left_over.clone();
+        values[self.size - 1] = 0.0;
+        let solved = nearby.solve_once(&mut values);
+        solved.then(|| self.rate_at(&self.iterate_of(corrected), &values, Kind::Rates).size())
     }
 
     /// A factorisation that may serve nearby. With slips in planes the directions have equations of their own; dense

@@ -128,8 +128,8 @@ impl Path<'_> {
     fn sought_step(&mut self) -> Sought {
         // An event nearer than that is located within an ordinary step.
         let ordinary = self.at.step.min(self.scene.analysis.arc_length.max);
-        let jump = self.way_to_next_event().filter(|way| *way > ordinary);
-        self.look_ahead(jump.unwrap_or(ordinary));
+        let jump = self.next_event_ahead().filter(|event| event.step > ordinary);
+        self.look_ahead(jump.map_or(ordinary, |event| event.step));
         let may_join = self.at.waiting.is_over() && self.may_join_changes();
         let foreseen = if jump.is_none() { self.step_to_foreseen_change(ordinary, may_join) } else { None };
         Sought { ordinary, jump, foreseen, may_join }
@@ -158,7 +158,7 @@ impl Path<'_> {
             0 => self.program_keeps_mode(rate, &accepted.reached, step),
             _ => self.program_joins_changes(rate, step, &accepted.reached.corrected.modes),
         });
-        if sought.jump != Some(step) {
+        if !sought.jumps(step) {
             let was_cut = sought.foreseen.is_some_and(|foreseen| foreseen.step == step) && factor >= 1.0;
             let next = if was_cut { sought.ordinary } else { step * factor };
             self.at.step = next.clamp(least, most);

@@ -2,10 +2,12 @@
 //!
 //! Where every element is linear, every contact in reach a plane's and no slip can turn, the tangent of a mode is constant
 //! and everything that is watched is linear in the arc length: the place of the next event is known from where the path
-//! stands, and nothing lies in between. Along stretches of bifurcations the increments are kept, because from any of
+//! stands, and nothing lies in between. It is solved for at once (`foresight`); the direction there is that of the start, and
+//! so are the signs that tell of bifurcations. Along stretches of bifurcations the increments are kept, because from any of
 //! them another direction can be followed.
 
 use super::corner;
+use super::foresight::Foreseen;
 use super::loading::Loading;
 use super::plan::LeftOut;
 use super::scene::{End, Scene};
@@ -58,22 +60,23 @@ pub(super) fn is_linear(loading: Loading<'_>) -> bool {
 }
 
 impl Path<'_> {
-    /// The arc length of a step past the next event, where the path is straight up to there.
-    pub(super) fn way_to_next_event(&mut self) -> Option<f64> {
+    /// The next event, where the path is straight up to there and a little farther.
+    pub(super) fn next_event_ahead(&mut self) -> Option<Foreseen> {
         if !self.scene.jumps || self.at.listed.as_ref().is_some_and(|listed| listed.point.bifurcation) {
             return None;
         }
         loop {
-            let way = self.straight_way()?;
-            let contacts = self.at.near.len();
-            self.look_ahead(way);
+            let (watch, way) = self.straight_way()?;
+            let (contacts, step) = (self.at.near.len(), way * (1.0 + PAST));
+            self.look_ahead(step);
             if self.at.near.len() == contacts {
-                return Some(way);
+                return Some(Foreseen { watch, way, step, is_straight: true });
             }
         }
     }
 
-    fn straight_way(&self) -> Option<f64> {
+    /// What falls to zero first, and the arc length up to there.
+    fn straight_way(&self) -> Option<(Watch, f64)> {
         let (loading, here) = (self.loading(), &self.at.here);
         let rate = here.rate.as_ref()?;
         // The force of several obstacles in space reaches the bound of what they hold along no straight line.
@@ -89,7 +92,7 @@ impl Path<'_> {
         let mut watches = watch::of_mode(loading, &here.modes, &here.state, rate);
         watches.extend(ends.iter().map(|end| Watch::End(*end)));
         let ahead = here.state.advanced(rate, 1.0);
-        let mut nearest = f64::INFINITY;
+        let mut nearest: Option<(Watch, f64)> = None;
         for watch in watches {
             let scale = watch.scale(loading, &here.state, self.at.totals.force_scale);
             let now = watch.value(loading, &here.modes, &here.state, rate);
@@ -99,9 +102,12 @@ impl Path<'_> {
                 if now <= ZERO * scale {
                     return None;
                 }
-                nearest = nearest.min(now / -change);
+                let way = now / -change;
+                if nearest.is_none_or(|(_, least)| way < least) {
+                    nearest = Some((watch, way));
+                }
             }
         }
-        nearest.is_finite().then_some(nearest * (1.0 + PAST))
+        nearest.filter(|(_, way)| way.is_finite())
     }
 }

@@ -24,8 +24,8 @@ const MOST_UNRESOLVED: u64 = 4;
 pub(super) struct Sought {
     /// By the path's turn, Newton's work and the energy balance of the steps before.
     pub ordinary: f64,
-    /// To the next event of a path that is straight up to there.
-    pub jump: Option<f64>,
+    /// The next event of a path that is straight up to there.
+    pub jump: Option<Foreseen>,
     /// The next contact change that the rates foresee.
     pub foreseen: Option<Foreseen>,
     /// Contact changes in it may be taken together.
@@ -35,7 +35,12 @@ pub(super) struct Sought {
 impl Sought {
     /// The first length to try.
     pub fn step(&self) -> f64 {
-        self.jump.or(self.foreseen.map(|foreseen| foreseen.step)).unwrap_or(self.ordinary)
+        self.jump.or(self.foreseen).map_or(self.ordinary, |foreseen| foreseen.step)
+    }
+
+    /// Whether a step of this length is one to the next event of a straight path.
+    pub fn jumps(&self, step: f64) -> bool {
+        self.jump.is_some_and(|event| event.step == step)
     }
 }
 
@@ -130,6 +135,8 @@ impl Path<'_> {
                 let Joined { reached, changes, signature, unchanged } = joined;
                 Tried { joined: Some((changes, unchanged)), ..Tried::plain(reached, None, signature) }
             }
+            // The equations of a straight path are the same at both ends, and singular at none in between.
+            (Ok(Ending::AtEvent(reached)), None, None) if sought.jumps(step) => Tried::plain(reached, None, None),
             (Ok(Ending::AtEvent(reached)), None, None) => {
                 let known = tries.known.or_else(|| Signature::past_start(&start, reached.step, &mut None, work));
                 tries.known = known;
@@ -160,7 +167,7 @@ impl Path<'_> {
         work: &mut Work,
     ) -> Result<Ending, Refused> {
         let (ends, load_sign) = (&self.scene.stages[self.at.stage].ends, self.at.here.load_sign);
-        let mut may_join = sought.may_join && sought.jump != Some(step);
+        let mut may_join = sought.may_join && !sought.jumps(step);
         let foreseen = may_join.then(|| start.join_foreseen(step, ends, load_sign, work)).flatten();
         if let Some(joined) = foreseen {
             tries.joined = Some(joined.is_some());
@@ -191,8 +198,9 @@ impl Path<'_> {
     ) -> Result<Attempt, Refused> {
         let here = &self.at.here;
         let (ends, load_sign) = (&self.scene.stages[self.at.stage].ends, here.load_sign);
-        let joins = sought.may_join && sought.jump != Some(step) && start.may_join();
-        let next = tries.next.take().filter(|next| *next < MOST_OF_STEP * step && !joins);
+        let is_straight = sought.jumps(step);
+        let joins = sought.may_join && !is_straight && start.may_join();
+        let next = tries.next.take().filter(|next| *next < MOST_OF_STEP * step && !joins && !is_straight);
         let next = next.and_then(|next| {
             let mut serving = None;
             tries.known = tries.known.or_else(|| Signature::past_start(start, next, &mut serving, work));
@@ -203,7 +211,7 @@ impl Path<'_> {
             return Ok(next);
         }
         let before = here.before.as_ref();
-        let foreseen = sought.foreseen.filter(|foreseen| foreseen.step == step);
+        let foreseen = sought.jump.or(sought.foreseen).filter(|foreseen| foreseen.step == step);
         let met = foreseen.and_then(|foreseen| start.meet_change(foreseen, before, ends, load_sign, work));
         met.map_or_else(|| start.attempt(step, before, None, ends, load_sign, work), Ok)
     }

@@ -35,6 +35,7 @@ impl Equations<'_> {
         }
         for round in 0..ROUNDS + ROUNDS_ONE_BY_ONE {
             let mut rate = match (control, incoming) {
+                (Control::Load, _) if modes == self.held && self.may_rest() => self.rest(sign),
                 (_, Some(incoming)) if incoming.modes.is_some_and(|of| all_continue(of, &modes)) => {
                     Some(incoming.rate.clone())
                 }
@@ -60,15 +61,23 @@ impl Equations<'_> {
         None
     }
 
+    /// The load on each column, and whether that is of a contact on its cone.
+    fn loads(&self) -> impl Iterator<Item = (f64, bool)> {
+        let mut is_cone = vec![false; self.size];
+        self.changing.iter().filter(|one| one.direction.is_some()).for_each(|one| is_cone[one.column] = true);
+        self.load().into_iter().zip(is_cone)
+    }
+
+    /// Whether nothing moves where all contacts stick that can.
+    fn may_rest(&self) -> bool {
+        self.loads().all(|(load, is_cone)| load == 0.0 || is_cone)
+    }
+
     /// The directions along which nothing moves and the load alone changes.
     pub fn at_rest(&self) -> Vec<Candidate> {
         let zero = WEAK * self.largest_load();
-        let load = self.load();
-        let mut is_cone = vec![false; self.size];
-        self.changing.iter().filter(|one| one.direction.is_some()).for_each(|one| is_cone[one.column] = true);
         let rests = |sign: f64| {
-            let stays = |(load, is_cone): (&f64, &bool)| load.abs() <= zero || (*is_cone && load * sign < 0.0);
-            if !load.iter().zip(&is_cone).all(stays) {
+            if !self.loads().all(|(load, is_cone)| load.abs() <= zero || (is_cone && load * sign < 0.0)) {
                 return None;
             }
             let rate = self.rest(sign)?;
