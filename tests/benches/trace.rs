@@ -10,6 +10,10 @@ use arcslip::scenes::lattice::LatticeArch;
 use arcslip::scenes::of_any_size::row_of_bars;
 use std::time::Instant;
 
+/// As in the program.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect();
     let size = words.get(1).and_then(|size| size.parse().ok());
