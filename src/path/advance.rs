@@ -322,6 +322,10 @@ impl Start<'_> {
 
     /// The path's error at a point reached, where it has one.
     fn drift_at(&self, reached: &Reached, work: &mut Work) -> Option<Rate> {
+        let mut modes = self.modes.iter().zip(self.loading.contacts);
+        if self.drift.is_none() && !modes.any(|(mode, contact)| mode.is_active() && contact.tangents() > 1) {
+            return None;
+        }
         let mut system = ModeSystem::new(self.loading, self.modes, self.state);
         if self.drift.is_none() && !system.has_tracks() {
             return None;

@@ -81,7 +81,7 @@ impl Start<'_> {
     ) -> Option<Attempt> {
         let Foreseen { watch, way, step, is_straight } = foreseen;
         let system = ModeSystem::new(self.loading, self.modes, self.state);
-        if system.has_tracks() {
+        if watch.slope(self.loading, self.state, self.rate).is_none() || system.has_tracks() {
             return None;
         }
         let guess = before.and_then(|before| before.foresee(self.state, self.rate, way));

@@ -56,9 +56,11 @@ pub struct Loading<'a> {
 
 /// A node's components of a vector over all degrees of freedom.
 pub fn of_node(dimension: usize, node: usize, values: &[f64]) -> Vector {
-    let mut vector = [0.0; 3];
-    vector[..dimension].copy_from_slice(&values[node * dimension..(node + 1) * dimension]);
-    vector
+    match values[node * dimension..(node + 1) * dimension] {
+        [x, y] => [x, y, 0.0],
+        [x, y, z] => [x, y, z],
+        _ => [0.0; 3],
+    }
 }
 
 /// The displacement (dimensionless) whose forces count as meeting at a node even where there is less: the scale of
