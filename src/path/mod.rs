@@ -6,18 +6,19 @@
 //! |---|---|
 //! | `scene`, `plan` | a request made dimensionless; what it needs and what is left out |
 //! | `state`, `loading` | a point; the structure under a pattern of forces, supports and obstacles that move |
-//! | `mode_system`, `newton` | the equations of one contact mode; Newton's method on them |
+//! | `mode_system`, `newton`, `tangent` | the equations of one contact mode; Newton's method on them; the path's direction at what it finds |
 //! | `contact_law` | how far a state is from the laws of contact and friction |
 //! | `corner`, `pocket`, `carried` | nodes that several obstacles hold at once: in the plane; in space, or guided by supports; between planes that move against each other |
 //! | `track`, `drift` | slip in a plane: its rule of fourth order; the error that is left |
 //! | `watch`, `advance` | what ends a mode; one step, ended exactly at the first event |
 //! | `interpolation`, `locate`, `root` | between points that are reached; where a quantity is zero |
-//! | `at_once` | contact changes of one step that are taken together |
-//! | `foresight` | a step to just past the next contact change that rates foresee |
+//! | `at_once`, `glance` | contact changes of one step that are taken together; one iteration of a mode, to see what it breaks |
+//! | `foresight`, `straight` | the next contact change that rates foresee, solved for at once; stretches without bend |
 //! | `singular`, `critical`, `branches` | whether a step passes a smooth bifurcation; where; which directions leave it |
 //! | `bound` | a bound of the stage at or beside a smooth bifurcation |
 //! | `folded` | points of slip in a plane at which the direction is not determined |
-//! | `standing`, `directions`, `condensed` | which contacts can change; every direction |
+//! | `near` | which contacts are in reach |
+//! | `standing`, `incoming`, `directions`, `condensed` | which contacts can change; how the path arrives; every direction |
 //! | `sole` | many contacts that can change: one direction for each sign of the load rate, without condensation |
 //! | `going_on` | the directions where the mode goes on, if a cheap test says that there are two |
 //! | `combinations` | one of each of several lists, in one order |
@@ -25,7 +26,7 @@
 //! | `rates`, `turning`, `together` | all rays of a rate problem, linear forms only; slip whose direction is unknown, of one node and of several at once |
 //! | `program`, `naming` | the MPEC of an increment; where it names the mode |
 //! | `energy`, `record`, `increment`, `report`, `stop` | balances, rows, totals, reasons |
-//! | `tracer`, `stages`, `stepping`, `arrival` | the iterator; how a stage begins; how far a step goes; what a point turned out to be |
+//! | `tracer`, `stages`, `stepping`, `trying`, `arrival` | the iterator; how a stage begins; how far a step goes; one try of it; what a point turned out to be |
 //! | `history` | states that the path has left, for telling a cycle |
 //! | `totals` | sums and maxima along a path, of either method |
 //! | `progress`, `checkpoint`, `follow` | what decides how a path goes on; a path put down at a point and taken up again; along another direction |
@@ -85,6 +86,7 @@ mod state;
 mod stepping;
 pub mod stop;
 mod straight;
+mod tangent;
 #[cfg(test)]
 mod tests_of_lattice;
 mod together;

@@ -1,14 +1,12 @@
-//! Newton's method on the equations of a mode, and the path's direction at the point found.
+//! Newton's method on the equations of a mode.
 
 use super::loading::USUAL;
 use super::mode_system::{Iterate, Kind, ModeSystem, Role};
-use super::singular::UNCERTAIN;
 use super::state::{Rate, State};
 use super::track;
 use super::watch::Watch;
 use crate::contact::Mode;
 use crate::contact::vector::{Vector, add, dot};
-use crate::linear_algebra::sparse::SparseFactorisation;
 use crate::linear_algebra::{Sink, SystemFactorisation};
 use nalgebra::DVector;
 
@@ -40,22 +38,10 @@ pub struct Corrected {
     /// accepted, what is beyond it.
     pub residual: f64,
     /// Equilibrium and contact equations left over, one a row.
-    left_over: DVector<f64>,
+    pub(super) left_over: DVector<f64>,
     /// Largest force in the structure, its loads and its contacts.
     pub force_scale: f64,
     pub(super) directions: Vec<Vector>,
-}
-
-/// The path's direction at a converged point, and what its equations tell besides.
-pub struct Tangent {
-    /// Of unit arc length.
-    pub rate: Rate,
-    /// The point's distance to the branch (dimensionless).
-    pub error: f64,
-    /// Sign of the bordered determinant, where it is certain.
-    pub determinant: Option<f64>,
-    /// For each slip in a plane the force across it per motion across it.
-    pub stiffness_across: Vec<Option<f64>>,
 }
 
 /// Why no point was found.
@@ -82,7 +68,7 @@ const ROUND_OFF: f64 = 1e-15;
 const SMALL: f64 = 1e-6;
 /// Smallest pivot over the largest of a factorisation that may serve on: what is left over says little of the state where
 /// it is smaller.
-const REGULAR: f64 = 1e-4;
+pub(super) const REGULAR: f64 = 1e-4;
 /// The same where the last correction is this part of that pivot at the most: so little moves it by this part of itself.
 const STILL_FALLS: f64 = 1e-2;
 /// Factor by which an error falls with a factorisation from elsewhere, at the least.
@@ -334,77 +320,6 @@ impl ModeSystem<'_> {
         let geometric = values.iter().skip(structure.unknowns()).fold(0.0_f64, |m, v| m.max(v.abs()));
         let within = geometric <= ACCEPTED_RESIDUAL + ROOM * f64::EPSILON * reach;
         (residual <= ACCEPTED_RESIDUAL && within).then_some(residual)
-    }
-
-    /// The path's direction at a converged point, and an estimate of the point's error: the size of one more Newton
-    /// correction across the path.
-    ///
-    /// `serving` is a factorisation of the equations nearby, if there is one. Where it does not
-    /// serve, one of the point itself takes its place, and `factorisations` counts it.
-    pub fn tangent_and_error(
-        &self,
-        corrected: &Corrected,
-        towards: &Rate,
-        serving: &mut Option<SystemFactorisation>,
-        factorisations: &mut u64,
-    ) -> Option<Tangent> {
-        let iterate = self.iterate_of(corrected);
-        if let Some(SystemFactorisation::Sparse(nearby)) = serving
-            && let Some(rate) = self.tangent_nearby(nearby, &iterate, towards)
-            && let Some(error) = self.error_by(nearby, corrected)
-        {
-            let (determinant, stiffness_across) = (Some(nearby.determinant_sign()), vec![None; self.roles.len()]);
-            return Some(Tangent { rate, error, determinant, stiffness_across });
-        }
-        *factorisations += 1;
-        let factorisation = self.bordered(&iterate, towards)?;
-        let rate = self.tangent_by(&factorisation, &iterate)?;
-        let mut values = corrected.left_over.clone();
-        values[self.size - 1] = 0.0;
-        let error = if factorisation.solve(&mut values) {
-            self.rate_at(&iterate, &values, Kind::Rates).size()
-        } else {
-            return None;
-        };
-        let mut stiffness_across = vec![None; self.roles.len()];
-        for (contact, role) in self.roles.iter().enumerate() {
-            if let Role::Plane { .. } = role {
-                let mut values = DVector::zeros(self.size);
-                values[self.row_of(contact) + 1] = 1.0;
-                if factorisation.solve(&mut values) {
-                    stiffness_across[contact] = Some(-values[self.column_of(contact) + 1]);
-                }
-            }
-        }
-        let certain = factorisation.pivot_ratio() > UNCERTAIN;
-        let determinant = certain.then(|| factorisation.determinant_sign());
-        *serving = self.may_serve(factorisation);
-        Some(Tangent { rate, error, determinant, stiffness_across })
-    }
-
-    /// An estimate of a point's error by a factorisation nearby.
-    pub(super) fn error_by(&self, nearby: &SparseFactorisation, corrected: &Corrected) -> Option<f64> {
-        let mut values = corrected.left_over.clone();
-        values[self.size - 1] = 0.0;
-        let solved = nearby.solve_once(&mut values);
-        solved.then(|| self.rate_at(&self.iterate_of(corrected), &values, Kind::Rates).size())
-    }
-
-    /// A factorisation that may serve nearby. With slips in planes the directions have equations of their own; dense
-    /// matrices are factorised as fast.
-    pub(super) fn may_serve(&self, factorisation: SystemFactorisation) -> Option<SystemFactorisation> {
-        let may = matches!(factorisation, SystemFactorisation::Sparse(_)) && !self.has_tracks();
-        may.then_some(factorisation)
-    }
-
-    /// The path's direction by a factorisation of the equations nearby.
-    fn tangent_nearby(&self, nearby: &SparseFactorisation, iterate: &Iterate, towards: &Rate) -> Option<Rate> {
-        if nearby.pivot_ratio() < REGULAR {
-            return None;
-        }
-        let values = nearby.solve_nearby(self.assemble_sparse(iterate, Kind::Rates)?, &self.bordering())?;
-        // On the same side of both borders, so that the determinants have one sign.
-        self.direction_from(iterate, &values).filter(|rate| rate.product(towards) > 0.0)
     }
 
     /// A point as it is, with its residual. Slips in planes have the directions that their tractions oppose.

@@ -3,8 +3,9 @@
 use super::{ModeSystem, Role};
 use crate::contact::Mode;
 use crate::contact::vector::size;
-use crate::path::newton::{Corrected, Tangent};
+use crate::path::newton::Corrected;
 use crate::path::state::Rate;
+use crate::path::tangent::Tangent;
 use crate::path::track::{self, Turn};
 
 impl ModeSystem<'_> {
