@@ -96,7 +96,7 @@ const SETTLED: f64 = 1e-10;
 pub(super) const PASSED: f64 = 1e-13;
 /// A bound of the stage (dimensionless) within this is reached.
 pub const AT_END: f64 = 1e-12;
-/// Times that a step is looked through for what was negative for a while.
+/// Zeros and dips that are located in one step, each nearer than the one before.
 const MOST_LOOKS: usize = 32;
 /// Two quantities that are zero within this are zero together.
 pub(super) const COINCIDING: f64 = 1e-10;
@@ -267,17 +267,15 @@ impl Start<'_> {
         let hardness = reached.corrected.iterations_to_small;
         // Each round finds the first zero of one quantity; whatever else is negative there came before it.
         let mut event = met;
-        for look in 0.. {
-            if look == 0 && met.is_some() && passed.is_empty() {
-                // What is solved for has been looked through on its way.
-                break;
-            }
-            if look == MOST_LOOKS {
-                return Err(Refused::Newton(Failure::NotConverged));
-            }
+        let mut looks = 0..MOST_LOOKS;
+        // What is solved for has been looked through on its way.
+        let mut is_clear = met.is_some() && passed.is_empty();
+        while !is_clear {
             while let Some(stretch) = &mut stretch
                 && let Some(&watch) = self.earliest(&passed, stretch, |watch| self.zero(watch, &reached))
             {
+                // Quantities that are nothing but rounding would come by turns.
+                looks.next().ok_or(Refused::Newton(Failure::NotConverged))?;
                 reached = self.locate(watch, stretch, self.zero(watch, &reached), work)?;
                 event = Some(watch);
                 passed = self.passed(&watches, &reached);
@@ -288,10 +286,11 @@ impl Start<'_> {
             let Some(found) = event.filter(|_| reached.step.powi(3) > f64::EPSILON) else { break };
             let others: Vec<Watch> = watches.iter().copied().filter(|other| *other != found).collect();
             let (dipped, inside) = self.dips(&others, &mut reached, None, work)?;
-            if dipped.is_empty() {
-                break;
+            is_clear = dipped.is_empty();
+            if !is_clear {
+                looks.next().ok_or(Refused::Newton(Failure::NotConverged))?;
+                (passed, stretch) = (dipped, inside);
             }
-            (passed, stretch) = (dipped, inside);
         }
         if event.is_none() {
             // A step may end exactly where the stage does.

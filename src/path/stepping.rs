@@ -2,10 +2,12 @@
 
 use super::advance::{Reached, Refused, Start, Work};
 use super::arrival::SAME_STATE;
+use super::at_once::may_join_at;
 use super::corner;
 use super::critical::Crossing;
 use super::decide::{self, Before};
 use super::energy;
+use super::foresight::Foreseen;
 use super::incoming::Incoming;
 use super::increment::Energy;
 use super::mode_system::ModeSystem;
@@ -126,11 +128,13 @@ impl Path<'_> {
 
     /// How long a step is to be, as far as is known before it is tried.
     fn sought_step(&mut self) -> Sought {
-        // An event nearer than that is located within an ordinary step.
         let ordinary = self.at.step.min(self.scene.analysis.arc_length.max);
-        let jump = self.next_event_ahead().filter(|event| event.step > ordinary);
-        self.look_ahead(jump.map_or(ordinary, |event| event.step));
         let may_join = self.at.waiting.is_over() && self.may_join_changes();
+        // Changes nearer than an ordinary step may be several that are taken together.
+        let ahead = self.next_event_ahead();
+        let joins = |event: &Foreseen| may_join && may_join_at(self.loading(), &self.at.here.modes, event.watch);
+        let jump = ahead.filter(|event| event.step > ordinary || !joins(event));
+        self.look_ahead(jump.map_or(ordinary, |event| event.step));
         let foreseen = if jump.is_none() { self.step_to_foreseen_change(ordinary, may_join) } else { None };
         Sought { ordinary, jump, foreseen, may_join }
     }
