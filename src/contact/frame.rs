@@ -38,6 +38,7 @@ pub struct Frame {
 }
 
 impl Frame {
+    #[inline(always)]
     pub(super) fn new(gap: f64, normal: Vector, curvature: f64, sliding: Sliding) -> Self {
         let tangents = match sliding {
             Sliding::None => [[0.0; 3]; 2],

@@ -82,15 +82,18 @@ impl Reaction {
     }
 
     /// `|r_t|`
+    #[inline(always)]
     pub fn tangential_size(&self) -> f64 {
         size(&self.tangential)
     }
 
+    #[inline(always)]
     pub fn size(&self) -> f64 {
         self.normal.abs().max(self.tangential_size())
     }
 
     /// Adds a multiple of another.
+    #[inline(always)]
     pub fn add(&mut self, factor: f64, other: &Self) {
         self.normal += factor * other.normal;
         self.tangential = vector::add(&self.tangential, factor, &other.tangential);
@@ -106,17 +109,20 @@ impl Reaction {
 impl Contact {
     /// Signed distance of the node from the obstacle, positive on the free side; `relative` is the node's displacement
     /// less the obstacle's.
+    #[inline(always)]
     pub fn gap(&self, relative: &Vector) -> f64 {
         self.initial_gap + self.obstacle.distance(relative).0
     }
 
     /// Gap, normal and tangents.
+    #[inline(always)]
     pub fn frame(&self, relative: &Vector) -> Frame {
         let (change, normal, curvature) = self.obstacle.distance(relative);
         Frame::new(self.initial_gap + change, normal, curvature, self.sliding)
     }
 
     /// Number of tangential reactions: 0 without friction.
+    #[inline(always)]
     pub fn tangents(&self) -> usize {
         if self.friction > 0.0 { self.sliding.directions() } else { 0 }
     }

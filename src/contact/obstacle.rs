@@ -21,6 +21,7 @@ impl Obstacle {
     /// turns by `dn = κ (dx - n (n·dx))`.
     ///
     /// `relative` is the node's displacement less the obstacle's.
+    #[inline(always)]
     pub(super) fn distance(&self, relative: &Vector) -> (f64, Vector, f64) {
         match self {
             Self::Plane { normal } => (dot(normal, relative), *normal, 0.0),

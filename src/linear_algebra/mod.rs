@@ -13,6 +13,8 @@ pub struct Factorisation {
     size: usize,
     row_scales: DVector<f64>,
     lu: LU<f64, Dyn, Dyn>,
+    /// Smallest pivot over the largest one.
+    pivot_ratio: f64,
     /// Sign by which the determinant of what is factorised differs from the one of the matrix asked for.
     sign: f64,
 }
@@ -48,16 +50,17 @@ impl Factorisation {
     pub fn new(mut matrix: DMatrix<f64>) -> Option<Self> {
         let size = matrix.nrows();
         let mut row_scales = DVector::zeros(size);
-        for column in matrix.column_iter() {
-            for (scale, value) in row_scales.iter_mut().zip(column.iter()) {
+        let scales: &mut [f64] = row_scales.as_mut_slice();
+        for column in matrix.as_slice().chunks_exact(size.max(1)) {
+            for (scale, value) in scales.iter_mut().zip(column) {
                 *scale = f64::max(*scale, value.abs());
             }
         }
-        if !row_scales.iter().all(|scale| scale.is_finite() && *scale > 0.0) {
+        if !scales.iter().all(|scale| scale.is_finite() && *scale > 0.0) {
             return None;
         }
-        for mut column in matrix.column_iter_mut() {
-            for (value, scale) in column.iter_mut().zip(row_scales.iter()) {
+        for column in matrix.as_mut_slice().chunks_exact_mut(size.max(1)) {
+            for (value, scale) in column.iter_mut().zip(scales.iter()) {
                 if !value.is_finite() {
                     return None;
                 }
@@ -65,15 +68,13 @@ impl Factorisation {
             }
         }
         let lu = matrix.lu();
-        let factors = lu.lu_internal();
-        let (mut smallest, mut largest) = (f64::INFINITY, 0.0_f64);
-        for index in 0..size {
-            let pivot = factors[(index, index)].abs();
-            smallest = smallest.min(pivot);
-            largest = largest.max(pivot);
-        }
+        let pivots = lu.lu_internal().as_slice().iter().step_by(size + 1);
+        let (smallest, largest) = pivots.fold((f64::INFINITY, 0.0_f64), |(smallest, largest), pivot| {
+            (smallest.min(pivot.abs()), largest.max(pivot.abs()))
+        });
         let regular = size == 0 || (smallest.is_finite() && smallest > SMALLEST_PIVOT * largest);
-        regular.then_some(Self { size, row_scales, lu, sign: 1.0 })
+        let pivot_ratio = if largest > 0.0 { smallest / largest } else { 0.0 };
+        regular.then_some(Self { size, row_scales, lu, pivot_ratio, sign: 1.0 })
     }
 
     /// Factorises `A + Σ k r cᵀ` as `[[A, R], [Cᵀ, -1/K]]`, where large and small stiffnesses are never added, so that
@@ -101,10 +102,7 @@ impl Factorisation {
 
     /// Smallest pivot over the largest one.
     pub fn pivot_ratio(&self) -> f64 {
-        let factors = self.lu.lu_internal();
-        let pivots = (0..factors.nrows()).map(|index| factors[(index, index)].abs());
-        let (least, most) = pivots.fold((f64::INFINITY, 0.0_f64), |(l, m), pivot| (l.min(pivot), m.max(pivot)));
-        if most > 0.0 { least / most } else { 0.0 }
+        self.pivot_ratio
     }
 
     /// Solves for one right-hand side, overwritten by the solution; `false` when the result is not finite.
@@ -119,8 +117,9 @@ impl Factorisation {
     }
 
     fn solve_scaled(&self, right_hand_side: &mut DVector<f64>) -> bool {
-        right_hand_side.component_div_assign(&self.row_scales);
-        self.lu.solve_mut(right_hand_side) && right_hand_side.iter().all(|value| value.is_finite())
+        let scales = self.row_scales.as_slice();
+        right_hand_side.as_mut_slice().iter_mut().zip(scales).for_each(|(value, scale)| *value /= scale);
+        self.lu.solve_mut(right_hand_side) && right_hand_side.as_slice().iter().all(|value| value.is_finite())
     }
 }
 

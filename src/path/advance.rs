@@ -30,7 +30,7 @@ pub struct Start<'a> {
 /// A point reached.
 #[derive(Debug, Clone)]
 pub struct Reached {
-    pub corrected: Corrected,
+    pub corrected: Box<Corrected>,
     /// The path's direction there, in the mode that led to it.
     pub rate: Rate,
     pub step: f64,
@@ -54,7 +54,7 @@ pub(super) struct Attempt {
     /// Those that are.
     pub passed: Vec<Watch>,
     /// The points that it is made of, where something is passed.
-    pub stretch: Option<Stretch>,
+    pub stretch: Option<Box<Stretch>>,
     /// What is zero at the farthest point, where that was solved for.
     pub met: Option<Watch>,
 }
@@ -205,12 +205,14 @@ impl Start<'_> {
         if turn > MOST_TURN {
             return Err(Refused::Turned(turn));
         }
+        let corrected = Box::new(corrected);
         Ok(Reached { corrected, rate, step, error_estimate, drift: None, event: None, determinant, stopped: None })
     }
 
     /// A converged point of a straight path, which keeps its direction.
     pub(super) fn straight_on(&self, corrected: Corrected, error_estimate: f64) -> Reached {
         let (rate, step) = (self.rate.clone(), corrected.state.distance(self.state));
+        let corrected = Box::new(corrected);
         Reached { corrected, rate, step, error_estimate, drift: None, event: None, determinant: None, stopped: None }
     }
 
@@ -243,7 +245,7 @@ impl Start<'_> {
         }
         let watches = self.watches(ends, load_sign);
         let mut passed = self.passed(&watches, &reached);
-        let mut stretch = (!passed.is_empty()).then(|| Stretch::new(self, &reached, serving.take()));
+        let mut stretch = (!passed.is_empty()).then(|| Box::new(Stretch::new(self, &reached, serving.take())));
         if stretch.is_none() {
             (passed, stretch) = self.dips(&watches, &mut reached, serving, work)?;
         }
@@ -386,7 +388,7 @@ impl Start<'_> {
         reached: &mut Reached,
         mut serving: Option<SystemFactorisation>,
         work: &mut Work,
-    ) -> Result<(Vec<Watch>, Option<Stretch>), Refused> {
+    ) -> Result<(Vec<Watch>, Option<Box<Stretch>>), Refused> {
         let step = reached.step;
         let mut stretch = None;
         for watch in watches {
@@ -397,7 +399,7 @@ impl Start<'_> {
             }
             let zero = self.zero(*watch, reached);
             let Some(place) = watch.dip(self.loading, self.modes, start, end, step, zero) else { continue };
-            let points = stretch.get_or_insert_with(|| Stretch::new(self, reached, serving.take()));
+            let points = stretch.get_or_insert_with(|| Box::new(Stretch::new(self, reached, serving.take())));
             let inside = points.reach(self, place, work)?;
             let passed = self.passed(watches, &inside);
             if !passed.is_empty() {

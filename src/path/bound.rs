@@ -130,7 +130,7 @@ fn ended(
     (corrected.residual <= ACCEPTED_RESIDUAL).then(|| Reached {
         step: corrected.state.distance(start.state),
         rate: unit(rate),
-        corrected,
+        corrected: Box::new(corrected),
         error_estimate: width.powi(4),
         drift: start.drift.cloned(),
         event: Some(Watch::End(bound)),

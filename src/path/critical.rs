@@ -117,7 +117,7 @@ pub fn locate(
         let crossing = Crossing { eigenvalues, grazing: false, after: before.past(change, eigenvalues)? };
         let step = corrected.state.distance(start.state);
         let point = Reached {
-            corrected,
+            corrected: Box::new(corrected),
             rate,
             step,
             error_estimate: error,

@@ -61,6 +61,7 @@ pub fn locate(start: &Start<'_>, reached: &Reached) -> Option<Reached> {
         return None;
     }
     let error_estimate = search.system.off_track(&corrected, &search.tracks);
+    let corrected = Box::new(corrected);
     Some(Reached { corrected, rate, step, error_estimate, drift: None, event: None, determinant: None, stopped: None })
 }
 

@@ -109,7 +109,7 @@ impl Start<'_> {
         let watches = self.watches(ends, load_sign);
         let others: Vec<Watch> = watches.iter().copied().filter(|other| *other != watch).collect();
         let mut passed = self.passed(&others, &reached);
-        let mut stretch = (!passed.is_empty()).then(|| Stretch::new(self, &reached, serving.take()));
+        let mut stretch = (!passed.is_empty()).then(|| Box::new(Stretch::new(self, &reached, serving.take())));
         if stretch.is_none() && !is_straight {
             (passed, stretch) = self.dips(&others, &mut reached, serving, work).ok()?;
         }

@@ -55,6 +55,7 @@ pub struct Loading<'a> {
 }
 
 /// A node's components of a vector over all degrees of freedom.
+#[inline(always)]
 pub fn of_node(dimension: usize, node: usize, values: &[f64]) -> Vector {
     match values[node * dimension..(node + 1) * dimension] {
         [x, y] => [x, y, 0.0],
@@ -73,6 +74,7 @@ fn largest_of(vector: &Vector) -> f64 {
 
 impl Loading<'_> {
     /// Displacement of a contact's node less its obstacle's.
+    #[inline(always)]
     pub fn relative(&self, contact: usize, state: &State) -> Vector {
         let moved = of_node(self.structure.dimension, self.contacts[contact].node, &state.displacement);
         let shifted = add(&moved, -1.0, &self.held.shifts[contact]);
@@ -80,12 +82,14 @@ impl Loading<'_> {
     }
 
     /// Velocity of a contact's node less its obstacle's.
+    #[inline(always)]
     pub fn relative_rate(&self, contact: usize, rate: &Rate) -> Vector {
         let moved = of_node(self.structure.dimension, self.contacts[contact].node, &rate.displacement);
         add(&moved, -rate.load, &self.pattern.shifts[contact])
     }
 
     /// Gap, normal and tangents of a contact.
+    #[inline(always)]
     pub fn frame(&self, contact: usize, state: &State) -> Frame {
         self.contacts[contact].frame(&self.relative(contact, state))
     }
@@ -101,6 +105,7 @@ impl Loading<'_> {
     }
 
     /// Gap of a contact.
+    #[inline(always)]
     pub fn gap(&self, contact: usize, state: &State) -> f64 {
         self.contacts[contact].gap(&self.relative(contact, state))
     }
@@ -124,6 +129,7 @@ impl Loading<'_> {
     }
 
     /// Displacement of a supported degree of freedom per load factor.
+    #[inline(always)]
     pub fn support_rate(&self, freedom: usize) -> f64 {
         self.pattern.supports.get(freedom).copied().unwrap_or(0.0)
     }

@@ -289,7 +289,7 @@ impl Start<'_> {
         corrected.directions.clone_from(&found.corrected.directions);
         corrected.iterations_to_small = found.corrected.iterations_to_small;
         let step = corrected.state.distance(self.state);
-        Some(Reached { corrected, rate, step, ..found.clone() })
+        Some(Reached { corrected: Box::new(corrected), rate, step, ..found.clone() })
     }
 
     /// The point at which a bound of the stage is met, which is an equation of its own; `None` where that leads elsewhere.

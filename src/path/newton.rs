@@ -103,6 +103,7 @@ impl ModeSystem<'_> {
         self.make_consistent(&mut iterate);
         let mut values = DVector::zeros(self.size);
         let mut force = vec![0.0; self.loading.structure.freedoms()];
+        let mut change = self.no_rate();
         let mut iterations = 0;
         let mut iterations_to_small = None;
         let mut rises = 0;
@@ -125,7 +126,8 @@ impl ModeSystem<'_> {
             let residual = largest / scale;
             let last = self.size - 1;
             values[last] = self.place(&iterate.state, place, None);
-            let geometric = values.iter().skip(self.loading.structure.unknowns()).fold(0.0_f64, |m, v| m.max(v.abs()));
+            let geometric =
+                values.as_slice()[self.loading.structure.unknowns()..].iter().fold(0.0_f64, |m, v| m.max(v.abs()));
             let mut error = residual.max(geometric);
             if row_by_row {
                 error = error.max(self.residual_of_rows(&iterate.state, &values, scale));
@@ -225,7 +227,7 @@ impl ModeSystem<'_> {
             }
             let contraction = if before.is_finite() { correction / before } else { SERVES_ON };
             nothing_left = contraction <= SERVES_ON && self.is_rounding(&iterate.state, &values, contraction);
-            iterate = self.corrected_by(iterate, &values);
+            self.correct_by(&mut iterate, &values, &mut change);
             iterations += 1;
         }
         let Some((_, mut iterate, figures)) = best else { return Err(Failure::NotConverged) };
@@ -294,7 +296,7 @@ impl ModeSystem<'_> {
             sizes[first..first + structure.dimension].iter_mut().for_each(|size| *size += reaction.size());
         }
         let rows =
-            structure.freedom_of.iter().zip(values.iter()).map(|(freedom, value)| (sizes[*freedom], value.abs()));
+            structure.freedom_of.iter().zip(values.as_slice()).map(|(freedom, value)| (sizes[*freedom], value.abs()));
         rows.filter(|(size, _)| *size < WEAK * scale)
             .map(|(size, value)| value / size.max(f64::EPSILON * scale))
             .fold(0.0, f64::max)
@@ -304,7 +306,7 @@ impl ModeSystem<'_> {
     fn is_rounding(&self, state: &State, correction: &DVector<f64>, factor: f64) -> bool {
         let freedoms = &self.loading.structure.freedom_of;
         let values = freedoms.iter().map(|freedom| state.displacement[*freedom]).chain(std::iter::once(state.load));
-        values.zip(correction.iter()).all(|(value, change)| (factor * change).abs() <= f64::EPSILON * value.abs())
+        values.zip(correction.as_slice()).all(|(value, change)| (factor * change).abs() <= f64::EPSILON * value.abs())
     }
 
     /// Whether what is left over of each equation is within the rounding of the state's numbers; then the largest
@@ -317,7 +319,7 @@ impl ModeSystem<'_> {
             residual = residual.max((values[unknown].abs() - ROOM * rounding[*freedom]) / scale);
         }
         let reach = reach(state);
-        let geometric = values.iter().skip(structure.unknowns()).fold(0.0_f64, |m, v| m.max(v.abs()));
+        let geometric = values.as_slice()[structure.unknowns()..].iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         let within = geometric <= ACCEPTED_RESIDUAL + ROOM * f64::EPSILON * reach;
         (residual <= ACCEPTED_RESIDUAL && within).then_some(residual)
     }

@@ -91,6 +91,11 @@ fn counted_modes<'s>(
     {
         return None;
     }
+    // Each closed contact takes one motion at the least, but for those that hold a node together.
+    let closed = modes.iter().filter(|mode| mode.is_active()).count();
+    if loading.corners.is_empty() && closed + 2 > unknowns {
+        return None;
+    }
     if !slips(loading, modes) {
         return Some((modes.to_vec(), start));
     }

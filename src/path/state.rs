@@ -124,6 +124,7 @@ impl Rate {
 }
 
 /// `a·b`
+#[inline]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

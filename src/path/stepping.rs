@@ -217,7 +217,7 @@ impl Path<'_> {
         let mut corrected = system.judged(here.state.clone(), self.at.totals.force_scale);
         (corrected.state, corrected.modes) = (here.state.clone(), here.modes.clone());
         Reached {
-            corrected,
+            corrected: Box::new(corrected),
             rate: rate.clone(),
             step: 0.0,
             error_estimate: here.drift.as_ref().map_or(0.0, Rate::size),

@@ -41,6 +41,7 @@ struct Deformed {
 impl Bar {
     /// Deformed direction, length and elongation. The elongation comes from `L² - X² = 2 X·Δu + Δu·Δu`, which keeps
     /// its digits where `L - L0` would cancel.
+    #[inline]
     fn deformed(&self, structure: &Structure, displacement: &[f64]) -> Deformed {
         let dimension = structure.dimension;
         let (first, second) = (self.nodes[0] * dimension, self.nodes[1] * dimension);
@@ -68,6 +69,7 @@ impl Bar {
     }
 
     /// `ε`, `N` and `N'`.
+    #[inline]
     fn response(&self, elongation: f64) -> (f64, f64, f64) {
         let (stiffness, rest) = (self.axial_stiffness, self.rest_length);
         let engineering = elongation / rest;

@@ -151,10 +151,10 @@ impl<'a> Reduced<'a> {
             places: Vec::with_capacity(freedoms),
             parts: Vec::with_capacity(freedoms),
             driven: Vec::with_capacity(freedoms),
-            slips: Vec::new(),
-            is_slip: Vec::new(),
-            freedom_of: Vec::new(),
-            turning: Vec::new(),
+            slips: Vec::with_capacity(standings.len()),
+            is_slip: Vec::with_capacity(structure.unknowns()),
+            freedom_of: Vec::with_capacity(structure.unknowns()),
+            turning: Vec::with_capacity(standings.len()),
             holder: Vec::new(),
         };
         for (node, holder) in holder.iter().enumerate() {
@@ -268,7 +268,9 @@ impl<'a> Reduced<'a> {
         if solutions.len() != 2 || !solutions.iter().any(slip) || !solutions.iter().any(stick) {
             return None;
         }
-        [1.0, -1.0].into_iter().find_map(|sign| self.stuck_rate(&others, &response.load, sign))
+        // Where the structure gives way, the load falls or rises for both.
+        let likely = 1.0_f64.copysign(incoming.load);
+        [likely, -likely].into_iter().find_map(|sign| self.stuck_rate(&others, &response.load, sign))
     }
 
     fn unknowns(&self, slips: bool) -> Vec<usize> {

@@ -179,13 +179,24 @@ impl ModeSystem<'_> {
 
     /// Puts the bordering row of a rate into a matrix.
     pub fn border(&self, matrix: &mut (impl Sink + ?Sized), rate: &Rate) {
+        self.border_along(matrix, |freedom| rate.displacement[freedom], rate.load);
+    }
+
+    /// The same of the rate of each degree of freedom and of the load.
+    pub(super) fn border_along(
+        &self,
+        matrix: &mut (impl Sink + ?Sized),
+        of_freedom: impl Fn(usize) -> f64,
+        of_load: f64,
+    ) {
         let structure = self.loading.structure;
         let (last, load) = (self.size - 1, structure.unknowns());
         for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
-            matrix.add(last, unknown, rate.displacement[*freedom]);
+            matrix.add(last, unknown, of_freedom(*freedom));
         }
         // Supports that move with the load are part of the arc.
-        let supports: f64 = self.loading.pattern.supports.iter().zip(&rate.displacement).map(|(a, b)| a * b).sum();
-        matrix.add(last, load, rate.load + supports);
+        let supports = self.loading.pattern.supports.iter().enumerate();
+        let supports: f64 = supports.map(|(freedom, motion)| motion * of_freedom(freedom)).sum();
+        matrix.add(last, load, of_load + supports);
     }
 }

@@ -17,16 +17,28 @@ impl ModeSystem<'_> {
 
     /// `kind` is that of the equations whose solution the values are.
     pub(in crate::path) fn rate_at(&self, iterate: &Iterate, values: &DVector<f64>, kind: Kind) -> Rate {
+        let mut rate = self.no_rate();
+        self.rate_into(iterate, values, kind, &mut rate);
+        rate
+    }
+
+    /// Zero, of these contacts and degrees of freedom.
+    pub(in crate::path) fn no_rate(&self) -> Rate {
+        let displacement = vec![0.0; self.loading.structure.freedoms()];
+        Rate { displacement, load: 0.0, reactions: vec![Reaction::default(); self.roles.len()] }
+    }
+
+    /// The same in memory that is there, where free contacts have no reaction.
+    fn rate_into(&self, iterate: &Iterate, values: &DVector<f64>, kind: Kind, rate: &mut Rate) {
         let structure = self.loading.structure;
         let load = values[structure.unknowns()];
-        let mut displacement = vec![0.0; structure.freedoms()];
-        for (freedom, value) in displacement.iter_mut().enumerate() {
-            *value = match structure.unknown_of[freedom] {
-                Some(unknown) => values[unknown],
+        rate.load = load;
+        for (freedom, (value, unknown)) in rate.displacement.iter_mut().zip(&structure.unknown_of).enumerate() {
+            *value = match unknown {
+                Some(unknown) => values[*unknown],
                 None => load * self.loading.support_rate(freedom),
             };
         }
-        let mut rate = Rate { displacement, load, reactions: vec![Reaction::default(); self.roles.len()] };
         for (contact, role) in self.roles.iter().enumerate() {
             let column = self.column_of(contact);
             rate.reactions[contact] = match role {
@@ -57,7 +69,7 @@ impl ModeSystem<'_> {
                         tangential = add(&tangential, -per_turn * values[column + 1], &across);
                     }
                     if frame.curvature != 0.0 || matches!(role, Role::Edge { .. }) {
-                        let motion = self.loading.relative_rate(contact, &rate);
+                        let motion = self.loading.relative_rate(contact, rate);
                         let change = self.direction_change(contact, iterate, &direction, &motion);
                         tangential = add(&tangential, -pressed, &change);
                     }
@@ -65,27 +77,30 @@ impl ModeSystem<'_> {
                 }
             };
         }
-        rate
     }
 
-    /// Goes on by minus a Newton correction.
-    pub(in crate::path) fn corrected_by(&self, iterate: Iterate, values: &DVector<f64>) -> Iterate {
-        let correction = self.rate_at(&iterate, values, Kind::Increment);
-        let Iterate { mut state, mut directions } = iterate;
-        state.advance(&correction, -1.0);
+    /// Goes on by minus a Newton correction, which is also written to `correction` (see [`Self::no_rate`]).
+    pub(in crate::path) fn correct_by(&self, iterate: &mut Iterate, values: &DVector<f64>, correction: &mut Rate) {
+        self.rate_into(iterate, values, Kind::Increment, correction);
+        let Iterate { state, directions } = iterate;
+        state.advance(correction, -1.0);
         if self.has_tracks() {
-            self.place_exactly(&mut state);
+            self.place_exactly(state);
         }
         for (contact, role) in self.roles.iter().enumerate() {
             if let Role::Plane { .. } = role {
-                let frame = self.loading.frame(contact, &state);
+                let frame = self.loading.frame(contact, state);
                 let turn = -values[self.column_of(contact) + 1];
                 directions[contact] = track::turned(&frame, &directions[contact], turn);
             }
         }
-        let mut next = Iterate { state, directions };
-        self.make_consistent(&mut next);
-        next
+        self.make_consistent(iterate);
+    }
+
+    /// The same of an iterate by value.
+    pub(in crate::path) fn corrected_by(&self, mut iterate: Iterate, values: &DVector<f64>) -> Iterate {
+        self.correct_by(&mut iterate, values, &mut self.no_rate());
+        iterate
     }
 
     /// The modes at an iterate: directions of slip as they are there.

@@ -5,7 +5,7 @@ use crate::contact::Reaction;
 use crate::contact::vector::scaled;
 use crate::linear_algebra::Sink;
 use crate::path::newton::Place;
-use crate::path::state::{Rate, State};
+use crate::path::state::State;
 use crate::path::track;
 use nalgebra::DVector;
 
@@ -20,8 +20,9 @@ impl ModeSystem<'_> {
         let structure = self.loading.structure;
         let (dimension, state) = (structure.dimension, &iterate.state);
         let mut scale = structure.internal_force(&state.displacement, force);
-        for (freedom, value) in force.iter_mut().enumerate() {
-            let load = state.load * self.loading.pattern.forces[freedom] + self.loading.held.forces[freedom];
+        let loads = self.loading.pattern.forces.iter().zip(&self.loading.held.forces);
+        for (value, (pattern, held)) in force.iter_mut().zip(loads) {
+            let load = state.load * pattern + held;
             scale = scale.max(load.abs()).max(value.abs());
             *value -= load;
         }
@@ -51,9 +52,9 @@ impl ModeSystem<'_> {
             }
         }
         let mut largest = 0.0_f64;
-        for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
-            values[unknown] = force[*freedom];
-            largest = largest.max(force[*freedom].abs());
+        for (value, freedom) in values.as_mut_slice().iter_mut().zip(&structure.freedom_of) {
+            *value = force[*freedom];
+            largest = largest.max(value.abs());
         }
         (largest, scale)
     }
@@ -65,17 +66,11 @@ impl ModeSystem<'_> {
         match place {
             Place::ArcLength { from, step } if matrix.is_none() => state.distance(from) - step,
             Place::ArcLength { from, step } => {
-                let mut chord = Rate {
-                    displacement: state.displacement.iter().zip(&from.displacement).map(|(a, b)| a - b).collect(),
-                    load: state.load - from.load,
-                    reactions: Vec::new(),
-                };
-                let size = chord.size();
+                let size = state.distance(from);
                 if let Some(matrix) = matrix {
-                    if size > 0.0 {
-                        chord.scale(1.0 / size);
-                    }
-                    self.border(matrix, &chord);
+                    let factor = if size > 0.0 { 1.0 / size } else { 1.0 };
+                    let along = |freedom: usize| factor * (state.displacement[freedom] - from.displacement[freedom]);
+                    self.border_along(matrix, along, factor * (state.load - from.load));
                 }
                 size - step
             }

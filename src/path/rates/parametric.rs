@@ -35,6 +35,9 @@ const SHIFT: f64 = 1e-13;
 /// What all solutions are among, with whether each load rate has exactly one; those for load rates of these signs at
 /// least. `None` where that is not certain.
 pub fn all_solutions(matrix: DMatrix<f64>, load: DVector<f64>, signs: &[f64]) -> Option<(bool, Vec<Pairs>)> {
+    if let ([own], [by_load]) = (matrix.as_slice(), load.as_slice()) {
+        return of_one(*own, *by_load, signs);
+    }
     match Certified::new(matrix.clone(), load.clone()) {
         Some(certified) => {
             let of_signs: Option<_> = signs.iter().map(|sign| certified.solve(*sign)).collect();
@@ -42,6 +45,20 @@ pub fn all_solutions(matrix: DMatrix<f64>, load: DVector<f64>, signs: &[f64]) ->
         }
         None => Some((false, solutions(&matrix, &load)?)),
     }
+}
+
+/// The solutions for one pair, `0 <= m b + q ṡ ⊥ b >= 0`, which can be read off.
+fn of_one(own: f64, by_load: f64, signs: &[f64]) -> Option<(bool, Vec<Pairs>)> {
+    if !own.is_finite() || !by_load.is_finite() || (own == 0.0 && by_load == 0.0) {
+        return None;
+    }
+    let at_rest = |sign: f64| (sign * by_load >= 0.0).then(|| vec![[sign * by_load, 0.0]]);
+    if own > ROUND_OFF * by_load.abs() {
+        let moving = |sign: f64| vec![[0.0, -sign * by_load / own]];
+        return Some((true, signs.iter().map(|sign| at_rest(*sign).unwrap_or_else(|| moving(*sign))).collect()));
+    }
+    let moving = (by_load != 0.0).then(|| vec![[0.0, 1.0]]);
+    Some((false, [1.0, -1.0].into_iter().filter_map(at_rest).chain(moving).collect()))
 }
 
 /// What every solution is among; `None` where that is not certain.
