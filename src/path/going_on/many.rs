@@ -14,7 +14,7 @@ impl Reduced<'_> {
         let pattern = &layout.pattern;
         let size = pattern.size();
         let place_of: Vec<usize> =
-            self.freedom_of.iter().map(|freedom| structure.unknown_of[*freedom]).collect::<Option<_>>()?;
+            self.unknowns.iter().map(|unknown| structure.unknown_of[unknown.freedom]).collect::<Option<_>>()?;
         // The equations of the other unknowns alone.
         let mut held = Bordered::new(pattern.clone(), 0);
         let (mut symmetric, mut load) = (Bordered::new(pattern.clone(), 1), DVector::zeros(size));
@@ -26,7 +26,7 @@ impl Reduced<'_> {
                     (Some(place), Some(mirror)) => {
                         symmetric.add_at(place, 0.5 * value);
                         symmetric.add_at(mirror, 0.5 * value);
-                        if !self.is_slip[row] && !self.is_slip[column] {
+                        if !self.unknowns[row].is_slip && !self.unknowns[column].is_slip {
                             held.add_at(place, value);
                         }
                     }
@@ -36,8 +36,8 @@ impl Reduced<'_> {
             None => load[place_of[row]] -= value,
         });
         let (mut is_used, mut is_slip) = (vec![false; size], vec![false; size]);
-        for (place, slips) in place_of.iter().zip(&self.is_slip) {
-            (is_used[*place], is_slip[*place]) = (true, *slips);
+        for (place, unknown) in place_of.iter().zip(&self.unknowns) {
+            (is_used[*place], is_slip[*place]) = (true, unknown.is_slip);
         }
         for unknown in 0..size {
             let place = pattern.place(unknown, unknown)?;
@@ -68,7 +68,7 @@ impl Reduced<'_> {
             }
             _ => return None,
         };
-        let others = self.unknowns(false);
+        let others = self.unknowns_that_slip(false);
         let mut values = DVector::from_fn(size, |unknown, _| if is_slip[unknown] { 0.0 } else { load[unknown] });
         if !others.is_empty() && !SparseFactorisation::new(held, &Holdings::default())?.solve(&mut values) {
             return None;
@@ -79,10 +79,10 @@ impl Reduced<'_> {
         }
         // One direction for each sign of the power; the load alone changes where no other motion has any.
         let power = |motion: &dyn Fn(usize) -> f64, slips: bool| -> f64 {
-            let unknowns = (0..self.is_slip.len()).filter(|unknown| slips || !self.is_slip[*unknown]);
+            let unknowns = (0..self.unknowns.len()).filter(|unknown| slips || !self.unknowns[*unknown].is_slip);
             unknowns.map(|unknown| load[place_of[unknown]] * motion(unknown)).sum()
         };
-        let mut columns = vec![0.0; self.is_slip.len()];
+        let mut columns = vec![0.0; self.unknowns.len()];
         for (freedom, velocity) in incoming.displacement.iter().enumerate() {
             self.parts_of(freedom).iter().for_each(|part| columns[part.unknown] += part.motion * velocity);
         }

@@ -49,6 +49,21 @@ struct Part {
     test: f64,
 }
 
+/// How a degree of freedom moves.
+struct Place {
+    /// Its first part and their number.
+    first: usize,
+    count: usize,
+    /// Velocity per load rate.
+    driven: f64,
+}
+
+struct Unknown {
+    is_slip: bool,
+    /// A degree of freedom at the unknown's own node, each another.
+    freedom: usize,
+}
+
 /// A contact that slips.
 struct Slip {
     contact: usize,
@@ -59,16 +74,11 @@ struct Slip {
 struct Reduced<'a> {
     loading: Loading<'a>,
     state: &'a State,
-    /// Of each degree of freedom the first and the number of its parts.
-    places: Vec<(usize, usize)>,
+    /// Of each degree of freedom.
+    places: Vec<Place>,
     parts: Vec<Part>,
-    /// Velocity of each degree of freedom per load rate.
-    driven: Vec<f64>,
     slips: Vec<Slip>,
-    /// Whether an unknown is a slip.
-    is_slip: Vec<bool>,
-    /// A degree of freedom at the unknown's own node, each another.
-    freedom_of: Vec<usize>,
+    unknowns: Vec<Unknown>,
     /// Entries on the diagonal blocks by which reactions turn with the place.
     turning: Vec<(usize, usize, f64)>,
     /// The closed contact of each node.
@@ -150,10 +160,8 @@ impl<'a> Reduced<'a> {
             state,
             places: Vec::with_capacity(freedoms),
             parts: Vec::with_capacity(freedoms),
-            driven: Vec::with_capacity(freedoms),
             slips: Vec::with_capacity(standings.len()),
-            is_slip: Vec::with_capacity(structure.unknowns()),
-            freedom_of: Vec::with_capacity(structure.unknowns()),
+            unknowns: Vec::with_capacity(structure.unknowns()),
             turning: Vec::with_capacity(standings.len()),
             holder: Vec::new(),
         };
@@ -169,19 +177,18 @@ impl<'a> Reduced<'a> {
 
     fn add_free(&mut self, freedom: usize) {
         let is_free = self.loading.structure.unknown_of[freedom].is_some();
-        self.places.push((self.parts.len(), usize::from(is_free)));
-        self.driven.push(self.loading.support_rate(freedom));
+        let (first, driven) = (self.parts.len(), self.loading.support_rate(freedom));
+        self.places.push(Place { first, count: usize::from(is_free), driven });
         if is_free {
-            self.parts.push(Part { unknown: self.is_slip.len(), motion: 1.0, test: 1.0 });
-            self.freedom_of.push(freedom);
-            self.is_slip.push(false);
+            self.parts.push(Part { unknown: self.unknowns.len(), motion: 1.0, test: 1.0 });
+            self.unknowns.push(Unknown { is_slip: false, freedom });
         }
     }
 
     fn add_closed(&mut self, node: usize, contact: usize, standing: &Standing) {
         let dimension = self.loading.structure.dimension;
         let frame = self.loading.frame(contact, self.state);
-        let first = self.is_slip.len();
+        let first = self.unknowns.len();
         let normal_reaction = self.state.reactions[contact].normal;
         // Motions and tests.
         let mut along: [(Vector, Vector); 2] = Default::default();
@@ -191,23 +198,22 @@ impl<'a> Reduced<'a> {
                 along[0] = (*direction, add(direction, friction, &frame.normal));
                 self.turning.push((first, first, -frame.curvature * normal_reaction * (1.0 + friction * friction)));
                 self.slips.push(Slip { contact, direction: *direction });
-                self.is_slip.push(true);
                 1
             }
             Standing::Settled(Mode::Slip { .. }) => {
                 for (k, tangent) in frame.tangents.iter().enumerate().take(dimension - 1) {
                     along[k] = (*tangent, *tangent);
                     self.turning.push((first + k, first + k, -frame.curvature * normal_reaction));
-                    self.is_slip.push(false);
                 }
                 dimension - 1
             }
             Standing::Settled(_) | Standing::Touching | Standing::Cornered { .. } => 0,
         };
-        self.freedom_of.extend((0..count).map(|k| node * dimension + k));
+        let is_slip = matches!(standing, Standing::OnCone { .. });
+        self.unknowns.extend((0..count).map(|k| Unknown { is_slip, freedom: node * dimension + k }));
         for component in 0..dimension {
-            self.places.push((self.parts.len(), count));
-            self.driven.push(self.loading.pattern.shifts[contact][component]);
+            let driven = self.loading.pattern.shifts[contact][component];
+            self.places.push(Place { first: self.parts.len(), count, driven });
             for (k, (motion, test)) in along.iter().enumerate().take(count) {
                 self.parts.push(Part { unknown: first + k, motion: motion[component], test: test[component] });
             }
@@ -215,7 +221,7 @@ impl<'a> Reduced<'a> {
     }
 
     fn parts_of(&self, freedom: usize) -> &[Part] {
-        let (first, count) = self.places[freedom];
+        let Place { first, count, .. } = self.places[freedom];
         &self.parts[first..first + count]
     }
 
@@ -231,8 +237,9 @@ impl<'a> Reduced<'a> {
                 for part in self.parts_of(column) {
                     add(test.unknown, Some(part.unknown), value * part.motion);
                 }
-                if self.driven[column] != 0.0 {
-                    add(test.unknown, None, value * self.driven[column]);
+                let driven = self.places[column].driven;
+                if driven != 0.0 {
+                    add(test.unknown, None, value * driven);
                 }
             }
         });
@@ -246,7 +253,7 @@ impl<'a> Reduced<'a> {
 
     /// The direction along which all contacts on the cone stick, if that and the way on are all there are.
     fn stuck(&self, incoming: &Rate) -> Option<Rate> {
-        let count = self.is_slip.len();
+        let count = self.unknowns.len();
         if count > MOST_DENSE {
             return self.stuck_among_many(incoming);
         }
@@ -255,37 +262,39 @@ impl<'a> Reduced<'a> {
             Some(column) => matrix[(row, column)] += value,
             None => load[row] += value,
         });
-        let others = self.unknowns(false);
+        let others = self.unknowns_that_slip(false);
         let response = Response::new(&matrix, &load, &others)?;
-        if incoming.load.abs() > RESTING && is_definite(matrix.clone()) {
+        // One slip's matrix is a number, which tells more.
+        if self.slips.len() > 1 && incoming.load.abs() > RESTING && is_definite(matrix.clone()) {
             return self.stuck_rate(&others, &response.load, -incoming.load.signum());
         }
-        let slips = self.unknowns(true);
-        let (matrix, load) = response.condensed(&matrix, &load, &others, &slips)?;
-        let (_, solutions) = all_solutions(matrix, load, &[1.0, -1.0])?;
+        if !others.is_empty() {
+            (matrix, load) = response.condensed(&matrix, &load, &others, &self.unknowns_that_slip(true))?;
+        }
+        let (is_p_matrix, solutions) = all_solutions(matrix, load, &[1.0, -1.0])?;
         let slip = |pairs: &Pairs| pairs.iter().all(|[a, b]| *a == 0.0 && *b > 0.0);
         let stick = |pairs: &Pairs| pairs.iter().all(|[a, b]| *b == 0.0 && *a > 0.0);
         if solutions.len() != 2 || !solutions.iter().any(slip) || !solutions.iter().any(stick) {
             return None;
         }
-        // Where the structure gives way, the load falls or rises for both.
-        let likely = 1.0_f64.copysign(incoming.load);
+        // Each load rate has one of the two, or, where the structure gives way, one has both.
+        let likely = if is_p_matrix { -1.0_f64 } else { 1.0 } * 1.0_f64.copysign(incoming.load);
         [likely, -likely].into_iter().find_map(|sign| self.stuck_rate(&others, &response.load, sign))
     }
 
-    fn unknowns(&self, slips: bool) -> Vec<usize> {
-        (0..self.is_slip.len()).filter(|unknown| self.is_slip[*unknown] == slips).collect()
+    fn unknowns_that_slip(&self, slips: bool) -> Vec<usize> {
+        (0..self.unknowns.len()).filter(|unknown| self.unknowns[*unknown].is_slip == slips).collect()
     }
 
     /// The rate at which nothing slips, of unit arc length; `None` where some contact would not stay within its cone by a
     /// wide margin.
     fn stuck_rate(&self, others: &[usize], response: &DVector<f64>, load: f64) -> Option<Rate> {
         let (loading, structure) = (self.loading, self.loading.structure);
-        let mut motions = vec![0.0; self.is_slip.len()];
+        let mut motions = vec![0.0; self.unknowns.len()];
         others.iter().zip(response.iter()).for_each(|(unknown, value)| motions[*unknown] = load * value);
         let velocity = |freedom: usize| {
             let own: f64 = self.parts_of(freedom).iter().map(|part| part.motion * motions[part.unknown]).sum();
-            own + load * self.driven[freedom]
+            own + load * self.places[freedom].driven
         };
         let displacement: Vec<f64> = (0..structure.freedoms()).map(velocity).collect();
         let mut forces: Vec<f64> = loading.pattern.forces.iter().map(|force| -load * force).collect();

@@ -35,8 +35,10 @@ const SHIFT: f64 = 1e-13;
 /// What all solutions are among, with whether each load rate has exactly one; those for load rates of these signs at
 /// least. `None` where that is not certain.
 pub fn all_solutions(matrix: DMatrix<f64>, load: DVector<f64>, signs: &[f64]) -> Option<(bool, Vec<Pairs>)> {
-    if let ([own], [by_load]) = (matrix.as_slice(), load.as_slice()) {
-        return of_one(*own, *by_load, signs);
+    if let ([own], [by_load]) = (matrix.as_slice(), load.as_slice())
+        && let Some(read_off) = of_one(*own, *by_load, signs)
+    {
+        return Some(read_off);
     }
     match Certified::new(matrix.clone(), load.clone()) {
         Some(certified) => {
@@ -47,18 +49,19 @@ pub fn all_solutions(matrix: DMatrix<f64>, load: DVector<f64>, signs: &[f64]) ->
     }
 }
 
-/// The solutions for one pair, `0 <= m b + q ṡ ⊥ b >= 0`, which can be read off.
+/// The solutions for one pair, `0 <= m b + q ṡ ⊥ b >= 0`, which can be read off where neither coefficient may be zero.
 fn of_one(own: f64, by_load: f64, signs: &[f64]) -> Option<(bool, Vec<Pairs>)> {
-    if !own.is_finite() || !by_load.is_finite() || (own == 0.0 && by_load == 0.0) {
+    let is_clear = |one: f64, other: f64| one.is_finite() && one.abs() > NEAR_ZERO * other.abs();
+    if !is_clear(own, by_load) || !is_clear(by_load, own) {
         return None;
     }
-    let at_rest = |sign: f64| (sign * by_load >= 0.0).then(|| vec![[sign * by_load, 0.0]]);
-    if own > ROUND_OFF * by_load.abs() {
-        let moving = |sign: f64| vec![[0.0, -sign * by_load / own]];
-        return Some((true, signs.iter().map(|sign| at_rest(*sign).unwrap_or_else(|| moving(*sign))).collect()));
+    if own < 0.0 {
+        // Both for one sign of the load rate, none for the other.
+        return Some((false, vec![vec![[by_load.abs(), 0.0]], vec![[0.0, 1.0]]]));
     }
-    let moving = (by_load != 0.0).then(|| vec![[0.0, 1.0]]);
-    Some((false, [1.0, -1.0].into_iter().filter_map(at_rest).chain(moving).collect()))
+    // In the scale of the certificate, which makes the matrix 1.
+    let of = |sign: f64| sign * by_load / own.sqrt();
+    Some((true, signs.iter().map(|sign| vec![[of(*sign).max(0.0), of(-*sign).max(0.0)]]).collect()))
 }
 
 /// What every solution is among; `None` where that is not certain.
@@ -302,5 +305,36 @@ impl Pieces {
             if self.active[index] { [0.0, value] } else { [value, 0.0] }
         };
         (0..self.count).map(pair).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Certified, Pairs, of_one, solutions};
+    use nalgebra::{DMatrix, DVector};
+
+    /// What is read off for one pair is what the ways for many find.
+    #[test]
+    fn one_pair_is_as_many() {
+        let sizes = [1e-4, 0.3, 1.0, 7.0, 1e4];
+        let values = || sizes.iter().flat_map(|size| [*size, -*size]);
+        for (own, by_load) in values().flat_map(|own| values().map(move |by_load| (own, by_load))) {
+            let (is_p_matrix, mut found) = of_one(own, by_load, &[1.0, -1.0]).expect("solutions");
+            let (matrix, load) = (DMatrix::from_element(1, 1, own), DVector::from_element(1, by_load));
+            let certified = Certified::new(matrix.clone(), load.clone());
+            assert_eq!(is_p_matrix, certified.is_some(), "{own} {by_load}");
+            let mut others = match certified {
+                Some(certified) => [1.0, -1.0].map(|sign| certified.solve(sign).expect("one")).to_vec(),
+                None => solutions(&matrix, &load).expect("solutions"),
+            };
+            let in_order = |a: &Pairs, b: &Pairs| a[0][0].total_cmp(&b[0][0]);
+            found.sort_by(in_order);
+            others.sort_by(in_order);
+            assert_eq!(found.len(), others.len(), "{own} {by_load}");
+            for (value, other) in found.iter().flatten().flatten().zip(others.iter().flatten().flatten()) {
+                assert!((value - other).abs() <= 1e-14 * other.abs(), "{own} {by_load}: {found:?} {others:?}");
+            }
+        }
+        assert!(of_one(1e-10, 1.0, &[1.0]).is_none() && of_one(f64::NAN, 1.0, &[1.0]).is_none());
     }
 }
