@@ -51,21 +51,19 @@ impl Factorisation {
         let size = matrix.nrows();
         let mut row_scales = DVector::zeros(size);
         let scales: &mut [f64] = row_scales.as_mut_slice();
+        // Zero times what is not finite is no number.
+        let mut none = 0.0;
         for column in matrix.as_slice().chunks_exact(size.max(1)) {
             for (scale, value) in scales.iter_mut().zip(column) {
-                *scale = f64::max(*scale, value.abs());
+                none += 0.0 * value;
+                *scale = if value.abs() > *scale { value.abs() } else { *scale };
             }
         }
-        if !scales.iter().all(|scale| scale.is_finite() && *scale > 0.0) {
+        if none != 0.0 || !scales.iter().all(|scale| *scale > 0.0) {
             return None;
         }
         for column in matrix.as_mut_slice().chunks_exact_mut(size.max(1)) {
-            for (value, scale) in column.iter_mut().zip(scales.iter()) {
-                if !value.is_finite() {
-                    return None;
-                }
-                *value /= scale;
-            }
+            column.iter_mut().zip(scales.iter()).for_each(|(value, scale)| *value /= scale);
         }
         let lu = matrix.lu();
         let pivots = lu.lu_internal().as_slice().iter().step_by(size + 1);

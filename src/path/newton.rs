@@ -130,7 +130,7 @@ impl ModeSystem<'_> {
                 values.as_slice()[self.loading.structure.unknowns()..].iter().fold(0.0_f64, |m, v| m.max(v.abs()));
             let mut error = residual.max(geometric);
             if row_by_row {
-                error = error.max(self.residual_of_rows(&iterate.state, &values, scale));
+                error = error.max(self.residual_of_rows(&iterate.state, &values, scale, &mut force));
             }
             if !error.is_finite() {
                 return Err(Failure::NotConverged);
@@ -175,7 +175,7 @@ impl ModeSystem<'_> {
                 || (stalled && (row_by_row || least <= ACCEPTED_RESIDUAL || rounding));
             if settled && iterations > 0 {
                 let done = row_by_row || iterations == MOST_ITERATIONS;
-                if done || self.residual_of_rows(&iterate.state, &values, scale) <= ACCEPTED_RESIDUAL {
+                if done || self.residual_of_rows(&iterate.state, &values, scale, &mut force) <= ACCEPTED_RESIDUAL {
                     break;
                 }
                 (row_by_row, best) = (true, None);
@@ -283,10 +283,10 @@ impl ModeSystem<'_> {
     }
 
     /// The largest equilibrium residual over the forces of its own row, of the rows where these are far below the force
-    /// scale.
-    fn residual_of_rows(&self, state: &State, values: &DVector<f64>, scale: f64) -> f64 {
+    /// scale. `sizes` becomes those forces.
+    fn residual_of_rows(&self, state: &State, values: &DVector<f64>, scale: f64, sizes: &mut [f64]) -> f64 {
         let structure = self.loading.structure;
-        let mut sizes = structure.force_sizes(&state.displacement, USUAL);
+        structure.force_sizes(&state.displacement, USUAL, sizes);
         for (freedom, size) in sizes.iter_mut().enumerate() {
             *size +=
                 (state.load * self.loading.pattern.forces[freedom]).abs() + self.loading.held.forces[freedom].abs();

@@ -107,6 +107,16 @@ impl Rate {
         }
     }
 
+    /// The same of unit size; `None` where it has none.
+    pub fn normalised(mut self) -> Option<Self> {
+        let size = self.size();
+        if size <= 0.0 || !size.is_finite() {
+            return None;
+        }
+        self.scale(1.0 / size);
+        Some(self)
+    }
+
     /// Adds a multiple of another rate.
     pub fn add(&mut self, other: &Self, factor: f64) {
         self.displacement.iter_mut().zip(&other.displacement).for_each(|(sum, value)| *sum += factor * value);

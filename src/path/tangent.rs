@@ -43,14 +43,19 @@ impl ModeSystem<'_> {
         }
         *factorisations += 1;
         let factorisation = self.bordered(&iterate, towards)?;
-        let rate = self.tangent_by(&factorisation, &iterate)?;
-        let mut values = corrected.left_over.clone();
+        let (mut rate, mut values) = (self.no_rate(), corrected.left_over.clone());
         values[self.size - 1] = 0.0;
-        let error = if factorisation.solve(&mut values) {
-            self.rate_at(&iterate, &values, Kind::Rates).size()
-        } else {
+        if !factorisation.solve(&mut values) {
             return None;
-        };
+        }
+        self.rate_into(&iterate, &values, Kind::Rates, &mut rate);
+        let error = rate.size();
+        self.border_into(&mut values);
+        if !factorisation.solve(&mut values) {
+            return None;
+        }
+        self.rate_into(&iterate, &values, Kind::Rates, &mut rate);
+        let rate = rate.normalised()?;
         let mut stiffness_across = vec![None; self.roles.len()];
         for (contact, role) in self.roles.iter().enumerate() {
             if let Role::Plane { .. } = role {

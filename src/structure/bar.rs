@@ -139,10 +139,23 @@ impl Bar {
         geometric: f64,
         add: &mut impl FnMut(usize, usize, f64),
     ) {
-        let dimension = structure.dimension;
-        let (first, second) = (self.nodes[0] * dimension, self.nodes[1] * dimension);
-        for row in 0..dimension {
-            for column in 0..dimension {
+        match structure.dimension {
+            2 => self.add_parts_in::<2>(deformed, slope, geometric, add),
+            _ => self.add_parts_in::<3>(deformed, slope, geometric, add),
+        }
+    }
+
+    /// The same in so many dimensions, which the compiler knows.
+    fn add_parts_in<const DIMENSION: usize>(
+        &self,
+        deformed: &Deformed,
+        slope: f64,
+        geometric: f64,
+        add: &mut impl FnMut(usize, usize, f64),
+    ) {
+        let (first, second) = (self.nodes[0] * DIMENSION, self.nodes[1] * DIMENSION);
+        for row in 0..DIMENSION {
+            for column in 0..DIMENSION {
                 let along = deformed.direction[row] * deformed.direction[column];
                 let across = if row == column { 1.0 - along } else { -along };
                 let value = slope * along + geometric * across;

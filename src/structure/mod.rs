@@ -104,20 +104,20 @@ impl Structure {
     /// What the rounding of the displacements puts into `f_int(u)`, one bound a degree of freedom: stiffness times unit
     /// round-off times the displacements that meet there. No state can be closer to equilibrium than this.
     pub fn rounding(&self, displacement: &[f64]) -> Vec<f64> {
-        let mut rounding = self.force_sizes(displacement, 0.0);
+        let mut rounding = vec![0.0; self.freedoms()];
+        self.force_sizes(displacement, 0.0, &mut rounding);
         rounding.iter_mut().for_each(|size| *size *= f64::EPSILON);
         rounding
     }
 
-    /// The size of the numbers of which `f_int(u)` is made, one a degree of freedom: `|K| |u|` and the forces that the
+    /// Writes the size of the numbers of which `f_int(u)` is made, one a degree of freedom: `|K| |u|` and the forces that the
     /// elements carry, with displacements taken as `least` at least. Against it a residual is small or not, whatever the
     /// forces elsewhere (W. Oettli, W. Prager, Numer. Math. 6 (1964) 405, doi:10.1007/BF01386090).
-    pub fn force_sizes(&self, displacement: &[f64], least: f64) -> Vec<f64> {
-        let mut sizes = vec![0.0; self.freedoms()];
+    pub fn force_sizes(&self, displacement: &[f64], least: f64, sizes: &mut [f64]) {
+        sizes.fill(0.0);
         for element in &self.elements {
             element.each_size(self, displacement, least, &mut |freedom, size| sizes[freedom] += size);
         }
-        sizes
     }
 
     /// The largest of them at a node.

@@ -29,7 +29,7 @@ impl ModeSystem<'_> {
     }
 
     /// The same in memory that is there, where free contacts have no reaction.
-    fn rate_into(&self, iterate: &Iterate, values: &DVector<f64>, kind: Kind, rate: &mut Rate) {
+    pub(in crate::path) fn rate_into(&self, iterate: &Iterate, values: &DVector<f64>, kind: Kind, rate: &mut Rate) {
         let structure = self.loading.structure;
         let load = values[structure.unknowns()];
         rate.load = load;
@@ -133,18 +133,18 @@ impl ModeSystem<'_> {
     /// The right-hand side whose solution is the path's direction.
     pub(in crate::path) fn bordering(&self) -> DVector<f64> {
         let mut values = DVector::zeros(self.size);
-        values[self.size - 1] = 1.0;
+        self.border_into(&mut values);
         values
+    }
+
+    /// The same in memory that is there.
+    pub(in crate::path) fn border_into(&self, values: &mut DVector<f64>) {
+        values.fill(0.0);
+        values[self.size - 1] = 1.0;
     }
 
     /// A solution of the rate equations, of unit arc length.
     pub(in crate::path) fn direction_from(&self, iterate: &Iterate, values: &DVector<f64>) -> Option<Rate> {
-        let mut rate = self.rate_at(iterate, values, Kind::Rates);
-        let size = rate.size();
-        if size <= 0.0 || !size.is_finite() {
-            return None;
-        }
-        rate.scale(1.0 / size);
-        Some(rate)
+        self.rate_at(iterate, values, Kind::Rates).normalised()
     }
 }

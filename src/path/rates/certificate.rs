@@ -147,7 +147,7 @@ fn is_positive_definite(matrix: &DMatrix<f64>) -> bool {
     if !size.is_finite() {
         return false;
     }
-    let mut factor: Vec<f64> = Vec::new();
+    let mut factor: Vec<f64> = Vec::with_capacity(count);
     // First column and place of each row.
     let mut rows: Vec<(usize, usize)> = Vec::with_capacity(count);
     let entry = |row: usize, column: usize| 0.5 * (matrix[(row, column)] + matrix[(column, row)]);
