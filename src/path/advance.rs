@@ -86,6 +86,8 @@ pub enum Refused {
 
 /// The direction may turn by this much in a step.
 pub const MOST_TURN: f64 = 0.6;
+/// Its cosine.
+const LEAST_COSINE: f64 = 0.825_335_614_909_678_3;
 /// The turns at the ends of a step may move the chord of a slip by this angle (radians).
 const MOST_CORRECTION: f64 = 0.1;
 /// Solves of an increment in which directions of slip settle.
@@ -100,6 +102,11 @@ pub const AT_END: f64 = 1e-12;
 const MOST_LOOKS: usize = 32;
 /// Two quantities that are zero within this are zero together.
 pub(super) const COINCIDING: f64 = 1e-10;
+
+/// Refuses a turn by more than [`MOST_TURN`].
+fn may_turn(cosine: f64) -> Result<(), Refused> {
+    if cosine < LEAST_COSINE { Err(Refused::Turned(cosine.clamp(-1.0, 1.0).acos())) } else { Ok(()) }
+}
 
 impl Start<'_> {
     /// The point at an arc length, with its direction.
@@ -198,13 +205,11 @@ impl Start<'_> {
         let step = corrected.state.distance(self.state);
         // The sphere around the start meets the path behind, too, and may meet other branches: the chord has to go the
         // way of both directions.
-        let turn = self
+        let cosine = self
             .state
-            .angle_of_chord(&corrected.state, self.rate)
-            .max(self.state.angle_of_chord(&corrected.state, &rate));
-        if turn > MOST_TURN {
-            return Err(Refused::Turned(turn));
-        }
+            .cosine_of_chord(&corrected.state, self.rate)
+            .min(self.state.cosine_of_chord(&corrected.state, &rate));
+        may_turn(cosine)?;
         let corrected = Box::new(corrected);
         Ok(Reached { corrected, rate, step, error_estimate, drift: None, event: None, determinant, stopped: None })
     }
@@ -239,10 +244,7 @@ impl Start<'_> {
         let foreseen = foreseen.and_then(|guess| self.reach_by(guess, step, &mut serving, work).ok());
         let straight = || self.reach_by(self.state.advanced(self.rate, step), step, &mut serving, work);
         let mut reached = foreseen.map_or_else(straight, Ok)?;
-        let turn = self.rate.product(&reached.rate).clamp(-1.0, 1.0).acos();
-        if turn > MOST_TURN {
-            return Err(Refused::Turned(turn));
-        }
+        may_turn(self.rate.product(&reached.rate))?;
         let watches = self.watches(ends, load_sign);
         let mut passed = self.passed(&watches, &reached);
         let mut stretch = (!passed.is_empty()).then(|| Box::new(Stretch::new(self, &reached, serving.take())));
@@ -419,5 +421,16 @@ impl Start<'_> {
         let mut exact = self.settle(system, reached.corrected.state, place, work)?;
         end.make_exact(&mut exact.corrected.state);
         Ok(exact)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LEAST_COSINE, MOST_TURN, may_turn};
+
+    #[test]
+    fn the_least_cosine_is_that_of_the_most_turn() {
+        assert_eq!(LEAST_COSINE, MOST_TURN.cos());
+        assert!(may_turn(0.99 * LEAST_COSINE).is_err() && may_turn(1.01 * LEAST_COSINE).is_ok());
     }
 }

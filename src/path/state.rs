@@ -74,6 +74,11 @@ impl State {
 impl State {
     /// The angle (radians) between the chord to another state and a rate; 0 for no chord.
     pub fn angle_of_chord(&self, other: &Self, rate: &Rate) -> f64 {
+        self.cosine_of_chord(other, rate).acos()
+    }
+
+    /// Its cosine.
+    pub fn cosine_of_chord(&self, other: &Self, rate: &Rate) -> f64 {
         let along: f64 = other
             .displacement
             .iter()
@@ -83,7 +88,7 @@ impl State {
             .sum::<f64>()
             + (other.load - self.load) * rate.load;
         let size = self.distance(other) * rate.size();
-        if size > 0.0 { (along / size).clamp(-1.0, 1.0).acos() } else { 0.0 }
+        if size > 0.0 { (along / size).clamp(-1.0, 1.0) } else { 1.0 }
     }
 }
 

@@ -128,23 +128,25 @@ impl Path<'_> {
         let bounded =
             is_lost.then(|| bound::beside_singular(&start, step, ends, here.load_sign, tries.known, work)).flatten();
         let back = outcome.as_ref().ok().and_then(|ending| self.way_back(&start, ending.reached(), work));
-        let tried = match (outcome, back, bounded) {
-            (Ok(_), Some(back), _) => Tried { returned: true, ..Tried::plain(back, None, None) },
-            (_, _, Some((reached, crossing, signature))) => Tried::plain(reached, crossing, signature),
-            (Ok(Ending::Joined(joined)), None, None) => {
-                let Joined { reached, changes, signature, unchanged } = joined;
-                Tried { joined: Some((changes, unchanged)), ..Tried::plain(reached, None, signature) }
+        let tried = if let Some(back) = back {
+            Tried { returned: true, ..Tried::plain(back, None, None) }
+        } else if let Some((reached, crossing, signature)) = bounded {
+            Tried::plain(reached, crossing, signature)
+        } else {
+            match outcome? {
+                Ending::Joined(Joined { reached, changes, signature, unchanged }) => {
+                    Tried { joined: Some((changes, unchanged)), ..Tried::plain(reached, None, signature) }
+                }
+                // The equations of a straight path are the same at both ends, and singular at none in between.
+                Ending::AtEvent(reached) if sought.jumps(step) => Tried::plain(reached, None, None),
+                Ending::AtEvent(reached) => {
+                    let known = tries.known.or_else(|| Signature::past_start(&start, reached.step, &mut None, work));
+                    tries.known = known;
+                    let may_refuse = tries.unresolved < MOST_UNRESOLVED;
+                    let (reached, crossing, signature) = first_crossing(&start, known, reached, may_refuse, work)?;
+                    Tried::plain(reached, crossing, signature)
+                }
             }
-            // The equations of a straight path are the same at both ends, and singular at none in between.
-            (Ok(Ending::AtEvent(reached)), None, None) if sought.jumps(step) => Tried::plain(reached, None, None),
-            (Ok(Ending::AtEvent(reached)), None, None) => {
-                let known = tries.known.or_else(|| Signature::past_start(&start, reached.step, &mut None, work));
-                tries.known = known;
-                let may_refuse = tries.unresolved < MOST_UNRESOLVED;
-                let (reached, crossing, signature) = first_crossing(&start, known, reached, may_refuse, work)?;
-                Tried::plain(reached, crossing, signature)
-            }
-            (Err(refused), ..) => return Err(refused),
         };
         let corrected = &tried.reached.corrected;
         let forces = self.at.totals.force_scale.max(corrected.force_scale);

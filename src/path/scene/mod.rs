@@ -20,6 +20,7 @@ use crate::model::InputErrors;
 use crate::model::request::{Analysis, JobRequest};
 use crate::structure::Structure;
 use build::{Contacts, Scaled, build_contacts, build_stage, build_structure, scales};
+use indexmap::IndexMap;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -35,7 +36,8 @@ pub struct Scene {
     pub(super) reported: Vec<Reported>,
     /// Nodes with several contacts.
     pub(super) corners: Vec<Corner>,
-    pub(super) node_names: Vec<Arc<str>>,
+    /// By the nodes' names; those of each increment begin as a copy, so that names are looked up once.
+    pub(super) no_displacements: IndexMap<Arc<str>, Vec<f64>>,
     pub(super) stages: Vec<StageLoad>,
     pub(super) analysis: Analysis,
     /// Which of the request's contacts have a row in every increment, in reach or not; `None`: all.
@@ -172,7 +174,8 @@ impl Scene {
             load_scales: stages.iter().map(|stage| stage.load_scale).collect(),
             left_out,
         };
-        let node_names = model.nodes.keys().map(|name| Arc::from(name.as_str())).collect();
+        let none = vec![0.0; structure.dimension];
+        let no_displacements = model.nodes.keys().map(|name| (Arc::from(name.as_str()), none.clone())).collect();
         let analysis = request.analysis.clone();
         let asked_rows = super::near::asked_rows(request);
         let jumps = super::straight::jumps(&analysis, &structure);
@@ -182,7 +185,7 @@ impl Scene {
             contact_names,
             reported,
             corners,
-            node_names,
+            no_displacements,
             stages,
             analysis,
             asked_rows,
@@ -194,6 +197,10 @@ impl Scene {
         scene.refuse_imbalance()?;
         scene.refuse_dragged_supports(model)?;
         Ok(scene)
+    }
+
+    fn node_name(&self, node: usize) -> &str {
+        self.no_displacements.get_index(node).map_or("", |(name, _)| name)
     }
 
     /// What the scene needs and what is left out.

@@ -56,7 +56,7 @@ impl Scene {
         if worst <= BALANCED * largest {
             return Ok(());
         }
-        let name = &self.node_names[freedom / structure.dimension];
+        let name = self.node_name(freedom / structure.dimension);
         Err(InputErrors(vec![InputError::new(
             pointer_to_node(name),
             format!(
@@ -130,7 +130,7 @@ impl Scene {
             if structure.resistance(&still, &rate) < 1e-10 {
                 let unknown = motion.iamax();
                 let freedom = structure.freedom_of[unknown];
-                let name = &self.node_names[freedom / dimension];
+                let name = self.node_name(freedom / dimension);
                 let component = ["x", "y", "z"][freedom % dimension];
                 return Err(InputErrors(vec![InputError::new(
                     pointer_to_node(name),
