@@ -224,12 +224,17 @@ impl Watch {
         step: f64,
         zero: f64,
     ) -> Option<f64> {
-        let (first, last) = (self.value(loading, modes, start.0, start.1), self.value(loading, modes, end.0, end.1));
+        let ends = || (self.value(loading, modes, start.0, start.1), self.value(loading, modes, end.0, end.1));
         let slopes = (self.slope(loading, start.0, start.1), self.slope(loading, end.0, end.1));
         if let (Some(first_slope), Some(last_slope)) = slopes {
+            if first_slope >= 0.0 || last_slope <= 0.0 {
+                return None;
+            }
+            let (first, last) = ends();
             return dip_of_cubic(first, first_slope * step, last, last_slope * step, zero).map(|place| place * step);
         }
         let change = self.change(loading, modes, start.0, end.0)?;
+        let (first, last) = ends();
         dip_of_slope(change / step, first, last, zero).map(|place| place * step)
     }
 }
