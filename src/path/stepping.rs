@@ -77,28 +77,35 @@ pub(super) fn quantised(factor: f64) -> f64 {
 impl Path<'_> {
     /// Steps until a point is accepted.
     pub(super) fn step(&mut self) -> Result<Accepted, StopReason> {
-        let least = self.scene.analysis.arc_length.min;
         let sought = self.sought_step();
+        let Some(rate) = self.at.here.rate.take() else { return Err(StopReason::NoDirection) };
+        let stepped = self.step_along(&rate, &sought);
+        self.at.here.rate = Some(rate);
+        stepped
+    }
+
+    /// The same along the direction just now.
+    fn step_along(&mut self, rate: &Rate, sought: &Sought) -> Result<Accepted, StopReason> {
+        let least = self.scene.analysis.arc_length.min;
         let mut step = sought.step();
         let mut tries = Tries::new(&self.at.here);
         loop {
             if self.cancel.is_cancelled() {
                 return Err(StopReason::Cancelled);
             }
-            let Some(rate) = self.at.here.rate.clone() else { return Err(StopReason::NoDirection) };
             let mut work = self.at.totals.work;
-            let outcome = self.try_step(&rate, step, &sought, &mut tries, &mut work);
+            let outcome = self.try_step(rate, step, sought, &mut tries, &mut work);
             self.at.totals.work = work;
             if let Some(joined) = tries.joined.take() {
                 self.at.waiting.note(joined);
             }
             match outcome {
-                Ok(tried) => match self.weigh(&rate, tried, step, &sought) {
+                Ok(tried) => match self.weigh(rate, tried, step, sought) {
                     Ok(accepted) => return Ok(accepted),
                     Err(factor) => step *= factor,
                 },
-                Err(Refused::AtStart(watch)) if watch.is_of_contact() && self.mode_ends_here(&rate) => {
-                    let mut accepted = self.balance(&rate, self.without_step(watch, &rate));
+                Err(Refused::AtStart(watch)) if watch.is_of_contact() && self.mode_ends_here(rate) => {
+                    let mut accepted = self.balance(rate, self.without_step(watch, rate));
                     accepted.mode_named = self.is_named_by_program().then_some(true);
                     return Ok(accepted);
                 }
@@ -115,7 +122,7 @@ impl Path<'_> {
                     if step < least {
                         return Err(match refused {
                             // Past the cones together of a node that no slide can free.
-                            Refused::Unlawful if self.is_held_beyond(&rate) => StopReason::NoDirection,
+                            Refused::Unlawful if self.is_held_beyond(rate) => StopReason::NoDirection,
                             Refused::Unlawful => StopReason::ContactViolated,
                             Refused::Collapsed => StopReason::CollapsedBar,
                             _ => self.reason_of_underflow(),
