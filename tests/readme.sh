@@ -7,7 +7,14 @@ cd "$(dirname "$0")/.."
 command -v curl > /dev/null || { apt-get update -q && apt-get install -qy curl; }
 
 work=$(mktemp -d)
-trap 'kill %1 2> /dev/null || true; rm -rf "$work"; rm -f path.ndjson path.svg path.csv *-study.svg study.csv *-sweep.svg sweep.csv arcslip.db arcslip.db-*' EXIT
+# Nothing that was started goes on, and nothing that was written stays.
+postgres=
+leave() {
+  { [ -z "$postgres" ] || kill -QUIT "$postgres"; kill %1; wait; } 2> /dev/null || true
+  rm -rf "$work"
+  rm -f path.ndjson path.svg path.csv *-study.svg study.csv *-sweep.svg sweep.csv arcslip.db arcslip.db-*
+}
+trap leave EXIT
 
 # The fenced blocks of the README in order: language on the first line of each file.
 awk -v folder="$work" '/^```/ { if (inside) { inside = 0; close(file) } else { inside = 1; count++;
@@ -80,7 +87,6 @@ else
   "${as[@]}" "$binaries/initdb" --auth=trust --username="$PGUSER" --no-sync -D "$work/postgres/data" > "$work/initdb.log"
   "${as[@]}" "$binaries/postgres" -D "$work/postgres/data" -p "$PGPORT" -k "$work/postgres" > "$work/postgres.log" 2>&1 &
   postgres=$!
-  trap 'kill -QUIT $postgres 2> /dev/null || true; kill %1 2> /dev/null || true; wait; rm -rf "$work"' EXIT
   for _ in $(seq 1 100); do if "$binaries/pg_isready" -q; then break; fi; sleep 0.1; done
   # What it leaves at work ends with the shell that began it, in good order.
   { tail -n +2 "$(block 'createuser arcslip')"; echo 'kill $(jobs -p); wait'; } > "$work/script.sh"
