@@ -51,15 +51,15 @@ impl Factorisation {
         let size = matrix.nrows();
         let mut row_scales = DVector::zeros(size);
         let scales: &mut [f64] = row_scales.as_mut_slice();
-        // Zero times what is not finite is no number.
-        let mut none = 0.0;
+        // Stays zero while all numbers are finite: zero times what is not is no number.
+        let mut zero = 0.0;
         for column in matrix.as_slice().chunks_exact(size.max(1)) {
             for (scale, value) in scales.iter_mut().zip(column) {
-                none += 0.0 * value;
+                zero += 0.0 * value;
                 *scale = if value.abs() > *scale { value.abs() } else { *scale };
             }
         }
-        if none != 0.0 || !scales.iter().all(|scale| *scale > 0.0) {
+        if zero != 0.0 || !scales.iter().all(|scale| *scale > 0.0) {
             return None;
         }
         for column in matrix.as_mut_slice().chunks_exact_mut(size.max(1)) {

@@ -28,7 +28,7 @@
 //! length of the path, nor where a displacement that ends the stage could get there. A contact without friction that
 //! touches and leaves again within the step is not named.
 
-use super::advance::{Attempt, COINCIDING, MOST_TURN, PASSED, Reached, Start, Work};
+use super::advance::{Attempt, COINCIDING, PASSED, Reached, Start, Work, may_turn};
 use super::loading::Loading;
 use super::mode_system::ModeSystem;
 use super::newton::{Corrected, Place};
@@ -183,8 +183,8 @@ impl Start<'_> {
         let mut restless: BTreeSet<usize> =
             (0..modes.len()).filter(|contact| modes[*contact] != self.modes[*contact]).collect();
         let changes = restless.len();
-        let turn = self.rate.product(&reached.rate).clamp(-1.0, 1.0).acos();
-        if changes < 2 || turn > MOST_TURN || !self.nothing_else_ends(watches, &mut restless, &reached) {
+        let turns = may_turn(self.rate.product(&reached.rate)).is_err();
+        if changes < 2 || turns || !self.nothing_else_ends(watches, &mut restless, &reached) {
             return None;
         }
         let same = |state: &State| self.negative_where_held_or_free(&restless, state) == Some(negative);

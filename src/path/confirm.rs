@@ -6,7 +6,7 @@
 //! an active set method. Only where that leads nowhere are combinations tried in turn, as many as there are up to a
 //! bound.
 
-use super::advance::MOST_TURN;
+use super::advance::may_turn;
 use super::combinations;
 use super::decide::sign_of;
 use super::directions::Candidate;
@@ -113,9 +113,7 @@ fn stepped(
     let mut serving = None;
     let guess = system.iterate(state.advanced(rate, step));
     let corrected = system.correct_from(guess, place, force_scale, &mut serving).ok()?;
-    if state.angle_of_chord(&corrected.state, rate) > MOST_TURN {
-        return None;
-    }
+    may_turn(state.cosine_of_chord(&corrected.state, rate)).ok()?;
     let rate = match serving {
         Some(_) => system.tangent_and_error(&corrected, rate, &mut serving, &mut 0)?.rate,
         None => system.tangent(&corrected, rate)?,

@@ -7,7 +7,7 @@
 //! method than a whole one. Where nothing has changed by then its end is a point like others, and the next step is as long
 //! as this one was to be.
 
-use super::advance::{Attempt, MOST_TURN, PASSED, Start, Work};
+use super::advance::{Attempt, PASSED, Start, Work, may_turn};
 use super::at_once::may_join_at;
 use super::interpolation::Placed;
 use super::locate::Stretch;
@@ -102,8 +102,8 @@ impl Start<'_> {
         let state = &reached.corrected.state;
         let falls = watch.slope(self.loading, state, &reached.rate).is_some_and(|slope| slope < 0.0);
         let is_zero = self.value(watch, state, &reached.rate).abs() <= self.zero(watch, &reached);
-        let turn = self.rate.product(&reached.rate).clamp(-1.0, 1.0).acos();
-        if !falls || !is_zero || turn > MOST_TURN || reached.step > step || reached.step < LEAST_OF_WAY * way {
+        let turns = may_turn(self.rate.product(&reached.rate)).is_err();
+        if !falls || !is_zero || turns || reached.step > step || reached.step < LEAST_OF_WAY * way {
             return None;
         }
         let watches = self.watches(ends, load_sign);

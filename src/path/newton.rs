@@ -255,7 +255,8 @@ impl ModeSystem<'_> {
 
     /// Where the place is a zero, a correction goes on along the path until the quantity is zero at first order: its
     /// gradient, which may have entries at forces that the factorisation eliminates, need not be a row (bordering: H. B.
-    /// Keller, in: Applications of Bifurcation Theory, Academic Press 1977, 359). `along` is the way with this factorisation. `false` where the quantity does not change along it.
+    /// Keller, in: Applications of Bifurcation Theory, Academic Press 1977, 359). `along` is the way with this factorisation.
+    /// `false` where the quantity does not change along it.
     fn bring_to_zero(
         &self,
         place: Place<'_>,

@@ -72,12 +72,7 @@ impl State {
 }
 
 impl State {
-    /// The angle (radians) between the chord to another state and a rate; 0 for no chord.
-    pub fn angle_of_chord(&self, other: &Self, rate: &Rate) -> f64 {
-        self.cosine_of_chord(other, rate).acos()
-    }
-
-    /// Its cosine.
+    /// Cosine of the angle between the chord to another state and a rate; 1 for no chord.
     pub fn cosine_of_chord(&self, other: &Self, rate: &Rate) -> f64 {
         let along: f64 = other
             .displacement
@@ -139,7 +134,6 @@ impl Rate {
 }
 
 /// `a·b`
-#[inline]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -110,8 +110,8 @@ impl Structure {
         rounding
     }
 
-    /// Writes the size of the numbers of which `f_int(u)` is made, one a degree of freedom: `|K| |u|` and the forces that the
-    /// elements carry, with displacements taken as `least` at least. Against it a residual is small or not, whatever the
+    /// Writes the size of the numbers of which `f_int(u)` is made, one a degree of freedom: `|K| |u|` and the forces that
+    /// the elements carry, with displacements taken as `least` at least. Against it a residual is small or not, whatever the
     /// forces elsewhere (W. Oettli, W. Prager, Numer. Math. 6 (1964) 405, doi:10.1007/BF01386090).
     pub fn force_sizes(&self, displacement: &[f64], least: f64, sizes: &mut [f64]) {
         sizes.fill(0.0);

@@ -68,7 +68,7 @@ impl Reduced<'_> {
             }
             _ => return None,
         };
-        let others = self.unknowns_that_slip(false);
+        let others = self.unknowns_where(false);
         let mut values = DVector::from_fn(size, |unknown, _| if is_slip[unknown] { 0.0 } else { load[unknown] });
         if !others.is_empty() && !SparseFactorisation::new(held, &Holdings::default())?.solve(&mut values) {
             return None;

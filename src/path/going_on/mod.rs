@@ -262,14 +262,14 @@ impl<'a> Reduced<'a> {
             Some(column) => matrix[(row, column)] += value,
             None => load[row] += value,
         });
-        let others = self.unknowns_that_slip(false);
+        let others = self.unknowns_where(false);
         let response = Response::new(&matrix, &load, &others)?;
         // One slip's matrix is a number, which tells more.
         if self.slips.len() > 1 && incoming.load.abs() > RESTING && is_definite(matrix.clone()) {
             return self.stuck_rate(&others, &response.load, -incoming.load.signum());
         }
         if !others.is_empty() {
-            (matrix, load) = response.condensed(&matrix, &load, &others, &self.unknowns_that_slip(true))?;
+            (matrix, load) = response.condensed(&matrix, &load, &others, &self.unknowns_where(true))?;
         }
         let (is_p_matrix, solutions) = all_solutions(matrix, load, &[1.0, -1.0])?;
         let slip = |pairs: &Pairs| pairs.iter().all(|[a, b]| *a == 0.0 && *b > 0.0);
@@ -282,8 +282,8 @@ impl<'a> Reduced<'a> {
         [likely, -likely].into_iter().find_map(|sign| self.stuck_rate(&others, &response.load, sign))
     }
 
-    fn unknowns_that_slip(&self, slips: bool) -> Vec<usize> {
-        (0..self.unknowns.len()).filter(|unknown| self.unknowns[*unknown].is_slip == slips).collect()
+    fn unknowns_where(&self, is_slip: bool) -> Vec<usize> {
+        (0..self.unknowns.len()).filter(|unknown| self.unknowns[*unknown].is_slip == is_slip).collect()
     }
 
     /// The rate at which nothing slips, of unit arc length; `None` where some contact would not stay within its cone by a
