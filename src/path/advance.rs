@@ -30,7 +30,7 @@ pub struct Start<'a> {
 /// A point reached.
 #[derive(Debug, Clone)]
 pub struct Reached {
-    pub corrected: Box<Corrected>,
+    pub corrected: Corrected,
     /// The path's direction there, in the mode that led to it.
     pub rate: Rate,
     pub step: f64,
@@ -46,10 +46,18 @@ pub struct Reached {
     pub stopped: Option<usize>,
 }
 
+impl Reached {
+    /// A point without event. In a box, since it goes through many hands.
+    pub(super) fn new(corrected: Corrected, rate: Rate, step: f64, error_estimate: f64) -> Box<Self> {
+        let (drift, event, determinant, stopped) = (None, None, None, None);
+        Box::new(Self { corrected, rate, step, error_estimate, drift, event, determinant, stopped })
+    }
+}
+
 /// A step that is tried, and what is watched along it.
 pub(super) struct Attempt {
     /// The farthest point, where some quantities may be negative.
-    pub reached: Reached,
+    pub reached: Box<Reached>,
     pub watches: Vec<Watch>,
     /// Those that are.
     pub passed: Vec<Watch>,
@@ -110,12 +118,12 @@ pub(super) fn may_turn(cosine: f64) -> Result<(), Refused> {
 
 impl Start<'_> {
     /// The point at an arc length, with its direction.
-    pub fn reach(&self, step: f64, work: &mut Work) -> Result<Reached, Refused> {
+    pub fn reach(&self, step: f64, work: &mut Work) -> Result<Box<Reached>, Refused> {
         self.reach_near(self.state.advanced(self.rate, step), step, work)
     }
 
     /// The point at an arc length, from a guess.
-    pub fn reach_near(&self, guess: State, step: f64, work: &mut Work) -> Result<Reached, Refused> {
+    pub fn reach_near(&self, guess: State, step: f64, work: &mut Work) -> Result<Box<Reached>, Refused> {
         self.reach_by(guess, step, &mut None, work)
     }
 
@@ -126,7 +134,7 @@ impl Start<'_> {
         step: f64,
         serving: &mut Option<SystemFactorisation>,
         work: &mut Work,
-    ) -> Result<Reached, Refused> {
+    ) -> Result<Box<Reached>, Refused> {
         let system = ModeSystem::new(self.loading, self.modes, self.state);
         self.settle_by(system, guess, Place::ArcLength { from: self.state, step }, serving, work)
     }
@@ -137,7 +145,7 @@ impl Start<'_> {
         guess: State,
         place: Place<'_>,
         work: &mut Work,
-    ) -> Result<Reached, Refused> {
+    ) -> Result<Box<Reached>, Refused> {
         self.settle_by(system, guess, place, &mut None, work)
     }
 
@@ -148,7 +156,7 @@ impl Start<'_> {
         place: Place<'_>,
         serving: &mut Option<SystemFactorisation>,
         work: &mut Work,
-    ) -> Result<Reached, Refused> {
+    ) -> Result<Box<Reached>, Refused> {
         let corrected =
             system.correct_from(system.iterate(guess), place, self.force_scale, serving).map_err(Refused::Newton)?;
         work.newton_iterations += corrected.iterations;
@@ -164,7 +172,7 @@ impl Start<'_> {
         place: Place<'_>,
         serving: &mut Option<SystemFactorisation>,
         work: &mut Work,
-    ) -> Result<Reached, Refused> {
+    ) -> Result<Box<Reached>, Refused> {
         let singular = Refused::Newton(Failure::Singular);
         let mut tangent =
             system.tangent_and_error(&corrected, self.rate, serving, &mut work.factorisations).ok_or(singular)?;
@@ -210,21 +218,21 @@ impl Start<'_> {
             .cosine_of_chord(&corrected.state, self.rate)
             .min(self.state.cosine_of_chord(&corrected.state, &rate));
         may_turn(cosine)?;
-        let corrected = Box::new(corrected);
-        Ok(Reached { corrected, rate, step, error_estimate, drift: None, event: None, determinant, stopped: None })
+        let mut reached = Reached::new(corrected, rate, step, error_estimate);
+        reached.determinant = determinant;
+        Ok(reached)
     }
 
     /// A converged point of a straight path, which keeps its direction.
-    pub(super) fn straight_on(&self, corrected: Corrected, error_estimate: f64) -> Reached {
+    pub(super) fn straight_on(&self, corrected: Corrected, error_estimate: f64) -> Box<Reached> {
         let (rate, step) = (self.rate.clone(), corrected.state.distance(self.state));
-        let corrected = Box::new(corrected);
-        Reached { corrected, rate, step, error_estimate, drift: None, event: None, determinant: None, stopped: None }
+        Reached::new(corrected, rate, step, error_estimate)
     }
 
     /// A step of an arc length, or to the first event before.
     ///
     /// `ends` are those of the stage; `load_sign` is the sign of the load rate along the path just now.
-    pub fn advance(&self, step: f64, ends: &[End], load_sign: f64, work: &mut Work) -> Result<Reached, Refused> {
+    pub fn advance(&self, step: f64, ends: &[End], load_sign: f64, work: &mut Work) -> Result<Box<Reached>, Refused> {
         let tried = self.attempt(step, None, None, ends, load_sign, work)?;
         self.stop_at_event(tried, ends, work)
     }
@@ -265,7 +273,7 @@ impl Start<'_> {
     }
 
     /// Ends a step at the first event in it.
-    pub(super) fn stop_at_event(&self, tried: Attempt, ends: &[End], work: &mut Work) -> Result<Reached, Refused> {
+    pub(super) fn stop_at_event(&self, tried: Attempt, ends: &[End], work: &mut Work) -> Result<Box<Reached>, Refused> {
         let Attempt { mut reached, watches, mut passed, mut stretch, met } = tried;
         // How hard the step is shows in its first solve.
         let hardness = reached.corrected.iterations_to_small;
@@ -405,7 +413,7 @@ impl Start<'_> {
             let inside = points.reach(self, place, work)?;
             let passed = self.passed(watches, &inside);
             if !passed.is_empty() {
-                *reached = inside;
+                *reached = *inside;
                 return Ok((passed, stretch));
             }
         }
@@ -413,7 +421,7 @@ impl Start<'_> {
     }
 
     /// Solves once more with the end of the stage as an equation, so that a load of 1 is exactly 1.
-    fn hold_exactly(&self, end: End, reached: Reached, work: &mut Work) -> Result<Reached, Refused> {
+    fn hold_exactly(&self, end: End, reached: Box<Reached>, work: &mut Work) -> Result<Box<Reached>, Refused> {
         let Some(place) = end.place().filter(|_| !end.is_met_exactly(&reached.corrected.state)) else {
             return Ok(reached);
         };

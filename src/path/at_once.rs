@@ -79,7 +79,7 @@ impl Waiting {
 
 /// The end of a step with contact changes inside.
 pub(super) struct Joined {
-    pub reached: Reached,
+    pub reached: Box<Reached>,
     /// How many.
     pub changes: u64,
     pub signature: Option<Signature>,

@@ -22,7 +22,7 @@ const LENGTHENED: [f64; 4] = [1.0, 1.01, 1.1, 1.5];
 const ALONG: f64 = 1e-9;
 
 /// What a step ends at: a point, whether it is a smooth bifurcation, and the signs just past it where they are known.
-type Ended = (Reached, Option<Crossing>, Option<Signature>);
+type Ended = (Box<Reached>, Option<Crossing>, Option<Signature>);
 
 /// Ends a step at a bound of the stage, or at the bifurcation just before it, where Newton's method does not reach the
 /// bound; `None` where there is no singular point near.
@@ -61,7 +61,8 @@ pub fn beside_singular(
     let origin = Placed { place: 0.0, state: start.state.clone(), rate: start.rate.clone() };
     WIDTHS.iter().rev().find_map(|width| {
         let width = width * beyond.step;
-        let farther = placed(start, &start.reach(width, work).ok()?);
+        let farther = start.reach(width, work).ok()?;
+        let farther = placed(start, &farther);
         let (place, bound) = first_met(&origin, &farther, &bounds, &left_to)?;
         let (state, rate) = between(&origin, &farther, place);
         Some((ended(start, state, &rate, bound, width, &beyond)?, None, None))
@@ -122,19 +123,15 @@ fn ended(
     bound: End,
     width: f64,
     beyond: &Reached,
-) -> Option<Reached> {
+) -> Option<Box<Reached>> {
     bound.make_exact(&mut state);
     let system = ModeSystem::new(start.loading, start.modes, start.state);
     let mut corrected = system.judged(state, start.force_scale);
     corrected.iterations_to_small = beyond.corrected.iterations_to_small;
-    (corrected.residual <= ACCEPTED_RESIDUAL).then(|| Reached {
-        step: corrected.state.distance(start.state),
-        rate: unit(rate),
-        corrected: Box::new(corrected),
-        error_estimate: width.powi(4),
-        drift: start.drift.cloned(),
-        event: Some(Watch::End(bound)),
-        determinant: None,
-        stopped: None,
+    (corrected.residual <= ACCEPTED_RESIDUAL).then(|| {
+        let step = corrected.state.distance(start.state);
+        let mut point = Reached::new(corrected, unit(rate), step, width.powi(4));
+        (point.drift, point.event) = (start.drift.cloned(), Some(Watch::End(bound)));
+        point
     })
 }

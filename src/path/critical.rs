@@ -40,7 +40,7 @@ const TOGETHER: f64 = 1e-10;
 
 /// A crossing with the regular points between which it was found.
 pub(super) struct Located {
-    pub point: Reached,
+    pub point: Box<Reached>,
     pub crossing: Crossing,
     pub between: Option<[Placed; 2]>,
 }
@@ -116,16 +116,8 @@ pub fn locate(
         };
         let crossing = Crossing { eigenvalues, grazing: false, after: before.past(change, eigenvalues)? };
         let step = corrected.state.distance(start.state);
-        let point = Reached {
-            corrected: Box::new(corrected),
-            rate,
-            step,
-            error_estimate: error,
-            drift: start.drift.cloned(),
-            event: None,
-            determinant: None,
-            stopped: None,
-        };
+        let mut point = Reached::new(corrected, rate, step, error);
+        point.drift = start.drift.cloned();
         best = Some((residual, Located { point, crossing, between: Some([left.clone(), right.clone()]) }));
         if residual <= GOOD {
             break;

@@ -34,7 +34,7 @@ const SINGULAR: f64 = 1e-8;
 const VIOLATED: f64 = 1e-10;
 
 /// The point near a step at which the direction is not determined, if there is one.
-pub fn locate(start: &Start<'_>, reached: &Reached) -> Option<Reached> {
+pub fn locate(start: &Start<'_>, reached: &Reached) -> Option<Box<Reached>> {
     let system = ModeSystem::new(start.loading, start.modes, start.state);
     let tracks: Vec<usize> = system
         .roles
@@ -61,8 +61,7 @@ pub fn locate(start: &Start<'_>, reached: &Reached) -> Option<Reached> {
         return None;
     }
     let error_estimate = search.system.off_track(&corrected, &search.tracks);
-    let corrected = Box::new(corrected);
-    Some(Reached { corrected, rate, step, error_estimate, drift: None, event: None, determinant: None, stopped: None })
+    Some(Reached::new(corrected, rate, step, error_estimate))
 }
 
 struct Search<'a> {

@@ -42,7 +42,7 @@ const ROOM: f64 = 4.0;
 /// The points of a step that are reached, in order, and its start.
 pub(super) struct Stretch {
     origin: Placed,
-    points: Vec<(Placed, Reached)>,
+    points: Vec<(Placed, Box<Reached>)>,
     /// The last factorisation: it may serve at points close to its own.
     serving: Option<SystemFactorisation>,
 }
@@ -50,7 +50,7 @@ pub(super) struct Stretch {
 impl Stretch {
     pub fn new(start: &Start<'_>, reached: &Reached, serving: Option<SystemFactorisation>) -> Self {
         let origin = Placed { place: 0.0, state: start.state.clone(), rate: start.rate.clone() };
-        Self { origin, points: vec![(placed(start, reached), reached.clone())], serving }
+        Self { origin, points: vec![(placed(start, reached), Box::new(reached.clone()))], serving }
     }
 
     fn placed(&self) -> impl Iterator<Item = &Placed> {
@@ -67,11 +67,11 @@ impl Stretch {
     fn insert(&mut self, start: &Start<'_>, reached: &Reached) {
         let point = placed(start, reached);
         let at = self.points.partition_point(|(other, _)| other.place < point.place);
-        self.points.insert(at, (point, reached.clone()));
+        self.points.insert(at, (point, Box::new(reached.clone())));
     }
 
     /// The point at a place, kept.
-    pub fn reach(&mut self, start: &Start<'_>, place: f64, work: &mut Work) -> Result<Reached, Refused> {
+    pub fn reach(&mut self, start: &Start<'_>, place: f64, work: &mut Work) -> Result<Box<Reached>, Refused> {
         let reached =
             start.reach_by(self.guess(place), place, &mut self.serving, work).or_else(|_| start.reach(place, work))?;
         self.insert(start, &reached);
@@ -185,7 +185,7 @@ impl Start<'_> {
         stretch: &mut Stretch,
         zero: f64,
         work: &mut Work,
-    ) -> Result<Reached, Refused> {
+    ) -> Result<Box<Reached>, Refused> {
         let unclear = Refused::Newton(Failure::NotConverged);
         let last = stretch.points.last().ok_or(unclear)?;
         let reach = last.0.state.displacement.iter().fold(last.0.state.load.abs(), |most, value| most.max(value.abs()));
@@ -260,7 +260,7 @@ impl Start<'_> {
 
     /// The zero so close to a point found that a straight step leads there; `None` where what that leaves over counts for
     /// something.
-    fn by_series(&self, watch: Watch, stretch: &Stretch, zero: f64, found: &Reached) -> Option<Reached> {
+    fn by_series(&self, watch: Watch, stretch: &Stretch, zero: f64, found: &Reached) -> Option<Box<Reached>> {
         let system = ModeSystem::new(self.loading, self.modes, self.state);
         if system.has_tracks() {
             return None;
@@ -289,11 +289,13 @@ impl Start<'_> {
         corrected.directions.clone_from(&found.corrected.directions);
         corrected.iterations_to_small = found.corrected.iterations_to_small;
         let step = corrected.state.distance(self.state);
-        Some(Reached { corrected: Box::new(corrected), rate, step, ..found.clone() })
+        let mut nearer = Box::new(found.clone());
+        (nearer.corrected, nearer.rate, nearer.step) = (corrected, rate, step);
+        Some(nearer)
     }
 
     /// The point at which a bound of the stage is met, which is an equation of its own; `None` where that leads elsewhere.
-    fn meet(&self, end: End, bracket: &Bracket, stretch: &Stretch, work: &mut Work) -> Option<Reached> {
+    fn meet(&self, end: End, bracket: &Bracket, stretch: &Stretch, work: &mut Work) -> Option<Box<Reached>> {
         let place = bracket.estimate(0.0)?;
         let system = ModeSystem::new(self.loading, self.modes, self.state);
         let mut met = self.settle(system, stretch.guess(place), end.place()?, work).ok()?;

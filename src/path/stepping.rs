@@ -45,7 +45,7 @@ const CUT_SHORT: f64 = 0.5;
 
 /// A point reached, with the energies of the way there.
 pub(super) struct Accepted {
-    pub reached: Reached,
+    pub reached: Box<Reached>,
     pub added: Added,
     /// Whether the increment's program named the mode; `None` where it was not asked.
     pub mode_named: Option<bool>,
@@ -218,25 +218,18 @@ impl Path<'_> {
 
     /// The present point once more, as the place where the mode ends: two changes at one state, the second of which the
     /// point itself did not show, are two points of the path.
-    fn without_step(&self, watch: Watch, rate: &Rate) -> Reached {
+    fn without_step(&self, watch: Watch, rate: &Rate) -> Box<Reached> {
         let here = &self.at.here;
         let system = ModeSystem::new(self.loading(), &here.modes, &here.state);
         let mut corrected = system.judged(here.state.clone(), self.at.totals.force_scale);
         (corrected.state, corrected.modes) = (here.state.clone(), here.modes.clone());
-        Reached {
-            corrected: Box::new(corrected),
-            rate: rate.clone(),
-            step: 0.0,
-            error_estimate: here.drift.as_ref().map_or(0.0, Rate::size),
-            drift: here.drift.clone(),
-            event: Some(watch),
-            determinant: None,
-            stopped: None,
-        }
+        let mut point = Reached::new(corrected, rate.clone(), 0.0, here.drift.as_ref().map_or(0.0, Rate::size));
+        (point.drift, point.event) = (here.drift.clone(), Some(watch));
+        point
     }
 
     /// The point at which the stage began, where a step without event passes it again in the same sense.
-    pub(super) fn way_back(&self, start: &Start<'_>, reached: &Reached, work: &mut Work) -> Option<Reached> {
+    pub(super) fn way_back(&self, start: &Start<'_>, reached: &Reached, work: &mut Work) -> Option<Box<Reached>> {
         let (origin, sense) = self.at.begun.as_ref()?;
         // How far a state lies past the origin.
         let past = |state: &State| {
@@ -270,7 +263,7 @@ impl Path<'_> {
     }
 
     /// Work, dissipation and strain energy of a point reached.
-    fn balance(&self, rate: &Rate, reached: Reached) -> Accepted {
+    fn balance(&self, rate: &Rate, reached: Box<Reached>) -> Accepted {
         let start = (&self.at.here.state, rate);
         let end = (&reached.corrected.state, &reached.rate);
         let (external_work, dissipated) = energy::work_and_dissipation(self.loading(), &self.at.here.modes, start, end);

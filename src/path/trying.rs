@@ -66,7 +66,7 @@ impl Tries {
 /// Where a step ends.
 enum Ending {
     Joined(Joined),
-    AtEvent(Reached),
+    AtEvent(Box<Reached>),
 }
 
 impl Ending {
@@ -80,7 +80,7 @@ impl Ending {
 
 /// What a try leads to.
 pub(super) struct Tried {
-    pub reached: Reached,
+    pub reached: Box<Reached>,
     /// The smooth bifurcation there, if it is one.
     pub crossing: Option<Crossing>,
     /// Signs just past it.
@@ -92,7 +92,7 @@ pub(super) struct Tried {
 }
 
 impl Tried {
-    fn plain(reached: Reached, crossing: Option<Crossing>, signature: Option<Signature>) -> Self {
+    fn plain(reached: Box<Reached>, crossing: Option<Crossing>, signature: Option<Signature>) -> Self {
         Self { reached, crossing, signature, returned: false, joined: None }
     }
 }
@@ -224,10 +224,10 @@ impl Path<'_> {
 fn first_crossing(
     start: &Start<'_>,
     before: Option<Signature>,
-    reached: Reached,
+    reached: Box<Reached>,
     may_refuse: bool,
     work: &mut Work,
-) -> Result<(Reached, Option<Crossing>, Option<Signature>), Refused> {
+) -> Result<(Box<Reached>, Option<Crossing>, Option<Signature>), Refused> {
     let (reached, crossing, after) = crossing_in_mode(start, before, reached, may_refuse, work)?;
     match singular::loosened(start, &reached).and_then(|loose| crossing_when_loose(start, &loose, &reached, work)) {
         Some((point, crossing)) => Ok((point, Some(crossing), before)),
@@ -241,7 +241,7 @@ fn crossing_when_loose(
     loose: &[Mode],
     reached: &Reached,
     work: &mut Work,
-) -> Option<(Reached, Crossing)> {
+) -> Option<(Box<Reached>, Crossing)> {
     let loosened = Start { modes: loose, ..*start };
     let before = Signature::past_start(&loosened, reached.step, &mut None, work)?;
     let mut end = loosened.reach_near(reached.corrected.state.clone(), reached.step, work).ok()?;
@@ -267,10 +267,10 @@ fn crossing_when_loose(
 fn crossing_in_mode(
     start: &Start<'_>,
     before: Option<Signature>,
-    reached: Reached,
+    reached: Box<Reached>,
     may_refuse: bool,
     work: &mut Work,
-) -> Result<(Reached, Option<Crossing>, Option<Signature>), Refused> {
+) -> Result<(Box<Reached>, Option<Crossing>, Option<Signature>), Refused> {
     let Some(before) = before else {
         // The start is singular: signs are known from the end on.
         let state = &reached.corrected.state;

@@ -17,7 +17,7 @@ struct Begun {
 }
 
 impl Begun {
-    fn reach(&self, loading: Loading<'_>, step: f64) -> Option<Reached> {
+    fn reach(&self, loading: Loading<'_>, step: f64) -> Option<Box<Reached>> {
         let Self { state, rate, modes, force } = self;
         let start = Beginning { loading, state, rate, modes, drift: None, force_scale: *force };
         start.reach(step, &mut Work::default()).ok()
