@@ -20,10 +20,10 @@ pub struct Bar {
     /// Undeformed vector from the first node to the second; from the places as given, so that close nodes far from the
     /// origin keep their digits.
     pub reference: [f64; 3],
+    /// Its length. What it has more than the rest length adds to the elongation, so that small strains lose no digits.
+    pub reference_length: f64,
     pub axial_stiffness: f64,
     pub rest_length: f64,
-    /// Undeformed distance of the nodes minus the rest length; kept apart so that small strains lose no digits.
-    pub initial_elongation: f64,
     pub prestress: f64,
     pub strain: Strain,
 }
@@ -43,23 +43,30 @@ impl Bar {
     /// its digits where `L - L0` would cancel.
     #[inline]
     fn deformed(&self, structure: &Structure, displacement: &[f64]) -> Deformed {
-        let dimension = structure.dimension;
-        let (first, second) = (self.nodes[0] * dimension, self.nodes[1] * dimension);
+        let [from, to] = self.nodes.map(|node| &displacement[node * structure.dimension..][..structure.dimension]);
+        match (from, to) {
+            ([x0, y0], [x1, y1]) => self.deformed_by([x1 - x0, y1 - y0]),
+            ([x0, y0, z0], [x1, y1, z1]) => self.deformed_by([x1 - x0, y1 - y0, z1 - z0]),
+            _ => self.deformed_by([]),
+        }
+    }
+
+    /// The same by the displacement of the second node less that of the first.
+    #[inline(always)]
+    fn deformed_by<const DIMENSION: usize>(&self, relative: [f64; DIMENSION]) -> Deformed {
         let mut direction = [0.0; 3];
-        let (mut squared, mut reference_squared, mut change) = (0.0, 0.0, 0.0);
-        for component in 0..dimension {
-            let reference = self.reference[component];
-            let relative = displacement[second + component] - displacement[first + component];
-            direction[component] = reference + relative;
-            squared += direction[component] * direction[component];
-            reference_squared += reference * reference;
+        let (mut squared, mut change) = (0.0, 0.0);
+        for ((direction, reference), relative) in direction.iter_mut().zip(&self.reference).zip(relative) {
+            *direction = reference + relative;
+            squared += *direction * *direction;
             change += (2.0 * reference + relative) * relative;
         }
         let length = squared.sqrt();
         if length > 0.0 {
             direction.iter_mut().for_each(|value| *value /= length);
         }
-        let elongation = change / (length + reference_squared.sqrt()) + self.initial_elongation;
+        let initial = self.reference_length - self.rest_length;
+        let elongation = change / (length + self.reference_length) + initial;
         Deformed { direction, length, elongation }
     }
 
@@ -93,11 +100,12 @@ impl Bar {
         let deformed = self.deformed(structure, displacement);
         let (_, axial, _) = self.response(deformed.elongation);
         let dimension = structure.dimension;
-        for component in 0..dimension {
-            let value = axial * deformed.direction[component];
-            force[self.nodes[0] * dimension + component] -= value;
-            force[self.nodes[1] * dimension + component] += value;
-        }
+        let mut add = |node: usize, sign: f64| {
+            let own = force[node * dimension..(node + 1) * dimension].iter_mut();
+            own.zip(&deformed.direction).for_each(|(force, direction)| *force += sign * (axial * direction));
+        };
+        add(self.nodes[0], -1.0);
+        add(self.nodes[1], 1.0);
         axial.abs()
     }
 

@@ -45,9 +45,9 @@ impl OneBar {
         let bar = Bar {
             nodes: [0, 1],
             reference: [0, 1, 2].map(|k| tip[k] - pin[k]),
+            reference_length: length,
             axial_stiffness: 1.0,
             rest_length: length,
-            initial_elongation: 0.0,
             prestress: 0.0,
             strain: Strain::Engineering,
         };

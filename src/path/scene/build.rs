@@ -88,14 +88,13 @@ pub(super) fn build_structure(model: &Model, numbers: &HashMap<&str, usize>, len
                 let mut vector = [0.0; 3];
                 // A difference of places as given: a place far from the origin costs no digits.
                 (0..dimension).for_each(|k| vector[k] = (model.nodes[nodes[1]][k] - model.nodes[nodes[0]][k]) / length);
-                let squared: f64 = vector.iter().map(|value| value * value).sum();
-                let rest = rest_length.map_or(squared.sqrt(), |rest| rest / length);
+                let apart = vector.iter().map(|value| value * value).sum::<f64>().sqrt();
                 Element::Bar(Bar {
                     nodes,
                     reference: vector,
+                    reference_length: apart,
                     axial_stiffness: axial_stiffness / force,
-                    rest_length: rest,
-                    initial_elongation: squared.sqrt() - rest,
+                    rest_length: rest_length.map_or(apart, |rest| rest / length),
                     prestress: prestress / force,
                     strain: *strain,
                 })
