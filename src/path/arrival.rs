@@ -37,8 +37,21 @@ pub(super) struct Arrival {
 }
 
 impl Path<'_> {
-    /// What kind of point this is, and how the path goes on.
+    /// What kind of point this is, and how the path goes on: along `incoming`, if no other direction is taken.
     pub(super) fn classify(
+        &mut self,
+        event: Option<Watch>,
+        crossing: Option<Crossing>,
+        incoming: Rate,
+        stopped: Option<usize>,
+        step: f64,
+    ) -> Arrival {
+        let arrival = self.arrive(event, crossing, &incoming, stopped, step);
+        self.at.here.rate.get_or_insert(incoming);
+        arrival
+    }
+
+    fn arrive(
         &mut self,
         event: Option<Watch>,
         crossing: Option<Crossing>,
@@ -51,12 +64,10 @@ impl Path<'_> {
                 self.smooth_bifurcation(crossing, incoming, event.is_some())
             }
             None | Some(Watch::End(_)) => {
-                self.at.here.rate = Some(incoming.clone());
                 let stage_ends = event.is_some();
                 self.look_around(incoming, PointKind::Regular, None, None, stage_ends)
             }
             Some(Watch::LoadRate { sign }) => {
-                self.at.here.rate = Some(incoming.clone());
                 self.at.here.load_sign = -sign;
                 self.at.counts.limit_points += 1;
                 let what = if sign > 0.0 { "load maximum" } else { "load minimum" };
@@ -69,8 +80,8 @@ impl Path<'_> {
     }
 
     /// The end of a step in which contacts have changed together, from the modes `old`: none of them can change here.
-    pub(super) fn joined_changes(&mut self, old: &[Mode], changes: u64, incoming: &Rate) -> Arrival {
-        self.at.here.rate = Some(incoming.clone());
+    pub(super) fn joined_changes(&mut self, old: &[Mode], changes: u64, incoming: Rate) -> Arrival {
+        self.at.here.rate = Some(incoming);
         self.at.counts.contact_changes += changes;
         let standings = self.standings(&self.at.here.state);
         let event = describe_change(self.names(), old, Some(&self.at.here.modes), &standings);
@@ -121,7 +132,6 @@ impl Path<'_> {
         if crossing.eigenvalues == 0 {
             return self.undetermined();
         }
-        self.at.here.rate = Some(incoming.clone());
         let rules = self.rules();
         let standings = self.standings(&self.at.here.state);
         let modes = &self.at.here.modes;

@@ -43,19 +43,17 @@ impl ModeSystem<'_> {
         }
         *factorisations += 1;
         let factorisation = self.bordered(&iterate, towards)?;
-        let (mut rate, mut values) = (self.no_rate(), corrected.left_over.clone());
+        let mut values = corrected.left_over.clone();
         values[self.size - 1] = 0.0;
         if !factorisation.solve(&mut values) {
             return None;
         }
-        self.rate_into(&iterate, &values, Kind::Rates, &mut rate);
-        let error = rate.size();
+        let error = self.length_of(&values);
         self.border_into(&mut values);
         if !factorisation.solve(&mut values) {
             return None;
         }
-        self.rate_into(&iterate, &values, Kind::Rates, &mut rate);
-        let rate = rate.normalised()?;
+        let rate = self.direction_from(&iterate, &values)?;
         let mut stiffness_across = vec![None; self.roles.len()];
         for (contact, role) in self.roles.iter().enumerate() {
             if let Role::Plane { .. } = role {
@@ -77,7 +75,7 @@ impl ModeSystem<'_> {
         let mut values = corrected.left_over.clone();
         values[self.size - 1] = 0.0;
         let solved = nearby.solve_once(&mut values);
-        solved.then(|| self.rate_at(&self.iterate_of(corrected), &values, Kind::Rates).size())
+        solved.then(|| self.length_of(&values))
     }
 
     /// A factorisation that may serve nearby. With slips in planes the directions have equations of their own; dense

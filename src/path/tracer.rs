@@ -151,7 +151,7 @@ impl<'a> Path<'a> {
         self.at.counts.increments += 1;
         let here = &mut self.at.here;
         let before = std::mem::replace(&mut here.state, reached.corrected.state);
-        let begun = here.rate.clone().filter(|_| accepted.joined == 0);
+        let begun = here.rate.take().filter(|_| accepted.joined == 0);
         let changes = reached.event.is_some_and(Watch::is_of_contact);
         here.apart = (changes && here.before.is_none()).then_some(reached.step);
         here.before = begun.and_then(|rate| Placed::before(before.clone(), rate, &here.state));
@@ -160,18 +160,19 @@ impl<'a> Path<'a> {
         here.signature = accepted.signature;
         let arriving = Arriving { modes: here.modes.clone(), load_sign: here.load_sign, counts: self.at.counts };
         let at_bound = self.at_bound(&reached.rate);
-        let arrived = self.at.here.state.reactions.clone();
+        let arrived = changes.then(|| self.at.here.state.reactions.clone());
         let mut arrival = if accepted.joined > 0 {
-            let arrival = self.joined_changes(&modes, accepted.joined, &reached.rate);
+            let arrival = self.joined_changes(&modes, accepted.joined, reached.rate);
             modes.clone_from(&self.at.here.modes);
             arrival
         } else {
-            self.classify(reached.event, accepted.crossing, &reached.rate, reached.stopped, reached.step)
+            self.classify(reached.event, accepted.crossing, reached.rate, reached.stopped, reached.step)
         };
         if accepted.returned {
             arrival.stop = Some(StopReason::Cycle);
         }
-        if !contact_law::holds(self.loading(), &self.at.here.state, self.at.totals.force_scale) {
+        // A change may have moved reactions.
+        if changes && !contact_law::holds(self.loading(), &self.at.here.state, self.at.totals.force_scale) {
             self.at.totals.index -= 1;
             self.end(StopReason::ContactViolated);
             return None;
@@ -191,11 +192,13 @@ impl<'a> Path<'a> {
         }
         // Where contacts of a node share its force in another way as the path goes on, they do not yet where it arrives.
         let round_off = ROUND_OFF * self.at.totals.force_scale;
-        let now = self.at.here.state.reactions.iter();
-        let shared_anew = now.zip(&arrived).any(|(now, arrived)| now.difference(arrived) > round_off);
+        let is_anew = |arrived: &Vec<Reaction>| {
+            let now = self.at.here.state.reactions.iter();
+            now.zip(arrived).any(|(now, arrived)| now.difference(arrived) > round_off)
+        };
         let row = self.emit(Emitted {
             before: &before,
-            reactions: shared_anew.then_some(arrived),
+            reactions: arrived.filter(is_anew),
             modes: &modes,
             step: reached.step,
             point,

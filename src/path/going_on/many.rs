@@ -84,7 +84,7 @@ impl Reduced<'_> {
         };
         let mut columns = vec![0.0; self.unknowns.len()];
         for (freedom, velocity) in incoming.displacement.iter().enumerate() {
-            self.parts_of(freedom).iter().for_each(|part| columns[part.unknown] += part.motion * velocity);
+            self.motions().of(freedom).0.iter().for_each(|part| columns[part.unknown] += part.motion * velocity);
         }
         let largest = load.amax();
         let own = power(&|unknown| columns[unknown], true);

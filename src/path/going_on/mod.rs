@@ -24,13 +24,14 @@ mod response;
 use super::decide::{Choice, Rules, mark_retrace, potential_rate, sign_of};
 use super::directions::is_mechanism;
 use super::loading::{Loading, of_node};
-use super::rates::{Pairs, all_solutions, is_definite};
+use super::rates::{is_definite, slip_or_stick};
 use super::standing::Standing;
 use super::state::{Rate, State};
 use crate::contact::vector::{Vector, add, dot};
 use crate::contact::{Mode, Reaction};
 use nalgebra::{DMatrix, DVector};
 use response::Response;
+use smallvec::{SmallVec, smallvec};
 
 /// What is not zero by this much (rates of unit arc length; forces against the largest of them) leaves no doubt.
 const MARGIN: f64 = 1e-7;
@@ -70,19 +71,34 @@ struct Slip {
     direction: Vector,
 }
 
-/// The unknowns `(x, b)`, in the order of the nodes.
+/// The unknowns `(x, b)`, in the order of the nodes; of few nodes they need no memory of their own.
 struct Reduced<'a> {
     loading: Loading<'a>,
     state: &'a State,
     /// Of each degree of freedom.
-    places: Vec<Place>,
-    parts: Vec<Part>,
-    slips: Vec<Slip>,
-    unknowns: Vec<Unknown>,
+    places: SmallVec<[Place; 6]>,
+    parts: SmallVec<[Part; 4]>,
+    slips: SmallVec<[Slip; 1]>,
+    unknowns: SmallVec<[Unknown; 4]>,
     /// Entries on the diagonal blocks by which reactions turn with the place.
-    turning: Vec<(usize, usize, f64)>,
+    turning: SmallVec<[(usize, usize, f64); 1]>,
     /// The closed contact of each node.
-    holder: Vec<Option<usize>>,
+    holder: SmallVec<[Option<usize>; 2]>,
+}
+
+/// How the degrees of freedom move.
+#[derive(Clone, Copy)]
+struct Motions<'a> {
+    places: &'a [Place],
+    parts: &'a [Part],
+}
+
+impl<'a> Motions<'a> {
+    /// The parts of a degree of freedom, and its velocity per load rate.
+    fn of(self, freedom: usize) -> (&'a [Part], f64) {
+        let Place { first, count, driven } = self.places[freedom];
+        (&self.parts[first..first + count], driven)
+    }
 }
 
 /// The way on and the other direction, if there are no more.
@@ -140,7 +156,7 @@ impl<'a> Reduced<'a> {
         let structure = loading.structure;
         let dimension = structure.dimension;
         let freedoms = structure.freedoms();
-        let mut holder = vec![None; freedoms / dimension];
+        let mut holder: SmallVec<[Option<usize>; 2]> = smallvec![None; freedoms / dimension];
         for (contact, (standing, mode)) in standings.iter().zip(modes).enumerate() {
             let agrees = match (standing, mode) {
                 (Standing::Settled(Mode::Free), Mode::Free) => continue,
@@ -158,12 +174,12 @@ impl<'a> Reduced<'a> {
         let mut reduced = Self {
             loading,
             state,
-            places: Vec::with_capacity(freedoms),
-            parts: Vec::with_capacity(freedoms),
-            slips: Vec::with_capacity(standings.len()),
-            unknowns: Vec::with_capacity(structure.unknowns()),
-            turning: Vec::with_capacity(standings.len()),
-            holder: Vec::new(),
+            places: SmallVec::with_capacity(freedoms),
+            parts: SmallVec::with_capacity(structure.unknowns()),
+            slips: SmallVec::new(),
+            unknowns: SmallVec::with_capacity(structure.unknowns()),
+            turning: SmallVec::new(),
+            holder: SmallVec::new(),
         };
         for (node, holder) in holder.iter().enumerate() {
             match holder {
@@ -220,31 +236,30 @@ impl<'a> Reduced<'a> {
         }
     }
 
-    fn parts_of(&self, freedom: usize) -> &[Part] {
-        let Place { first, count, .. } = self.places[freedom];
-        &self.parts[first..first + count]
+    fn motions(&self) -> Motions<'_> {
+        Motions { places: &self.places, parts: &self.parts }
     }
 
     /// Calls `add` for every entry of `A`, and of the column of the load rate (`None`).
-    fn each_entry(&self, add: &mut dyn FnMut(usize, Option<usize>, f64)) {
-        let structure = self.loading.structure;
+    fn each_entry(&self, add: &mut impl FnMut(usize, Option<usize>, f64)) {
+        let (structure, motions) = (self.loading.structure, self.motions());
         structure.each_stiffness(&self.state.displacement, &mut |row, column, value| {
-            for test in self.parts_of(row) {
+            for test in motions.of(row).0 {
                 let value = test.test * value;
                 if value == 0.0 {
                     continue;
                 }
-                for part in self.parts_of(column) {
+                let (parts, driven) = motions.of(column);
+                for part in parts {
                     add(test.unknown, Some(part.unknown), value * part.motion);
                 }
-                let driven = self.places[column].driven;
                 if driven != 0.0 {
                     add(test.unknown, None, value * driven);
                 }
             }
         });
         for (freedom, force) in self.loading.pattern.forces.iter().enumerate().filter(|(_, force)| **force != 0.0) {
-            for test in self.parts_of(freedom) {
+            for test in motions.of(freedom).0 {
                 add(test.unknown, None, -test.test * force);
             }
         }
@@ -271,18 +286,13 @@ impl<'a> Reduced<'a> {
         if !others.is_empty() {
             (matrix, load) = response.condensed(&matrix, &load, &others, &self.unknowns_where(true))?;
         }
-        let (is_p_matrix, solutions) = all_solutions(matrix, load, &[1.0, -1.0])?;
-        let slip = |pairs: &Pairs| pairs.iter().all(|[a, b]| *a == 0.0 && *b > 0.0);
-        let stick = |pairs: &Pairs| pairs.iter().all(|[a, b]| *b == 0.0 && *a > 0.0);
-        if solutions.len() != 2 || !solutions.iter().any(slip) || !solutions.iter().any(stick) {
-            return None;
-        }
+        let is_p_matrix = slip_or_stick(matrix, load)?;
         // Each load rate has one of the two, or, where the structure gives way, one has both.
         let likely = if is_p_matrix { -1.0_f64 } else { 1.0 } * 1.0_f64.copysign(incoming.load);
         [likely, -likely].into_iter().find_map(|sign| self.stuck_rate(&others, &response.load, sign))
     }
 
-    fn unknowns_where(&self, is_slip: bool) -> Vec<usize> {
+    fn unknowns_where(&self, is_slip: bool) -> SmallVec<[usize; 4]> {
         (0..self.unknowns.len()).filter(|unknown| self.unknowns[*unknown].is_slip == is_slip).collect()
     }
 
@@ -290,21 +300,25 @@ impl<'a> Reduced<'a> {
     /// wide margin.
     fn stuck_rate(&self, others: &[usize], response: &DVector<f64>, load: f64) -> Option<Rate> {
         let (loading, structure) = (self.loading, self.loading.structure);
-        let mut motions = vec![0.0; self.unknowns.len()];
-        others.iter().zip(response.iter()).for_each(|(unknown, value)| motions[*unknown] = load * value);
+        let mut velocities: SmallVec<[f64; 4]> = smallvec![0.0; self.unknowns.len()];
+        others.iter().zip(response.iter()).for_each(|(unknown, value)| velocities[*unknown] = load * value);
+        let (motions, velocities) = (self.motions(), &velocities[..]);
         let velocity = |freedom: usize| {
-            let own: f64 = self.parts_of(freedom).iter().map(|part| part.motion * motions[part.unknown]).sum();
-            own + load * self.places[freedom].driven
+            let (parts, driven) = motions.of(freedom);
+            let own: f64 = parts.iter().map(|part| part.motion * velocities[part.unknown]).sum();
+            own + load * driven
         };
         let displacement: Vec<f64> = (0..structure.freedoms()).map(velocity).collect();
-        let mut forces: Vec<f64> = loading.pattern.forces.iter().map(|force| -load * force).collect();
+        let mut forces: SmallVec<[f64; 6]> = SmallVec::from_slice(&loading.pattern.forces);
+        let forces = &mut forces[..];
+        forces.iter_mut().for_each(|force| *force *= -load);
         structure.each_stiffness(&self.state.displacement, &mut |row, column, value| {
             forces[row] += value * displacement[column];
         });
         let mut rate = Rate { displacement, load, reactions: vec![Reaction::default(); loading.contacts.len()] };
         let dimension = structure.dimension;
         for (node, contact) in self.holder.iter().enumerate().filter_map(|(node, holder)| Some((node, (*holder)?))) {
-            rate.reactions[contact] = loading.taken_by(contact, self.state, &of_node(dimension, node, &forces));
+            rate.reactions[contact] = loading.taken_by(contact, self.state, &of_node(dimension, node, forces));
         }
         let size = rate.size();
         if !size.is_finite() || size <= MARGIN * rate.largest_reaction() {

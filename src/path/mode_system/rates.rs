@@ -22,6 +22,19 @@ impl ModeSystem<'_> {
         rate
     }
 
+    /// `‖(u̇, ṡ)‖` of a vector of unknowns.
+    pub(in crate::path) fn length_of(&self, values: &DVector<f64>) -> f64 {
+        let structure = self.loading.structure;
+        let load = values[structure.unknowns()];
+        let motion = |(freedom, unknown): (usize, &Option<usize>)| match unknown {
+            Some(unknown) => values[*unknown],
+            None => load * self.loading.support_rate(freedom),
+        };
+        let squared: f64 =
+            structure.unknown_of.iter().enumerate().map(motion).map(|velocity| velocity * velocity).sum();
+        (squared + load * load).sqrt()
+    }
+
     /// Zero, of these contacts and degrees of freedom.
     pub(in crate::path) fn no_rate(&self) -> Rate {
         let displacement = vec![0.0; self.loading.structure.freedoms()];

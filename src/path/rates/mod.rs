@@ -45,9 +45,9 @@ mod tests;
 pub(super) use tests::{Random, every_combination};
 
 pub use branch::{Effort, Ray, explore};
-pub use certificate::{Pairs, is_definite};
+pub use certificate::is_definite;
 pub use line::IN_DOUBT;
 pub use near::near;
-pub use parametric::all_solutions;
+pub use parametric::slip_or_stick;
 pub use problem::{Choice, Entity, RateProblem, Signed, Touching};
 pub use sweeps::{Local, own_column, rising, sweeps};

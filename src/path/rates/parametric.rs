@@ -34,12 +34,11 @@ const SHIFT: f64 = 1e-13;
 
 /// What all solutions are among, with whether each load rate has exactly one; those for load rates of these signs at
 /// least. `None` where that is not certain.
-pub fn all_solutions(matrix: DMatrix<f64>, load: DVector<f64>, signs: &[f64]) -> Option<(bool, Vec<Pairs>)> {
-    if let ([own], [by_load]) = (matrix.as_slice(), load.as_slice())
-        && let Some(read_off) = of_one(*own, *by_load, signs)
-    {
-        return Some(read_off);
-    }
+pub(super) fn all_solutions(
+    matrix: DMatrix<f64>,
+    load: DVector<f64>,
+    signs: &[f64],
+) -> Option<(bool, Vec<Pairs>)> {
     match Certified::new(matrix.clone(), load.clone()) {
         Some(certified) => {
             let of_signs: Option<_> = signs.iter().map(|sign| certified.solve(*sign)).collect();
@@ -49,19 +48,26 @@ pub fn all_solutions(matrix: DMatrix<f64>, load: DVector<f64>, signs: &[f64]) ->
     }
 }
 
-/// The solutions for one pair, `0 <= m b + q ṡ ⊥ b >= 0`, which can be read off where neither coefficient may be zero.
-fn of_one(own: f64, by_load: f64, signs: &[f64]) -> Option<(bool, Vec<Pairs>)> {
-    let is_clear = |one: f64, other: f64| one.is_finite() && one.abs() > NEAR_ZERO * other.abs();
-    if !is_clear(own, by_load) || !is_clear(by_load, own) {
-        return None;
+/// Whether there are two solutions in all, one in which every pair slips (`a = 0 < b`) and one in which every pair sticks
+/// (`b = 0 < a`): then, whether each load rate has one of them. `None` where that is not so or not certain.
+pub fn slip_or_stick(matrix: DMatrix<f64>, load: DVector<f64>) -> Option<bool> {
+    if let ([own], [by_load]) = (matrix.as_slice(), load.as_slice()) {
+        // `0 <= m b + q ṡ ⊥ b >= 0` of one pair can be read off where neither coefficient may be zero: it slips where `q ṡ`
+        // and `m` have other signs, and sticks where `q ṡ > 0`.
+        let is_clear = |one: f64, other: f64| one.is_finite() && one.abs() > NEAR_ZERO * other.abs();
+        if is_clear(*own, *by_load) && is_clear(*by_load, *own) {
+            return Some(*own > 0.0);
+        }
     }
-    if own < 0.0 {
-        // Both for one sign of the load rate, none for the other.
-        return Some((false, vec![vec![[by_load.abs(), 0.0]], vec![[0.0, 1.0]]]));
-    }
-    // In the scale of the certificate, which makes the matrix 1.
-    let of = |sign: f64| sign * by_load / own.sqrt();
-    Some((true, signs.iter().map(|sign| vec![[of(*sign).max(0.0), of(-*sign).max(0.0)]]).collect()))
+    of_any_number(matrix, load)
+}
+
+fn of_any_number(matrix: DMatrix<f64>, load: DVector<f64>) -> Option<bool> {
+    let (is_p_matrix, solutions) = all_solutions(matrix, load, &[1.0, -1.0])?;
+    let slip = |pairs: &Pairs| pairs.iter().all(|[a, b]| *a == 0.0 && *b > 0.0);
+    let stick = |pairs: &Pairs| pairs.iter().all(|[a, b]| *b == 0.0 && *a > 0.0);
+    let both = solutions.len() == 2 && solutions.iter().any(slip) && solutions.iter().any(stick);
+    both.then_some(is_p_matrix)
 }
 
 /// What every solution is among; `None` where that is not certain.
@@ -310,7 +316,7 @@ impl Pieces {
 
 #[cfg(test)]
 mod tests {
-    use super::{Certified, Pairs, of_one, solutions};
+    use super::{of_any_number, slip_or_stick};
     use nalgebra::{DMatrix, DVector};
 
     /// What is read off for one pair is what the ways for many find.
@@ -319,22 +325,13 @@ mod tests {
         let sizes = [1e-4, 0.3, 1.0, 7.0, 1e4];
         let values = || sizes.iter().flat_map(|size| [*size, -*size]);
         for (own, by_load) in values().flat_map(|own| values().map(move |by_load| (own, by_load))) {
-            let (is_p_matrix, mut found) = of_one(own, by_load, &[1.0, -1.0]).expect("solutions");
-            let (matrix, load) = (DMatrix::from_element(1, 1, own), DVector::from_element(1, by_load));
-            let certified = Certified::new(matrix.clone(), load.clone());
-            assert_eq!(is_p_matrix, certified.is_some(), "{own} {by_load}");
-            let mut others = match certified {
-                Some(certified) => [1.0, -1.0].map(|sign| certified.solve(sign).expect("one")).to_vec(),
-                None => solutions(&matrix, &load).expect("solutions"),
-            };
-            let in_order = |a: &Pairs, b: &Pairs| a[0][0].total_cmp(&b[0][0]);
-            found.sort_by(in_order);
-            others.sort_by(in_order);
-            assert_eq!(found.len(), others.len(), "{own} {by_load}");
-            for (value, other) in found.iter().flatten().flatten().zip(others.iter().flatten().flatten()) {
-                assert!((value - other).abs() <= 1e-14 * other.abs(), "{own} {by_load}: {found:?} {others:?}");
-            }
+            let of = || (DMatrix::from_element(1, 1, own), DVector::from_element(1, by_load));
+            let ((matrix, load), (same_matrix, same_load)) = (of(), of());
+            let read_off = slip_or_stick(matrix, load);
+            assert_eq!(read_off, Some(own > 0.0), "{own} {by_load}");
+            assert_eq!(read_off, of_any_number(same_matrix, same_load), "{own} {by_load}");
         }
-        assert!(of_one(1e-10, 1.0, &[1.0]).is_none() && of_one(f64::NAN, 1.0, &[1.0]).is_none());
+        let in_doubt = slip_or_stick(DMatrix::from_element(1, 1, f64::NAN), DVector::from_element(1, 1.0));
+        assert_eq!(in_doubt, None);
     }
 }
