@@ -268,7 +268,8 @@ impl<'a> System<'a> {
             return None;
         }
         let weights = weights / size;
-        let force = self.problem.force_tolerance(&weights);
+        let along = self.problem.along(&weights);
+        let force = along.force_tolerance();
         let mut chosen = pattern.chosen.clone();
         let mut slips = Vec::new();
         let mut weak = false;
@@ -296,7 +297,7 @@ impl<'a> System<'a> {
                 slips.push((node.touch.entity, [angle.cos(), angle.sin()]));
             }
         }
-        if !self.problem.violated(&chosen, &weights).is_empty() {
+        if !along.violated(&chosen).is_empty() {
             return None;
         }
         let slipping = |entity: &usize| slips.iter().any(|(slipping, _)| slipping == entity);
@@ -304,8 +305,8 @@ impl<'a> System<'a> {
             (0..options.len()).filter(slipping).for_each(|entity| options[entity] = vec![0]);
             options
         };
-        let fitting = own_alone(self.problem.fitting(&chosen, &weights));
-        let in_doubt = own_alone(self.problem.in_doubt(&chosen, &weights));
+        let fitting = own_alone(along.fitting(&chosen));
+        let in_doubt = own_alone(along.in_doubt(&chosen));
         weak |= self.others.iter().any(|(entity, _)| {
             let bounds = &self.problem.entities[*entity].options[chosen[*entity]].nonnegative;
             let value = |signed: &Signed| signed.sign * self.problem.forms.row(signed.form).transpose().dot(&weights);

@@ -96,7 +96,7 @@ fn explore_by(
         findings: Findings::default(),
         seen: BTreeSet::new(),
         effort,
-        common: problem.entities.iter().map(Entity::common).collect(),
+        common: Vec::new(),
         coupling: DMatrix::zeros(0, 0),
         cost: 1 + (problem.forms.nrows() * problem.weights()) as u64 / UNIT_OF_WORK,
     };
@@ -142,7 +142,7 @@ pub(super) struct Search<'a> {
     /// Combinations whose equations were solved.
     pub seen: BTreeSet<Vec<usize>>,
     pub effort: Effort<'a>,
-    /// What all options of each entity have in common.
+    /// What all options of each entity have in common, once there is branching.
     common: Vec<Vec<Signed>>,
     /// How strongly entities feel each other, once there is branching.
     coupling: DMatrix<f64>,
@@ -152,7 +152,8 @@ pub(super) struct Search<'a> {
 
 impl Search<'_> {
     fn branch(&mut self) {
-        let Some(dictionary) = Dictionary::new(self.problem) else {
+        self.common = self.problem.entities.iter().map(Entity::common).collect();
+        let Some(dictionary) = Dictionary::new(self.problem, &self.common) else {
             self.findings.degenerate = true;
             return;
         };

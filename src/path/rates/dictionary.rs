@@ -65,7 +65,7 @@ pub struct Dictionary {
 
 impl Dictionary {
     /// The cone of what all options of each entity have in common. The load rate is the last form.
-    pub fn new(problem: &RateProblem) -> Option<Self> {
+    pub fn new(problem: &RateProblem, common: &[Vec<Signed>]) -> Option<Self> {
         let weights = problem.weights();
         let count = problem.forms.nrows() + 1;
         let scales: Vec<f64> = problem.motion.column_iter().map(|column| column.norm()).collect();
@@ -102,11 +102,7 @@ impl Dictionary {
             nonnegative: vec![false; count],
             lines_only: false,
         };
-        for entity in &problem.entities {
-            for signed in entity.common() {
-                dictionary.declare(signed);
-            }
-        }
+        common.iter().flatten().for_each(|signed| dictionary.declare(*signed));
         dictionary.normalise(count);
         while dictionary.replace_weight().is_some() {}
         Some(dictionary)

@@ -1,7 +1,7 @@
 //! Examining combinations: each one's exact line, and the rays that it holds.
 
 use super::branch::{Ray, Search};
-use super::line::Line;
+use super::line::{Along, Line};
 use crate::path::combinations::{combinations, count};
 use nalgebra::DVector;
 
@@ -33,13 +33,16 @@ impl Search<'_> {
         match self.problem.line(chosen) {
             Line::Nothing => Examined::Nothing,
             Line::Along(weights) => {
-                let senses = [-&weights, weights];
-                let [first, second] = senses.each_ref().map(|weights| self.problem.violated(chosen, weights));
+                let along = self.problem.along(&weights);
+                let second = along.violated(chosen);
+                let along = along.reversed();
+                let first = along.violated(chosen);
                 let is_ray = first.is_empty() || second.is_empty();
-                for (weights, violated) in senses.into_iter().zip([&first, &second]) {
-                    if violated.is_empty() {
-                        self.keep(chosen, weights);
-                    }
+                if first.is_empty() {
+                    self.keep(chosen, -&weights, &along);
+                }
+                if second.is_empty() {
+                    self.keep(chosen, weights, &along.reversed());
                 }
                 match is_ray {
                     true => Examined::Rays,
@@ -50,7 +53,8 @@ impl Search<'_> {
             Line::Plane(basis) => {
                 self.findings.degenerate = true;
                 for weights in self.problem.edges(chosen, &basis) {
-                    self.keep(chosen, weights);
+                    let along = self.problem.along(&weights);
+                    self.keep(chosen, weights, &along);
                 }
                 if self.findings.planes.len() < MOST_PLANES {
                     self.findings.planes.push(basis);
@@ -64,12 +68,12 @@ impl Search<'_> {
         }
     }
 
-    fn keep(&mut self, chosen: &[usize], weights: DVector<f64>) {
+    fn keep(&mut self, chosen: &[usize], weights: DVector<f64>, along: &Along<'_>) {
         let size = weights.amax();
         if !self.findings.rays.iter().any(|ray| (&ray.weights - &weights).amax() <= SAME * size) {
-            let fitting = self.problem.fitting(chosen, &weights);
-            let weak = self.problem.is_weak(&fitting, &weights);
-            let in_doubt = self.problem.in_doubt(chosen, &weights);
+            let fitting = along.fitting(chosen);
+            let weak = along.is_weak(&fitting);
+            let in_doubt = along.in_doubt(chosen);
             self.findings.rays.push(Ray { weights, fitting, in_doubt, weak });
         }
     }
@@ -106,8 +110,12 @@ impl Search<'_> {
             match known.map(|ray| -&ray.weights) {
                 None => settled |= matches!(self.examine(&chosen), Examined::Rays),
                 // Its line is the known one; the other sense may be feasible under this combination only.
-                Some(reversed) if self.problem.violated(&chosen, &reversed).is_empty() => self.keep(&chosen, reversed),
-                Some(_) => {}
+                Some(reversed) => {
+                    let along = self.problem.along(&reversed);
+                    if along.violated(&chosen).is_empty() {
+                        self.keep(&chosen, reversed, &along);
+                    }
+                }
             }
         }
         if total > MOST_LABELS && !settled {

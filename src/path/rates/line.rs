@@ -76,16 +76,12 @@ impl RateProblem {
     pub(super) fn is_feasible(&self, chosen: &[usize]) -> bool {
         match self.line(chosen) {
             Line::Along(weights) => {
-                self.violated(chosen, &weights).is_empty() || self.violated(chosen, &-weights).is_empty()
+                let along = self.along(&weights);
+                along.violated(chosen).is_empty() || along.reversed().violated(chosen).is_empty()
             }
             Line::Plane(_) => true,
             Line::Nothing | Line::Still | Line::NotFinite => false,
         }
-    }
-
-    pub(in crate::path) fn force_tolerance(&self, weights: &DVector<f64>) -> f64 {
-        let Forces { largest, rounding } = self.forces(weights);
-        (WEAK * largest).max(rounding)
     }
 
     fn forces(&self, weights: &DVector<f64>) -> Forces {
@@ -120,7 +116,7 @@ impl RateProblem {
             }
             for weights in [-&along / size, &along / size] {
                 let is_new = |known: &DVector<f64>| (known - &weights).amax() > WEAK * weights.amax();
-                if edges.iter().all(is_new) && self.violated(chosen, &weights).is_empty() {
+                if edges.iter().all(is_new) && self.along(&weights).violated(chosen).is_empty() {
                     edges.push(weights);
                 }
             }
@@ -128,58 +124,80 @@ impl RateProblem {
         edges
     }
 
-    /// The options of each entity under which a ray of unit arc length, found under the chosen ones, is feasible. As
-    /// every option speaks of its own entity only, the ray is feasible under every combination of them.
-    pub(in crate::path) fn fitting(&self, chosen: &[usize], weights: &DVector<f64>) -> Vec<Vec<usize>> {
-        self.within(WEAK, chosen, weights)
+    /// What the forms are along a vector of weights of unit arc length.
+    pub(in crate::path) fn along(&self, weights: &DVector<f64>) -> Along<'_> {
+        Along { problem: self, values: &self.forms * weights, forces: self.forces(weights) }
+    }
+}
+
+/// A vector of weights of unit arc length as the entities see it.
+pub(in crate::path) struct Along<'a> {
+    problem: &'a RateProblem,
+    /// Of each form.
+    values: DVector<f64>,
+    forces: Forces,
+}
+
+impl Along<'_> {
+    /// The same of the weights reversed.
+    pub fn reversed(mut self) -> Self {
+        self.values.neg_mut();
+        self
+    }
+
+    /// What is zero among the rates of force.
+    pub fn force_tolerance(&self) -> f64 {
+        (WEAK * self.forces.largest).max(self.forces.rounding)
+    }
+
+    /// The options of each entity under which a ray, found under the chosen ones, is feasible. As every option speaks of
+    /// its own entity only, the ray is feasible under every combination of them.
+    pub fn fitting(&self, chosen: &[usize]) -> Vec<Vec<usize>> {
+        self.within(WEAK, chosen)
     }
 
     /// The same where what is small counts as zero.
-    pub(in crate::path) fn in_doubt(&self, chosen: &[usize], weights: &DVector<f64>) -> Vec<Vec<usize>> {
-        self.within(IN_DOUBT, chosen, weights)
+    pub fn in_doubt(&self, chosen: &[usize]) -> Vec<Vec<usize>> {
+        self.within(IN_DOUBT, chosen)
     }
 
-    fn within(&self, tolerance: f64, chosen: &[usize], weights: &DVector<f64>) -> Vec<Vec<usize>> {
-        let forces = self.forces(weights);
-        let values = &self.forms * weights;
+    fn within(&self, tolerance: f64, chosen: &[usize]) -> Vec<Vec<usize>> {
+        let (values, is_force) = (&self.values, &self.problem.is_force);
         let fits = |entity: &Entity, choice: &Choice| {
-            let force = forces.tolerance(entity, &values, tolerance);
-            let tolerance = |form: usize| if self.is_force[form] { force } else { tolerance };
+            let force = self.forces.tolerance(entity, values, tolerance);
+            let tolerance = |form: usize| if is_force[form] { force } else { tolerance };
             choice.zero.iter().all(|&form| values[form].abs() <= tolerance(form))
                 && choice.nonnegative.iter().all(|signed| signed.sign * values[signed.form] >= -tolerance(signed.form))
         };
         let of_entity = |(entity, &chosen): (&Entity, &usize)| {
             (0..entity.options.len()).filter(|&index| index == chosen || fits(entity, &entity.options[index])).collect()
         };
-        self.entities.iter().zip(chosen).map(of_entity).collect()
+        self.problem.entities.iter().zip(chosen).map(of_entity).collect()
     }
 
-    /// The entities whose inequalities a vector of weights violates under a combination: below zero by more
-    /// than the weak tolerance.
-    pub(in crate::path) fn violated(&self, chosen: &[usize], weights: &DVector<f64>) -> Vec<usize> {
-        let forces = self.forces(weights);
-        let values = &self.forms * weights;
-        let is_violated = |entity: &Entity, choice: &Choice| {
-            let force = forces.tolerance(entity, &values, WEAK);
-            choice.nonnegative.iter().any(|signed| {
-                let tolerance = if self.is_force[signed.form] { force } else { WEAK };
-                signed.sign * values[signed.form] < -tolerance
-            })
+    /// The entities whose inequalities are violated under a combination: below zero by more than the weak tolerance.
+    pub fn violated(&self, chosen: &[usize]) -> Vec<usize> {
+        let is_violated = |(index, choice): &(usize, &usize)| {
+            self.some_inequality(*index, **choice, |value, tolerance| value < -tolerance)
         };
-        let options = self.entities.iter().zip(chosen).enumerate();
-        options.filter(|(_, (entity, chosen))| is_violated(entity, &entity.options[**chosen])).map(|(i, _)| i).collect()
+        chosen.iter().enumerate().filter(is_violated).map(|(index, _)| index).collect()
     }
 
-    /// Whether some inequality of a ray of unit arc length holds with equality under the first of its options.
-    pub(in crate::path) fn is_weak(&self, fitting: &[Vec<usize>], weights: &DVector<f64>) -> bool {
-        let forces = self.forces(weights);
-        let values = &self.forms * weights;
-        self.entities.iter().zip(fitting).any(|(entity, options)| {
-            let force = forces.tolerance(entity, &values, WEAK);
-            entity.options[options[0]].nonnegative.iter().any(|signed| {
-                let tolerance = if self.is_force[signed.form] { force } else { WEAK };
-                signed.sign * values[signed.form] <= tolerance
-            })
+    /// Whether some inequality of a ray holds with equality under the first of its options.
+    pub fn is_weak(&self, fitting: &[Vec<usize>]) -> bool {
+        let equals = |(index, options): (usize, &Vec<usize>)| {
+            self.some_inequality(index, options[0], |value, tolerance| value <= tolerance)
+        };
+        fitting.iter().enumerate().any(equals)
+    }
+
+    /// Whether something is so of the value and the weak tolerance of some inequality of an entity's option.
+    fn some_inequality(&self, entity: usize, choice: usize, is_so: impl Fn(f64, f64) -> bool) -> bool {
+        let entity = &self.problem.entities[entity];
+        let force = self.forces.tolerance(entity, &self.values, WEAK);
+        entity.options[choice].nonnegative.iter().any(|signed| {
+            let tolerance = if self.problem.is_force[signed.form] { force } else { WEAK };
+            is_so(signed.sign * self.values[signed.form], tolerance)
         })
     }
 }

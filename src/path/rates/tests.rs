@@ -39,9 +39,10 @@ pub(in crate::path) fn every_combination(problem: &RateProblem) -> Findings {
             Line::Nothing => {}
             Line::Along(weights) => {
                 for weights in [-&weights, weights] {
-                    if problem.violated(&chosen, &weights).is_empty() {
+                    let along = problem.along(&weights);
+                    if along.violated(&chosen).is_empty() {
                         let fitting: Vec<Vec<usize>> = chosen.iter().map(|choice| vec![*choice]).collect();
-                        let weak = problem.is_weak(&fitting, &weights);
+                        let weak = along.is_weak(&fitting);
                         findings.rays.push(Ray { weights, in_doubt: fitting.clone(), fitting, weak });
                     }
                 }
