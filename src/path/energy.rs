@@ -28,21 +28,28 @@ struct Ends {
 /// A point and the direction of the path there.
 pub type Placed<'a> = (&'a State, &'a Rate);
 
-/// `(ΔW, ΔD)` of an increment in one mode.
-pub fn work_and_dissipation(loading: Loading<'_>, modes: &[Mode], start: Placed<'_>, end: Placed<'_>) -> (f64, f64) {
-    let chord = start.0.distance(end.0);
-    let angle = start.1.product(end.1).clamp(-1.0, 1.0).acos();
-    let length = chord * (1.0 + angle * angle / 24.0);
+/// `(ΔW, ΔD)` of an increment in one mode, whose direction turns by an angle (radians).
+pub fn work_and_dissipation(
+    loading: Loading<'_>,
+    modes: &[Mode],
+    start: Placed<'_>,
+    end: Placed<'_>,
+    turned: f64,
+) -> (f64, f64) {
+    let length = start.0.distance(end.0) * (1.0 + turned * turned / 24.0);
     let load = Ends { first: start.0.load, first_rate: start.1.load, last: end.0.load, last_rate: end.1.load };
     // Motions are measured from the start, so that large displacements cost no digits.
-    let change: Vec<f64> = end.0.displacement.iter().zip(&start.0.displacement).map(|(a, b)| a - b).collect();
+    let along_chord = |forces: &[f64]| -> f64 {
+        let change = end.0.displacement.iter().zip(&start.0.displacement).map(|(end, start)| end - start);
+        forces.iter().zip(change).map(|(force, change)| force * change).sum()
+    };
     let path = Ends {
         first: 0.0,
         first_rate: dot(&loading.pattern.forces, &start.1.displacement),
-        last: dot(&loading.pattern.forces, &change),
+        last: along_chord(&loading.pattern.forces),
         last_rate: dot(&loading.pattern.forces, &end.1.displacement),
     };
-    let mut work = dot(&loading.held.forces, &change) + integral(load, path, length);
+    let mut work = along_chord(&loading.held.forces) + integral(load, path, length);
     if loading.pattern.moves_boundary() {
         let (first, first_rate) = boundary_force(loading, start);
         let (last, last_rate) = boundary_force(loading, end);

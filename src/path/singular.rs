@@ -153,14 +153,12 @@ pub fn loosened(start: &Start<'_>, reached: &Reached) -> Option<Vec<Mode>> {
         let is_zero = reaction == 0.0 || start.loading.is_no_force(contact, state, reaction, ZERO, force_scale);
         is_zero && start.loading.gap(contact, state) <= ZERO
     };
-    let grazes = |(contact, mode): &(usize, &Mode)| {
-        mode.is_active() && touches(start.state, *contact) && touches(&reached.corrected.state, *contact)
+    let grazes = |(contact, mode): (usize, &Mode)| {
+        mode.is_active() && touches(start.state, contact) && touches(&reached.corrected.state, contact)
     };
-    let mut loose = start.modes.to_vec();
-    for (contact, _) in start.modes.iter().enumerate().filter(grazes) {
-        loose[contact] = Mode::Free;
-    }
-    (loose != start.modes).then_some(loose)
+    let modes = || start.modes.iter().enumerate();
+    let loosened = |(contact, mode): (usize, &Mode)| if grazes((contact, mode)) { Mode::Free } else { *mode };
+    modes().any(grazes).then(|| modes().map(loosened).collect())
 }
 
 impl Signature {

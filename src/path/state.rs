@@ -98,6 +98,11 @@ impl Rate {
         dot(&self.displacement, &other.displacement) + self.load * other.load
     }
 
+    /// The angle (radians) between two rates of unit arc length.
+    pub fn angle(&self, other: &Self) -> f64 {
+        self.product(other).clamp(-1.0, 1.0).acos()
+    }
+
     pub fn scale(&mut self, factor: f64) {
         self.displacement.iter_mut().for_each(|value| *value *= factor);
         self.load *= factor;

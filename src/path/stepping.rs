@@ -47,6 +47,8 @@ const CUT_SHORT: f64 = 0.5;
 pub(super) struct Accepted {
     pub reached: Box<Reached>,
     pub added: Added,
+    /// By how much the direction turns (radians), but for contact changes within the step.
+    pub turned: f64,
     /// Whether the increment's program named the mode; `None` where it was not asked.
     pub mode_named: Option<bool>,
     /// The point is the one where the stage began.
@@ -153,14 +155,12 @@ impl Path<'_> {
         let Tried { reached, crossing, signature, returned, joined } = tried;
         let mut accepted = self.balance(rate, reached);
         (accepted.crossing, accepted.signature, accepted.returned) = (crossing, signature, returned);
-        // The kinks of a step with contact changes say nothing of its length.
-        let mut last = None;
         if let Some((changes, unchanged)) = joined {
             accepted.join(changes, &self.at.totals.energy);
-            last = Some(unchanged);
+            // The kinks of a step with contact changes say nothing of its length.
+            accepted.turned = rate.angle(&unchanged);
         }
-        let turned = rate.product(last.as_ref().unwrap_or(&accepted.reached.rate));
-        let factor = self.next_step_factor(turned.clamp(-1.0, 1.0).acos(), &accepted, step);
+        let factor = self.next_step_factor(&accepted, step);
         if factor <= REJECTED && step * factor >= least {
             return Err(factor);
         }
@@ -266,18 +266,20 @@ impl Path<'_> {
     fn balance(&self, rate: &Rate, reached: Box<Reached>) -> Accepted {
         let start = (&self.at.here.state, rate);
         let end = (&reached.corrected.state, &reached.rate);
-        let (external_work, dissipated) = energy::work_and_dissipation(self.loading(), &self.at.here.modes, start, end);
+        let (loading, modes, turned) = (self.loading(), &self.at.here.modes, rate.angle(&reached.rate));
+        let (external_work, dissipated) = energy::work_and_dissipation(loading, modes, start, end, turned);
         let strain = self.scene.structure.strain_energy(&reached.corrected.state.displacement) - self.initial_strain;
         let (step, force_scale) = (reached.step, reached.corrected.force_scale);
         let added = Added { step, external_work, dissipated, strain, force_scale };
-        Accepted { reached, added, mode_named: None, returned: false, crossing: None, signature: None, joined: 0 }
+        let (mode_named, crossing, signature) = (None, None, None);
+        Accepted { reached, added, turned, mode_named, returned: false, crossing, signature, joined: 0 }
     }
 
-    /// How the next step should compare with this one: by the path's turn (radians), Newton's work and the energy balance.
-    fn next_step_factor(&self, turned: f64, accepted: &Accepted, tried: f64) -> f64 {
+    /// How the next step should compare with this one: by the path's turn, Newton's work and the energy balance.
+    fn next_step_factor(&self, accepted: &Accepted, tried: f64) -> f64 {
         let reached = &accepted.reached;
         let done = (reached.step / tried).clamp(0.1, 1.0);
-        let turn = turned / done;
+        let turn = accepted.turned / done;
         let by_turn = TURN_SOUGHT / turn.max(1e-3 * TURN_SOUGHT);
         let by_work = ITERATIONS_SOUGHT / reached.corrected.iterations_to_small.max(1) as f64;
         let added = &accepted.added;

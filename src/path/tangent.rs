@@ -6,7 +6,6 @@ use super::singular::UNCERTAIN;
 use super::state::Rate;
 use crate::linear_algebra::SystemFactorisation;
 use crate::linear_algebra::sparse::SparseFactorisation;
-use nalgebra::DVector;
 
 /// The path's direction at a converged point, and what its equations tell besides.
 pub struct Tangent {
@@ -16,7 +15,7 @@ pub struct Tangent {
     pub error: f64,
     /// Sign of the bordered determinant, where it is certain.
     pub determinant: Option<f64>,
-    /// For each slip in a plane the force across it per motion across it.
+    /// Where contacts slip in planes: of each such contact the force across it per motion across it.
     pub stiffness_across: Vec<Option<f64>>,
 }
 
@@ -38,7 +37,7 @@ impl ModeSystem<'_> {
             && let Some(rate) = self.tangent_nearby(nearby, &iterate, towards)
             && let Some(error) = self.error_by(nearby, corrected)
         {
-            let (determinant, stiffness_across) = (Some(nearby.determinant_sign()), vec![None; self.roles.len()]);
+            let (determinant, stiffness_across) = (Some(nearby.determinant_sign()), Vec::new());
             return Some(Tangent { rate, error, determinant, stiffness_across });
         }
         *factorisations += 1;
@@ -54,15 +53,15 @@ impl ModeSystem<'_> {
             return None;
         }
         let rate = self.direction_from(&iterate, &values)?;
-        let mut stiffness_across = vec![None; self.roles.len()];
-        for (contact, role) in self.roles.iter().enumerate() {
-            if let Role::Plane { .. } = role {
-                let mut values = DVector::zeros(self.size);
+        let mut stiffness_across = Vec::new();
+        if self.has_tracks() {
+            let across = |(contact, role): (usize, &Role)| {
+                let Role::Plane { .. } = role else { return None };
+                values.fill(0.0);
                 values[self.row_of(contact) + 1] = 1.0;
-                if factorisation.solve(&mut values) {
-                    stiffness_across[contact] = Some(-values[self.column_of(contact) + 1]);
-                }
-            }
+                factorisation.solve(&mut values).then(|| -values[self.column_of(contact) + 1])
+            };
+            stiffness_across = self.roles.iter().enumerate().map(across).collect();
         }
         let certain = factorisation.pivot_ratio() > UNCERTAIN;
         let determinant = certain.then(|| factorisation.determinant_sign());

@@ -154,7 +154,7 @@ impl<'a> Path<'a> {
         let begun = here.rate.take().filter(|_| accepted.joined == 0);
         let changes = reached.event.is_some_and(Watch::is_of_contact);
         here.apart = (changes && here.before.is_none()).then_some(reached.step);
-        here.before = begun.and_then(|rate| Placed::before(before.clone(), rate, &here.state));
+        here.before = None;
         let mut modes = std::mem::replace(&mut here.modes, reached.corrected.modes);
         here.drift = reached.drift;
         here.signature = accepted.signature;
@@ -209,6 +209,9 @@ impl<'a> Path<'a> {
             mode_named: accepted.mode_named.map(|named| named && !arrival.unconfirmed),
             arriving: Some(arriving),
         });
+        if !changes && let Some(rate) = begun {
+            self.at.here.before = Placed::before(before, rate, &self.at.here.state);
+        }
         self.at.stage_over = stage_ends && self.at.phase == Phase::Running;
         Some(row)
     }

@@ -41,7 +41,8 @@ pub enum Watch {
 
 /// Everything that ends a mode which goes on from a state along a rate.
 pub fn of_mode(loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate) -> Vec<Watch> {
-    let mut watches = Vec::new();
+    // Of each contact, of the load and of the stage's ends.
+    let mut watches = Vec::with_capacity(2 * modes.len() + 2);
     let mut together = Vec::new();
     for (corner, data) in loading.corners.iter().enumerate() {
         let before = together.len();

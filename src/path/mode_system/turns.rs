@@ -18,7 +18,7 @@ impl ModeSystem<'_> {
             let Mode::Slip { direction } = end.modes[index] else { continue };
             let at_start = track::turn_rate(self.loading, index, self.anchor, start, &begun.direction);
             let at_end = track::turn_rate(self.loading, index, &end.state, &tangent.rate, &direction);
-            let settling = tangent.stiffness_across[index].and_then(|stiffness| {
+            let settling = tangent.stiffness_across.get(index).copied().flatten().and_then(|stiffness| {
                 let chord = size(&self.chord(index, &end.state));
                 let here = (&end.state, &tangent.rate);
                 track::settling(self.loading, index, here, (&begun, &direction), (chord, stiffness))
