@@ -64,6 +64,9 @@ pub const ACCEPTED_RESIDUAL: f64 = 1e-11;
 pub(super) const NO_FORCE: f64 = 1e-20;
 /// Relative residual below which iterating on gains nothing.
 const ROUND_OFF: f64 = 1e-15;
+/// Arc length (dimensionless) of the next correction, as it is foreseen, below which it is not made where the residual is
+/// round-off: what is foreseen is several times what comes, since corrections fall by more from one to the next.
+const NO_CORRECTION: f64 = 4e-15;
 /// Error below which Newton's method is as good as converged.
 const SMALL: f64 = 1e-6;
 /// Smallest pivot over the largest of a factorisation that may serve on: what is left over says little of the state where
@@ -226,7 +229,8 @@ impl ModeSystem<'_> {
                 small_by_correction.get_or_insert(iterations);
             }
             let contraction = if before.is_finite() { correction / before } else { SERVES_ON };
-            nothing_left = contraction <= SERVES_ON && self.is_rounding(&iterate.state, &values, contraction);
+            nothing_left = contraction <= SERVES_ON
+                && (contraction * correction <= NO_CORRECTION || self.is_rounding(&iterate.state, &values, contraction));
             self.correct_by(&mut iterate, &values, &mut change);
             iterations += 1;
         }
