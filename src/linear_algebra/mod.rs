@@ -1,23 +1,13 @@
 //! Factorisations that say when they cannot be trusted: dense, and sparse with thin borders. May be called by everything
 //! above; calls nothing.
 
+mod dense;
 pub mod inertia;
 pub mod sparse;
 
+pub use dense::{Factorisation, Stiffener};
 pub use inertia::{Inertia, inertia};
-use nalgebra::{DMatrix, DVector, Dyn, LU};
-
-/// An LU factorisation with partial pivoting of a square matrix whose rows were brought to unit size first.
-pub struct Factorisation {
-    /// Rows of the matrix that was asked for; the rest are those of [`Stiffener`]s.
-    size: usize,
-    row_scales: DVector<f64>,
-    lu: LU<f64, Dyn, Dyn>,
-    /// Smallest pivot over the largest one.
-    pivot_ratio: f64,
-    /// Sign by which the determinant of what is factorised differs from the one of the matrix asked for.
-    sign: f64,
-}
+use nalgebra::{DMatrix, DVector};
 
 /// What a matrix is assembled into.
 pub trait Sink {
@@ -28,96 +18,6 @@ pub trait Sink {
 impl Sink for DMatrix<f64> {
     fn add(&mut self, row: usize, column: usize, value: f64) {
         self[(row, column)] += value;
-    }
-}
-
-/// A summand `k r cᵀ` of a matrix, kept apart from it.
-#[derive(Debug, Clone)]
-pub struct Stiffener {
-    /// Not zero.
-    pub stiffness: f64,
-    /// Entries of `r`.
-    pub rows: Vec<(usize, f64)>,
-    /// Entries of `c`.
-    pub columns: Vec<(usize, f64)>,
-}
-
-/// Pivots below this fraction of the largest one count as zero (rows have unit size).
-const SMALLEST_PIVOT: f64 = 1e-14;
-
-impl Factorisation {
-    /// Factorises; `None` when the matrix is singular to working precision or holds a number that is not finite.
-    pub fn new(mut matrix: DMatrix<f64>) -> Option<Self> {
-        let size = matrix.nrows();
-        let mut row_scales = DVector::zeros(size);
-        let scales: &mut [f64] = row_scales.as_mut_slice();
-        // Stays zero while all numbers are finite: zero times what is not is no number.
-        let mut zero = 0.0;
-        for column in matrix.as_slice().chunks_exact(size.max(1)) {
-            for (scale, value) in scales.iter_mut().zip(column) {
-                zero += 0.0 * value;
-                *scale = if value.abs() > *scale { value.abs() } else { *scale };
-            }
-        }
-        if zero != 0.0 || !scales.iter().all(|scale| *scale > 0.0) {
-            return None;
-        }
-        for column in matrix.as_mut_slice().chunks_exact_mut(size.max(1)) {
-            column.iter_mut().zip(scales.iter()).for_each(|(value, scale)| *value /= scale);
-        }
-        let lu = matrix.lu();
-        let pivots = lu.lu_internal().as_slice().iter().step_by(size + 1);
-        let (smallest, largest) = pivots.fold((f64::INFINITY, 0.0_f64), |(smallest, largest), pivot| {
-            (smallest.min(pivot.abs()), largest.max(pivot.abs()))
-        });
-        let regular = size == 0 || (smallest.is_finite() && smallest > SMALLEST_PIVOT * largest);
-        let pivot_ratio = if largest > 0.0 { smallest / largest } else { 0.0 };
-        regular.then_some(Self { size, row_scales, lu, pivot_ratio, sign: 1.0 })
-    }
-
-    /// Factorises `A + Σ k r cᵀ` as `[[A, R], [Cᵀ, -1/K]]`, where large and small stiffnesses are never added, so that
-    /// the small ones keep their digits (a mixed formulation: the new unknowns are the forces `k c·x`).
-    pub fn stiffened(matrix: DMatrix<f64>, stiffeners: &[Stiffener]) -> Option<Self> {
-        let (size, added) = (matrix.nrows(), stiffeners.len());
-        let mut matrix = matrix.resize(size + added, size + added, 0.0);
-        let mut sign = 1.0;
-        for (index, stiffener) in stiffeners.iter().enumerate() {
-            let place = size + index;
-            stiffener.rows.iter().for_each(|(row, value)| matrix[(*row, place)] += value);
-            stiffener.columns.iter().for_each(|(column, value)| matrix[(place, *column)] += value);
-            matrix[(place, place)] = -1.0 / stiffener.stiffness;
-            sign *= -stiffener.stiffness.signum();
-        }
-        Self::new(matrix).map(|whole| Self { size, sign, ..whole })
-    }
-
-    /// Sign of the determinant: 1 or -1.
-    pub fn determinant_sign(&self) -> f64 {
-        let factors = self.lu.lu_internal();
-        let sign: f64 = self.lu.p().determinant();
-        (0..factors.nrows()).fold(self.sign * sign, |sign, index| sign * factors[(index, index)].signum())
-    }
-
-    /// Smallest pivot over the largest one.
-    pub fn pivot_ratio(&self) -> f64 {
-        self.pivot_ratio
-    }
-
-    /// Solves for one right-hand side, overwritten by the solution; `false` when the result is not finite.
-    pub fn solve(&self, right_hand_side: &mut DVector<f64>) -> bool {
-        if self.size < self.row_scales.len() {
-            let mut whole = right_hand_side.clone().resize_vertically(self.row_scales.len(), 0.0);
-            let solved = self.solve_scaled(&mut whole);
-            right_hand_side.copy_from(&whole.rows(0, self.size));
-            return solved;
-        }
-        self.solve_scaled(right_hand_side)
-    }
-
-    fn solve_scaled(&self, right_hand_side: &mut DVector<f64>) -> bool {
-        let scales = self.row_scales.as_slice();
-        right_hand_side.as_mut_slice().iter_mut().zip(scales).for_each(|(value, scale)| *value /= scale);
-        self.lu.solve_mut(right_hand_side) && right_hand_side.as_slice().iter().all(|value| value.is_finite())
     }
 }
 
@@ -281,42 +181,6 @@ fn eliminated(mut work: DMatrix<f64>, tolerance: f64, most: usize) -> Option<DMa
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_singular_matrix_is_refused() {
-        assert!(Factorisation::new(DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 4.0])).is_none());
-        assert!(Factorisation::new(DMatrix::from_row_slice(2, 2, &[1.0, f64::NAN, 2.0, 4.0])).is_none());
-    }
-
-    #[test]
-    fn the_sign_of_the_determinant_counts_exchanges() {
-        for (entries, sign) in [([0.0, 1.0, 1.0, 0.0], -1.0), ([2.0, 1.0, 1.0, 2.0], 1.0), ([1.0, 2.0, 2.0, 1.0], -1.0)]
-        {
-            let factorisation = Factorisation::new(DMatrix::from_row_slice(2, 2, &entries)).unwrap();
-            assert_eq!(factorisation.determinant_sign(), sign);
-        }
-    }
-
-    #[test]
-    fn rows_of_very_different_size_are_solved() {
-        let factorisation = Factorisation::new(DMatrix::from_row_slice(2, 2, &[1e-18, 2e-18, 3e18, 4e18])).unwrap();
-        let mut solution = DVector::from_vec(vec![5e-18, 11e18]);
-        assert!(factorisation.solve(&mut solution));
-        assert!((solution[0] - 1.0).abs() < 1e-12 && (solution[1] - 2.0).abs() < 1e-12);
-    }
-
-    /// Springs 1 and 1e15 in series, pulled by 1: `x = (1, 1 + 1e-15)`. Added up, 1 and 1e15 lose the soft one.
-    #[test]
-    fn a_stiffness_kept_apart_spares_the_soft_one() {
-        let soft = DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, 0.0]);
-        let along = vec![(0, -1.0), (1, 1.0)];
-        let stiff = Stiffener { stiffness: 1e15, rows: along.clone(), columns: along };
-        let factorisation = Factorisation::stiffened(soft, &[stiff]).unwrap();
-        let mut solution = DVector::from_vec(vec![0.0, 1.0]);
-        assert!(factorisation.solve(&mut solution));
-        assert!((solution[0] - 1.0).abs() < 1e-15 && (solution[1] - 1.0).abs() < 2e-15);
-        assert_eq!(factorisation.determinant_sign(), 1.0);
-    }
 
     #[test]
     fn the_null_space_has_the_right_dimension() {
