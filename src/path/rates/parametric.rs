@@ -49,13 +49,13 @@ pub(super) fn all_solutions(
 }
 
 /// Whether there are two solutions in all, one in which every pair slips (`a = 0 < b`) and one in which every pair sticks
-/// (`b = 0 < a`): then, whether each load rate has one of them. `None` where that is not so or not certain.
+/// (`b = 0 < a`): then, whether each load rate has one of them, if neither is at rest. `None` where that is not so or not
+/// certain.
 pub fn slip_or_stick(matrix: DMatrix<f64>, load: DVector<f64>) -> Option<bool> {
     if let ([own], [by_load]) = (matrix.as_slice(), load.as_slice()) {
-        // `0 <= m b + q ṡ ⊥ b >= 0` of one pair can be read off where neither coefficient may be zero: it slips where `q ṡ`
-        // and `m` have other signs, and sticks where `q ṡ > 0`.
-        let is_clear = |one: f64, other: f64| one.is_finite() && one.abs() > NEAR_ZERO * other.abs();
-        if is_clear(*own, *by_load) && is_clear(*by_load, *own) {
+        // `0 <= m b + q ṡ ⊥ b >= 0` of one pair can be read off where `q` cannot be zero: it sticks where `q ṡ > 0`, and
+        // slips where `q ṡ = -m b`; where `m` is zero, at a limit point, the load rests meanwhile.
+        if own.is_finite() && by_load.is_finite() && by_load.abs() > NEAR_ZERO * own.abs() {
             return Some(*own > 0.0);
         }
     }
@@ -331,7 +331,10 @@ mod tests {
             assert_eq!(read_off, Some(own > 0.0), "{own} {by_load}");
             assert_eq!(read_off, of_any_number(same_matrix, same_load), "{own} {by_load}");
         }
-        let in_doubt = slip_or_stick(DMatrix::from_element(1, 1, f64::NAN), DVector::from_element(1, 1.0));
-        assert_eq!(in_doubt, None);
+        let of = |own: f64, by_load: f64| {
+            slip_or_stick(DMatrix::from_element(1, 1, own), DVector::from_element(1, by_load))
+        };
+        assert_eq!(of(f64::NAN, 1.0), None);
+        assert!(of(1e-10, 1.0).is_some() && of(0.0, 1.0).is_some(), "the slip alone rests");
     }
 }
