@@ -41,7 +41,7 @@ struct Deformed {
 impl Bar {
     /// Deformed direction, length and elongation. The elongation comes from `L² - X² = 2 X·Δu + Δu·Δu`, which keeps
     /// its digits where `L - L0` would cancel.
-    #[inline]
+    #[inline(always)]
     fn deformed(&self, structure: &Structure, displacement: &[f64]) -> Deformed {
         let [from, to] = self.nodes.map(|node| &displacement[node * structure.dimension..][..structure.dimension]);
         match (from, to) {
@@ -76,7 +76,7 @@ impl Bar {
     }
 
     /// `ε`, `N` and `N'`.
-    #[inline]
+    #[inline(always)]
     fn response(&self, elongation: f64) -> (f64, f64, f64) {
         let (stiffness, rest) = (self.axial_stiffness, self.rest_length);
         let engineering = elongation / rest;
