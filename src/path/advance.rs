@@ -213,11 +213,8 @@ impl Start<'_> {
         let step = corrected.state.distance(self.state);
         // The sphere around the start meets the path behind, too, and may meet other branches: the chord has to go the
         // way of both directions.
-        let cosine = self
-            .state
-            .cosine_of_chord(&corrected.state, self.rate)
-            .min(self.state.cosine_of_chord(&corrected.state, &rate));
-        may_turn(cosine)?;
+        let cosine = |rate: &Rate| self.state.cosine_of_chord(&corrected.state, step, rate);
+        may_turn(cosine(self.rate).min(cosine(&rate)))?;
         let mut reached = Reached::new(corrected, rate, step, error_estimate);
         reached.determinant = determinant;
         Ok(reached)

@@ -113,7 +113,8 @@ fn stepped(
     let mut serving = None;
     let guess = system.iterate(state.advanced(rate, step));
     let corrected = system.correct_from(guess, place, force_scale, &mut serving).ok()?;
-    may_turn(state.cosine_of_chord(&corrected.state, rate)).ok()?;
+    let distance = state.distance(&corrected.state);
+    may_turn(state.cosine_of_chord(&corrected.state, distance, rate)).ok()?;
     let rate = match serving {
         Some(_) => system.tangent_and_error(&corrected, rate, &mut serving, &mut 0)?.rate,
         None => system.tangent(&corrected, rate)?,

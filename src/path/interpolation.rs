@@ -17,7 +17,7 @@ pub(super) struct Placed {
 
 pub(super) fn placed(start: &Start<'_>, reached: &Reached) -> Placed {
     let place = reached.corrected.state.distance(start.state);
-    let cosine = start.state.cosine_of_chord(&reached.corrected.state, &reached.rate);
+    let cosine = start.state.cosine_of_chord(&reached.corrected.state, place, &reached.rate);
     let mut rate = reached.rate.clone();
     rate.scale(1.0 / cosine);
     Placed { place, state: reached.corrected.state.clone(), rate }
@@ -30,7 +30,7 @@ impl Placed {
     /// The point before another of the same mode, `rate` its direction.
     pub fn before(state: State, mut rate: Rate, here: &State) -> Option<Self> {
         let width = state.distance(here);
-        let cosine = state.cosine_of_chord(here, &rate);
+        let cosine = state.cosine_of_chord(here, width, &rate);
         if width <= 0.0 || cosine <= 0.0 {
             return None;
         }

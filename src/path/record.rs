@@ -136,13 +136,15 @@ fn contact_rows(scene: &Scene, row: &Row<'_>, force_scale: f64) -> (Vec<ContactS
             // A node that goes along an obstacle without reaction slips, whether a slip or no contact is what is solved.
             let touches = |state: &State| loading.gap(index, state) <= ZERO;
             let moved = add(&loading.relative(index, row.state), -1.0, &loading.relative(index, row.before));
-            let grazes = loading.contacts[index].tangents() > 0
-                && touches(row.before)
-                && touches(row.state)
-                && tangents.iter().any(|tangent| dot(&moved, tangent) != 0.0);
-            let is_active = row.modes[index].is_active() || grazes;
-            contact.status =
-                if row.modes[index] == Mode::Free && grazes { Status::Slip } else { status(row.modes[index]) };
+            let grazes = || {
+                loading.contacts[index].tangents() > 0
+                    && touches(row.before)
+                    && touches(row.state)
+                    && tangents.iter().any(|tangent| dot(&moved, tangent) != 0.0)
+            };
+            let mode = row.modes[index];
+            let is_active = mode.is_active() || grazes();
+            contact.status = if is_active && !mode.is_active() { Status::Slip } else { status(mode) };
             contact.normal_reaction = reaction.normal * one.normal_share * force;
             for (value, tangent) in contact.tangential_reaction.iter_mut().zip(&tangents) {
                 *value = dot(&reaction.tangential, tangent) * one.tangential_share * force;

@@ -72,8 +72,8 @@ impl State {
 }
 
 impl State {
-    /// Cosine of the angle between the chord to another state and a rate; 1 for no chord.
-    pub fn cosine_of_chord(&self, other: &Self, rate: &Rate) -> f64 {
+    /// Cosine of the angle between the chord to another state, at this distance, and a rate; 1 for no chord.
+    pub fn cosine_of_chord(&self, other: &Self, distance: f64, rate: &Rate) -> f64 {
         let along: f64 = other
             .displacement
             .iter()
@@ -82,7 +82,7 @@ impl State {
             .map(|((to, from), rate)| (to - from) * rate)
             .sum::<f64>()
             + (other.load - self.load) * rate.load;
-        let size = self.distance(other) * rate.size();
+        let size = distance * rate.size();
         if size > 0.0 { (along / size).clamp(-1.0, 1.0) } else { 1.0 }
     }
 }

@@ -237,8 +237,8 @@ impl Path<'_> {
             chord.map(|((to, from), rate)| (to - from) * rate).sum::<f64>() + (state.load - origin.load) * sense.load
         };
         let (first, last) = (past(start.state), past(&reached.corrected.state));
-        let near = start.state.distance(origin).min(reached.corrected.state.distance(origin)) <= reached.step;
-        let passes = reached.event.is_none() && near && first < -SAME_STATE && last >= 0.0;
+        let near = || start.state.distance(origin).min(reached.corrected.state.distance(origin)) <= reached.step;
+        let passes = reached.event.is_none() && first < -SAME_STATE && last >= 0.0 && near();
         if !passes || reached.rate.product(sense) <= 0.0 {
             return None;
         }

@@ -81,9 +81,9 @@ impl<'a> Path<'a> {
 
     pub(super) fn rules(&self) -> Rules<'_> {
         let analysis = &self.scene.analysis;
-        let loads = self.scene.stages[self.at.stage].pattern.forces.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        let loads = || self.scene.stages[self.at.stage].pattern.forces.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         let so_far = self.at.totals.force_scale;
-        let force_scale = if so_far > NO_FORCE { so_far } else { loads.max(NO_FORCE) };
+        let force_scale = if so_far > NO_FORCE { so_far } else { loads().max(NO_FORCE) };
         let effort = Effort { most_modes: analysis.max_modes, certify: !analysis.keep_all, cancel: &self.cancel };
         Rules { selection: analysis.selection, effort, force_scale }
     }

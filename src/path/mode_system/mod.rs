@@ -93,7 +93,7 @@ pub struct ModeSystem<'a> {
     pub(super) roles: Vec<Role>,
     modes: &'a [Mode],
     /// First row and column of each closed contact.
-    first_of: Vec<usize>,
+    first_of: SmallVec<[usize; 4]>,
     pub(super) size: usize,
     /// Made when first needed.
     holdings: OnceCell<Holdings>,
@@ -105,7 +105,7 @@ impl<'a> ModeSystem<'a> {
     /// `anchor` is the state in which the modes begin.
     pub fn new(loading: Loading<'a>, modes: &'a [Mode], anchor: &'a State) -> Self {
         let mut next = loading.structure.unknowns() + 1;
-        let mut first_of = Vec::with_capacity(modes.len());
+        let mut first_of = SmallVec::with_capacity(modes.len());
         let mut roles = Vec::with_capacity(modes.len());
         for (index, (mode, contact)) in modes.iter().zip(loading.contacts).enumerate() {
             let held = loading.corners.iter().find_map(|corner| {
