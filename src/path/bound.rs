@@ -5,7 +5,7 @@
 //! judged by its residual like any other.
 
 use super::advance::{AT_END, Reached, Start, Work};
-use super::critical::{self, Crossing, Located, WIDTHS};
+use super::critical::{self, Ended, Located, WIDTHS};
 use super::interpolation::{Placed, between, placed, unit};
 use super::mode_system::ModeSystem;
 use super::newton::ACCEPTED_RESIDUAL;
@@ -20,9 +20,6 @@ const LENGTHENED: [f64; 4] = [1.0, 1.01, 1.1, 1.5];
 
 /// How far a bifurcation point is moved along the path to meet a bound that lies within round-off of it.
 const ALONG: f64 = 1e-9;
-
-/// What a step ends at: a point, whether it is a smooth bifurcation, and the signs just past it where they are known.
-type Ended = (Box<Reached>, Option<Crossing>, Option<Signature>);
 
 /// Ends a step at a bound of the stage, or at the bifurcation just before it, where Newton's method does not reach the
 /// bound; `None` where there is no singular point near.

@@ -38,6 +38,9 @@ pub(super) const SINGULAR: f64 = 1e-8;
 /// than that the branches of one cannot be told from those of the other.
 const TOGETHER: f64 = 1e-10;
 
+/// What a step ends at: a point, whether it is a smooth bifurcation, and the signs just past it where they are known.
+pub(super) type Ended = (Box<Reached>, Option<Crossing>, Option<Signature>);
+
 /// A crossing with the regular points between which it was found.
 pub(super) struct Located {
     pub point: Box<Reached>,

@@ -230,7 +230,8 @@ impl ModeSystem<'_> {
             }
             let contraction = if before.is_finite() { correction / before } else { SERVES_ON };
             nothing_left = contraction <= SERVES_ON
-                && (contraction * correction <= NO_CORRECTION || self.is_rounding(&iterate.state, &values, contraction));
+                && (contraction * correction <= NO_CORRECTION
+                    || self.is_rounding(&iterate.state, &values, contraction));
             self.correct_by(&mut iterate, &values, &mut change);
             iterations += 1;
         }

@@ -4,7 +4,7 @@ use super::advance::{Attempt, Reached, Refused, Start, Work};
 use super::at_once::Joined;
 use super::bound;
 use super::contact_law;
-use super::critical::{self, Crossing, Located};
+use super::critical::{self, Crossing, Ended, Located};
 use super::foresight::Foreseen;
 use super::progress::Here;
 use super::singular::{self, Change, Signature};
@@ -227,7 +227,7 @@ fn first_crossing(
     reached: Box<Reached>,
     may_refuse: bool,
     work: &mut Work,
-) -> Result<(Box<Reached>, Option<Crossing>, Option<Signature>), Refused> {
+) -> Result<Ended, Refused> {
     let (reached, crossing, after) = crossing_in_mode(start, before, reached, may_refuse, work)?;
     match singular::loosened(start, &reached).and_then(|loose| crossing_when_loose(start, &loose, &reached, work)) {
         Some((point, crossing)) => Ok((point, Some(crossing), before)),
@@ -270,7 +270,7 @@ fn crossing_in_mode(
     reached: Box<Reached>,
     may_refuse: bool,
     work: &mut Work,
-) -> Result<(Box<Reached>, Option<Crossing>, Option<Signature>), Refused> {
+) -> Result<Ended, Refused> {
     let Some(before) = before else {
         // The start is singular: signs are known from the end on.
         let state = &reached.corrected.state;

@@ -75,7 +75,7 @@ impl Reduced<'_> {
         }
         let response = DVector::from_iterator(others.len(), others.iter().map(|other| values[place_of[*other]]));
         if !by_power {
-            return self.stuck_rate(&others, &response, -incoming.load.signum());
+            return self.stuck_rate(&others, &response).filter(|stuck| stuck.load * incoming.load < 0.0);
         }
         // One direction for each sign of the power; the load alone changes where no other motion has any.
         let power = |motion: &dyn Fn(usize) -> f64, slips: bool| -> f64 {
@@ -92,12 +92,12 @@ impl Reduced<'_> {
             return None;
         }
         if others.iter().all(|other| load[place_of[*other]] == 0.0) {
-            return [1.0, -1.0].into_iter().find_map(|sign| self.stuck_rate(&others, &response, sign));
+            return self.stuck_rate(&others, &response);
         }
         let of_stuck = power(&|unknown| values[place_of[unknown]], false);
         if of_stuck.abs() <= MARGIN * largest * response.norm() {
             return None;
         }
-        self.stuck_rate(&others, &response, -own.signum() * of_stuck.signum())
+        self.stuck_rate(&others, &response).filter(|stuck| stuck.load * own * of_stuck < 0.0)
     }
 }

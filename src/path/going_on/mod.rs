@@ -12,7 +12,7 @@
 //! a P-matrix: each sign of the load rate has one ray (see `rates::certificate`). One is the way on. The other, as a rule,
 //! is all contacts stuck, which its own equations confirm. Where it is not definite it may be so across the load, and each
 //! sign of the load's power has one ray (see `sole::proof`); or the slips are few, and their matrix is formed (see
-//! `rates::parametric`).
+//! `rates::parametric`), which a single one does not need.
 //!
 //! [`many`] are the sparse matrices, [`response`] condenses the dense ones.
 //!
@@ -268,70 +268,83 @@ impl<'a> Reduced<'a> {
 
     /// The direction along which all contacts on the cone stick, if that and the way on are all there are.
     fn stuck(&self, incoming: &Rate) -> Option<Rate> {
-        let count = self.unknowns.len();
-        if count > MOST_DENSE {
+        if self.unknowns.len() > MOST_DENSE {
             return self.stuck_among_many(incoming);
         }
+        let others = self.unknowns_where(false);
+        let is_sole = self.slips.len() == 1;
+        let (mut matrix, mut load) =
+            if is_sole && others.is_empty() { (DMatrix::zeros(0, 0), DVector::zeros(0)) } else { self.equations() };
+        let response = Response::new(&matrix, &load, &others)?;
+        if is_sole {
+            // With the others condensed there are two solutions of `0 <= m b + q ṡ ⊥ b >= 0` where `q` is not zero, which
+            // the stuck rate shows, whatever `m`: the slip that goes on, at any load rate, and `b = 0` with `q ṡ > 0`.
+            return self.stuck_rate(&others, &response.load);
+        }
+        if incoming.load.abs() > RESTING && is_definite(matrix.clone()) {
+            return self.stuck_rate(&others, &response.load).filter(|stuck| stuck.load * incoming.load < 0.0);
+        }
+        if !others.is_empty() {
+            (matrix, load) = response.condensed(&matrix, &load, &others, &self.unknowns_where(true))?;
+        }
+        if slip_or_stick(matrix, load) { self.stuck_rate(&others, &response.load) } else { None }
+    }
+
+    /// `A`, and the column of the load rate, dense.
+    fn equations(&self) -> (DMatrix<f64>, DVector<f64>) {
+        let count = self.unknowns.len();
         let (mut matrix, mut load) = (DMatrix::zeros(count, count), DVector::zeros(count));
         self.each_entry(&mut |row, column, value| match column {
             Some(column) => matrix[(row, column)] += value,
             None => load[row] += value,
         });
-        let others = self.unknowns_where(false);
-        let response = Response::new(&matrix, &load, &others)?;
-        // One slip's matrix is a number, which tells more.
-        if self.slips.len() > 1 && incoming.load.abs() > RESTING && is_definite(matrix.clone()) {
-            return self.stuck_rate(&others, &response.load, -incoming.load.signum());
-        }
-        if !others.is_empty() {
-            (matrix, load) = response.condensed(&matrix, &load, &others, &self.unknowns_where(true))?;
-        }
-        let is_p_matrix = slip_or_stick(matrix, load)?;
-        // Each load rate has one of the two, or, where the structure gives way, one has both.
-        let likely = if is_p_matrix { -1.0_f64 } else { 1.0 } * 1.0_f64.copysign(incoming.load);
-        [likely, -likely].into_iter().find_map(|sign| self.stuck_rate(&others, &response.load, sign))
+        (matrix, load)
     }
 
     fn unknowns_where(&self, is_slip: bool) -> SmallVec<[usize; 4]> {
         (0..self.unknowns.len()).filter(|unknown| self.unknowns[*unknown].is_slip == is_slip).collect()
     }
 
-    /// The rate at which nothing slips, of unit arc length; `None` where some contact would not stay within its cone by a
-    /// wide margin.
-    fn stuck_rate(&self, others: &[usize], response: &DVector<f64>, load: f64) -> Option<Rate> {
+    /// The rate at which nothing slips, of unit arc length, in the sense in which all contacts stay within their cones;
+    /// `None` where they do not by a wide margin. `response` is what the other unknowns do for unit load rate.
+    fn stuck_rate(&self, others: &[usize], response: &DVector<f64>) -> Option<Rate> {
         let (loading, structure) = (self.loading, self.loading.structure);
         let mut velocities: SmallVec<[f64; 4]> = smallvec![0.0; self.unknowns.len()];
-        others.iter().zip(response.iter()).for_each(|(unknown, value)| velocities[*unknown] = load * value);
+        others.iter().zip(response.iter()).for_each(|(unknown, value)| velocities[*unknown] = *value);
         let (motions, velocities) = (self.motions(), &velocities[..]);
         let velocity = |freedom: usize| {
             let (parts, driven) = motions.of(freedom);
             let own: f64 = parts.iter().map(|part| part.motion * velocities[part.unknown]).sum();
-            own + load * driven
+            own + driven
         };
         let displacement: Vec<f64> = (0..structure.freedoms()).map(velocity).collect();
         let mut forces: SmallVec<[f64; 6]> = SmallVec::from_slice(&loading.pattern.forces);
         let forces = &mut forces[..];
-        forces.iter_mut().for_each(|force| *force *= -load);
+        forces.iter_mut().for_each(|force| *force = -*force);
         structure.each_stiffness(&self.state.displacement, &mut |row, column, value| {
             forces[row] += value * displacement[column];
         });
-        let mut rate = Rate { displacement, load, reactions: vec![Reaction::default(); loading.contacts.len()] };
+        let mut rate = Rate { displacement, load: 1.0, reactions: vec![Reaction::default(); loading.contacts.len()] };
         let dimension = structure.dimension;
         for (node, contact) in self.holder.iter().enumerate().filter_map(|(node, holder)| Some((node, (*holder)?))) {
             rate.reactions[contact] = loading.taken_by(contact, self.state, &of_node(dimension, node, forces));
         }
-        let size = rate.size();
-        if !size.is_finite() || size <= MARGIN * rate.largest_reaction() {
+        let (size, largest) = (rate.size(), rate.largest_reaction());
+        if !size.is_finite() || size <= MARGIN * largest {
             return None;
         }
-        rate.scale(1.0 / size);
-        let least = MARGIN * rate.largest_reaction().max(f64::MIN_POSITIVE);
-        let stays = |slip: &Slip| {
+        // How fast a contact's force goes into its cone.
+        let inward = |slip: &Slip| {
             let reaction = &rate.reactions[slip.contact];
-            let friction = loading.contacts[slip.contact].friction;
-            friction * reaction.normal + dot(&slip.direction, &reaction.tangential) > least
+            loading.contacts[slip.contact].friction * reaction.normal + dot(&slip.direction, &reaction.tangential)
         };
-        self.slips.iter().all(stays).then_some(rate)
+        let sense = 1.0_f64.copysign(self.slips.first().map_or(1.0, inward));
+        let least = MARGIN * largest.max(f64::MIN_POSITIVE);
+        if !self.slips.iter().all(|slip| sense * inward(slip) > least) {
+            return None;
+        }
+        rate.scale(sense / size);
+        Some(rate)
     }
 }
 

@@ -34,11 +34,7 @@ const SHIFT: f64 = 1e-13;
 
 /// What all solutions are among, with whether each load rate has exactly one; those for load rates of these signs at
 /// least. `None` where that is not certain.
-pub(super) fn all_solutions(
-    matrix: DMatrix<f64>,
-    load: DVector<f64>,
-    signs: &[f64],
-) -> Option<(bool, Vec<Pairs>)> {
+pub(super) fn all_solutions(matrix: DMatrix<f64>, load: DVector<f64>, signs: &[f64]) -> Option<(bool, Vec<Pairs>)> {
     match Certified::new(matrix.clone(), load.clone()) {
         Some(certified) => {
             let of_signs: Option<_> = signs.iter().map(|sign| certified.solve(*sign)).collect();
@@ -48,26 +44,13 @@ pub(super) fn all_solutions(
     }
 }
 
-/// Whether there are two solutions in all, one in which every pair slips (`a = 0 < b`) and one in which every pair sticks
-/// (`b = 0 < a`): then, whether each load rate has one of them, if neither is at rest. `None` where that is not so or not
-/// certain.
-pub fn slip_or_stick(matrix: DMatrix<f64>, load: DVector<f64>) -> Option<bool> {
-    if let ([own], [by_load]) = (matrix.as_slice(), load.as_slice()) {
-        // `0 <= m b + q ṡ ⊥ b >= 0` of one pair can be read off where `q` cannot be zero: it sticks where `q ṡ > 0`, and
-        // slips where `q ṡ = -m b`; where `m` is zero, at a limit point, the load rests meanwhile.
-        if own.is_finite() && by_load.is_finite() && by_load.abs() > NEAR_ZERO * own.abs() {
-            return Some(*own > 0.0);
-        }
-    }
-    of_any_number(matrix, load)
-}
-
-fn of_any_number(matrix: DMatrix<f64>, load: DVector<f64>) -> Option<bool> {
-    let (is_p_matrix, solutions) = all_solutions(matrix, load, &[1.0, -1.0])?;
+/// Whether there are certainly two solutions in all, one in which every pair slips (`a = 0 < b`) and one in which every pair
+/// sticks (`b = 0 < a`).
+pub fn slip_or_stick(matrix: DMatrix<f64>, load: DVector<f64>) -> bool {
+    let Some((_, solutions)) = all_solutions(matrix, load, &[1.0, -1.0]) else { return false };
     let slip = |pairs: &Pairs| pairs.iter().all(|[a, b]| *a == 0.0 && *b > 0.0);
     let stick = |pairs: &Pairs| pairs.iter().all(|[a, b]| *b == 0.0 && *a > 0.0);
-    let both = solutions.len() == 2 && solutions.iter().any(slip) && solutions.iter().any(stick);
-    both.then_some(is_p_matrix)
+    solutions.len() == 2 && solutions.iter().any(slip) && solutions.iter().any(stick)
 }
 
 /// What every solution is among; `None` where that is not certain.
@@ -311,30 +294,5 @@ impl Pieces {
             if self.active[index] { [0.0, value] } else { [value, 0.0] }
         };
         (0..self.count).map(pair).collect()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{of_any_number, slip_or_stick};
-    use nalgebra::{DMatrix, DVector};
-
-    /// What is read off for one pair is what the ways for many find.
-    #[test]
-    fn one_pair_is_as_many() {
-        let sizes = [1e-4, 0.3, 1.0, 7.0, 1e4];
-        let values = || sizes.iter().flat_map(|size| [*size, -*size]);
-        for (own, by_load) in values().flat_map(|own| values().map(move |by_load| (own, by_load))) {
-            let of = || (DMatrix::from_element(1, 1, own), DVector::from_element(1, by_load));
-            let ((matrix, load), (same_matrix, same_load)) = (of(), of());
-            let read_off = slip_or_stick(matrix, load);
-            assert_eq!(read_off, Some(own > 0.0), "{own} {by_load}");
-            assert_eq!(read_off, of_any_number(same_matrix, same_load), "{own} {by_load}");
-        }
-        let of = |own: f64, by_load: f64| {
-            slip_or_stick(DMatrix::from_element(1, 1, own), DVector::from_element(1, by_load))
-        };
-        assert_eq!(of(f64::NAN, 1.0), None);
-        assert!(of(1e-10, 1.0).is_some() && of(0.0, 1.0).is_some(), "the slip alone rests");
     }
 }
