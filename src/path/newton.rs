@@ -64,8 +64,8 @@ pub const ACCEPTED_RESIDUAL: f64 = 1e-11;
 pub(super) const NO_FORCE: f64 = 1e-20;
 /// Relative residual below which iterating on gains nothing.
 const ROUND_OFF: f64 = 1e-15;
-/// Arc length (dimensionless) of the next correction, as it is foreseen, below which it is not made where the residual is
-/// round-off: what is foreseen is several times what comes, since corrections fall by more from one to the next.
+/// Arc length (dimensionless) of the next correction, as it is foreseen, below which it is not made where what is left over
+/// is round-off.
 const NO_CORRECTION: f64 = 4e-15;
 /// Error below which Newton's method is as good as converged.
 const SMALL: f64 = 1e-6;
@@ -114,7 +114,7 @@ impl ModeSystem<'_> {
         // Sizes of the last correction and the one before.
         let (mut correction, mut before) = (f64::INFINITY, f64::INFINITY);
         let mut small_by_correction = None;
-        // What the last correction left is below the rounding of each displacement.
+        // What the last correction left is as good as none, or below the rounding of each displacement.
         let mut nothing_left = false;
         // Rows are judged by the largest force first, and each by its own once that is done.
         let mut row_by_row = false;

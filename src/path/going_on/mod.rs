@@ -278,7 +278,7 @@ impl<'a> Reduced<'a> {
         let response = Response::new(&matrix, &load, &others)?;
         if is_sole {
             // With the others condensed there are two solutions of `0 <= m b + q ṡ ⊥ b >= 0` where `q` is not zero, which
-            // the stuck rate shows, whatever `m`: the slip that goes on, at any load rate, and `b = 0` with `q ṡ > 0`.
+            // the stuck rate shows, whatever `m`: the slip that goes on, its load rate `-m b / q`, and `b = 0` with `q ṡ > 0`.
             return self.stuck_rate(&others, &response.load);
         }
         if incoming.load.abs() > RESTING && is_definite(matrix.clone()) {

@@ -120,7 +120,7 @@ fn of_others(matrix: &DMatrix<f64>, load: &DVector<f64>, left_out: usize) -> Opt
         let pairs = solve_complementarity(&others, &(&by_load * sign))?;
         let terms = || pairs.iter().zip(row.iter()).map(|([_, b], coefficient)| coefficient * b);
         let own = terms().sum::<f64>() + sign * load[left_out];
-        let size = terms().map(f64::abs).sum::<f64>() + load[left_out].abs();
+        let size = (terms().map(f64::abs).sum::<f64>() + load[left_out].abs()).max(LEAST_TERM * load.amax());
         if own >= -NEAR_ZERO * size {
             found.push(whole(pairs, [own, 0.0]));
         }
@@ -294,5 +294,26 @@ impl Pieces {
             if self.active[index] { [0.0, value] } else { [value, 0.0] }
         };
         (0..self.count).map(pair).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::solutions;
+    use nalgebra::{DMatrix, DVector};
+
+    /// Two pairs of which the load moves the first alone: that both stick is a solution, whatever rounding makes of the
+    /// second pair's zero.
+    #[test]
+    fn rounding_hides_no_solution() {
+        let matrix = DMatrix::from_row_slice(2, 2, &[2.25, -5.25, -5.25, 9.75]);
+        for rounding in [0.0, 2e-16, -2e-16] {
+            let load = DVector::from_vec(vec![-1.0, rounding]);
+            let found = solutions(&matrix, &load).expect("solutions");
+            let stick = found.iter().filter(|pairs| pairs[0][0] > 0.5 && pairs.iter().all(|[_, b]| b.abs() < 1e-9));
+            assert_eq!(stick.count(), 1, "{rounding}: {found:?}");
+            let slip = found.iter().filter(|pairs| pairs.iter().all(|[a, b]| *a == 0.0 && *b > 0.0));
+            assert_eq!(slip.count(), 1, "{rounding}: {found:?}");
+        }
     }
 }
