@@ -5,8 +5,8 @@
 //! `cargo bench --bench chain` (100, 316 and 1,000 blocks), `cargo bench --bench chain -- 10000` (others)
 
 mod processor_time;
+mod resident;
 
-use allocation_counter::measure;
 use arcslip::cancel::CancelFlag;
 use arcslip::model::JobRequest;
 use arcslip::model::request::{Record, RecordedContacts};
@@ -14,6 +14,10 @@ use arcslip::path::increment::PointKind;
 use arcslip::path::{Increment, Path, Scene};
 use arcslip::scenes::of_any_size::slider_chain;
 use processor_time::Stopwatch;
+
+/// As in the program.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 const FRICTION: f64 = 0.3;
 const WEIGHT: f64 = 1.0;
@@ -40,9 +44,7 @@ fn main() {
     );
     let mut before: Option<(usize, f64)> = None;
     for size in sizes {
-        let mut traced = None;
-        let allocated = measure(|| traced = Some(trace(size)));
-        let Some(Ok(traced)) = traced else { return println!("{size} blocks: no path") };
+        let traced = trace(size).unwrap_or_else(|reason| panic!("{size} blocks: {reason}"));
         let exponent = before.map_or(String::new(), |(smaller, time)| {
             format!("{:.2}", (traced.pull_s / time).ln() / (size as f64 / smaller as f64).ln())
         });
@@ -59,7 +61,7 @@ fn main() {
             traced.factorisations as f64 / traced.events.max(1) as f64,
             traced.load_error,
             traced.place_error,
-            allocated.bytes_max as f64 / 1e6,
+            resident::most().unwrap_or(f64::NAN),
             traced.end
         );
         assert_eq!(traced.events, size, "one event a block");

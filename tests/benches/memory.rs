@@ -8,6 +8,7 @@ mod long_paths;
 #[allow(dead_code)]
 #[path = "../common/paths.rs"]
 mod paths;
+mod resident;
 
 use allocation_counter::measure;
 use arcslip::cancel::CancelFlag;
@@ -46,15 +47,8 @@ fn main() {
             written as f64 / 1e6,
             time,
             allocated.bytes_max as f64 / 1e3,
-            resident().unwrap_or(f64::NAN),
+            resident::most().unwrap_or(f64::NAN),
             time / increments as f64 * 1e6
         );
     }
-}
-
-/// The most that the process has taken so far (MB), where the system says so.
-fn resident() -> Option<f64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
-    Some(line.split_whitespace().nth(1)?.parse::<f64>().ok()? / 1024.0)
 }
