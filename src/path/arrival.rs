@@ -244,7 +244,7 @@ impl Path<'_> {
         let old_modes = self.at.here.modes.clone();
         let old_sign = self.at.here.load_sign;
         let mut stop = decision.stop;
-        self.take(&decision);
+        self.take(&mut decision);
         let outgoing = decision.taken.map(|index| &decision.options[index]);
         let mut kind = PointKind::ContactChange;
         if let Some(choice) = outgoing

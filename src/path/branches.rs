@@ -22,6 +22,7 @@
 //! Other modes of contacts that can change have branches of their own here where their equations are singular, too:
 //! `in_other_modes`.
 
+use super::at_hand::AtHand;
 use super::combinations::{combinations, count};
 use super::confirm::confirm_by;
 use super::critical::SINGULAR;
@@ -168,7 +169,16 @@ impl Point<'_> {
         };
         let dissipation = modes.iter().enumerate().map(slides).sum();
         let potential_rate = potential_rate(loading, state, &rate, dissipation);
-        Choice { rate, modes, dissipation, potential_rate, load_sign, retrace, mechanism: false }
+        Choice {
+            rate,
+            modes,
+            dissipation,
+            potential_rate,
+            load_sign,
+            retrace,
+            mechanism: false,
+            at_hand: AtHand::default(),
+        }
     }
 
     /// Adds a direction that is not known yet, if its inequalities hold and a small step stays on a branch that leaves
@@ -189,7 +199,15 @@ impl Point<'_> {
         let modes = self.modes.to_vec();
         // Only rays of the rate problem are told apart by their forces.
         let forces = Vec::new();
-        let candidate = Candidate { rate: direction, forces, modes, alternatives, weak: true, dissipation: 0.0 };
+        let candidate = Candidate {
+            rate: direction,
+            forces,
+            modes,
+            alternatives,
+            weak: true,
+            dissipation: 0.0,
+            at_hand: AtHand::default(),
+        };
         let tried = RADII.iter().find_map(|radius| confirm_by(loading, state, &candidate, force_scale, &[*radius]));
         match tried {
             Some((modes, later)) => found.options.push(self.choice(candidate.rate, modes, Some(later), false)),

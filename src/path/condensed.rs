@@ -4,6 +4,7 @@
 //! `(u̇, ṡ, ṙ) = Z v + z₀ τ`; a mode picks one linear equation for each velocity and leaves a line, taken in both senses.
 //! The inequalities are those listed in `directions`; `changeable` writes them down, `rates` finds the rays.
 
+use super::at_hand::AtHand;
 use super::changeable::{Changeable, Forms, Outcome};
 use super::corner::whole_rates;
 use super::directions::{Alternative, Candidate, Found, RANK, WEAK, is_mechanism, merge, sort};
@@ -230,7 +231,18 @@ impl<'a> Condensed<'a> {
         self.changeable.iter().flat_map(|entry| &entry.contacts).for_each(|contact| modes[*contact] = Mode::Free);
         let forces = whole_rates(self.loading, state, &nearest);
         let (alternatives, dissipation) = (Vec::new(), 0.0);
-        merge(found, Candidate { rate: nearest, forces, modes, alternatives, weak: true, dissipation });
+        merge(
+            found,
+            Candidate {
+                rate: nearest,
+                forces,
+                modes,
+                alternatives,
+                weak: true,
+                dissipation,
+                at_hand: AtHand::default(),
+            },
+        );
     }
 
     /// The weights that come nearest to a rate: its velocities, and what it has along `z₀`.
@@ -290,7 +302,7 @@ impl<'a> Condensed<'a> {
         let forces = whole_rates(self.loading, state, &rate);
         let just_held = |entry: &Changeable| entry.margin(&modes, &rate).is_some_and(|margin| margin <= force);
         let weak = ray.weak || self.changeable.iter().any(just_held);
-        merge(found, Candidate { rate, forces, modes, alternatives, weak, dissipation });
+        merge(found, Candidate { rate, forces, modes, alternatives, weak, dissipation, at_hand: AtHand::default() });
     }
 
     /// What each contact may do along a ray.

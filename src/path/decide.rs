@@ -10,6 +10,7 @@
 //! `Π̇ = (f_int - f_held - s f)·u̇ - ṡ f·u`, and by equilibrium the bracket is the reactions, whose power is `-D` with the
 //! dissipation `D = -Σ r_t·u̇_t`: so `Π̇ = -D - ṡ f·u`, per unit arc length.
 
+use super::at_hand::AtHand;
 use super::confirm::confirm;
 use super::corner::whole_rates;
 use super::directions::{Found, difference_of_forces, directions, is_mechanism};
@@ -49,6 +50,9 @@ pub struct Choice {
     pub load_sign: f64,
     pub retrace: bool,
     pub mechanism: bool,
+    /// For the step along it.
+    #[serde(skip)]
+    pub at_hand: AtHand,
 }
 
 /// What the path was doing before.
@@ -105,6 +109,7 @@ pub fn list(
             Some((candidate.modes.clone(), 0.0))
         };
         let Some((modes, later_load)) = confirmed else { continue };
+        let at_hand = if modes == candidate.modes { candidate.at_hand } else { AtHand::default() };
         let load_sign = sign_of(if sign_of(candidate.rate.load) == 0.0 { later_load } else { candidate.rate.load });
         let potential_rate = potential_rate(loading, state, &candidate.rate, candidate.dissipation);
         options.push(Choice {
@@ -115,6 +120,7 @@ pub fn list(
             load_sign,
             retrace: false,
             mechanism,
+            at_hand,
         });
     }
     if let Some(incoming) = incoming {
@@ -294,7 +300,16 @@ mod tests {
     fn choice(displacement: [f64; 2], dissipation: f64, potential_rate: f64) -> Choice {
         let rate = Rate { displacement: displacement.to_vec(), load: 0.0, reactions: Vec::new() };
         let (modes, load_sign) = (Vec::new(), 1.0);
-        Choice { rate, modes, dissipation, potential_rate, load_sign, retrace: false, mechanism: false }
+        Choice {
+            rate,
+            modes,
+            dissipation,
+            potential_rate,
+            load_sign,
+            retrace: false,
+            mechanism: false,
+            at_hand: AtHand::default(),
+        }
     }
 
     #[test]

@@ -21,6 +21,7 @@
 //! contacts is the usual one. The zero set of a piecewise linear map from n+1 to n unknowns is an even number of rays
 //! where it is not degenerate: an odd count is reported.
 
+use super::at_hand::AtHand;
 use super::condensed::Condensed;
 use super::corner;
 use super::incoming::Incoming;
@@ -50,6 +51,8 @@ pub struct Candidate {
     pub weak: bool,
     /// `-r_t·u̇_t` summed over the contacts.
     pub dissipation: f64,
+    /// The factorisation that it was found with, bordered by it.
+    pub at_hand: AtHand,
 }
 
 /// Modes of contacts that change together.

@@ -8,6 +8,7 @@
 //! as this one was to be.
 
 use super::advance::{Attempt, PASSED, Start, Work, may_turn};
+use super::at_hand::AtHand;
 use super::at_once::may_join_at;
 use super::interpolation::Placed;
 use super::locate::Stretch;
@@ -74,6 +75,7 @@ impl Start<'_> {
     pub(super) fn meet_change(
         &self,
         foreseen: Foreseen,
+        at_hand: AtHand,
         before: Option<&Placed>,
         ends: &[End],
         load_sign: f64,
@@ -88,8 +90,10 @@ impl Start<'_> {
         let guess = guess.unwrap_or_else(|| self.state.advanced(self.rate, way));
         let scale = watch.scale(self.loading, &guess, self.force_scale);
         let place = Place::Zero { watch, scale, towards: self.rate };
+        let own = if is_straight { at_hand.along(&system, self.rate) } else { None };
         let mut serving = None;
-        let corrected = system.correct_from(system.iterate(guess), place, self.force_scale, &mut serving).ok()?;
+        let guess = system.iterate(guess);
+        let corrected = system.correct_with(guess, place, self.force_scale, own, &mut serving).ok()?;
         work.newton_iterations += corrected.iterations;
         work.factorisations += corrected.factorisations;
         let mut reached = match &serving {

@@ -34,6 +34,7 @@
 
 mod advance;
 mod arrival;
+mod at_hand;
 mod at_once;
 mod bound;
 mod branches;

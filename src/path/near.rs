@@ -8,6 +8,7 @@
 //!
 //! A contact that is out of reach is free, without reaction: the equations that the others have are those of the whole.
 
+use super::at_hand::AtHand;
 use super::corner::Corner;
 use super::follow::Listed;
 use super::loading::{LoadPattern, Loading};
@@ -241,11 +242,13 @@ impl Path<'_> {
         if !reached.is_empty() {
             self.at.admit(&reached);
             self.near = Near::of(self.scene, &self.at);
+            self.at_hand = AtHand::default();
         }
     }
 
     /// The loading of the running stage, after a change of stage.
     pub(super) fn load_anew(&mut self) {
+        self.at_hand = AtHand::default();
         self.near = Near::of(self.scene, &self.at);
     }
 

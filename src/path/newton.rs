@@ -102,6 +102,18 @@ impl ModeSystem<'_> {
         force_scale: f64,
         serving: &mut Option<SystemFactorisation>,
     ) -> Result<Corrected, Failure> {
+        self.correct_with(guess, place, force_scale, None, serving)
+    }
+
+    /// The same; `own` is a factorisation of these very equations, with whatever border, if there is one.
+    pub(super) fn correct_with(
+        &self,
+        guess: Iterate,
+        place: Place<'_>,
+        force_scale: f64,
+        own: Option<SystemFactorisation>,
+        serving: &mut Option<SystemFactorisation>,
+    ) -> Result<Corrected, Failure> {
         let mut iterate = guess;
         self.make_consistent(&mut iterate);
         let mut values = DVector::zeros(self.size);
@@ -119,7 +131,9 @@ impl ModeSystem<'_> {
         // Rows are judged by the largest force first, and each by its own once that is done.
         let mut row_by_row = false;
         // Near the solution the last factorisation serves on: what it is off by is as small as the error was.
-        let mut last_factorisation = serving.take();
+        let has_own = own.is_some();
+        let mut is_own = has_own;
+        let mut last_factorisation = own.or_else(|| serving.take());
         let (mut factorisations, mut reused) = (0, false);
         // With the last factorisation, where the place is no equation of its own.
         let mut along = None;
@@ -162,8 +176,8 @@ impl ModeSystem<'_> {
                 pivot_ratio >= REGULAR || correction <= STILL_FALLS * pivot_ratio
             });
             // One from elsewhere has to do better than what it would save.
-            let falls = factorisations > 0 || best_before.is_none_or(|least| error < SERVES_ON * least);
-            let serves = error <= SMALL && improved && falls && !row_by_row && is_regular;
+            let falls = has_own || factorisations > 0 || best_before.is_none_or(|least| error < SERVES_ON * least);
+            let serves = !is_own && error <= SMALL && improved && falls && !row_by_row && is_regular;
             let was_reused = std::mem::replace(&mut reused, serves);
             // It goes on as far as rounding lets it: a fresh one would have gone beyond the bar at once.
             let is_rounding = || {
@@ -203,7 +217,7 @@ impl ModeSystem<'_> {
             let put_place = |matrix: &mut dyn Sink| {
                 self.place(&iterate.state, place, Some(matrix));
             };
-            if !reused {
+            if !reused && !std::mem::take(&mut is_own) {
                 last_factorisation = self.factorise(&iterate, Kind::Increment, put_place);
                 factorisations += 1;
                 along = None;

@@ -28,9 +28,9 @@ impl Path<'_> {
         let (mut options, mut taken) = (Vec::new(), None);
         if !self.at.stage_over {
             let state = &self.at.here.state;
-            let decision =
+            let mut decision =
                 decide::decide(self.loading(), state, &self.standings(state), Before::StageStart, self.rules());
-            self.take(&decision);
+            self.take(&mut decision);
             self.at.begun = self.at.here.rate.clone().map(|rate| (self.at.here.state.clone(), rate));
             self.at.step = self.at.step.min(self.scene.analysis.arc_length.initial);
             point.bifurcation = decide::is_bifurcation(&decision.options, decision.taken, None);

@@ -90,7 +90,7 @@ impl Path<'_> {
     fn step_along(&mut self, rate: &Rate, sought: &Sought) -> Result<Accepted, StopReason> {
         let least = self.scene.analysis.arc_length.min;
         let mut step = sought.step();
-        let mut tries = Tries::new(&self.at.here);
+        let mut tries = Tries::new(&self.at.here, std::mem::take(&mut self.at_hand));
         loop {
             if self.cancel.is_cancelled() {
                 return Err(StopReason::Cancelled);

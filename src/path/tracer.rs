@@ -4,6 +4,7 @@
 //! directions are listed and one is taken. The step follows the turn of the path and the work of Newton's method.
 
 use super::arrival::ROUND_OFF;
+use super::at_hand::AtHand;
 use super::carried::Carried;
 use super::contact_law;
 use super::corner::{is_in_plane, taken_apart, total_force};
@@ -42,6 +43,8 @@ pub struct Path<'a> {
     pub(super) at: Progress,
     pub(super) near: Near,
     pub(super) far: FarContacts,
+    /// For the next step.
+    pub(super) at_hand: AtHand,
 }
 
 impl<'a> Path<'a> {
@@ -56,7 +59,17 @@ impl<'a> Path<'a> {
         at.hold(scene);
         let near = Near::of(scene, &at);
         let far = near::far_contacts(scene, &at);
-        Self { scene, cancel, began: Instant::now(), elapsed_before, initial_strain, at, near, far }
+        Self {
+            scene,
+            cancel,
+            began: Instant::now(),
+            elapsed_before,
+            initial_strain,
+            at,
+            near,
+            far,
+            at_hand: AtHand::default(),
+        }
     }
 
     /// Present when the path has ended, that is when `next` has returned `None`.
@@ -101,9 +114,10 @@ impl<'a> Path<'a> {
         standings(self.loading(), state, scale)
     }
 
-    pub(super) fn take(&mut self, decision: &Decision) {
+    pub(super) fn take(&mut self, decision: &mut Decision) {
         if let Some(index) = decision.taken {
             self.go(&decision.options[index]);
+            self.at_hand = std::mem::take(&mut decision.options[index].at_hand);
         }
     }
 

@@ -1,6 +1,7 @@
 //! One try of a step: how far its mode goes, and whether what is reached can be a point of the path.
 
 use super::advance::{Attempt, Reached, Refused, Start, Work};
+use super::at_hand::AtHand;
 use super::at_once::Joined;
 use super::bound;
 use super::contact_law;
@@ -50,6 +51,8 @@ pub(super) struct Tries {
     next: Option<f64>,
     /// Signs just past the start.
     known: Option<Signature>,
+    /// Left over where the direction was found.
+    at_hand: AtHand,
     /// Tries at which a change of signs could not be made out.
     pub unresolved: u64,
     /// Of the last try: whether changes that might have been taken together were; `None` where there were none.
@@ -57,9 +60,9 @@ pub(super) struct Tries {
 }
 
 impl Tries {
-    pub fn new(here: &Here) -> Self {
+    pub fn new(here: &Here, at_hand: AtHand) -> Self {
         let next = here.apart.map(|apart| NEXT_WITHIN * apart);
-        Self { next, known: here.signature, unresolved: 0, joined: None }
+        Self { next, known: here.signature, at_hand, unresolved: 0, joined: None }
     }
 }
 
@@ -214,7 +217,8 @@ impl Path<'_> {
         }
         let before = here.before.as_ref();
         let foreseen = sought.jump.or(sought.foreseen).filter(|foreseen| foreseen.step == step);
-        let met = foreseen.and_then(|foreseen| start.meet_change(foreseen, before, ends, load_sign, work));
+        let at_hand = std::mem::take(&mut tries.at_hand);
+        let met = foreseen.and_then(|foreseen| start.meet_change(foreseen, at_hand, before, ends, load_sign, work));
         met.map_or_else(|| start.attempt(step, before, None, ends, load_sign, work), Ok)
     }
 }

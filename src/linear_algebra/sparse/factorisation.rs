@@ -7,14 +7,13 @@
 //! where that fails, a sparse LU factorisation of the whole takes over.
 
 use super::Entries;
+use super::blocks::Blocks;
 use super::bordered::Bordered;
 use super::held::{Elimination, Friction, Holdings};
 use super::lu::WholeLu;
-use super::reduced::{Factor, Reduced};
 use super::symmetric::SymmetricFactor;
-use super::unsymmetric::UnsymmetricFactor;
-use crate::linear_algebra::Inertia;
-use nalgebra::{DMatrix, DVector, Vector3};
+use crate::linear_algebra::{Inertia, Sink};
+use nalgebra::DVector;
 use smallvec::smallvec;
 use std::cell::OnceCell;
 use std::sync::Arc;
@@ -39,8 +38,6 @@ const CERTAIN: f64 = 1e-6;
 const SINGULAR: f64 = 1e-3;
 /// Refinements of one solution.
 const MOST_REFINEMENTS: usize = 6;
-/// Borders that remain after elimination beyond which LU of the whole is cheaper.
-const MOST_BORDERS: usize = 400;
 
 impl SparseFactorisation {
     /// Factorises; `None` when the matrix is singular to working precision or holds a number that is not finite.
@@ -55,11 +52,27 @@ impl SparseFactorisation {
         }
         // A complement that is nothing but rounding says nothing.
         let blocks =
-            Blocks::new(&matrix, holdings, friction).filter(|blocks| blocks.reduced.pivot_ratio > f64::EPSILON);
+            Blocks::new(&matrix, holdings, friction).filter(|blocks| blocks.reduced.pivot_ratio() > f64::EPSILON);
         let (sign, pivot_ratio) =
-            blocks.as_ref().map_or((1.0, 0.0), |blocks| (blocks.sign, blocks.reduced.pivot_ratio));
+            blocks.as_ref().map_or((1.0, 0.0), |blocks| (blocks.determinant_sign(), blocks.reduced.pivot_ratio()));
         let factorisation = Self { matrix, blocks, whole: OnceCell::new(), sign, pivot_ratio };
         (pivot_ratio > CERTAIN || factorisation.finds_what_is_known()).then_some(factorisation)
+    }
+
+    /// The factorisation of the matrix with another last row, which `put_last` adds up, to the last bit: what does not
+    /// depend on that row serves on. `None` where a matrix as that is has to be factorised anew to be trusted.
+    pub fn with_last_row(mut self, put_last: impl FnOnce(&mut dyn Sink)) -> Option<Self> {
+        let last = self.matrix.lower.len().checked_sub(1)?;
+        self.matrix.lower[last].clear();
+        put_last(&mut self.matrix);
+        let row = &self.matrix.lower[last];
+        if self.matrix.is_outside || !row.iter().all(|(_, value)| value.is_finite()) {
+            return None;
+        }
+        let blocks = self.blocks.take()?.with_row(last, row)?;
+        (self.sign, self.pivot_ratio) = (blocks.determinant_sign(), blocks.reduced.pivot_ratio());
+        (self.blocks, self.whole) = (Some(blocks), OnceCell::new());
+        (self.pivot_ratio > CERTAIN).then_some(self)
     }
 
     /// Whether solutions that are known come out: near a singular matrix they do not, however small the residual.
@@ -75,6 +88,11 @@ impl SparseFactorisation {
         comes_out(&first) && comes_out(&second)
     }
 
+    /// Rows of the matrix.
+    pub fn size(&self) -> usize {
+        self.matrix.size()
+    }
+
     /// Sign of the determinant: 1 or -1; certain only where [`Self::pivot_ratio`] is not 0.
     pub fn determinant_sign(&self) -> f64 {
         self.sign
@@ -88,7 +106,7 @@ impl SparseFactorisation {
     /// How far pivots are from each other at the most, those of the complement with them: where this is small, stiff and
     /// soft parts may have been added up.
     pub fn spread(&self) -> f64 {
-        self.blocks.as_ref().map_or(0.0, |blocks| blocks.reduced.pivot_ratio.min(blocks.reduced.factor.pivot_ratio()))
+        self.blocks.as_ref().map_or(0.0, |blocks| blocks.reduced.pivot_ratio().min(blocks.reduced.factor.pivot_ratio()))
     }
 
     /// Solves for one right-hand side, overwritten by the solution; `false` when no accurate solution was found.
@@ -163,189 +181,6 @@ pub(super) fn backward_error(rest: &[f64], right: &[f64], sizes: &[f64]) -> f64 
     error
 }
 
-/// The system taken apart.
-struct Blocks {
-    elimination: Elimination,
-    reduced: Reduced,
-    unknowns: usize,
-    /// Borders of the matrix asked for, and those added for what is not symmetric.
-    borders: usize,
-    kept_columns: Vec<usize>,
-    kept_rows: Vec<Row>,
-    /// For each kept column: motions of held unknowns by it, and its entries in held equations.
-    shifts: Vec<Entries>,
-    held_parts: Vec<Entries>,
-    sign: f64,
-}
-
-/// A row of the reduced system.
-enum Row {
-    /// A border row, with its entries at held unknowns.
-    Border(usize, Entries),
-    /// The equilibrium along a held unknown.
-    Equilibrium(usize),
-}
-
-impl Blocks {
-    fn new(matrix: &Bordered, holdings: &Holdings, friction: Friction) -> Option<Self> {
-        let (unknowns, given) = (matrix.pattern.size(), matrix.lower.len());
-        let symmetric = (friction == Friction::Bordered).then(|| symmetrised(matrix));
-        let matrix = symmetric.as_ref().unwrap_or(matrix);
-        let borders = matrix.lower.len();
-        let (elimination, values) = Elimination::new(matrix, holdings, friction);
-        let mut sign = if (borders - given) % 2 == 1 { -1.0 } else { 1.0 };
-        let mut is_kept = vec![true; borders];
-        let mut equilibrium: Vec<Option<Option<usize>>> = vec![None; borders];
-        let mut shifts = vec![Entries::new(); borders];
-        let mut stiffness_of = vec![None; unknowns];
-        for node in elimination.nodes() {
-            sign *= node.sign;
-            for (index, (row, column)) in node.rows().iter().zip(node.columns()).enumerate() {
-                equilibrium[*row] = Some(node.keeps.then_some(node.held()[index]));
-                if !node.keeps {
-                    is_kept[*column] = false;
-                    sign *= if (row + column) % 2 == 1 { -1.0 } else { 1.0 };
-                }
-                stiffness_of[node.held()[index]] = Some(elimination.stiffness(node, index));
-                for (border, value) in &node.couplings[index] {
-                    for (held, unknown) in node.held().iter().enumerate() {
-                        shifts[*border].push((*unknown, -node.constraint[(held, index)] * value));
-                    }
-                }
-            }
-        }
-        let kept_columns: Vec<usize> = (0..borders).filter(|column| is_kept[*column]).collect();
-        if kept_columns.len() > MOST_BORDERS {
-            return None;
-        }
-        let mut index_of = vec![usize::MAX; borders];
-        kept_columns.iter().enumerate().for_each(|(index, column)| index_of[*column] = index);
-        let count = kept_columns.len();
-        let (mut columns, mut held_parts, mut kept_shifts) = (Vec::new(), Vec::new(), Vec::new());
-        for column in &kept_columns {
-            let (mut free, mut held) = elimination.rotated(&matrix.right[*column]);
-            free.extend(elimination.folded(&held));
-            for (unknown, motion) in &shifts[*column] {
-                let moved = stiffness_of[*unknown]?.iter().map(|(row, value)| (*row, value * motion));
-                let (to_free, to_held) = elimination.split(&moved.collect::<Entries>());
-                free.extend(to_free);
-                held.extend(to_held);
-            }
-            columns.push(free);
-            held_parts.push(held);
-            kept_shifts.push(std::mem::take(&mut shifts[*column]));
-        }
-        let (mut rows, mut kept_rows) = (Vec::new(), Vec::new());
-        let mut corner = DMatrix::zeros(count, count);
-        let mut scratch = vec![0.0; unknowns];
-        for (row, held) in equilibrium.iter().enumerate() {
-            let place = rows.len();
-            match held {
-                Some(None) => continue,
-                Some(Some(unknown)) => {
-                    let (free, _) = elimination.split(stiffness_of[*unknown]?);
-                    rows.push(free);
-                    for (column, part) in held_parts.iter().enumerate() {
-                        let own = part.iter().filter(|(at, _)| at == unknown).map(|(_, value)| value);
-                        corner[(place, column)] += own.sum::<f64>();
-                    }
-                    kept_rows.push(Row::Equilibrium(*unknown));
-                }
-                None => {
-                    let (inner, outer): (Entries, Entries) =
-                        matrix.lower[row].iter().copied().partition(|(column, _)| *column < unknowns);
-                    let (free, held) = elimination.rotated(&inner);
-                    for (column, value) in outer {
-                        *corner.get_mut((place, *index_of.get(column - unknowns)?))? += value;
-                    }
-                    held.iter().for_each(|(unknown, value)| scratch[*unknown] += value);
-                    for (column, shift) in kept_shifts.iter().enumerate() {
-                        corner[(place, column)] +=
-                            shift.iter().map(|(unknown, motion)| scratch[*unknown] * motion).sum::<f64>();
-                    }
-                    held.iter().for_each(|(unknown, _)| scratch[*unknown] = 0.0);
-                    rows.push(free);
-                    kept_rows.push(Row::Border(row, held));
-                }
-            }
-        }
-        if rows.len() != count {
-            return None;
-        }
-        let factor = match friction {
-            Friction::Bordered => Factor::Symmetric(SymmetricFactor::new(matrix.pattern.clone(), &values).ok()?),
-            Friction::Folded => Factor::Unsymmetric(UnsymmetricFactor::new(matrix.pattern.clone(), &values)?),
-        };
-        let reduced = Reduced::new(factor, unknowns, columns, rows, corner)?;
-        let sign = sign * reduced.sign;
-        let shifts = kept_shifts;
-        Some(Self { elimination, reduced, unknowns, borders, kept_columns, kept_rows, shifts, held_parts, sign })
-    }
-
-    fn solve(&self, values: &mut [f64]) -> bool {
-        let (upper, lower) = values.split_at_mut(self.unknowns);
-        let mut force = upper.to_vec();
-        self.elimination.rotate(&mut force, false);
-        self.elimination.fold(&mut force);
-        let mut held = vec![0.0; self.unknowns];
-        for node in self.elimination.nodes() {
-            let motion = node.constraint * gathered(node.rows(), lower);
-            for (index, (unknown, motion)) in node.held().iter().zip(motion.iter()).enumerate() {
-                held[*unknown] = *motion;
-                let stiffness = self.elimination.stiffness(node, index);
-                stiffness.iter().for_each(|(row, value)| force[*row] -= value * motion);
-            }
-        }
-        let right = |row: &Row| match row {
-            Row::Equilibrium(unknown) => force[*unknown],
-            Row::Border(row, entries) => {
-                // Rows added for what is not symmetric have nothing on the right.
-                let given = lower.get(*row).copied().unwrap_or(0.0);
-                given - entries.iter().map(|(unknown, value)| value * held[*unknown]).sum::<f64>()
-            }
-        };
-        let mut weights: Vec<f64> = self.kept_rows.iter().map(right).collect();
-        let mut motion = force.clone();
-        self.elimination.nodes().iter().flat_map(|node| node.held()).for_each(|unknown| motion[*unknown] = 0.0);
-        if !self.reduced.solve(&mut motion, &mut weights) {
-            return false;
-        }
-        let mut borders = vec![0.0; self.borders];
-        for ((column, weight), (shift, part)) in
-            self.kept_columns.iter().zip(&weights).zip(self.shifts.iter().zip(&self.held_parts))
-        {
-            borders[*column] = *weight;
-            shift.iter().for_each(|(unknown, motion)| held[*unknown] += weight * motion);
-            part.iter().for_each(|(unknown, value)| force[*unknown] -= weight * value);
-        }
-        for node in self.elimination.nodes() {
-            for (index, unknown) in node.held().iter().enumerate() {
-                // `motion` is zero at held unknowns: their part is in `force`.
-                let equilibrium = self.elimination.equilibrium(node, index);
-                force[*unknown] -= equilibrium.iter().map(|(row, value)| value * motion[*row]).sum::<f64>();
-            }
-        }
-        for node in self.elimination.nodes() {
-            if !node.keeps {
-                let reactions = node.reaction * gathered(node.held(), &force);
-                node.columns().iter().zip(reactions.iter()).for_each(|(column, value)| borders[*column] = *value);
-            }
-            node.held().iter().for_each(|unknown| motion[*unknown] = held[*unknown]);
-        }
-        self.elimination.rotate(&mut motion, true);
-        upper.copy_from_slice(&motion);
-        lower.copy_from_slice(&borders[..lower.len()]);
-        true
-    }
-}
-
-/// Values at up to three places, zero after them.
-fn gathered(places: &[usize], values: &[f64]) -> Vector3<f64> {
-    let mut gathered = Vector3::zeros();
-    places.iter().enumerate().for_each(|(index, place)| gathered[index] = values[*place]);
-    gathered
-}
-
 /// Multiplications that a factorisation without symmetry may take where nothing speaks against it.
 const LITTLE: u64 = 1_000_000;
 /// A multiplication in it takes so many times one of the symmetric factorisation and its solves, which go by blocks.
@@ -368,7 +203,7 @@ fn friction_of(matrix: &Bordered, holdings: &Holdings) -> Friction {
 }
 
 /// The matrix with a symmetric `K`: a row `a` that it has more becomes a border `[[K, e], [a, -1]]`.
-fn symmetrised(matrix: &Bordered) -> Bordered {
+pub(super) fn symmetrised(matrix: &Bordered) -> Bordered {
     let mut whole = matrix.clone();
     let mut extra: Vec<(usize, Entries)> = Vec::new();
     let mut touched: Vec<(usize, usize)> =

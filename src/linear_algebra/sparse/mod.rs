@@ -6,11 +6,13 @@
 //! * [`bordered`]: the matrix as it is assembled.
 //! * [`definite`]: whether a symmetric matrix is positive definite.
 //! * [`held`]: unknowns of a node that border rows hold (closed contacts) are eliminated where they are.
+//! * `blocks`: what is left when they are, the interior factorised.
 //! * [`factorisation`]: block elimination with the dense Schur complement of what remains of the borders, refined on the
 //!   whole system.
 //! * `nearby`: solutions with the factorisation of a nearby matrix.
 //! * [`general`]: LU of any sparse matrix.
 
+mod blocks;
 pub mod bordered;
 pub mod definite;
 pub mod factorisation;

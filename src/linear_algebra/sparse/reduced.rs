@@ -51,15 +51,63 @@ pub(super) struct Reduced {
     size: usize,
     columns: Vec<Entries>,
     rows: Vec<Entries>,
-    /// Each row of the complement was divided by the size of its terms.
-    scales: Vec<f64>,
-    complement: LU<f64, Dyn, Dyn>,
+    /// `D`, without what raises add.
+    corner: DMatrix<f64>,
+    complement: Complement,
     /// `K⁻¹ B`, where it is small enough to be kept.
     responses: Option<Vec<f64>>,
     given: usize,
-    pub sign: f64,
-    /// Smallest pivot of the complement, its terms being about 1.
-    pub pivot_ratio: f64,
+}
+
+/// `D - C K⁻¹ B`, each row divided by the size of its terms, and factorised.
+struct Complement {
+    scales: Vec<f64>,
+    factors: LU<f64, Dyn, Dyn>,
+    sign: f64,
+    /// Smallest pivot, the terms being about 1.
+    pivot_ratio: f64,
+}
+
+/// The same as its terms are added up.
+struct Terms {
+    sums: DMatrix<f64>,
+    sizes: DMatrix<f64>,
+}
+
+impl Terms {
+    fn new(corner: &DMatrix<f64>, raises: usize) -> Self {
+        let given = corner.nrows();
+        let count = given + raises;
+        let mut sums = corner.clone().resize(count, count, 0.0);
+        (given..count).for_each(|raise| sums[(raise, raise)] = -1.0);
+        Self { sizes: sums.abs(), sums }
+    }
+
+    /// Takes `C` times a column of `K⁻¹ B` from a column.
+    fn take(&mut self, rows: &[Entries], column: usize, response: &[f64]) {
+        for (row, entries) in rows.iter().enumerate() {
+            for (unknown, value) in entries {
+                self.sums[(row, column)] -= value * response[*unknown];
+                self.sizes[(row, column)] += (value * response[*unknown]).abs();
+            }
+        }
+    }
+
+    fn factorised(mut self) -> Option<Complement> {
+        let scales: Vec<f64> = self.sizes.row_iter().map(|row| row.amax()).collect();
+        if !scales.iter().all(|scale| scale.is_finite() && *scale > 0.0) {
+            return None;
+        }
+        for (mut row, scale) in self.sums.row_iter_mut().zip(&scales) {
+            row /= *scale;
+        }
+        let factors = self.sums.lu();
+        let pivots = factors.lu_internal().diagonal();
+        let exchanges: f64 = factors.p().determinant();
+        let sign = pivots.iter().fold(exchanges, |sign, pivot| sign * pivot.signum());
+        let pivot_ratio = pivots.iter().fold(1.0, |least: f64, pivot| least.min(pivot.abs()));
+        pivot_ratio.is_finite().then_some(Complement { scales, factors, sign, pivot_ratio })
+    }
 }
 
 /// Right-hand sides that are solved for together.
@@ -77,17 +125,14 @@ impl Reduced {
         corner: DMatrix<f64>,
     ) -> Option<Self> {
         let given = columns.len();
-        let count = given + factor.raised().len();
-        let mut complement = corner.resize(count, count, 0.0);
-        for (index, (unknown, raise)) in factor.raised().iter().enumerate() {
+        for (unknown, raise) in factor.raised() {
             columns.push(smallvec![(*unknown, -raise)]);
             rows.push(smallvec![(*unknown, 1.0)]);
-            complement[(given + index, given + index)] = -1.0;
         }
-        let mut sizes = complement.abs();
+        let count = columns.len();
+        let mut terms = Terms::new(&corner, factor.raised().len());
         let mut responses = (size * count <= KEPT).then(|| Vec::with_capacity(size * count));
-        for first in (0..count).step_by(TOGETHER) {
-            let chunk = &columns[first..count.min(first + TOGETHER)];
+        for (first, chunk) in columns.chunks(TOGETHER).enumerate() {
             let mut block = vec![0.0; size * chunk.len()];
             for (index, entries) in chunk.iter().enumerate() {
                 entries.iter().for_each(|(row, value)| block[index * size + row] += value);
@@ -96,36 +141,37 @@ impl Reduced {
                 return None;
             }
             for (index, response) in block.chunks_exact(size.max(1)).enumerate() {
-                for (row, entries) in rows.iter().enumerate() {
-                    for (unknown, value) in entries {
-                        complement[(row, first + index)] -= value * response[*unknown];
-                        sizes[(row, first + index)] += (value * response[*unknown]).abs();
-                    }
-                }
+                terms.take(&rows, first * TOGETHER + index, response);
             }
             if let Some(responses) = &mut responses {
                 responses.extend_from_slice(&block);
             }
         }
-        let scales: Vec<f64> = sizes.row_iter().map(|row| row.amax()).collect();
-        if !scales.iter().all(|scale| scale.is_finite() && *scale > 0.0) {
-            return None;
+        let complement = terms.factorised()?;
+        Some(Self { factor, size, columns, rows, corner, complement, responses, given })
+    }
+
+    /// The same with another row of `[C, D]`; `None` where `K⁻¹ B` is not kept.
+    pub fn with_row(mut self, row: usize, entries: Entries, corner: &[f64]) -> Option<Self> {
+        *self.rows.get_mut(row)? = entries;
+        corner.iter().enumerate().for_each(|(column, value)| self.corner[(row, column)] = *value);
+        let mut terms = Terms::new(&self.corner, self.factor.raised().len());
+        for (column, response) in self.responses.as_ref()?.chunks_exact(self.size.max(1)).enumerate() {
+            terms.take(&self.rows, column, response);
         }
-        for (mut row, scale) in complement.row_iter_mut().zip(&scales) {
-            row /= *scale;
-        }
-        let complement = complement.lu();
-        let pivots = complement.lu_internal().diagonal();
-        let raises_sign = if factor.raised().len() % 2 == 1 { -1.0 } else { 1.0 };
-        let exchanges: f64 = complement.p().determinant();
-        let sign = pivots
-            .iter()
-            .fold(raises_sign * factor.determinant_sign() * exchanges, |sign, pivot| sign * pivot.signum());
-        let pivot_ratio = pivots.iter().fold(1.0, |least: f64, pivot| least.min(pivot.abs()));
-        if !pivot_ratio.is_finite() {
-            return None;
-        }
-        Some(Self { factor, size, columns, rows, scales, complement, responses, given, sign, pivot_ratio })
+        self.complement = terms.factorised()?;
+        Some(self)
+    }
+
+    /// Sign of the determinant.
+    pub fn sign(&self) -> f64 {
+        let raises = if self.factor.raised().len() % 2 == 1 { -1.0 } else { 1.0 };
+        raises * self.factor.determinant_sign() * self.complement.sign
+    }
+
+    /// Smallest pivot of the complement of the borders, its terms being about 1.
+    pub fn pivot_ratio(&self) -> f64 {
+        self.complement.pivot_ratio
     }
 
     /// Solves, overwriting both parts of the right-hand side.
@@ -139,10 +185,10 @@ impl Reduced {
         weights.rows_mut(0, self.given).copy_from_slice(lower);
         for (row, entries) in self.rows.iter().enumerate() {
             weights[row] -= entries.iter().map(|(unknown, value)| value * upper[*unknown]).sum::<f64>();
-            weights[row] /= self.scales[row];
+            weights[row] /= self.complement.scales[row];
         }
         // Without borders there is nothing to solve for.
-        if count > 0 && !self.complement.solve_mut(&mut weights) {
+        if count > 0 && !self.complement.factors.solve_mut(&mut weights) {
             return false;
         }
         match (&self.responses, right) {

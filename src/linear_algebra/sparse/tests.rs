@@ -355,3 +355,36 @@ fn a_matrix_of_another_sign_is_not_nearby() {
     assert!(factorisation.solve_nearby(matrix(1e-3 * (1.0 + 1e-6)), &right).is_some());
     assert!(factorisation.solve_nearby(matrix(-1e-3), &right).is_none());
 }
+
+/// With another last row a factorisation is that of the matrix with this row, to the last bit.
+#[test]
+fn the_last_row_may_be_another() {
+    let random = &mut Random(53);
+    let mut compared = 0;
+    for kind in kinds() {
+        for dimension in [2, 3] {
+            let System { sparse, holdings, .. } = system(random, dimension, 12, kind);
+            let last = sparse.size() - 1;
+            let mut other = sparse.clone();
+            other.lower[last - sparse.pattern.size()].clear();
+            let row: Vec<f64> = (0..=sparse.pattern.size()).map(|_| random.next()).collect();
+            let put = |matrix: &mut dyn Sink| {
+                row.iter().enumerate().for_each(|(column, value)| matrix.add(last, column, *value));
+            };
+            put(&mut other);
+            for friction in [Friction::Bordered, Friction::Folded] {
+                let anew = SparseFactorisation::with(other.clone(), &holdings, friction).expect("regular");
+                let first = SparseFactorisation::with(sparse.clone(), &holdings, friction).expect("regular");
+                let Some(second) = first.with_last_row(put) else { continue };
+                let right = DVector::from_fn(last + 1, |_, _| random.next());
+                let (mut expected, mut solution) = (right.clone(), right);
+                assert!(anew.solve(&mut expected) && second.solve(&mut solution));
+                assert_eq!(solution, expected);
+                assert_eq!(second.determinant_sign(), anew.determinant_sign());
+                assert_eq!(second.pivot_ratio(), anew.pivot_ratio());
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 30, "{compared}");
+}

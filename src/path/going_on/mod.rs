@@ -21,6 +21,7 @@
 mod many;
 mod response;
 
+use super::at_hand::AtHand;
 use super::decide::{Choice, Rules, mark_retrace, potential_rate, sign_of};
 use super::directions::is_mechanism;
 use super::loading::{Loading, of_node};
@@ -129,6 +130,7 @@ pub fn directions_going_on(
         .map(|slip| -dot(&state.reactions[slip.contact].tangential, &loading.relative_rate(slip.contact, incoming)))
         .sum();
     let choice = |rate: Rate, modes: Vec<Mode>, dissipation: f64| Choice {
+        at_hand: AtHand::default(),
         dissipation,
         potential_rate: potential_rate(loading, state, &rate, dissipation),
         load_sign: sign_of(rate.load),

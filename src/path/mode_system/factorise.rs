@@ -59,9 +59,7 @@ impl ModeSystem<'_> {
         let unknowns = structure.unknowns();
         let plain = match self.factorise_as_it_is(iterate, kind, &put_last) {
             Some(SystemFactorisation::Dense(plain)) if plain.pivot_ratio() < SPREAD => plain,
-            Some(SystemFactorisation::Sparse(sparse))
-                if sparse.spread() < SPREAD_AT_LEAST && unknowns <= MOST_APART =>
-            {
+            Some(SystemFactorisation::Sparse(sparse)) if !self.is_kept(&sparse) => {
                 self.factorise_dense(iterate, kind, &put_last)?
             }
             Some(other) => return Some(other),
@@ -89,6 +87,11 @@ impl ModeSystem<'_> {
         let mut apart = self.assemble_parts(iterate, kind, Stretch::Apart);
         put_last(&mut apart);
         Factorisation::stiffened(apart, &stiffeners).or(Some(plain)).map(SystemFactorisation::Dense)
+    }
+
+    /// Whether a sparse factorisation is as good as one that keeps stiff and soft parts apart, or has to do.
+    pub(in crate::path) fn is_kept(&self, factorisation: &SparseFactorisation) -> bool {
+        factorisation.spread() >= SPREAD_AT_LEAST || self.loading.structure.unknowns() > MOST_APART
     }
 
     /// The same with stiff and soft parts added up.

@@ -4,7 +4,8 @@ use super::equations::{Changing, Equations};
 use super::proof::Control;
 use crate::contact::vector::{Vector, dot, scaled};
 use crate::contact::{Mode, Reaction, all_continue};
-use crate::linear_algebra::Sink;
+use crate::linear_algebra::{Sink, SystemFactorisation};
+use crate::path::at_hand::AtHand;
 use crate::path::corner::whole_rates;
 use crate::path::directions::{Alternative, Candidate, WEAK};
 use crate::path::incoming::Incoming;
@@ -34,10 +35,10 @@ impl Equations<'_> {
             }
         }
         for round in 0..ROUNDS + ROUNDS_ONE_BY_ONE {
-            let mut rate = match (control, incoming) {
-                (Control::Load, _) if modes == self.held && self.may_rest() => self.rest(sign),
+            let (mut rate, by) = match (control, incoming) {
+                (Control::Load, _) if modes == self.held && self.may_rest() => self.rest(sign).map(|rate| (rate, None)),
                 (_, Some(incoming)) if incoming.modes.is_some_and(|of| all_continue(of, &modes)) => {
-                    Some(incoming.rate.clone())
+                    Some((incoming.rate.clone(), None))
                 }
                 (Control::Power, Some(incoming)) => self.line(&modes, Some(incoming.rate)),
                 _ => None,
@@ -50,7 +51,12 @@ impl Equations<'_> {
             rate.scale(sign * value.signum());
             let (next, doubts) = self.violations(&modes, &rate);
             match next {
-                None => return Some(self.candidate(rate, modes, doubts)),
+                None => {
+                    let at_hand = by.map(|by| AtHand::of(self.loading, by)).unwrap_or_default();
+                    let candidate = self.candidate(rate, modes, doubts);
+                    // What is in doubt has other modes than those that were solved in.
+                    return Some(if candidate.weak { candidate } else { Candidate { at_hand, ..candidate } });
+                }
                 Some(next) if round < ROUNDS => modes = next,
                 Some(next) => {
                     let last = (0..modes.len()).rev().find(|contact| next[*contact] != modes[*contact])?;
@@ -99,7 +105,7 @@ impl Equations<'_> {
         let mut closed = (0..self.held.len()).filter(|contact| self.held[*contact] != Mode::Free);
         let shares = closed.any(|contact| freedoms(contact).any(|freedom| structure.unknown_of[freedom].is_none()));
         if shares || loading.pattern.moves_boundary() {
-            let mut rate = self.line(&self.held, None)?;
+            let (mut rate, _) = self.line(&self.held, None)?;
             rate.scale(sign * rate.load.signum());
             return Some(rate);
         }
@@ -134,8 +140,9 @@ impl Equations<'_> {
         }
     }
 
-    /// The direction, of either sign, that a mode leaves, the equations bordered by another or by the load rate.
-    fn line(&self, modes: &[Mode], border: Option<&Rate>) -> Option<Rate> {
+    /// The direction, of either sign, that a mode leaves, the equations bordered by another or by the load rate; with their
+    /// factorisation.
+    fn line(&self, modes: &[Mode], border: Option<&Rate>) -> Option<(Rate, Option<SystemFactorisation>)> {
         let system = ModeSystem::new(self.loading, modes, self.state);
         let iterate = system.iterate(self.state.clone());
         let by_load = |matrix: &mut dyn Sink| matrix.add(system.size() - 1, self.loading.structure.unknowns(), 1.0);
@@ -143,7 +150,8 @@ impl Equations<'_> {
             Some(border) => system.bordered(&iterate, border)?,
             None => system.factorise(&iterate, Kind::Rates, by_load)?,
         };
-        system.tangent_by(&factorisation, &iterate)
+        let rate = system.tangent_by(&factorisation, &iterate)?;
+        Some((rate, Some(factorisation)))
     }
 
     /// The modes to try next, if something is negative that must not be; the contacts at which it is zero, or nearly so.
@@ -233,6 +241,6 @@ impl Equations<'_> {
         });
         let dissipation = dissipation.sum();
         let forces = whole_rates(self.loading, self.state, &rate);
-        Candidate { rate, forces, modes, alternatives, weak, dissipation }
+        Candidate { rate, forces, modes, alternatives, weak, dissipation, at_hand: AtHand::default() }
     }
 }

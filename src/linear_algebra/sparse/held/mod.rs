@@ -104,6 +104,13 @@ impl Elimination {
         &self.entries[self.columns_at[node.place][index].clone()]
     }
 
+    /// The column `H` of a held unknown.
+    pub fn stiffness_at(&self, unknown: usize) -> Option<&[(usize, f64)]> {
+        let (node, local) = self.nodes.place_of[unknown]?;
+        let node = &self.nodes()[node as usize];
+        ((local as usize) < node.held).then(|| self.stiffness(node, local as usize))
+    }
+
     /// A row `H` of a node.
     pub fn equilibrium(&self, node: &HeldNode, index: usize) -> &[(usize, f64)] {
         &self.entries[self.rows_at[node.place][index].clone()]
@@ -138,9 +145,9 @@ impl Elimination {
         (free, held)
     }
 
-    /// Splits a column of the rotated matrix.
-    pub fn split(&self, entries: &[(usize, f64)]) -> (Entries, Entries) {
-        entries.iter().copied().partition(|(unknown, _)| !self.is_held(*unknown))
+    /// Splits entries of a column of the rotated matrix: adds to those that are not held, and to those that are.
+    pub fn split_into(&self, entries: impl Iterator<Item = (usize, f64)>, free: &mut Entries, held: &mut Entries) {
+        entries.for_each(|entry| if self.is_held(entry.0) { &mut *held } else { &mut *free }.push(entry));
     }
 
     /// What entries of a column at held unknowns become in the other equations of their nodes, where friction is folded.
