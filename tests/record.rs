@@ -128,7 +128,7 @@ fn nodes_contacts_and_directions_are_cut_after_the_judgement() {
         let (cut, all) = (&cut.increment, &all.increment);
         let names: Vec<&str> = cut.displacements.keys().map(|name| &**name).collect();
         assert_eq!(names, ["b2", "b4"], "in the model's order");
-        assert!(cut.displacements.iter().all(|(name, values)| all.displacements[name] == *values));
+        assert!(cut.displacements.iter().all(|(name, values)| all.displacements[&**name] == *values));
         let place = all.contacts.iter().position(|contact| &*contact.node == "b4").expect("the foot's contact");
         assert_eq!(cut.contacts, [all.contacts[place].clone()]);
         for (cut, all) in cut.directions.iter().flatten().zip(all.directions.iter().flatten()) {

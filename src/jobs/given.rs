@@ -190,7 +190,7 @@ fn are_same(one: &Increment, other: &Increment) -> bool {
         && one.stage == other.stage
         && near(one.arc_length, other.arc_length, one.arc_length.abs())
         && one.displacements.len() == other.displacements.len()
-        && one.displacements.iter().zip(&other.displacements).all(|((name, one), (other_name, other))| {
+        && one.displacements.iter().zip(other.displacements.iter()).all(|((name, one), (other_name, other))| {
             name == other_name && one.iter().zip(other).all(|(one, other)| near(*one, *other, size))
         })
 }

@@ -95,6 +95,7 @@ fn sign(direction: &Direction, largest: f64) -> i8 {
 #[cfg(test)]
 mod tests {
     use super::Alternatives;
+    use crate::path::displacements::Displacements;
     use crate::path::increment::{ContactState, Diagnostics, Direction, Energy, Increment, Point, PointKind, Status};
 
     fn direction(contacts: Status, load_rate: f64) -> Direction {
@@ -121,7 +122,7 @@ mod tests {
             load_factor: 1.0,
             arc_length: 0.0,
             step: 0.1,
-            displacements: indexmap::IndexMap::new(),
+            displacements: Displacements::default(),
             contacts: vec![contact],
             point: Point { kind, bifurcation, event, better_direction, unexplored_modes, degenerate },
             directions: Some(directions),

@@ -52,8 +52,7 @@ impl Recorder {
     /// An increment without what is not kept.
     pub fn cut(&self, mut increment: Increment) -> Increment {
         if let Some(kept) = &self.nodes {
-            let mut kept = kept.iter();
-            increment.displacements.retain(|_, _| kept.next().is_some_and(|kept| *kept));
+            increment.displacements.keep(|node| kept[node]);
         }
         if !self.directions {
             increment.directions = None;

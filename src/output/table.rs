@@ -97,7 +97,7 @@ impl Table {
         line.text(increment.point.event.as_deref().unwrap_or_default());
         let tangents = self.dimension - 1;
         for node in &self.nodes {
-            let values = increment.displacements.get(node.as_str()).map(Vec::as_slice).unwrap_or_default();
+            let values = increment.displacements.get(node.as_str()).unwrap_or_default();
             line.numbers(values, self.dimension);
         }
         // Rows and columns are in the model's order.

@@ -10,7 +10,7 @@
 //!
 //! `θ''''` comes from a point half way: what the cubic through both ends' `θ` and `κ` misses there.
 
-use super::mode_system::{Kind, ModeSystem, Role};
+use super::mode_system::{Kind, ModeSystem, Role, Track};
 use super::newton::Corrected;
 use super::state::{Rate, State};
 use super::track::{self, Rule};
@@ -42,7 +42,8 @@ impl ModeSystem<'_> {
                         values[row + k] = dot(direction, &moved);
                     }
                 }
-                Role::Plane { start: begun, turn } => {
+                Role::Plane { track } => {
+                    let Track { start: begun, turn } = &self.tracks[*track];
                     let frame = self.loading.frame(contact, &end.corrected.state);
                     let direction = iterate.directions[contact];
                     let chord = self.chord(contact, &end.corrected.state);
@@ -67,7 +68,8 @@ impl ModeSystem<'_> {
 
     /// `τ`
     fn defect(&self, contact: usize, start: &Rate, middle: Pointed<'_>, end: Pointed<'_>) -> Option<f64> {
-        let Role::Plane { start: begun, turn: own } = &self.roles[contact] else { return None };
+        let Role::Plane { track } = self.roles[contact] else { return None };
+        let Track { start: begun, turn: own } = &self.tracks[track];
         let direction_at = |corrected: &Corrected| match corrected.modes[contact] {
             Mode::Slip { direction } => Some(direction),
             Mode::Free | Mode::Stick => None,

@@ -1,6 +1,6 @@
 //! One accepted point of the path, as it is streamed and stored: in the user's units, under the user's names.
 
-use indexmap::IndexMap;
+use super::displacements::Displacements;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -19,7 +19,8 @@ pub struct Increment {
     /// point before.
     pub step: f64,
     /// Node name to displacement (length); the nodes that `analysis.record` asks for.
-    pub displacements: IndexMap<Arc<str>, Vec<f64>>,
+    #[cfg_attr(feature = "server", schema(value_type = indexmap::IndexMap<String, Vec<f64>>))]
+    pub displacements: Displacements,
     /// In the model's order; those that `analysis.record` asks for.
     pub contacts: Vec<ContactState>,
     pub point: Point,

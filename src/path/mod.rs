@@ -49,6 +49,7 @@ mod corner;
 mod critical;
 mod decide;
 mod directions;
+pub mod displacements;
 mod drift;
 mod energy;
 #[cfg(test)]

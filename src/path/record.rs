@@ -53,11 +53,7 @@ pub(super) fn increment(scene: &Scene, totals: &Totals, row: &Row<'_>) -> Increm
     let (length, force) = (plan.displacement_scale, plan.force_scale);
     let energy_unit = length * force;
     let stage = &scene.stages[row.stage];
-    let dimension = scene.structure.dimension;
-    let mut displacements = scene.no_displacements.clone();
-    for (own, values) in displacements.values_mut().zip(row.state.displacement.chunks_exact(dimension)) {
-        own.iter_mut().zip(values).for_each(|(own, value)| *own = value * length);
-    }
+    let displacements = scene.no_displacements.scaled(&row.state.displacement, length);
     let (contacts, complementarity) = contact_rows(scene, row, totals.force_scale);
     let directions = is_worth_listing(row.options).then(|| {
         let direction = |(index, option): (usize, &Choice)| Direction {

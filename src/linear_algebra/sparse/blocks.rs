@@ -3,11 +3,11 @@
 use super::Entries;
 use super::bordered::Bordered;
 use super::factorisation::symmetrised;
-use super::held::{Elimination, Friction, Holdings};
+use super::held::{Coupling, Elimination, Friction, HeldNode, Holdings, gathered, times};
 use super::reduced::{Factor, Reduced};
 use super::symmetric::SymmetricFactor;
 use super::unsymmetric::UnsymmetricFactor;
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::DMatrix;
 
 /// The system taken apart.
 pub(super) struct Blocks {
@@ -56,11 +56,11 @@ impl Blocks {
         // Of each row the held unknown whose equilibrium takes its place; none where that is eliminated, too.
         let mut equilibrium: Vec<Option<Option<usize>>> = vec![None; borders];
         for node in elimination.nodes() {
-            sign *= node.sign;
-            for ((row, column), unknown) in node.rows().iter().zip(node.columns()).zip(node.held()) {
-                equilibrium[*row] = Some(node.keeps.then_some(*unknown));
+            sign *= node.sign();
+            for ((row, column), unknown) in node.rows().zip(node.columns()).zip(node.held()) {
+                equilibrium[row] = Some(node.keeps.then_some(unknown));
                 if !node.keeps {
-                    is_kept[*column] = false;
+                    is_kept[column] = false;
                     sign *= if (row + column) % 2 == 1 { -1.0 } else { 1.0 };
                 }
             }
@@ -71,15 +71,11 @@ impl Blocks {
             return None;
         }
         let mut shifts = vec![Entries::new(); count];
-        for node in elimination.nodes() {
-            for (index, couplings) in node.couplings.iter().enumerate() {
-                for (border, value) in couplings {
-                    let shift = &mut shifts[kept_columns.binary_search(border).ok()?];
-                    for (held, unknown) in node.held().iter().enumerate() {
-                        shift.push((*unknown, -node.constraint[(held, index)] * value));
-                    }
-                }
-            }
+        for Coupling { node, row, border, value } in elimination.couplings() {
+            let node = &elimination.nodes()[*node];
+            let shift = &mut shifts[kept_columns.binary_search(border).ok()?];
+            let constraint = elimination.matrices(node).constraint.chunks_exact(node.held().len()).nth(*row)?;
+            shift.extend(node.held().zip(constraint).map(|(unknown, entry)| (unknown, -entry * value)));
         }
         let (mut columns, mut held_parts) = (Vec::with_capacity(count), Vec::with_capacity(count));
         for (column, shift) in kept_columns.iter().zip(&shifts) {
@@ -154,9 +150,10 @@ impl Blocks {
         self.elimination.fold(&mut force);
         let mut held = vec![0.0; self.unknowns];
         for node in self.elimination.nodes() {
-            let motion = node.constraint * gathered(node.rows(), lower);
-            for (index, (unknown, motion)) in node.held().iter().zip(motion.iter()).enumerate() {
-                held[*unknown] = *motion;
+            let constraint = self.elimination.matrices(node).constraint;
+            let motion = times(constraint, node.held().len(), &gathered(node.rows(), lower));
+            for (index, (unknown, motion)) in node.held().zip(motion.iter()).enumerate() {
+                held[unknown] = *motion;
                 let stiffness = self.elimination.stiffness(node, index);
                 stiffness.iter().for_each(|(row, value)| force[*row] -= value * motion);
             }
@@ -171,7 +168,7 @@ impl Blocks {
         };
         let mut weights: Vec<f64> = self.kept_rows.iter().map(right).collect();
         let mut motion = force.clone();
-        self.elimination.nodes().iter().flat_map(|node| node.held()).for_each(|unknown| motion[*unknown] = 0.0);
+        self.elimination.nodes().iter().flat_map(HeldNode::held).for_each(|unknown| motion[unknown] = 0.0);
         if !self.reduced.solve(&mut motion, &mut weights) {
             return false;
         }
@@ -184,18 +181,19 @@ impl Blocks {
             part.iter().for_each(|(unknown, value)| force[*unknown] -= weight * value);
         }
         for node in self.elimination.nodes() {
-            for (index, unknown) in node.held().iter().enumerate() {
+            for (index, unknown) in node.held().enumerate() {
                 // `motion` is zero at held unknowns: their part is in `force`.
                 let equilibrium = self.elimination.equilibrium(node, index);
-                force[*unknown] -= equilibrium.iter().map(|(row, value)| value * motion[*row]).sum::<f64>();
+                force[unknown] -= equilibrium.iter().map(|(row, value)| value * motion[*row]).sum::<f64>();
             }
         }
         for node in self.elimination.nodes() {
             if !node.keeps {
-                let reactions = node.reaction * gathered(node.held(), &force);
-                node.columns().iter().zip(reactions.iter()).for_each(|(column, value)| borders[*column] = *value);
+                let reaction = self.elimination.matrices(node).reaction;
+                let reactions = times(reaction, node.held().len(), &gathered(node.held(), &force));
+                node.columns().zip(reactions.iter()).for_each(|(column, value)| borders[column] = *value);
             }
-            node.held().iter().for_each(|unknown| motion[*unknown] = held[*unknown]);
+            node.held().for_each(|unknown| motion[unknown] = held[unknown]);
         }
         self.elimination.rotate(&mut motion, true);
         upper.copy_from_slice(&motion);
@@ -226,11 +224,4 @@ fn border_row(
         }
     }
     Some(BorderRow { free, held, corner })
-}
-
-/// Values at up to three places, zero after them.
-fn gathered(places: &[usize], values: &[f64]) -> Vector3<f64> {
-    let mut gathered = Vector3::zeros();
-    places.iter().enumerate().for_each(|(index, place)| gathered[index] = values[*place]);
-    gathered
 }

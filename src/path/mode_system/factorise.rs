@@ -19,10 +19,13 @@ impl ModeSystem<'_> {
     pub(in crate::path) fn holdings(&self) -> &Holdings {
         self.holdings.get_or_init(|| {
             let closed = |contact: &usize| !matches!(self.roles[*contact], Role::Free | Role::HeldBy);
-            let mut contacts: Vec<usize> = (0..self.roles.len()).filter(closed).collect();
+            let mut contacts = Vec::with_capacity(self.roles.len());
+            contacts.extend((0..self.roles.len()).filter(closed));
             contacts.sort_by_key(|contact| self.loading.contacts[*contact].node);
             let same_node = |a: &usize, b: &usize| self.loading.contacts[*a].node == self.loading.contacts[*b].node;
-            Holdings::new(contacts.chunk_by(same_node).map(|contacts| self.holding(contacts)).collect())
+            let mut holdings = Vec::with_capacity(contacts.len());
+            holdings.extend(contacts.chunk_by(same_node).map(|contacts| self.holding(contacts)));
+            Holdings::new(holdings)
         })
     }
 

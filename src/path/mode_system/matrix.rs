@@ -1,6 +1,6 @@
 //! The matrix of the equations, dense and sparse.
 
-use super::{Iterate, Kind, ModeSystem, Role};
+use super::{Iterate, Kind, ModeSystem, Role, Track};
 use crate::contact::vector::{Vector, add, cross, dot, scaled};
 use crate::linear_algebra::Sink;
 use crate::linear_algebra::sparse::Bordered;
@@ -129,7 +129,8 @@ impl ModeSystem<'_> {
         let direction = self.direction(contact, &frame, iterate);
         self.put_force(contact, column, &add(&frame.normal, -friction, &direction), matrix);
         self.put_motion(contact, row, &frame.normal, matrix);
-        if let Role::Plane { start, turn } = &self.roles[contact] {
+        if let Role::Plane { track } = self.roles[contact] {
+            let Track { start, turn } = &self.tracks[track];
             let across = cross(&frame.normal, &direction);
             match kind {
                 Kind::Rates => {

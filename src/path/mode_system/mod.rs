@@ -46,16 +46,22 @@ pub(super) enum Role {
         beside: usize,
         sign: f64,
     },
-    /// Slip along any tangent, on a track with an equation of its own.
+    /// Slip along any tangent, on a track with an equation of its own: which of the system's.
     Plane {
-        start: Start,
-        turn: Turn,
+        track: usize,
     },
     Stick,
     /// Holds its node together with other contacts, and has the whole force in its unknowns.
     Held,
     /// Holds its node together with one that is `Held`; adds nothing.
     HeldBy,
+}
+
+/// Where the track of a slip in a plane starts, and how it turns.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Track {
+    pub start: Start,
+    pub turn: Turn,
 }
 
 /// Which equation the track of a slip in a plane has.
@@ -85,20 +91,27 @@ impl Iterate {
 /// Up to three orthonormal directions.
 pub(super) type Directions = SmallVec<[Vector; 3]>;
 
+/// The directions of all contacts, one after the other, and where those of each begin.
+struct HeldDirections {
+    starts: Vec<u32>,
+    directions: Vec<Vector>,
+}
+
 /// One mode's equations.
 pub struct ModeSystem<'a> {
     pub(super) loading: Loading<'a>,
     /// Where sticking contacts hold their nodes and slips start.
     pub(super) anchor: &'a State,
     pub(super) roles: Vec<Role>,
+    pub(super) tracks: Vec<Track>,
     modes: &'a [Mode],
     /// First row and column of each closed contact.
     first_of: SmallVec<[usize; 4]>,
     pub(super) size: usize,
     /// Made when first needed.
     holdings: OnceCell<Holdings>,
-    /// Of each contact, see [`Self::held_directions`]; made when first needed.
-    held: OnceCell<Vec<Directions>>,
+    /// See [`Self::held_directions`]; made when first needed.
+    held: OnceCell<HeldDirections>,
 }
 
 impl<'a> ModeSystem<'a> {
@@ -107,6 +120,7 @@ impl<'a> ModeSystem<'a> {
         let mut next = loading.structure.unknowns() + 1;
         let mut first_of = SmallVec::with_capacity(modes.len());
         let mut roles = Vec::with_capacity(modes.len());
+        let mut tracks = Vec::new();
         for (index, (mode, contact)) in modes.iter().zip(loading.contacts).enumerate() {
             let held = loading.corners.iter().find_map(|corner| {
                 let mut holding = corner.holding(modes);
@@ -129,7 +143,8 @@ impl<'a> ModeSystem<'a> {
                 }
                 Mode::Slip { direction } => {
                     let normal = loading.frame(index, anchor).normal;
-                    Role::Plane { start: Start { direction: *direction, normal }, turn: Turn::default() }
+                    tracks.push(Track { start: Start { direction: *direction, normal }, turn: Turn::default() });
+                    Role::Plane { track: tracks.len() - 1 }
                 }
             };
             first_of.push(next);
@@ -142,7 +157,17 @@ impl<'a> ModeSystem<'a> {
             };
             roles.push(role);
         }
-        Self { loading, anchor, roles, modes, first_of, size: next, holdings: OnceCell::new(), held: OnceCell::new() }
+        Self {
+            loading,
+            anchor,
+            roles,
+            tracks,
+            modes,
+            first_of,
+            size: next,
+            holdings: OnceCell::new(),
+            held: OnceCell::new(),
+        }
     }
 
     /// Number of unknowns.
@@ -152,7 +177,7 @@ impl<'a> ModeSystem<'a> {
 
     /// Whether some contact slips in a plane.
     pub fn has_tracks(&self) -> bool {
-        self.roles.iter().any(|role| matches!(role, Role::Plane { .. }))
+        !self.tracks.is_empty()
     }
 
     /// Column of a closed contact's normal reaction; its other unknowns follow. Its rows are one less.
@@ -179,7 +204,9 @@ impl<'a> ModeSystem<'a> {
         }
         let directions = if self.has_tracks() {
             let of = |(index, role): (usize, &Role)| match role {
-                Role::Plane { start, .. } => start.carried_to(&self.loading.frame(index, &state).normal),
+                Role::Plane { track } => {
+                    self.tracks[*track].start.carried_to(&self.loading.frame(index, &state).normal)
+                }
                 _ => [0.0; 3],
             };
             self.roles.iter().enumerate().map(of).collect()
@@ -202,7 +229,18 @@ impl<'a> ModeSystem<'a> {
     /// Orthonormal directions in which a sticking contact holds its node, along which it has a force: the normal and the
     /// tangents with friction; where it holds the node together with others, all in which the node is free.
     pub(super) fn held_directions(&self, contact: usize) -> &[Vector] {
-        &self.held.get_or_init(|| (0..self.roles.len()).map(|contact| self.directions_held(contact)).collect())[contact]
+        let held = self.held.get_or_init(|| {
+            let count = self.roles.len();
+            let mut held = HeldDirections { starts: Vec::with_capacity(count + 1), directions: Vec::new() };
+            held.directions.reserve(count);
+            for contact in 0..count {
+                held.starts.push(held.directions.len() as u32);
+                held.directions.extend(self.directions_held(contact));
+            }
+            held.starts.push(held.directions.len() as u32);
+            held
+        });
+        &held.directions[held.starts[contact] as usize..held.starts[contact + 1] as usize]
     }
 
     fn directions_held(&self, contact: usize) -> Directions {

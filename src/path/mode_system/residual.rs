@@ -1,6 +1,6 @@
 //! What is left over of the equations, and states that fulfil exactly what can be.
 
-use super::{Iterate, ModeSystem, Role};
+use super::{Iterate, ModeSystem, Role, Track};
 use crate::contact::Reaction;
 use crate::contact::vector::scaled;
 use crate::linear_algebra::Sink;
@@ -43,7 +43,8 @@ impl ModeSystem<'_> {
                 // A sticking node is put in its place exactly: see `place_exactly`.
                 Role::Free | Role::Stick | Role::Held | Role::HeldBy => {}
                 Role::Frictionless | Role::Line { .. } | Role::Edge { .. } => values[row] = frame.gap,
-                Role::Plane { start, turn } => {
+                Role::Plane { track } => {
+                    let Track { start, turn } = &self.tracks[*track];
                     values[row] = frame.gap;
                     let chord = self.chord(contact, state);
                     let rule = track::Rule::new(&frame, start, turn, &iterate.directions[contact], &chord);

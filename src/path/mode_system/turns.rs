@@ -14,7 +14,8 @@ impl ModeSystem<'_> {
     pub fn set_turns(&mut self, start: &Rate, end: &Corrected, tangent: &Tangent) -> bool {
         let mut settles = false;
         for index in 0..self.roles.len() {
-            let Role::Plane { start: begun, .. } = self.roles[index] else { continue };
+            let Role::Plane { track } = self.roles[index] else { continue };
+            let begun = self.tracks[track].start;
             let Mode::Slip { direction } = end.modes[index] else { continue };
             let at_start = track::turn_rate(self.loading, index, self.anchor, start, &begun.direction);
             let at_end = track::turn_rate(self.loading, index, &end.state, &tangent.rate, &direction);
@@ -24,7 +25,7 @@ impl ModeSystem<'_> {
                 track::settling(self.loading, index, here, (&begun, &direction), (chord, stiffness))
             });
             settles |= settling.is_some_and(|settling| settling.share() > 0.0);
-            self.roles[index] = Role::Plane { start: begun, turn: Turn { at_start, at_end, settling } };
+            self.tracks[track].turn = Turn { at_start, at_end, settling };
         }
         settles
     }
@@ -33,9 +34,10 @@ impl ModeSystem<'_> {
     /// from that at the start; a node that is not pressed has none.
     pub fn largest_turn(&self, corrected: &Corrected, other: Option<&Corrected>) -> f64 {
         let of = |(index, role): (usize, &Role)| {
-            let (Role::Plane { start, .. }, Mode::Slip { direction }) = (role, corrected.modes[index]) else {
+            let (Role::Plane { track }, Mode::Slip { direction }) = (role, corrected.modes[index]) else {
                 return 0.0;
             };
+            let start = &self.tracks[*track].start;
             if corrected.state.reactions[index].normal <= 0.0 {
                 return 0.0;
             }
@@ -51,11 +53,11 @@ impl ModeSystem<'_> {
 
     /// The largest angle (radians) by which turns move the chord of a track that does not settle.
     pub fn largest_correction(&self, corrected: &Corrected) -> f64 {
-        let of = |(index, role): (usize, &Role)| match role {
-            Role::Plane { turn, .. } if turn.settling.is_none_or(|settling| settling.share() == 0.0) => {
-                turn.correction(size(&self.chord(index, &corrected.state))).abs()
-            }
-            _ => 0.0,
+        let of = |(index, role): (usize, &Role)| {
+            let Role::Plane { track } = role else { return 0.0 };
+            let turn = &self.tracks[*track].turn;
+            let settles = turn.settling.is_some_and(|settling| settling.share() != 0.0);
+            if settles { 0.0 } else { turn.correction(size(&self.chord(index, &corrected.state))).abs() }
         };
         self.roles.iter().enumerate().map(of).fold(0.0, f64::max)
     }

@@ -11,6 +11,7 @@ mod build;
 mod refuse;
 
 use super::corner::Corner;
+use super::displacements::Displacements;
 use super::loading::LoadPattern;
 use super::newton::Place;
 use super::plan::Plan;
@@ -20,7 +21,6 @@ use crate::model::InputErrors;
 use crate::model::request::{Analysis, JobRequest};
 use crate::structure::Structure;
 use build::{Contacts, Scaled, build_contacts, build_stage, build_structure, scales};
-use indexmap::IndexMap;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -36,8 +36,8 @@ pub struct Scene {
     pub(super) reported: Vec<Reported>,
     /// Nodes with several contacts.
     pub(super) corners: Vec<Corner>,
-    /// By the nodes' names; those of each increment begin as a copy, so that names are looked up once.
-    pub(super) no_displacements: IndexMap<Arc<str>, Vec<f64>>,
+    /// Whose names those of each increment share.
+    pub(super) no_displacements: Displacements,
     pub(super) stages: Vec<StageLoad>,
     pub(super) analysis: Analysis,
     /// Which of the request's contacts have a row in every increment, in reach or not; `None`: all.
@@ -174,8 +174,7 @@ impl Scene {
             load_scales: stages.iter().map(|stage| stage.load_scale).collect(),
             left_out,
         };
-        let none = vec![0.0; structure.dimension];
-        let no_displacements = model.nodes.keys().map(|name| (Arc::from(name.as_str()), none.clone())).collect();
+        let no_displacements = Displacements::zero(model.nodes.keys().map(String::as_str), model.dimension);
         let analysis = request.analysis.clone();
         let asked_rows = super::near::asked_rows(request);
         let jumps = super::straight::jumps(&analysis, &structure);

@@ -56,7 +56,7 @@ impl<'a> Equations<'a> {
             loading,
             state,
             held: Vec::with_capacity(standings.len()),
-            changing: Vec::new(),
+            changing: Vec::with_capacity(standings.len()),
             parts: vec![SmallVec::new(); structure.freedoms()],
             size: 0,
             turning: Vec::new(),

@@ -15,14 +15,13 @@
 mod node;
 mod nodes;
 
-pub(super) use node::HeldNode;
+pub(super) use node::{Coupling, HeldNode, Matrices, gathered, times};
 pub(super) use nodes::LastNodes;
 
 use super::Entries;
 use super::bordered::Bordered;
 use nodes::Nodes;
 use smallvec::SmallVec;
-use std::ops::Range;
 use std::sync::Arc;
 
 /// Border rows that hold unknowns of one node, and the border columns with its reactions, one for each row.
@@ -44,15 +43,15 @@ impl Holding {
     }
 }
 
-/// All holdings of a matrix.
-#[derive(Default)]
+/// All holdings of a matrix; copies share them.
+#[derive(Default, Clone, PartialEq)]
 pub struct Holdings {
-    list: Vec<Holding>,
+    list: Arc<Vec<Holding>>,
 }
 
 impl Holdings {
     pub fn new(list: Vec<Holding>) -> Self {
-        Self { list }
+        Self { list: Arc::new(list) }
     }
 
     pub fn iter(&self) -> std::slice::Iter<'_, Holding> {
@@ -72,9 +71,9 @@ pub(super) enum Friction {
 /// What is left of a matrix, and what was taken.
 pub(super) struct Elimination {
     nodes: Arc<Nodes>,
-    /// Of each node, where its columns and its rows `H` of the matrix begin and end.
-    columns_at: Vec<[Range<usize>; 3]>,
-    rows_at: Vec<[Range<usize>; 3]>,
+    /// Where the columns and the rows `H` of all nodes begin.
+    columns_at: Vec<u32>,
+    rows_at: Vec<u32>,
     /// Entries of all rows and columns `H`.
     entries: Vec<(usize, f64)>,
 }
@@ -82,15 +81,20 @@ pub(super) struct Elimination {
 impl Elimination {
     /// Eliminates; with the matrix that is left. A holding that cannot be eliminated so stays in the borders.
     pub fn new(matrix: &Bordered, holdings: &Holdings, friction: Friction) -> (Self, Vec<f64>) {
-        let all = matrix.pattern.last_nodes.of(matrix, &holdings.list, friction);
-        let nodes = &all.nodes;
+        let all = matrix.pattern.last_nodes.of(matrix, holdings, friction);
+        let (nodes, numbers) = (&all.nodes, &all.numbers);
         let mut values = matrix.values.clone();
-        let mut entries = Vec::with_capacity(4 * nodes.iter().map(|node| node.count * node.held).sum::<usize>());
-        nodes.iter().for_each(|node| node.rotate_matrix(matrix, &mut values));
+        nodes.iter().for_each(|node| node.rotate_matrix(matrix, numbers, &mut values));
+        let held = nodes.last().map_or(0, |node| node.before as usize + node.held_count());
+        let most = nodes.iter().flat_map(HeldNode::held).map(|unknown| matrix.pattern.column(unknown).len());
+        let mut entries = Vec::with_capacity(2 * most.sum::<usize>());
+        let [mut rows_at, mut columns_at] = [(); 2].map(|()| Vec::with_capacity(held + 1));
         // All rows and columns are taken before any is cleared: those of neighbours have entries in each other's.
-        let rows_at = nodes.iter().map(|node| node.take(matrix, &values, true, &mut entries)).collect();
-        nodes.iter().for_each(|node| node.fold(matrix, &mut values));
-        let columns_at = nodes.iter().map(|node| node.take(matrix, &values, false, &mut entries)).collect();
+        nodes.iter().for_each(|node| node.take(matrix, &values, true, &mut entries, &mut rows_at));
+        rows_at.push(entries.len() as u32);
+        nodes.iter().for_each(|node| node.fold(matrix, numbers, &mut values));
+        nodes.iter().for_each(|node| node.take(matrix, &values, false, &mut entries, &mut columns_at));
+        columns_at.push(entries.len() as u32);
         nodes.iter().for_each(|node| node.clear(matrix, &mut values));
         (Self { nodes: all, columns_at, rows_at, entries }, values)
     }
@@ -99,26 +103,41 @@ impl Elimination {
         &self.nodes.nodes
     }
 
+    pub fn couplings(&self) -> &[Coupling] {
+        &self.nodes.couplings
+    }
+
+    /// The small matrices of a node.
+    pub fn matrices(&self, node: &HeldNode) -> Matrices<'_> {
+        node.matrices(&self.nodes.numbers)
+    }
+
     /// A column `H` of a node.
     pub fn stiffness(&self, node: &HeldNode, index: usize) -> &[(usize, f64)] {
-        &self.entries[self.columns_at[node.place][index].clone()]
+        self.taken(&self.columns_at, node, index)
     }
 
     /// The column `H` of a held unknown.
     pub fn stiffness_at(&self, unknown: usize) -> Option<&[(usize, f64)]> {
         let (node, local) = self.nodes.place_of[unknown]?;
         let node = &self.nodes()[node as usize];
-        ((local as usize) < node.held).then(|| self.stiffness(node, local as usize))
+        ((local as usize) < node.held_count()).then(|| self.stiffness(node, local as usize))
     }
 
     /// A row `H` of a node.
     pub fn equilibrium(&self, node: &HeldNode, index: usize) -> &[(usize, f64)] {
-        &self.entries[self.rows_at[node.place][index].clone()]
+        self.taken(&self.rows_at, node, index)
+    }
+
+    fn taken(&self, starts: &[u32], node: &HeldNode, index: usize) -> &[(usize, f64)] {
+        let place = node.before as usize + index;
+        &self.entries[starts[place] as usize..starts[place + 1] as usize]
     }
 
     /// Whether an unknown of the rotated system is held.
     pub fn is_held(&self, unknown: usize) -> bool {
-        self.nodes.place_of[unknown].is_some_and(|(node, local)| (local as usize) < self.nodes()[node as usize].held)
+        self.nodes.place_of[unknown]
+            .is_some_and(|(node, local)| (local as usize) < self.nodes()[node as usize].held_count())
     }
 
     /// Entries of a row or a column over the rotated unknowns: those that are not held, and those that are.
@@ -134,11 +153,19 @@ impl Elimination {
         at_nodes.sort_by_key(|(node, local, _)| (*node, *local));
         for group in at_nodes.chunk_by(|a, b| a.0 == b.0) {
             let node = &self.nodes()[group[0].0 as usize];
-            for (place, unknown) in node.unknowns().iter().enumerate() {
-                let part = |(_, local, value): &(u32, u32, f64)| node.rotation[(*local as usize, place)] * value;
-                let value: f64 = group.iter().map(part).sum();
+            let (rotation, count) = (self.matrices(node).rotation, node.count());
+            let mut put = |place: usize, value: f64| {
                 if value != 0.0 {
-                    if place < node.held { &mut held } else { &mut free }.push((*unknown, value));
+                    if place < node.held_count() { &mut held } else { &mut free }.push((node.unknown(place), value));
+                }
+            };
+            if node.turns {
+                for (place, column) in rotation.chunks_exact(count).enumerate() {
+                    put(place, group.iter().map(|(_, local, value)| column[*local as usize] * value).sum());
+                }
+            } else {
+                for same in group.chunk_by(|a, b| a.1 == b.1) {
+                    put(same[0].1 as usize, same.iter().map(|(.., value)| value).sum());
                 }
             }
         }
@@ -156,10 +183,10 @@ impl Elimination {
         for (unknown, value) in held {
             let Some((node, local)) = self.nodes.place_of[*unknown] else { continue };
             let node = &self.nodes()[node as usize];
-            if let Some(friction) = &node.friction {
-                for other in node.held..node.count {
-                    free.push((node.unknowns[other], -friction[(other, local as usize)] * value));
-                }
+            let others = node.count() - node.held_count();
+            let friction = self.matrices(node).friction.chunks_exact(others.max(1)).nth(local as usize);
+            for (other, factor) in friction.into_iter().flatten().enumerate() {
+                free.push((node.unknown(node.held_count() + other), -factor * value));
             }
         }
         free
@@ -167,23 +194,15 @@ impl Elimination {
 
     /// `Qᵀ x` or `Q x` at every node.
     pub fn rotate(&self, x: &mut [f64], back: bool) {
-        for node in self.nodes().iter().filter(|node| node.turns) {
-            let here = node.gather(x);
-            let turned = if back { node.rotation * here } else { node.rotation.tr_mul(&here) };
-            node.unknowns().iter().zip(turned.iter()).for_each(|(unknown, value)| x[*unknown] = *value);
-        }
+        self.nodes().iter().filter(|node| node.turns).for_each(|node| node.turn(&self.nodes.numbers, x, back));
     }
 
     /// Folds a right-hand side that was rotated.
     pub fn fold(&self, x: &mut [f64]) {
-        for node in self.nodes() {
-            if let Some(friction) = &node.friction {
-                let here = node.gather(x);
-                for other in node.held..node.count {
-                    x[node.unknowns[other]] -=
-                        (0..node.held).map(|held| friction[(other, held)] * here[held]).sum::<f64>();
-                }
-            }
+        for node in self.nodes().iter().filter(|node| node.folds) {
+            let (count, held) = (node.count(), node.held_count());
+            let taken = times(self.matrices(node).friction, count - held, &gathered(node.held(), x));
+            (held..count).zip(taken.iter()).for_each(|(other, value)| x[node.unknown(other)] -= value);
         }
     }
 }

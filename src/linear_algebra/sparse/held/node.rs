@@ -3,34 +3,67 @@
 use super::{Friction, Holding, Places};
 use crate::linear_algebra::sparse::bordered::Bordered;
 use nalgebra::{Matrix3, Vector3};
-use std::ops::Range;
+use smallvec::SmallVec;
 
-/// One node; matrices have ones on the diagonal where the node has less.
+/// One node. Its small matrices are among the numbers of all nodes, so that many nodes take little memory.
 pub(in crate::linear_algebra::sparse) struct HeldNode {
-    pub(super) unknowns: [usize; 3],
-    pub(super) count: usize,
-    /// So many of the rotated unknowns are held.
-    pub(super) held: usize,
+    unknowns: [u32; 3],
+    rows: [u32; 3],
+    columns: [u32; 3],
+    count: u8,
+    held: u8,
     /// Whether `Q` is not the identity.
     pub(super) turns: bool,
-    /// `Q`
-    pub(super) rotation: Matrix3<f64>,
-    /// `M⁻¹`
-    pub constraint: Matrix3<f64>,
-    /// `R⁻¹`
-    pub reaction: Matrix3<f64>,
-    /// `F R⁻¹`, rows of `T` after those of `H`; where it is folded.
-    pub(super) friction: Option<Matrix3<f64>>,
-    pub(super) rows: [usize; 3],
-    pub(super) columns: [usize; 3],
+    /// Whether friction is folded.
+    pub(super) folds: bool,
     /// Its reactions stay borders.
     pub keeps: bool,
     /// Sign of the part of the determinant that is eliminated, its place apart.
-    pub sign: f64,
-    /// `d`: for each row, other borders and values.
-    pub couplings: [Vec<(usize, f64)>; 3],
-    /// Its place among the others.
-    pub(super) place: usize,
+    sign: i8,
+    /// Where its numbers begin.
+    numbers: u32,
+    /// Held unknowns of the nodes before it.
+    pub(super) before: u32,
+}
+
+/// An entry `d` of a held row: another border's.
+pub(in crate::linear_algebra::sparse) struct Coupling {
+    /// Which of the nodes, and which of its rows.
+    pub node: usize,
+    pub row: usize,
+    pub border: usize,
+    pub value: f64,
+}
+
+/// The small matrices of a node, by columns.
+#[derive(Clone, Copy)]
+pub(in crate::linear_algebra::sparse) struct Matrices<'a> {
+    /// `M⁻¹`
+    pub constraint: &'a [f64],
+    /// `R⁻¹`
+    pub reaction: &'a [f64],
+    /// `F R⁻¹`; where it is folded.
+    pub friction: &'a [f64],
+    /// `Q`, where it is not the identity.
+    pub rotation: &'a [f64],
+}
+
+/// `A x` with a matrix by columns.
+pub(in crate::linear_algebra::sparse) fn times(matrix: &[f64], rows: usize, x: &Vector3<f64>) -> Vector3<f64> {
+    let mut product = Vector3::zeros();
+    for (column, factor) in matrix.chunks_exact(rows.max(1)).zip(x.iter()) {
+        column.iter().zip(product.iter_mut()).for_each(|(value, sum)| *sum += value * factor);
+    }
+    product
+}
+
+/// `Aᵀ x` with a matrix by columns.
+fn transposed_times(matrix: &[f64], rows: usize, x: &Vector3<f64>) -> Vector3<f64> {
+    let mut product = Vector3::zeros();
+    for (column, sum) in matrix.chunks_exact(rows.max(1)).zip(product.iter_mut()) {
+        *sum = column.iter().zip(x.iter()).map(|(value, factor)| value * factor).sum();
+    }
+    product
 }
 
 /// Relative size of what counts as nothing.
@@ -39,7 +72,16 @@ const NOTHING: f64 = 1e-14;
 const DEPENDENT: f64 = 1e-6;
 
 impl HeldNode {
-    pub(super) fn new(matrix: &Bordered, holding: &Holding, is_reaction: &[bool], friction: Friction) -> Option<Self> {
+    /// Adds its numbers to those of the nodes before it, and its couplings to theirs; with the place that it is to have.
+    pub(super) fn new(
+        matrix: &Bordered,
+        holding: &Holding,
+        is_reaction: &[bool],
+        friction: Friction,
+        place: usize,
+        numbers: &mut Vec<f64>,
+        coupled: &mut Vec<Coupling>,
+    ) -> Option<Self> {
         let n = matrix.pattern.size();
         let (count, held) = (holding.unknowns.len(), holding.rows.len());
         if held == 0 || held > count || holding.columns.len() != held || !same_columns(matrix, &holding.unknowns) {
@@ -48,7 +90,7 @@ impl HeldNode {
         let unknowns = held_first(matrix, holding);
         let local = |unknown: usize| unknowns.iter().position(|own| *own == unknown);
         let (mut rows, mut columns) = (Matrix3::zeros(), Matrix3::zeros());
-        let mut couplings = [const { Vec::new() }; 3];
+        let mut couplings: SmallVec<[Coupling; 3]> = SmallVec::new();
         for (index, row) in holding.rows.iter().enumerate() {
             for (column, value) in &matrix.lower[*row] {
                 if *column < n {
@@ -56,7 +98,7 @@ impl HeldNode {
                 } else if is_reaction[*column - n] {
                     return None;
                 } else {
-                    couplings[index].push((*column - n, *value));
+                    couplings.push(Coupling { node: place, row: index, border: *column - n, value: *value });
                 }
             }
         }
@@ -75,68 +117,105 @@ impl HeldNode {
         rest.rows_mut(0, held).fill(0.0);
         let rubs = rest.amax() > NOTHING * largest;
         let keeps = rubs && friction == Friction::Bordered;
+        let folds = rubs && !keeps;
         let sign_of = |block: &Matrix3<f64>| if held == 1 { block[(0, 0)] } else { block.determinant() }.signum();
         let sign = sign_of(&constraint) * if held % 2 == 1 { -1.0 } else { 1.0 };
         let sign = if keeps { sign } else { sign * sign_of(&reaction) };
         let reaction = inverse(&reaction, held)?;
-        let mut own = [[usize::MAX; 3]; 3];
+        let constraint = inverse(&constraint, held)?;
+        let mut own = [[u32::MAX; 3]; 3];
         for (own, given) in own.iter_mut().zip([&unknowns, &holding.rows, &holding.columns]) {
-            own[..given.len()].copy_from_slice(given);
+            for (own, given) in own.iter_mut().zip(given) {
+                *own = u32::try_from(*given).ok()?;
+            }
         }
+        let first = u32::try_from(numbers.len()).ok()?;
+        numbers.extend(constraint.view((0, 0), (held, held)).iter());
+        numbers.extend(reaction.view((0, 0), (held, held)).iter());
+        if folds {
+            numbers.extend((rest * reaction).view((held, 0), (count - held, held)).iter());
+        }
+        if !is_first {
+            numbers.extend(rotation.view((0, 0), (count, count)).iter());
+        }
+        coupled.extend(couplings);
         Some(Self {
             unknowns: own[0],
-            count,
-            held,
-            turns: !is_first,
-            rotation,
-            constraint: inverse(&constraint, held)?,
-            reaction,
-            friction: (rubs && !keeps).then(|| rest * reaction),
             rows: own[1],
             columns: own[2],
+            count: count as u8,
+            held: held as u8,
+            turns: !is_first,
+            folds,
             keeps,
-            sign,
-            couplings,
-            place: 0,
+            sign: if sign < 0.0 { -1 } else { 1 },
+            numbers: first,
+            before: 0,
         })
     }
 
-    pub(super) fn unknowns(&self) -> &[usize] {
-        &self.unknowns[..self.count]
+    pub(super) fn count(&self) -> usize {
+        usize::from(self.count)
+    }
+
+    /// So many of the rotated unknowns are held.
+    pub(super) fn held_count(&self) -> usize {
+        usize::from(self.held)
+    }
+
+    pub fn sign(&self) -> f64 {
+        f64::from(self.sign)
+    }
+
+    pub(super) fn matrices<'a>(&self, numbers: &'a [f64]) -> Matrices<'a> {
+        let (count, held) = (self.count(), self.held_count());
+        let (constraint, rest) = numbers[self.numbers as usize..].split_at(held * held);
+        let (reaction, rest) = rest.split_at(held * held);
+        let (friction, rest) = rest.split_at(if self.folds { (count - held) * held } else { 0 });
+        let rotation = &rest[..if self.turns { count * count } else { 0 }];
+        Matrices { constraint, reaction, friction, rotation }
+    }
+
+    pub(super) fn unknown(&self, local: usize) -> usize {
+        self.unknowns[local] as usize
+    }
+
+    pub(super) fn unknowns(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
+        self.unknowns[..self.count()].iter().map(|unknown| *unknown as usize)
     }
 
     /// Its rotated unknowns that are held.
-    pub fn held(&self) -> &[usize] {
-        &self.unknowns[..self.held]
+    pub fn held(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
+        self.unknowns[..self.held_count()].iter().map(|unknown| *unknown as usize)
     }
 
-    pub fn rows(&self) -> &[usize] {
-        &self.rows[..self.held]
+    pub fn rows(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
+        self.rows[..self.held_count()].iter().map(|row| *row as usize)
     }
 
-    pub fn columns(&self) -> &[usize] {
-        &self.columns[..self.held]
+    pub fn columns(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
+        self.columns[..self.held_count()].iter().map(|column| *column as usize)
     }
 
-    pub(super) fn gather(&self, x: &[f64]) -> Vector3<f64> {
-        let mut here = Vector3::zeros();
-        self.unknowns().iter().enumerate().for_each(|(local, unknown)| here[local] = x[*unknown]);
-        here
+    /// `Qᵀ x` or `Q x` of its part of a vector.
+    pub(super) fn turn(&self, numbers: &[f64], x: &mut [f64], back: bool) {
+        let here = gathered(self.unknowns(), x);
+        let (rotation, count) = (self.matrices(numbers).rotation, self.count());
+        let turned = if back { times(rotation, count, &here) } else { transposed_times(rotation, count, &here) };
+        self.unknowns().zip(turned.iter()).for_each(|(unknown, value)| x[unknown] = *value);
     }
 
     /// `Qᵀ K Q`; columns of one node have one pattern.
-    pub(super) fn rotate_matrix(&self, matrix: &Bordered, values: &mut [f64]) {
+    pub(super) fn rotate_matrix(&self, matrix: &Bordered, numbers: &[f64], values: &mut [f64]) {
         if !self.turns {
             return;
         }
-        let count = self.count;
+        let (rotation, count) = (self.matrices(numbers).rotation, self.count());
         for by_row in [false, true] {
             self.each_place(matrix, by_row, |places| {
-                let mut before = [0.0; 3];
-                (0..count).for_each(|local| before[local] = values[places[local]]);
-                for local in 0..count {
-                    values[places[local]] = (0..count).map(|other| self.rotation[(other, local)] * before[other]).sum();
-                }
+                let before = gathered(places[..count].iter().copied(), values);
+                let turned = transposed_times(rotation, count, &before);
+                places[..count].iter().zip(turned.iter()).for_each(|(place, value)| values[*place] = *value);
             });
         }
     }
@@ -145,45 +224,47 @@ impl HeldNode {
     fn each_place(&self, matrix: &Bordered, by_row: bool, mut each: impl FnMut([usize; 3])) {
         let pattern = &matrix.pattern;
         let mut starts = [0; 3];
-        self.unknowns().iter().enumerate().for_each(|(local, unknown)| starts[local] = pattern.starts[*unknown]);
-        for entry in 0..pattern.column(self.unknowns[0]).len() {
+        self.unknowns().zip(&mut starts).for_each(|(unknown, start)| *start = pattern.starts[unknown]);
+        for entry in 0..pattern.column(self.unknown(0)).len() {
             let mut places = [0; 3];
-            for local in 0..self.count {
-                let place = starts[local] + entry;
-                places[local] = if by_row { pattern.mirrors[place] } else { place };
+            for (place, start) in places.iter_mut().zip(&starts).take(self.count()) {
+                let own = start + entry;
+                *place = if by_row { pattern.mirrors[own] } else { own };
             }
             each(places);
         }
     }
 
-    /// The entries of its columns (or rows) `H`, added to those taken before, with where they are.
+    /// The entries of its columns (or rows) `H`, added to those taken before, and where each of them begins.
     pub(super) fn take(
         &self,
         matrix: &Bordered,
         values: &[f64],
         by_row: bool,
         taken: &mut Vec<(usize, f64)>,
-    ) -> [Range<usize>; 3] {
+        starts: &mut Vec<u32>,
+    ) {
         let pattern = &matrix.pattern;
-        let mut at = [const { 0..0 }; 3];
-        for (range, unknown) in at.iter_mut().zip(self.held()) {
-            let value = |place: usize| values[if by_row { pattern.mirrors[place] } else { place }];
-            let entry = |place: usize| (pattern.rows[place], value(place));
-            let start = taken.len();
-            taken.extend(pattern.column(*unknown).map(entry).filter(|(_, value)| *value != 0.0));
-            *range = start..taken.len();
+        for unknown in self.held() {
+            starts.push(taken.len() as u32);
+            for place in pattern.column(unknown) {
+                let value = values[if by_row { pattern.mirrors[place] } else { place }];
+                if value != 0.0 {
+                    taken.push((pattern.rows[place], value));
+                }
+            }
         }
-        at
     }
 
     /// Rows `T` less `F R⁻¹` times rows `H`.
-    pub(super) fn fold(&self, matrix: &Bordered, values: &mut [f64]) {
-        let Some(friction) = &self.friction else { return };
+    pub(super) fn fold(&self, matrix: &Bordered, numbers: &[f64], values: &mut [f64]) {
+        if !self.folds {
+            return;
+        }
+        let (friction, held, count) = (self.matrices(numbers).friction, self.held_count(), self.count());
         self.each_place(matrix, true, |places| {
-            for other in self.held..self.count {
-                let taken: f64 = (0..self.held).map(|held| friction[(other, held)] * values[places[held]]).sum();
-                values[places[other]] -= taken;
-            }
+            let taken = times(friction, count - held, &gathered(places[..held].iter().copied(), values));
+            places[held..count].iter().zip(taken.iter()).for_each(|(place, value)| values[*place] -= value);
         });
     }
 
@@ -191,12 +272,19 @@ impl HeldNode {
     pub(super) fn clear(&self, matrix: &Bordered, values: &mut [f64]) {
         let pattern = &matrix.pattern;
         for column in self.held() {
-            for place in pattern.column(*column) {
+            for place in pattern.column(column) {
                 values[pattern.mirrors[place]] = 0.0;
-                values[place] = if pattern.rows[place] == *column { 1.0 } else { 0.0 };
+                values[place] = if pattern.rows[place] == column { 1.0 } else { 0.0 };
             }
         }
     }
+}
+
+/// Values at up to three places, zero after them.
+pub(in crate::linear_algebra::sparse) fn gathered(places: impl Iterator<Item = usize>, values: &[f64]) -> Vector3<f64> {
+    let mut gathered = Vector3::zeros();
+    places.zip(gathered.iter_mut()).for_each(|(place, value)| *value = values[place]);
+    gathered
 }
 
 /// The node's unknowns, those first that are held where border rows hold as many as they name.

@@ -1,7 +1,7 @@
 //! All held nodes of a matrix, kept as long as they stay the same.
 
-use super::node::HeldNode;
-use super::{Friction, Holding};
+use super::node::{Coupling, HeldNode};
+use super::{Friction, Holdings};
 use crate::linear_algebra::sparse::Entries;
 use crate::linear_algebra::sparse::bordered::Bordered;
 use std::collections::VecDeque;
@@ -10,10 +10,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// All of them, for some entries of the borders.
 pub(super) struct Nodes {
     pub nodes: Vec<HeldNode>,
+    /// Entries of the small matrices of the nodes.
+    pub numbers: Vec<f64>,
+    pub couplings: Vec<Coupling>,
     /// Node and place in it of each unknown.
     pub place_of: Vec<Option<(u32, u32)>>,
     friction: Friction,
-    holdings: Vec<Holding>,
+    holdings: Holdings,
     /// Border columns that enter border rows.
     enters: Vec<bool>,
     /// Entries of the rows and columns of the holdings, one after the other.
@@ -29,7 +32,7 @@ pub(in crate::linear_algebra::sparse) struct LastNodes(Mutex<VecDeque<Arc<Nodes>
 const KEPT: usize = 4;
 
 impl LastNodes {
-    pub(super) fn of(&self, matrix: &Bordered, holdings: &[Holding], friction: Friction) -> Arc<Nodes> {
+    pub(super) fn of(&self, matrix: &Bordered, holdings: &Holdings, friction: Friction) -> Arc<Nodes> {
         // It is whole at every point where its holder could panic.
         let mut last = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let enters = enters(matrix);
@@ -52,33 +55,38 @@ impl std::fmt::Debug for LastNodes {
 }
 
 impl Nodes {
-    fn new(matrix: &Bordered, holdings: &[Holding], friction: Friction, enters: Vec<bool>) -> Self {
+    fn new(matrix: &Bordered, holdings: &Holdings, friction: Friction, enters: Vec<bool>) -> Self {
         let n = matrix.pattern.size();
         let mut is_reaction = vec![false; matrix.lower.len()];
         holdings.iter().flat_map(|holding| &holding.columns).for_each(|column| is_reaction[*column] = true);
         let mut place_of = vec![None; n];
-        let mut nodes: Vec<HeldNode> = Vec::with_capacity(holdings.len());
-        for holding in holdings {
+        let mut nodes: Vec<HeldNode> = Vec::with_capacity(holdings.iter().len());
+        let (mut numbers, mut couplings, mut before) = (Vec::with_capacity(4 * holdings.iter().len()), Vec::new(), 0);
+        for holding in holdings.iter() {
             let free = holding.unknowns.iter().all(|unknown| place_of[*unknown].is_none());
             // Reactions that enter border equations stay.
             if !free || holding.columns.iter().any(|column| enters[*column]) {
                 continue;
             }
-            let Some(mut node) = HeldNode::new(matrix, holding, &is_reaction, friction) else { continue };
-            for (local, unknown) in node.unknowns().iter().enumerate() {
-                place_of[*unknown] = Some((nodes.len() as u32, local as u32));
+            let place = nodes.len();
+            let node = HeldNode::new(matrix, holding, &is_reaction, friction, place, &mut numbers, &mut couplings);
+            let Some(mut node) = node else { continue };
+            for (local, unknown) in node.unknowns().enumerate() {
+                place_of[unknown] = Some((place as u32, local as u32));
             }
-            node.place = nodes.len();
+            node.before = before;
+            before += node.held_count() as u32;
             nodes.push(node);
         }
-        let borders = borders(matrix, holdings).collect();
-        Self { nodes, place_of, friction, holdings: holdings.to_vec(), enters, borders }
+        let mut entries = Vec::with_capacity(6 * holdings.iter().len());
+        entries.extend(borders(matrix, holdings));
+        Self { nodes, numbers, couplings, place_of, friction, holdings: holdings.clone(), enters, borders: entries }
     }
 
     /// Whether they are those of a matrix with this pattern, too.
-    fn fit(&self, matrix: &Bordered, holdings: &[Holding], friction: Friction, enters: &[bool]) -> bool {
+    fn fit(&self, matrix: &Bordered, holdings: &Holdings, friction: Friction, enters: &[bool]) -> bool {
         self.friction == friction
-            && self.holdings == holdings
+            && self.holdings == *holdings
             && self.enters == enters
             && borders(matrix, holdings).eq(self.borders.iter().copied())
     }
@@ -97,7 +105,7 @@ fn enters(matrix: &Bordered) -> Vec<bool> {
 }
 
 /// The entries of the rows and columns of holdings, each row and column closed by its length.
-fn borders<'a>(matrix: &'a Bordered, holdings: &'a [Holding]) -> impl Iterator<Item = (usize, f64)> + 'a {
+fn borders<'a>(matrix: &'a Bordered, holdings: &'a Holdings) -> impl Iterator<Item = (usize, f64)> + 'a {
     let closed = |entries: &'a Entries| entries.iter().copied().chain(std::iter::once((entries.len(), 0.0)));
     holdings.iter().flat_map(move |holding| {
         let rows = holding.rows.iter().flat_map(move |row| closed(&matrix.lower[*row]));
