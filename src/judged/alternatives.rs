@@ -97,6 +97,7 @@ mod tests {
     use super::Alternatives;
     use crate::path::displacements::Displacements;
     use crate::path::increment::{ContactState, Diagnostics, Direction, Energy, Increment, Point, PointKind, Status};
+    use smallvec::smallvec;
 
     fn direction(contacts: Status, load_rate: f64) -> Direction {
         let contacts = vec![contacts];
@@ -112,8 +113,8 @@ mod tests {
             status: Status::Slip,
             gap: 0.0,
             normal_reaction: 1.0,
-            tangential_reaction: vec![-0.3],
-            slip: vec![0.1],
+            tangential_reaction: smallvec![-0.3],
+            slip: smallvec![0.1],
             indeterminate: false,
         };
         Increment {

@@ -2,6 +2,7 @@
 
 use super::displacements::Displacements;
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 use std::sync::Arc;
 
 /// An increment: what `arcslip solve` prints as a line, a stream sends as an event and the store keeps as a row.
@@ -44,14 +45,19 @@ pub struct ContactState {
     /// Force on the node along the obstacle's tangents at the node's place (`dimension - 1` of them): in 2D the normal `n`
     /// turned clockwise; in 3D the coordinate axis least aligned with `n` (the first of them) made perpendicular to it
     /// and of unit length, `t`, and `n × t`.
-    pub tangential_reaction: Vec<f64>,
+    #[cfg_attr(feature = "server", schema(value_type = Vec<f64>))]
+    pub tangential_reaction: Tangential,
     /// Motion against the obstacle in this increment along the same tangents (length).
-    pub slip: Vec<f64>,
+    #[cfg_attr(feature = "server", schema(value_type = Vec<f64>))]
+    pub slip: Tangential,
     /// Equilibrium does not tell this contact's reaction from those of others that hold the same node: the reactions of
     /// least norm are given.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub indeterminate: bool,
 }
+
+/// Components along an obstacle's tangents.
+pub type Tangential = SmallVec<[f64; 2]>;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]

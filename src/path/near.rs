@@ -262,14 +262,10 @@ impl Path<'_> {
         let State { displacement, load, reactions } = &self.at.here.state;
         let held = self.at.near.iter().zip(&self.at.here.modes).zip(reactions);
         let held = held.filter(|((_, mode), _)| mode.is_active());
-        Visited {
-            stage: self.at.stage,
-            displacement: displacement.clone(),
-            load: *load,
-            held: held
-                .map(|((contact, mode), reaction)| Held { contact: *contact, mode: *mode, reaction: *reaction })
-                .collect(),
-        }
+        let held = held.map(|((contact, mode), reaction)| Held { contact: *contact, mode: *mode, reaction: *reaction });
+        let mut all = Vec::with_capacity(self.at.near.len());
+        all.extend(held);
+        Visited { stage: self.at.stage, displacement: displacement.clone(), load: *load, held: all }
     }
 }
 

@@ -11,6 +11,7 @@ use super::state::State;
 use super::totals::Totals;
 use crate::contact::vector::{add, dot};
 use crate::contact::{Mode, tangents_in_space};
+use smallvec::smallvec;
 use std::sync::Arc;
 
 /// What a row is made from, beside the path's totals.
@@ -118,8 +119,8 @@ fn contact_rows(scene: &Scene, row: &Row<'_>, force_scale: f64) -> (Vec<ContactS
             status: Status::Free,
             gap: frame.gap * length,
             normal_reaction: 0.0,
-            tangential_reaction: vec![0.0; dimension - 1],
-            slip: vec![0.0; dimension - 1],
+            tangential_reaction: smallvec![0.0; dimension - 1],
+            slip: smallvec![0.0; dimension - 1],
             indeterminate: false,
         };
         if let Some(index) = row.places[one.contact] {

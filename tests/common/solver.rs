@@ -154,8 +154,8 @@ fn increment(index: u64, run: u64) -> Increment {
             status: Status::Slip,
             gap: 0.0,
             normal_reaction: along,
-            tangential_reaction: vec![-0.3 * along],
-            slip: vec![0.1],
+            tangential_reaction: [-0.3 * along].into_iter().collect(),
+            slip: [0.1].into_iter().collect(),
             indeterminate: false,
         }],
         point: Point {

@@ -27,6 +27,9 @@ pub(super) struct Part {
     pub test: f64,
 }
 
+/// Entries of a column of `A`, as they mostly are in the plane.
+const ENTRIES: usize = 6;
+
 /// See the module.
 pub(super) struct Equations<'a> {
     pub loading: Loading<'a>,
@@ -140,7 +143,7 @@ impl<'a> Equations<'a> {
 
     /// The lower triangle of `(A + Aᵀ)/2`.
     pub fn symmetric_part(&self) -> Triangle {
-        let mut lower = Triangle::new();
+        let mut lower = Triangle::with_capacity(ENTRIES * self.size);
         self.each_entry(&mut |row, column, value| {
             let half = if row == column { value } else { 0.5 * value };
             lower.push((row.max(column), row.min(column), half));

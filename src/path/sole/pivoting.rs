@@ -21,6 +21,8 @@ const ROUNDS_ONE_BY_ONE: usize = 48;
 /// A contact whose mode only a finite step can tell.
 pub(super) struct Doubt {
     contact: usize,
+    /// Along which it may slip, where it is on its cone.
+    direction: Option<Vector>,
     /// What must not be negative is zero at first order, not only nearly so.
     weak: bool,
 }
@@ -163,7 +165,7 @@ impl Equations<'_> {
             if margin < -tolerance {
                 next.get_or_insert_with(|| modes.to_vec())[one.contact] = other;
             } else if margin <= IN_DOUBT / WEAK * tolerance {
-                doubts.push(Doubt { contact: one.contact, weak: margin <= tolerance });
+                doubts.push(Doubt { contact: one.contact, direction: one.direction, weak: margin <= tolerance });
             }
         }
         (next, doubts)
@@ -219,20 +221,14 @@ impl Equations<'_> {
     /// do.
     pub fn candidate(&self, rate: Rate, mut modes: Vec<Mode>, doubts: Vec<Doubt>) -> Candidate {
         let weak = doubts.iter().any(|doubt| doubt.weak);
-        let mut doubts = doubts.iter().peekable();
-        let mut alternatives: Vec<Vec<Alternative>> = Vec::with_capacity(self.changing.len());
-        for one in &self.changing {
-            let mode = modes[one.contact];
-            let doubt = doubts.next_if(|doubt| doubt.contact == one.contact);
-            alternatives.push(match (doubt, one.direction) {
-                (Some(doubt), Some(direction)) => {
-                    if doubt.weak {
-                        modes[one.contact] = Mode::Stick;
-                    }
-                    vec![vec![(one.contact, Mode::Stick)], vec![(one.contact, Mode::Slip { direction })]]
-                }
-                _ => vec![vec![(one.contact, mode)]],
-            });
+        let mut alternatives: Vec<Vec<Alternative>> = Vec::with_capacity(doubts.len());
+        for doubt in &doubts {
+            let Some(direction) = doubt.direction else { continue };
+            if doubt.weak {
+                modes[doubt.contact] = Mode::Stick;
+            }
+            alternatives
+                .push(vec![vec![(doubt.contact, Mode::Stick)], vec![(doubt.contact, Mode::Slip { direction })]]);
         }
         let dissipation = self.changing.iter().map(|one| {
             let slips = matches!(modes[one.contact], Mode::Slip { .. });

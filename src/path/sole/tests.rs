@@ -72,7 +72,8 @@ fn assert_alike(own: &Found, others: &Found, place: &str) {
         let other = others.candidates.iter().find(alike).unwrap_or_else(|| panic!("the same direction: {place}"));
         assert!((one.dissipation - other.dissipation).abs() < 1e-12, "{place}");
         assert_eq!((&one.modes, one.weak), (&other.modes, other.weak), "{place}");
-        assert_eq!(one.alternatives, other.alternatives, "{place}");
+        let in_doubt = |of: &Candidate| of.alternatives.iter().filter(|all| all.len() > 1).cloned().collect::<Vec<_>>();
+        assert_eq!(in_doubt(one), in_doubt(other), "{place}");
     }
 }
 

@@ -31,6 +31,10 @@ pub(in crate::linear_algebra::sparse) struct LastNodes(Mutex<VecDeque<Arc<Nodes>
 /// So many sets of nodes are kept: of the modes on trial at an event and of those before it.
 const KEPT: usize = 4;
 
+/// Numbers of a node, and entries of its borders, as they mostly are in the plane.
+const NUMBERS: usize = 8;
+const BORDERS: usize = 14;
+
 impl LastNodes {
     pub(super) fn of(&self, matrix: &Bordered, holdings: &Holdings, friction: Friction) -> Arc<Nodes> {
         // It is whole at every point where its holder could panic.
@@ -61,7 +65,8 @@ impl Nodes {
         holdings.iter().flat_map(|holding| &holding.columns).for_each(|column| is_reaction[*column] = true);
         let mut place_of = vec![None; n];
         let mut nodes: Vec<HeldNode> = Vec::with_capacity(holdings.iter().len());
-        let (mut numbers, mut couplings, mut before) = (Vec::with_capacity(4 * holdings.iter().len()), Vec::new(), 0);
+        let (mut numbers, mut couplings, mut before) =
+            (Vec::with_capacity(NUMBERS * holdings.iter().len()), Vec::new(), 0);
         for holding in holdings.iter() {
             let free = holding.unknowns.iter().all(|unknown| place_of[*unknown].is_none());
             // Reactions that enter border equations stay.
@@ -78,7 +83,7 @@ impl Nodes {
             before += node.held_count() as u32;
             nodes.push(node);
         }
-        let mut entries = Vec::with_capacity(6 * holdings.iter().len());
+        let mut entries = Vec::with_capacity(BORDERS * holdings.iter().len());
         entries.extend(borders(matrix, holdings));
         Self { nodes, numbers, couplings, place_of, friction, holdings: holdings.clone(), enters, borders: entries }
     }
