@@ -217,6 +217,8 @@ impl ModeSystem<'_> {
             let put_place = |matrix: &mut dyn Sink| {
                 self.place(&iterate.state, place, Some(matrix));
             };
+            // Of a small correction few digits count.
+            let once = reused || (is_own && error <= SMALL);
             if !reused && !std::mem::take(&mut is_own) {
                 last_factorisation = self.factorise(&iterate, Kind::Increment, put_place);
                 factorisations += 1;
@@ -228,7 +230,7 @@ impl ModeSystem<'_> {
             }
             let factorisation = last_factorisation.as_ref().ok_or(Failure::Singular)?;
             // What one from elsewhere leaves over is more than rounding anyway.
-            let solved = if reused { factorisation.solve_once(&mut values) } else { factorisation.solve(&mut values) };
+            let solved = if once { factorisation.solve_once(&mut values) } else { factorisation.solve(&mut values) };
             if !solved || !self.bring_to_zero(place, left_of_place, &iterate, factorisation, &mut along, &mut values) {
                 return Err(Failure::Singular);
             }

@@ -94,9 +94,12 @@ impl Path<'_> {
         let ahead = here.state.advanced(rate, 1.0);
         let mut nearest: Option<(Watch, f64)> = None;
         for watch in watches {
-            let scale = watch.scale(loading, &here.state, self.at.totals.force_scale);
             let now = watch.value(loading, &here.modes, &here.state, rate);
             let change = watch.value(loading, &here.modes, &ahead, rate) - now;
+            if change >= 0.0 {
+                continue;
+            }
+            let scale = watch.scale(loading, &here.state, self.at.totals.force_scale);
             let constant = if watch.is_of_contact() { CONSTANT } else { CONSTANT_BOUND };
             if change < -constant * scale {
                 if now <= ZERO * scale {

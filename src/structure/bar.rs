@@ -177,7 +177,7 @@ impl Bar {
 
     /// Calls `add(freedom, size)` with the axial force and what displacements of this size would make of it; not what they
     /// do to the direction of a bar that shrinks to a point: there the forces are lost, which is no equilibrium.
-    pub fn each_size(&self, structure: &Structure, displacement: &[f64], least: f64, add: &mut dyn FnMut(usize, f64)) {
+    pub fn each_size(&self, structure: &Structure, displacement: &[f64], least: f64, add: &mut impl FnMut(usize, f64)) {
         let deformed = self.deformed(structure, displacement);
         let (_, axial, slope) = self.response(deformed.elongation);
         let dimension = structure.dimension;

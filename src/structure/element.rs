@@ -20,7 +20,7 @@ impl Element {
 
     /// Calls `add(freedom, size)` with the size of the numbers that the element's nodal forces are made of: stiffness times
     /// displacements as they are (`least` at least), not their differences, and the force carried.
-    pub fn each_size(&self, structure: &Structure, displacement: &[f64], least: f64, add: &mut dyn FnMut(usize, f64)) {
+    pub fn each_size(&self, structure: &Structure, displacement: &[f64], least: f64, add: &mut impl FnMut(usize, f64)) {
         match self {
             Self::Bar(bar) => bar.each_size(structure, displacement, least, add),
             Self::Spring(spring) => spring.each_size(structure, displacement, least, add),

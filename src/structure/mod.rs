@@ -42,8 +42,9 @@ pub struct Structure {
     /// The degree of freedom of each unknown.
     pub freedom_of: Vec<usize>,
     pub elements: Vec<Element>,
-    /// The elements at each node.
-    elements_at: Vec<Vec<usize>>,
+    /// The elements at the nodes, node by node, and where those of each begin.
+    elements_at: Vec<usize>,
+    first_at: Vec<usize>,
     layout: Option<Arc<Layout>>,
 }
 
@@ -57,11 +58,18 @@ impl Structure {
                 freedom_of.push(freedom);
             }
         }
-        let mut elements_at = vec![Vec::new(); supported.len() / dimension.max(1)];
+        let mut first_at = vec![0; supported.len() / dimension.max(1) + 1];
+        elements.iter().flat_map(Element::nodes).for_each(|node| first_at[node + 1] += 1);
+        (1..first_at.len()).for_each(|node| first_at[node] += first_at[node - 1]);
+        let mut next = first_at.clone();
+        let mut elements_at = vec![0; first_at.last().copied().unwrap_or(0)];
         for (index, element) in elements.iter().enumerate() {
-            element.nodes().for_each(|node| elements_at[node].push(index));
+            for node in element.nodes() {
+                elements_at[next[node]] = index;
+                next[node] += 1;
+            }
         }
-        let mut structure = Self { dimension, unknown_of, freedom_of, elements, elements_at, layout: None };
+        let mut structure = Self { dimension, unknown_of, freedom_of, elements, elements_at, first_at, layout: None };
         structure.set_sparse(structure.unknowns() > MOST_DENSE);
         structure
     }
@@ -124,7 +132,7 @@ impl Structure {
     pub fn force_size_at(&self, node: usize, displacement: &[f64], least: f64) -> f64 {
         let first = node * self.dimension;
         let mut sizes = [0.0; 3];
-        for element in &self.elements_at[node] {
+        for element in &self.elements_at[self.first_at[node]..self.first_at[node + 1]] {
             self.elements[*element].each_size(self, displacement, least, &mut |freedom, size| {
                 if let Some(sum) = freedom.checked_sub(first).and_then(|component| sizes.get_mut(component)) {
                     *sum += size;

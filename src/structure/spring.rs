@@ -88,7 +88,7 @@ impl Spring {
     }
 
     /// Calls `add(freedom, size)` with the force that displacements of this size make.
-    pub fn each_size(&self, structure: &Structure, displacement: &[f64], least: f64, add: &mut dyn FnMut(usize, f64)) {
+    pub fn each_size(&self, structure: &Structure, displacement: &[f64], least: f64, add: &mut impl FnMut(usize, f64)) {
         let dimension = structure.dimension;
         let size = |component: usize| {
             let at = |node: usize| displacement[node * dimension + component].abs();

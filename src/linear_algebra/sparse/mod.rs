@@ -35,4 +35,4 @@ pub use pattern::Pattern;
 use smallvec::SmallVec;
 
 /// Entries of a row or a column: place and value.
-pub type Entries = SmallVec<[(usize, f64); 4]>;
+pub type Entries = SmallVec<[(usize, f64); 3]>;

@@ -110,8 +110,9 @@ impl HeldNode {
         let is_first = held == count || rows.columns(held, count - held).iter().all(|value| *value == 0.0);
         let rotation = if is_first { Matrix3::identity() } else { completed(&rows, held, count)? };
         let largest = columns.amax();
-        let constraint = leading(&(rows * rotation), held);
-        let turned = rotation.tr_mul(&columns);
+        let (constraint, turned) =
+            if is_first { (rows, columns) } else { (rows * rotation, rotation.tr_mul(&columns)) };
+        let constraint = leading(&constraint, held);
         let reaction = leading(&turned, held);
         let mut rest = turned;
         rest.rows_mut(0, held).fill(0.0);
@@ -289,6 +290,9 @@ pub(in crate::linear_algebra::sparse) fn gathered(places: impl Iterator<Item = u
 
 /// The node's unknowns, those first that are held where border rows hold as many as they name.
 fn held_first(matrix: &Bordered, holding: &Holding) -> Places {
+    if holding.rows.len() == holding.unknowns.len() {
+        return holding.unknowns.clone();
+    }
     let is_named = |unknown: &usize| {
         let names = |row: &usize| matrix.lower[*row].iter().any(|(column, value)| column == unknown && *value != 0.0);
         holding.rows.iter().any(names)
