@@ -4,6 +4,7 @@ use super::{Friction, Holding, Places};
 use crate::linear_algebra::sparse::bordered::Bordered;
 use nalgebra::{Matrix3, Vector3};
 use smallvec::SmallVec;
+use std::ops::Range;
 
 /// One node. Its small matrices are among the numbers of all nodes, so that many nodes take little memory.
 pub(in crate::linear_algebra::sparse) struct HeldNode {
@@ -131,13 +132,13 @@ impl HeldNode {
             }
         }
         let first = u32::try_from(numbers.len()).ok()?;
-        numbers.extend(constraint.view((0, 0), (held, held)).iter());
-        numbers.extend(reaction.view((0, 0), (held, held)).iter());
+        put(&constraint, 0..held, held, numbers);
+        put(&reaction, 0..held, held, numbers);
         if folds {
-            numbers.extend((rest * reaction).view((held, 0), (count - held, held)).iter());
+            put(&(rest * reaction), held..count, held, numbers);
         }
         if !is_first {
-            numbers.extend(rotation.view((0, 0), (count, count)).iter());
+            put(&rotation, 0..count, count, numbers);
         }
         coupled.extend(couplings);
         Some(Self {
@@ -297,8 +298,17 @@ fn held_first(matrix: &Bordered, holding: &Holding) -> Places {
         let names = |row: &usize| matrix.lower[*row].iter().any(|(column, value)| column == unknown && *value != 0.0);
         holding.rows.iter().any(names)
     };
-    let (named, others): (Places, Places) = holding.unknowns.iter().copied().partition(is_named);
-    if named.len() == holding.rows.len() { named.into_iter().chain(others).collect() } else { holding.unknowns.clone() }
+    let mut named = [false; 3];
+    holding.unknowns.iter().zip(&mut named).for_each(|(unknown, named)| *named = is_named(unknown));
+    let mut first = holding.unknowns.clone();
+    if named.iter().filter(|named| **named).count() == holding.rows.len() {
+        first.clear();
+        for is_first in [true, false] {
+            let wanted = holding.unknowns.iter().zip(&named).filter(|(_, named)| **named == is_first);
+            wanted.for_each(|(unknown, _)| first.push(*unknown));
+        }
+    }
+    first
 }
 
 /// Whether columns have entries in the same rows.
@@ -315,6 +325,13 @@ fn leading(matrix: &Matrix3<f64>, size: usize) -> Matrix3<f64> {
     })
 }
 
+/// Adds rows of the first columns of a matrix, by columns.
+fn put(matrix: &Matrix3<f64>, rows: Range<usize>, columns: usize, numbers: &mut Vec<f64>) {
+    for column in 0..columns {
+        rows.clone().for_each(|row| numbers.push(matrix[(row, column)]));
+    }
+}
+
 /// The inverse of a leading block that [`leading`] made.
 fn inverse(matrix: &Matrix3<f64>, size: usize) -> Option<Matrix3<f64>> {
     if size == 1 {
@@ -323,9 +340,13 @@ fn inverse(matrix: &Matrix3<f64>, size: usize) -> Option<Matrix3<f64>> {
         inverse[(0, 0)] = own;
         return own.is_finite().then_some(inverse);
     }
-    let largest = matrix.view((0, 0), (size, size)).amax();
+    let largest_of = |matrix: &Matrix3<f64>| {
+        let entries = (0..size).flat_map(|row| (0..size).map(move |column| (row, column)));
+        entries.fold(0.0_f64, |largest, place| largest.max(matrix[place].abs()))
+    };
+    let largest = largest_of(matrix);
     let inverse = matrix.try_inverse()?;
-    let own = inverse.view((0, 0), (size, size)).amax();
+    let own = largest_of(&inverse);
     (inverse.iter().all(|value| value.is_finite()) && own * largest * DEPENDENT < 1.0).then_some(inverse)
 }
 

@@ -19,7 +19,7 @@ pub(super) struct Nodes {
     holdings: Holdings,
     /// Border columns that enter border rows.
     enters: Vec<bool>,
-    /// Entries of the rows and columns of the holdings, one after the other.
+    /// Entries of the rows and columns of the holdings, one after the other, each followed by its length.
     borders: Vec<(usize, f64)>,
 }
 
@@ -84,7 +84,10 @@ impl Nodes {
             nodes.push(node);
         }
         let mut entries = Vec::with_capacity(BORDERS * holdings.iter().len());
-        entries.extend(borders(matrix, holdings));
+        for list in borders(matrix, holdings) {
+            entries.extend_from_slice(list);
+            entries.push((list.len(), 0.0));
+        }
         Self { nodes, numbers, couplings, place_of, friction, holdings: holdings.clone(), enters, borders: entries }
     }
 
@@ -93,7 +96,18 @@ impl Nodes {
         self.friction == friction
             && self.holdings == *holdings
             && self.enters == enters
-            && borders(matrix, holdings).eq(self.borders.iter().copied())
+            && self.has_borders(matrix, holdings)
+    }
+
+    /// Whether the entries of the rows and columns of the holdings are these.
+    fn has_borders(&self, matrix: &Bordered, holdings: &Holdings) -> bool {
+        let mut left = &self.borders[..];
+        let is_next = |list: &Entries| {
+            let Some((own, rest)) = left.split_at_checked(list.len()) else { return false };
+            left = rest.get(1..).unwrap_or_default();
+            own == &list[..] && rest.first().is_some_and(|(length, _)| *length == list.len())
+        };
+        borders(matrix, holdings).all(is_next) && left.is_empty()
     }
 }
 
@@ -109,11 +123,10 @@ fn enters(matrix: &Bordered) -> Vec<bool> {
     enters
 }
 
-/// The entries of the rows and columns of holdings, each row and column closed by its length.
-fn borders<'a>(matrix: &'a Bordered, holdings: &'a Holdings) -> impl Iterator<Item = (usize, f64)> + 'a {
-    let closed = |entries: &'a Entries| entries.iter().copied().chain(std::iter::once((entries.len(), 0.0)));
-    holdings.iter().flat_map(move |holding| {
-        let rows = holding.rows.iter().flat_map(move |row| closed(&matrix.lower[*row]));
-        rows.chain(holding.columns.iter().flat_map(move |column| closed(&matrix.right[*column])))
+/// The rows and columns of holdings.
+fn borders<'a>(matrix: &'a Bordered, holdings: &'a Holdings) -> impl Iterator<Item = &'a Entries> {
+    holdings.iter().flat_map(|holding| {
+        let rows = holding.rows.iter().map(|row| &matrix.lower[*row]);
+        rows.chain(holding.columns.iter().map(|column| &matrix.right[*column]))
     })
 }
