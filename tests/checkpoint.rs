@@ -7,7 +7,9 @@ use arcslip::model::JobRequest;
 use arcslip::model::request::{Method, Until};
 use arcslip::path::increment::{Diagnostics, PointKind, Status};
 use arcslip::path::{Checkpoint, CheckpointError, Increment, Path, Scene, StopReason};
+use arcslip::scenes::of_any_size::slider_chain;
 use common::paths::{judge, scene, trace};
+use serde_json::json;
 
 /// A checkpoint as it comes back from where it was stored.
 fn stored(checkpoint: &Checkpoint) -> Checkpoint {
@@ -67,26 +69,58 @@ fn a_path_that_is_taken_up_again_has_the_same_bits() {
     ] {
         let mut request = scene(name);
         request.analysis.method = method;
-        let scene = Scene::new(&request).expect("a scene");
-        let mut path = Path::new(&scene, CancelFlag::default());
-        let (mut lines, mut cuts) = (Vec::new(), Vec::new());
-        while let Some(increment) = path.next() {
-            if increment.index % every == 0 {
-                cuts.push((increment.index, stored(&path.checkpoint())));
-            }
-            lines.push(line(increment));
-        }
-        let report = path.report().expect("a report");
-        for (index, checkpoint) in cuts {
-            let mut resumed = Path::resume(&scene, checkpoint, CancelFlag::default()).expect("resumed");
-            let rest: Vec<String> = resumed.by_ref().map(line).collect();
-            assert!(rest == lines[index as usize + 1..], "{name}, cut at {index}");
-            let mut again = resumed.report().expect("a report");
-            assert!(again.elapsed_s > 0.0);
-            again.elapsed_s = report.elapsed_s;
-            assert_eq!(again, report, "{name}, cut at {index}");
+        is_the_same_wherever_it_is_cut(name, &request, every);
+    }
+}
+
+/// Sliders of different weights, springs and friction, pulled until most slip, and pushed back: where nothing bends the
+/// path a factorisation is passed on from point to point, and a path that is taken up again has none.
+#[test]
+fn a_straight_path_that_is_taken_up_again_has_the_same_bits() {
+    let mut document = slider_chain(40, 0.3, 1.0, 1.0);
+    let model = &mut document["model"];
+    for block in 0..40 {
+        let part = |by: usize| 1.0 + (block * by % 17) as f64 / 23.0;
+        model["contacts"][block]["friction"] = json!(0.2 * part(5));
+        model["stages"][0]["forces"][format!("block{block}")] = json!([0, -part(7)]);
+        if block > 0 {
+            model["elements"][block - 1]["stiffness"] = json!([[part(3), 0], [0, 0]]);
         }
     }
+    model["stages"][1]["until"] = json!({"load_above": 9});
+    let back = json!({"name": "back", "forces": {"block0": [-1, 0]}, "until": {"load_above": 18}});
+    model["stages"].as_array_mut().expect("stages").push(back);
+    let request: JobRequest = serde_json::from_value(document).expect("a request");
+    let increments = is_the_same_wherever_it_is_cut("chain", &request, 1);
+    let changes = increments.iter().filter(|increment| increment.point.kind == PointKind::ContactChange).count();
+    let factorisations = increments.last().map_or(0, |increment| increment.diagnostics.factorisations);
+    assert!(changes > 40, "{changes}");
+    assert!(factorisations < changes as u64 / 2, "{factorisations} for {changes} changes");
+}
+
+/// The path's increments; one of so many is a place at which it is cut.
+fn is_the_same_wherever_it_is_cut(name: &str, request: &JobRequest, every: u64) -> Vec<Increment> {
+    let scene = Scene::new(request).expect("a scene");
+    let mut path = Path::new(&scene, CancelFlag::default());
+    let (mut increments, mut cuts) = (Vec::new(), Vec::new());
+    while let Some(increment) = path.next() {
+        if increment.index % every == 0 {
+            cuts.push((increment.index, stored(&path.checkpoint())));
+        }
+        increments.push(increment);
+    }
+    let lines: Vec<String> = increments.iter().cloned().map(line).collect();
+    let report = path.report().expect("a report");
+    for (index, checkpoint) in cuts {
+        let mut resumed = Path::resume(&scene, checkpoint, CancelFlag::default()).expect("resumed");
+        let rest: Vec<String> = resumed.by_ref().map(line).collect();
+        assert!(rest == lines[index as usize + 1..], "{name}, cut at {index}");
+        let mut again = resumed.report().expect("a report");
+        assert!(again.elapsed_s > 0.0);
+        again.elapsed_s = report.elapsed_s;
+        assert_eq!(again, report, "{name}, cut at {index}");
+    }
+    increments
 }
 
 /// The direction that was taken leads along the same points; indices, work and time are the new path's own.

@@ -197,7 +197,7 @@ impl Judge {
             let in_place = increment.displacements.get_index(index).filter(|(name, _)| ***name == node.name);
             let found = in_place.map(|(_, values)| values).or_else(|| increment.displacements.get(node.name.as_str()));
             let found = found.filter(|values| values.len() == posted.dimension);
-            *displacement = found.map_or(ZERO, |values| padded(values));
+            *displacement = found.map_or(ZERO, padded);
             fits &= found.is_some();
         }
         fits

@@ -43,7 +43,9 @@ fn main() {
         "place error",
         "peak MB"
     );
-    let (mut first, mut before): (Option<(usize, f64)>, Option<(usize, f64)>) = (None, None);
+    // Sizes with their times.
+    let mut first: Option<(usize, f64)> = None;
+    let mut before = first;
     for size in sizes {
         let traced = timed(size).unwrap_or_else(|reason| panic!("{size} blocks: {reason}"));
         let exponent_from = |other: Option<(usize, f64)>| {
