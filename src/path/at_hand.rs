@@ -1,7 +1,7 @@
 //! A factorisation that is left over where a direction was found, for the step along it.
 //!
 //! Where nothing bends the path the equations at the start of a step are those at its end. What is at hand is what would be
-//! made anew without it, to the last bit: a path that is taken up from a checkpoint has none, and is the same.
+//! made anew without it, to the last bit: a path that is taken up from a checkpoint has none, makes it, and is the same.
 
 use super::loading::Loading;
 use super::mode_system::ModeSystem;
@@ -23,14 +23,18 @@ impl AtHand {
         }
     }
 
-    /// The equations of a system at its anchor, bordered by the direction; made where they are not at hand.
+    pub(super) fn is_one(&self) -> bool {
+        self.0.is_some()
+    }
+
+    /// The equations of a system at its anchor, bordered by the direction; made where they are no longer at hand.
     pub(super) fn along(self, system: &ModeSystem<'_>, rate: &Rate) -> Option<SystemFactorisation> {
         let is_its_own = |sparse: &SparseFactorisation| sparse.size() == system.size();
         let bordered = self.0.filter(|sparse| is_its_own(sparse)).and_then(|sparse| {
             let sparse = sparse.with_last_row(|matrix| system.border(matrix, rate))?;
             system.is_kept(&sparse).then(|| SystemFactorisation::Sparse(Box::new(sparse)))
         });
-        bordered.or_else(|| system.may_serve(system.bordered(&system.iterate(system.anchor.clone()), rate)?))
+        bordered.or_else(|| system.bordered(&system.iterate(system.anchor.clone()), rate))
     }
 }
 

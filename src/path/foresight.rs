@@ -75,7 +75,7 @@ impl Start<'_> {
     pub(super) fn meet_change(
         &self,
         foreseen: Foreseen,
-        at_hand: AtHand,
+        at_hand: Option<AtHand>,
         before: Option<&Placed>,
         ends: &[End],
         load_sign: f64,
@@ -90,7 +90,7 @@ impl Start<'_> {
         let guess = guess.unwrap_or_else(|| self.state.advanced(self.rate, way));
         let scale = watch.scale(self.loading, &guess, self.force_scale);
         let place = Place::Zero { watch, scale, towards: self.rate };
-        let own = if is_straight { at_hand.along(&system, self.rate) } else { None };
+        let own = at_hand.filter(|_| is_straight).and_then(|at_hand| at_hand.along(&system, self.rate));
         let mut serving = None;
         let guess = system.iterate(guess);
         let corrected = system.correct_with(guess, place, self.force_scale, own, &mut serving).ok()?;

@@ -242,13 +242,13 @@ impl Path<'_> {
         if !reached.is_empty() {
             self.at.admit(&reached);
             self.near = Near::of(self.scene, &self.at);
-            self.at_hand = AtHand::default();
+            (self.at_hand, self.at.here.is_factorised) = (AtHand::default(), false);
         }
     }
 
     /// The loading of the running stage, after a change of stage.
     pub(super) fn load_anew(&mut self) {
-        self.at_hand = AtHand::default();
+        (self.at_hand, self.at.here.is_factorised) = (AtHand::default(), false);
         self.near = Near::of(self.scene, &self.at);
     }
 

@@ -61,6 +61,9 @@ pub(super) struct Here {
     pub apart: Option<f64>,
     /// Signs that tell smooth bifurcations; `None` until known in these modes.
     pub signature: Option<Signature>,
+    /// The direction was found with a factorisation that serves the step along it (`at_hand`).
+    #[serde(default)]
+    pub is_factorised: bool,
 }
 
 /// A state that the path has passed.
@@ -145,6 +148,7 @@ impl Progress {
                 before: None,
                 apart: None,
                 signature: None,
+                is_factorised: false,
             },
             step: scene.analysis.arc_length.initial,
             waiting: Waiting::default(),

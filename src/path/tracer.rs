@@ -118,12 +118,13 @@ impl<'a> Path<'a> {
         if let Some(index) = decision.taken {
             self.go(&decision.options[index]);
             self.at_hand = std::mem::take(&mut decision.options[index].at_hand);
+            self.at.here.is_factorised = self.at_hand.is_one();
         }
     }
 
     pub(super) fn go(&mut self, choice: &Choice) {
         self.at.here.modes.clone_from(&choice.modes);
-        self.at.here.signature = None;
+        (self.at.here.signature, self.at.here.is_factorised) = (None, false);
         self.at.here.before = None;
         self.at.here.load_sign = choice.load_sign;
         self.at.here.rate = Some(choice.rate.clone());
@@ -168,7 +169,7 @@ impl<'a> Path<'a> {
         let begun = here.rate.take().filter(|_| accepted.joined == 0);
         let changes = reached.event.is_some_and(Watch::is_of_contact);
         here.apart = (changes && here.before.is_none()).then_some(reached.step);
-        here.before = None;
+        (here.before, here.is_factorised) = (None, false);
         let mut modes = std::mem::replace(&mut here.modes, reached.corrected.modes);
         here.drift = reached.drift;
         here.signature = accepted.signature;
@@ -230,7 +231,9 @@ impl<'a> Path<'a> {
         Some(row)
     }
 
-    pub(super) fn emit(&mut self, emitted: Emitted<'_>) -> Increment {
+    pub(super) fn emit(&mut self, mut emitted: Emitted<'_>) -> Increment {
+        // Nobody goes on from here along the others.
+        emitted.options.iter_mut().for_each(|option| option.at_hand = AtHand::default());
         let mut state = Cow::Borrowed(&self.at.here.state);
         if let Some(reactions) = emitted.reactions {
             state.to_mut().reactions = reactions;

@@ -217,7 +217,7 @@ impl Path<'_> {
         }
         let before = here.before.as_ref();
         let foreseen = sought.jump.or(sought.foreseen).filter(|foreseen| foreseen.step == step);
-        let at_hand = std::mem::take(&mut tries.at_hand);
+        let at_hand = here.is_factorised.then(|| std::mem::take(&mut tries.at_hand));
         let met = foreseen.and_then(|foreseen| start.meet_change(foreseen, at_hand, before, ends, load_sign, work));
         met.map_or_else(|| start.attempt(step, before, None, ends, load_sign, work), Ok)
     }
