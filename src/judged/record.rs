@@ -52,7 +52,7 @@ impl Recorder {
     /// An increment without what is not kept.
     pub fn cut(&self, mut increment: Increment) -> Increment {
         if let Some(kept) = &self.nodes {
-            increment.displacements.keep(|node| kept[node]);
+            increment.displacements.keep(|node| kept.get(node).is_some_and(|kept| *kept));
         }
         if !self.directions {
             increment.directions = None;

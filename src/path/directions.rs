@@ -44,8 +44,8 @@ pub struct Candidate {
     /// Modes under which it is feasible at first order: stuck where a contact can be.
     pub modes: Vec<Mode>,
     /// What the contacts that change together may do under it at first order, or nearly so, one entry for each that can
-    /// change (those without a doubt may be left out); more than one alternative where an inequality holds with equality. Every combination of those that hold
-    /// is feasible.
+    /// change (those without a doubt may be left out); more than one alternative where an inequality holds with equality.
+    /// Every combination of those that hold is feasible.
     pub alternatives: Vec<Vec<Alternative>>,
     /// Some inequality holds with equality: only a finite step can tell whether the direction exists.
     pub weak: bool,

@@ -1,4 +1,15 @@
 //! A bordered system taken apart: nodes that borders hold, a factorised interior, and what is left of the borders.
+//!
+//! With the held unknowns `H` eliminated at their nodes (`held`) and `T` the rest, of `[[K, B], [C, D]]` there remains
+//!
+//! ```text
+//! [[K_TT, B_T + K_TH S], [C_T, D + C_H S]],      S = -M⁻¹ d
+//! ```
+//!
+//! with the motions `S` of the held unknowns by the borders that are kept; reactions that are kept (`Friction::Bordered`)
+//! have the equilibrium along `H` for their rows. Its solution by the complement `D - C K⁻¹ B` is `reduced` (mixed block
+//! elimination: W. Govaerts, J. D. Pryce, IMA J. Numer. Anal. 13 (1993) 161, doi:10.1093/imanum/13.2.161). Another border
+//! row changes a row of the complement and nothing else.
 
 use super::Entries;
 use super::bordered::Bordered;
