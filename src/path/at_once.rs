@@ -43,6 +43,8 @@ use crate::linear_algebra::SystemFactorisation;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
+/// A mode that breaks so many times the contacts that the first one broke leads away from the end.
+const MOST_RISE: usize = 2;
 /// Modes that are tried at the end of a step.
 const MOST_ROUNDS: usize = 12;
 /// Steps after a first failure in which changes are not taken together.
@@ -85,6 +87,16 @@ pub(super) struct Joined {
     pub signature: Option<Signature>,
     /// The path's direction at the step's end if no contact changed: how much it turns beside its kinks.
     pub unchanged: Rate,
+}
+
+/// The modes that hold at the end of a step, and the point there.
+struct EndModes {
+    modes: Vec<Mode>,
+    corrected: Corrected,
+    /// All contacts that were changed on the way to the modes.
+    asked: BTreeSet<usize>,
+    /// Negative eigenvalues at the start with those held, and as many with them free.
+    negative: usize,
 }
 
 /// About where a step would end if no contact changed.
@@ -168,14 +180,8 @@ impl Start<'_> {
     }
 
     fn join(&self, first: &BTreeSet<usize>, far: Far<'_>, watches: &[Watch], work: &mut Work) -> Option<Joined> {
-        // What holds at neither end is not worth the solves.
-        let negative = self.negative_where_held_or_free(first, self.state)?;
         let mut serving = None;
-        let (modes, corrected, asked) = self.end_modes(first, far, &mut serving, work)?;
-        // What holds with more contacts held or free holds with fewer.
-        if asked.len() > first.len() && self.negative_where_held_or_free(&asked, self.state) != Some(negative) {
-            return None;
-        }
+        let EndModes { modes, corrected, asked, negative } = self.end_modes(first, far, &mut serving, work)?;
         let end = Start { modes: &modes, ..*self };
         let system = ModeSystem::new(self.loading, &modes, self.state);
         let place = Place::ArcLength { from: self.state, step: far.step };
@@ -223,15 +229,15 @@ impl Start<'_> {
         smooth(self.loading, watch)
     }
 
-    /// The modes that hold at the end of the step, and the point there, with the `last` factorisation, and all contacts
-    /// that were changed on the way to them, the `first` of them as the mode just now has it.
+    /// The modes that hold at the end of the step, with the `last` factorisation; the mode just now breaks the `first`
+    /// contacts there. `None` where the contacts leave a choice at the start.
     fn end_modes(
         &self,
         first: &BTreeSet<usize>,
         far: Far<'_>,
         last: &mut Option<SystemFactorisation>,
         work: &mut Work,
-    ) -> Option<(Vec<Mode>, Corrected, BTreeSet<usize>)> {
+    ) -> Option<EndModes> {
         let mut modes = self.modes.to_vec();
         let mut state = far.state.clone();
         // In most modes on the way one iteration tells what breaks them.
@@ -239,7 +245,17 @@ impl Start<'_> {
         let mut wrong: Vec<usize> = first.iter().copied().collect();
         let mut asked = first.clone();
         let mut tried = BTreeSet::new();
-        for _ in 0..MOST_ROUNDS {
+        // Contacts that were looked at together at the start, and the negative eigenvalues found.
+        let mut counted: Option<(usize, usize)> = None;
+        for round in 0..MOST_ROUNDS {
+            // What leaves a choice at the start is not worth the solves. One iteration tells most of what is asked besides,
+            // and what holds with more contacts held or free holds with fewer.
+            if counted.is_none() && (round > 0 || !roughly) {
+                counted = Some((asked.len(), self.negative_where_held_or_free(&asked, self.state)?));
+            }
+            if wrong.len() > MOST_RISE * first.len() {
+                return None;
+            }
             for contact in &wrong {
                 let held = modes[*contact].is_active();
                 modes[*contact] = if held { Mode::Free } else { Mode::Slip { direction: [0.0; 3] } };
@@ -269,7 +285,11 @@ impl Start<'_> {
             let forces = self.force_scale.max(corrected.force_scale);
             wrong = self.broken(&modes, &corrected.state, forces)?;
             if wrong.is_empty() {
-                return Some((modes, corrected, asked));
+                let negative = match counted {
+                    Some((all, negative)) if all == asked.len() => negative,
+                    _ => self.negative_where_held_or_free(&asked, self.state)?,
+                };
+                return Some(EndModes { modes, corrected, asked, negative });
             }
             asked.extend(&wrong);
             state = corrected.state;
@@ -321,6 +341,7 @@ impl Start<'_> {
             negative_eigenvalues(self.loading, &modes, self.state, state)
         };
         let free = count(Mode::Free)?;
-        (count(Mode::Slip { direction: [0.0; 3] })? == free).then_some(free)
+        // Held they can only be fewer.
+        (free == 0 || count(Mode::Slip { direction: [0.0; 3] })? == free).then_some(free)
     }
 }
