@@ -8,6 +8,7 @@ pub mod sparse;
 pub use dense::{Factorisation, Stiffener};
 pub use inertia::{Inertia, inertia};
 use nalgebra::{DMatrix, DVector};
+use std::sync::Arc;
 
 /// What a matrix is assembled into.
 pub trait Sink {
@@ -24,7 +25,7 @@ impl Sink for DMatrix<f64> {
 /// A factorisation of a system, as it was assembled.
 pub enum SystemFactorisation {
     Dense(Factorisation),
-    Sparse(Box<sparse::SparseFactorisation>),
+    Sparse(Arc<sparse::SparseFactorisation>),
 }
 
 impl SystemFactorisation {

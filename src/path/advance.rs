@@ -1,5 +1,6 @@
 //! One step along the current mode, ended early by the first event.
 
+use super::at_hand::AtHand;
 use super::drift::Pointed;
 use super::interpolation::Placed;
 use super::loading::Loading;
@@ -44,13 +45,15 @@ pub struct Reached {
     pub determinant: Option<f64>,
     /// The contact at which the step ends because its slip does, where its speed is seen to fall through zero.
     pub stopped: Option<usize>,
+    /// A factorisation of the equations nearby.
+    pub nearby: AtHand,
 }
 
 impl Reached {
     /// A point without event. In a box, since it goes through many hands.
     pub(super) fn new(corrected: Corrected, rate: Rate, step: f64, error_estimate: f64) -> Box<Self> {
-        let (drift, event, determinant, stopped) = (None, None, None, None);
-        Box::new(Self { corrected, rate, step, error_estimate, drift, event, determinant, stopped })
+        let (drift, event, determinant, stopped, nearby) = (None, None, None, None, AtHand::default());
+        Box::new(Self { corrected, rate, step, error_estimate, drift, event, determinant, stopped, nearby })
     }
 }
 
@@ -217,6 +220,7 @@ impl Start<'_> {
         may_turn(cosine(self.rate).min(cosine(&rate)))?;
         let mut reached = Reached::new(corrected, rate, step, error_estimate);
         reached.determinant = determinant;
+        reached.nearby = AtHand::shared(serving.as_ref());
         Ok(reached)
     }
 

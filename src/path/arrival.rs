@@ -1,5 +1,6 @@
 //! What a point turned out to be, and how the path goes on from it.
 
+use super::at_hand::AtHand;
 use super::branches;
 use super::carried::Carried;
 use super::confirm::later_load;
@@ -36,29 +37,27 @@ pub(super) struct Arrival {
     pub unconfirmed: bool,
 }
 
+/// How a step came to its end.
+pub(super) struct Came {
+    /// The path's direction there.
+    pub rate: Rate,
+    /// Its arc length.
+    pub step: f64,
+    /// See [`Incoming`].
+    pub stopped: Option<usize>,
+    pub nearby: AtHand,
+}
+
 impl Path<'_> {
-    /// What kind of point this is, and how the path goes on: along `incoming`, if no other direction is taken.
-    pub(super) fn classify(
-        &mut self,
-        event: Option<Watch>,
-        crossing: Option<Crossing>,
-        incoming: Rate,
-        stopped: Option<usize>,
-        step: f64,
-    ) -> Arrival {
-        let arrival = self.arrive(event, crossing, &incoming, stopped, step);
-        self.at.here.rate.get_or_insert(incoming);
+    /// What kind of point this is, and how the path goes on: along the direction in which it came, if no other is taken.
+    pub(super) fn classify(&mut self, event: Option<Watch>, crossing: Option<Crossing>, came: Came) -> Arrival {
+        let arrival = self.arrive(event, crossing, &came);
+        self.at.here.rate.get_or_insert(came.rate);
         arrival
     }
 
-    fn arrive(
-        &mut self,
-        event: Option<Watch>,
-        crossing: Option<Crossing>,
-        incoming: &Rate,
-        stopped: Option<usize>,
-        step: f64,
-    ) -> Arrival {
+    fn arrive(&mut self, event: Option<Watch>, crossing: Option<Crossing>, came: &Came) -> Arrival {
+        let incoming = &came.rate;
         match event {
             None | Some(Watch::End(_)) if let Some(crossing) = crossing => {
                 self.smooth_bifurcation(crossing, incoming, event.is_some())
@@ -74,7 +73,7 @@ impl Path<'_> {
                 self.look_around(incoming, PointKind::SmoothLimit, Some(what.to_owned()), Some(-sign), false)
             }
             Some(Watch::Gap(_) | Watch::Normal(_) | Watch::Cone { .. } | Watch::Sliding(_) | Watch::Facet { .. }) => {
-                self.contact_change(incoming, stopped, step)
+                self.contact_change(came)
             }
         }
     }
@@ -203,8 +202,9 @@ impl Path<'_> {
         Arrival { point, options: Vec::new(), taken: None, stop, stage_ends: false, unconfirmed: false }
     }
 
-    /// A contact has reached the end of its mode after a step of this arc length: list the directions and take one.
-    fn contact_change(&mut self, incoming: &Rate, stopped: Option<usize>, step: f64) -> Arrival {
+    /// A contact has reached the end of its mode: list the directions and take one.
+    fn contact_change(&mut self, came: &Came) -> Arrival {
+        let Came { rate: incoming, step, stopped, nearby } = came;
         self.at.counts.contact_changes += 1;
         let standings = self.standings(&self.at.here.state);
         for (reaction, standing) in self.at.here.state.reactions.iter_mut().zip(&standings) {
@@ -215,7 +215,7 @@ impl Path<'_> {
         }
         let rules = self.rules();
         let modes = Some(&self.at.here.modes[..]);
-        let before = Before::Incoming(Incoming { rate: incoming, modes, stopped });
+        let before = Before::Incoming(Incoming { rate: incoming, modes, stopped: *stopped, nearby: Some(nearby) });
         let mut decision = decide::decide(self.loading(), &self.at.here.state, &standings, before, rules);
         // Ways that share a node's force anew come last: they begin with a rest, not with the motion that led here.
         let keeps: Vec<bool> = decision.options.iter().map(|option| self.keeps_shares(option)).collect();
@@ -229,7 +229,7 @@ impl Path<'_> {
         // the mode of the one taken.
         let confirmed = match decision.taken {
             Some(taken) if self.scene.analysis.method == Method::Mpec => {
-                self.is_confirmed_by_program(&decision.options[taken], step)
+                self.is_confirmed_by_program(&decision.options[taken], *step)
             }
             _ => true,
         };

@@ -1,7 +1,9 @@
-//! A factorisation that is left over where a direction was found, for the step along it.
+//! Factorisations that are left over.
 //!
-//! Where nothing bends the path the equations at the start of a step are those at its end. What is at hand is what would be
-//! made anew without it, to the last bit: a path that is taken up from a checkpoint has none, makes it, and is the same.
+//! Where nothing bends the path the equations at the start of a step are those at its end: the factorisation that found the
+//! direction serves along it. What is at hand then is what would be made anew without it, to the last bit: a path that is
+//! taken up from a checkpoint has none, makes it, and is the same. Elsewhere that which led to a contact change serves to
+//! find the directions there, within the same increment.
 
 use super::loading::Loading;
 use super::mode_system::ModeSystem;
@@ -9,13 +11,23 @@ use super::state::Rate;
 use super::straight;
 use crate::linear_algebra::SystemFactorisation;
 use crate::linear_algebra::sparse::SparseFactorisation;
+use std::sync::Arc;
 
-/// The equations of the modes of a direction where it begins, with any border; one holder has it, and copies have none.
+/// The equations of some modes at a point or near it, with any border, if they are at hand; copies have none, so that no
+/// more memory is held than is of use.
 #[derive(Default)]
-pub struct AtHand(Option<Box<SparseFactorisation>>);
+pub struct AtHand(Option<Arc<SparseFactorisation>>);
 
 impl AtHand {
-    /// What is worth keeping of a factorisation.
+    /// One that serves on, shared.
+    pub(super) fn shared(serving: Option<&SystemFactorisation>) -> Self {
+        match serving {
+            Some(SystemFactorisation::Sparse(sparse)) => Self(Some(Arc::clone(sparse))),
+            Some(SystemFactorisation::Dense(_)) | None => Self(None),
+        }
+    }
+
+    /// What is worth keeping of a factorisation for the step along a direction.
     pub(super) fn of(loading: Loading<'_>, factorisation: SystemFactorisation) -> Self {
         match factorisation {
             SystemFactorisation::Sparse(sparse) if straight::is_linear(loading) => Self(Some(sparse)),
@@ -27,12 +39,16 @@ impl AtHand {
         self.0.is_some()
     }
 
+    pub(super) fn sparse(&self) -> Option<&SparseFactorisation> {
+        self.0.as_deref()
+    }
+
     /// The equations of a system at its anchor, bordered by the direction; made where they are no longer at hand.
     pub(super) fn along(self, system: &ModeSystem<'_>, rate: &Rate) -> Option<SystemFactorisation> {
         let is_its_own = |sparse: &SparseFactorisation| sparse.size() == system.size();
-        let bordered = self.0.filter(|sparse| is_its_own(sparse)).and_then(|sparse| {
+        let bordered = self.0.and_then(Arc::into_inner).filter(is_its_own).and_then(|sparse| {
             let sparse = sparse.with_last_row(|matrix| system.border(matrix, rate))?;
-            system.is_kept(&sparse).then(|| SystemFactorisation::Sparse(Box::new(sparse)))
+            system.is_kept(&sparse).then(|| SystemFactorisation::Sparse(Arc::new(sparse)))
         });
         bordered.or_else(|| system.bordered(&system.iterate(system.anchor.clone()), rate))
     }

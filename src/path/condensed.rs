@@ -7,9 +7,10 @@
 use super::at_hand::AtHand;
 use super::changeable::{Changeable, Forms, Outcome};
 use super::corner::whole_rates;
-use super::directions::{Alternative, Candidate, Found, RANK, WEAK, is_mechanism, merge, sort};
+use super::directions::{Alternative, Candidate, Found, WEAK, is_mechanism, merge, sort};
+use super::incoming::Incoming;
 use super::loading::Loading;
-use super::mode_system::{Kind, ModeSystem};
+use super::mode_system::ModeSystem;
 use super::rates::{self, Effort, RateProblem, Ray};
 use super::standing::Standing;
 use super::state::{Rate, State};
@@ -17,7 +18,6 @@ use super::together;
 use super::turning::{self, Touch, Turning};
 use crate::contact::vector::{Vector, add, dot, scaled};
 use crate::contact::{Mode, Reaction};
-use crate::linear_algebra::{Factorisation, Sink, SystemFactorisation, null_space};
 use nalgebra::{DMatrix, DVector};
 
 /// Up to so many contacts the search finds its way alone, and slips of unknown direction are sought one by one.
@@ -41,33 +41,10 @@ impl<'a> Condensed<'a> {
         loading: Loading<'a>,
         state: &State,
         standings: &[Standing],
-        incoming: Option<&Rate>,
+        incoming: Option<Incoming<'_>>,
     ) -> Option<Self> {
-        let factorisation = bordered(system, loading, state, incoming)?;
         let changeable = changeable(loading, state, standings);
-        let mut columns = Vec::new();
-        for entry in &changeable {
-            let contact = entry.contacts[0];
-            let row = system.row_of(contact);
-            let held = system.held_directions(contact);
-            let frame = loading.frame(contact, state);
-            for (_, direction) in &entry.velocities {
-                let mut values = DVector::zeros(system.size());
-                // A smooth contact holds along its normal alone.
-                let held = if held.is_empty() { std::slice::from_ref(&frame.normal) } else { held };
-                held.iter().enumerate().for_each(|(k, one)| values[row + k] = dot(one, direction));
-                if !factorisation.solve(&mut values) {
-                    return None;
-                }
-                columns.push(system.rate_from(state, &values));
-            }
-        }
-        let mut values = DVector::zeros(system.size());
-        values[system.size() - 1] = 1.0;
-        if !factorisation.solve(&mut values) {
-            return None;
-        }
-        columns.push(system.rate_from(state, &values));
+        let columns = system.columns(&changeable, incoming)?;
         let normals = |contact: usize| loading.frame(contact, state).normal;
         let mut forms = Forms { columns: &columns, normals: &normals, rows: Vec::new(), is_force: Vec::new() };
         let (entities, outcomes) = changeable.iter().map(|entry| entry.options(loading, state, &mut forms)).unzip();
@@ -358,7 +335,7 @@ impl<'a> Condensed<'a> {
 }
 
 /// The contacts that can change, each corner once, with their columns.
-fn changeable(loading: Loading<'_>, state: &State, standings: &[Standing]) -> Vec<Changeable> {
+pub(super) fn changeable(loading: Loading<'_>, state: &State, standings: &[Standing]) -> Vec<Changeable> {
     let mut entries: Vec<Changeable> = Vec::new();
     let mut next = 0;
     for (contact, standing) in standings.iter().enumerate() {
@@ -379,36 +356,4 @@ fn changeable(loading: Loading<'_>, state: &State, standings: &[Standing]) -> Ve
         entries.push(entry);
     }
     entries
-}
-
-/// A factorisation of the held system with a border that makes it regular: the load, the incoming direction, or the
-/// null vector itself.
-fn bordered(
-    system: &ModeSystem<'_>,
-    loading: Loading<'_>,
-    state: &State,
-    incoming: Option<&Rate>,
-) -> Option<SystemFactorisation> {
-    let iterate = system.iterate(state.clone());
-    let by_load = |matrix: &mut dyn Sink| matrix.add(system.size() - 1, loading.structure.unknowns(), 1.0);
-    if let Some(factorisation) = system.factorise(&iterate, Kind::Rates, by_load) {
-        return Some(factorisation);
-    }
-    if let Some(rate) = incoming
-        && let Some(factorisation) =
-            system.factorise(&iterate, Kind::Rates, |matrix: &mut dyn Sink| system.border(matrix, rate))
-    {
-        return Some(factorisation);
-    }
-    if !loading.structure.allows_dense() {
-        return None;
-    }
-    let matrix = system.matrix(state);
-    let basis = null_space(&matrix.rows(0, system.size() - 1).into_owned(), RANK)?;
-    if basis.ncols() != 1 {
-        return None;
-    }
-    let mut by_null_vector = matrix;
-    by_null_vector.set_row(system.size() - 1, &basis.column(0).transpose());
-    Factorisation::new(by_null_vector).map(SystemFactorisation::Dense)
 }

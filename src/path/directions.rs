@@ -31,8 +31,8 @@ use super::rates::Effort;
 use super::sole;
 use super::standing::Standing;
 use super::state::{Rate, State};
-use crate::contact::Mode;
 use crate::contact::vector::{Vector, add, size};
+use crate::contact::{Contact, Mode};
 use crate::linear_algebra::null_space;
 
 /// A feasible direction.
@@ -83,6 +83,17 @@ const SAME: f64 = 1e-7;
 /// Relative pivot that decides the rank of a mode's equations.
 pub(super) const RANK: f64 = 1e-11;
 
+/// The modes in which every contact that can change is held.
+pub(super) fn held_modes(loading: Loading<'_>, standings: &[Standing]) -> Vec<Mode> {
+    let held = |(standing, contact): (&Standing, &Contact)| match standing {
+        Standing::Settled(mode) => *mode,
+        Standing::OnCone { .. } | Standing::Cornered { .. } => Mode::Stick,
+        Standing::Touching if contact.tangents() > 0 => Mode::Stick,
+        Standing::Touching => Mode::Slip { direction: [0.0; 3] },
+    };
+    standings.iter().zip(loading.contacts).map(held).collect()
+}
+
 /// Lists the directions; `incoming` helps to border the equations where the held structure is singular.
 pub fn directions(
     loading: Loading<'_>,
@@ -91,16 +102,7 @@ pub fn directions(
     incoming: Option<Incoming<'_>>,
     effort: Effort<'_>,
 ) -> Found {
-    let held: Vec<Mode> = standings
-        .iter()
-        .zip(loading.contacts)
-        .map(|(standing, contact)| match standing {
-            Standing::Settled(mode) => *mode,
-            Standing::OnCone { .. } | Standing::Cornered { .. } => Mode::Stick,
-            Standing::Touching if contact.tangents() > 0 => Mode::Stick,
-            Standing::Touching => Mode::Slip { direction: [0.0; 3] },
-        })
-        .collect();
+    let held = held_modes(loading, standings);
     let system = ModeSystem::new(loading, &held, state);
     let mut found = Found::default();
     if corner::is_not_available(loading, state) {
@@ -110,12 +112,12 @@ pub fn directions(
     if sole::directions(loading, state, standings, incoming, effort, &mut found) {
         return found;
     }
-    let incoming = incoming.map(|incoming| incoming.rate);
     let Some(condensed) = Condensed::new(&system, loading, state, standings, incoming) else {
         found.degenerate = true;
         found.mechanism = resists_nothing(&system, loading, state);
         return found;
     };
+    let incoming = incoming.map(|incoming| incoming.rate);
     condensed.enumerate(&held, state, incoming, effort, &mut found);
     found
 }

@@ -1,6 +1,7 @@
 //! Whole paths whose last point is searched a second time, by plain enumeration of every contact mode.
 
 use super::condensed::Condensed;
+use super::incoming::Incoming;
 use super::mode_system::ModeSystem;
 use super::rates::every_combination;
 use super::standing::Standing;
@@ -52,7 +53,8 @@ fn where_rows_of_bars_end_only_the_way_back_is_a_direction() {
             .collect();
         assert!(standings.iter().any(|standing| matches!(standing, Standing::OnCone { .. })));
         let system = ModeSystem::new(path.loading(), &held, state);
-        let condensed = Condensed::new(&system, path.loading(), state, &standings, Some(incoming)).expect("regular");
+        let condensed = Condensed::new(&system, path.loading(), state, &standings, Some(Incoming::along(incoming)))
+            .expect("regular");
         let found = every_combination(condensed.problem());
         assert!(!found.degenerate);
         for ray in &found.rays {

@@ -13,6 +13,7 @@
 //! J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem*, Academic Press 1992, section 3.3): it sticks, and no trial
 //! step need tell.
 
+use super::at_hand::AtHand;
 use super::directions::Candidate;
 use super::state::Rate;
 use crate::contact::Mode;
@@ -29,12 +30,14 @@ pub struct Incoming<'a> {
     pub modes: Option<&'a [Mode]>,
     /// A contact that would slip backwards if its mode went on: its speed falls through zero here, and not at rest.
     pub stopped: Option<usize>,
+    /// A factorisation of the equations of those modes near the point, if there is one.
+    pub nearby: Option<&'a AtHand>,
 }
 
 impl<'a> Incoming<'a> {
     /// In a mode that goes on, or of whose end nothing more is known.
     pub fn along(rate: &'a Rate) -> Self {
-        Self { rate, modes: None, stopped: None }
+        Self { rate, modes: None, stopped: None, nearby: None }
     }
 
     /// Whether a direction that may be taken in two modes at first order is known to be taken in the first.

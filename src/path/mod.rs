@@ -18,7 +18,7 @@
 //! | `bound` | a bound of the stage at or beside a smooth bifurcation |
 //! | `folded` | points of slip in a plane at which the direction is not determined |
 //! | `near` | which contacts are in reach |
-//! | `standing`, `incoming`, `directions`, `condensed` | which contacts can change; how the path arrives; every direction |
+//! | `standing`, `incoming`, `directions`, `condensed`, `columns` | which contacts can change; how the path arrives; every direction; the structure's rates by the velocities of those contacts |
 //! | `sole` | many contacts that can change: one direction for each sign of the load rate, without condensation |
 //! | `going_on` | the directions where the mode goes on, if a cheap test says that there are two |
 //! | `combinations` | one of each of several lists, in one order |
@@ -41,6 +41,7 @@ mod branches;
 mod carried;
 mod changeable;
 pub mod checkpoint;
+mod columns;
 mod combinations;
 mod condensed;
 mod confirm;

@@ -89,7 +89,8 @@ impl ModeSystem<'_> {
         if nearby.pivot_ratio() < REGULAR {
             return None;
         }
-        let values = nearby.solve_nearby(self.assemble_sparse(iterate, Kind::Rates)?, &self.bordering())?;
+        let nearby = nearby.nearby(self.assemble_sparse(iterate, Kind::Rates)?)?;
+        let values = nearby.solve(&self.bordering())?;
         // On the same side of both borders, so that the determinants have one sign.
         self.direction_from(iterate, &values).filter(|rate| rate.product(towards) > 0.0)
     }

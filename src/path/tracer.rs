@@ -3,7 +3,7 @@
 //! Between events the path keeps its contact mode and is followed by arc-length steps; where the mode ends, the
 //! directions are listed and one is taken. The step follows the turn of the path and the work of Newton's method.
 
-use super::arrival::ROUND_OFF;
+use super::arrival::{Came, ROUND_OFF};
 use super::at_hand::AtHand;
 use super::carried::Carried;
 use super::contact_law;
@@ -181,7 +181,9 @@ impl<'a> Path<'a> {
             modes.clone_from(&self.at.here.modes);
             arrival
         } else {
-            self.classify(reached.event, accepted.crossing, reached.rate, reached.stopped, reached.step)
+            let came =
+                Came { rate: reached.rate, step: reached.step, stopped: reached.stopped, nearby: reached.nearby };
+            self.classify(reached.event, accepted.crossing, came)
         };
         if accepted.returned {
             arrival.stop = Some(StopReason::Cycle);

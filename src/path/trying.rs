@@ -205,7 +205,9 @@ impl Path<'_> {
         let (ends, load_sign) = (&self.scene.stages[self.at.stage].ends, here.load_sign);
         let is_straight = sought.jumps(step);
         let joins = sought.may_join && !is_straight && start.may_join();
-        let next = tries.next.take().filter(|next| *next < MOST_OF_STEP * step && !joins && !is_straight);
+        // Where the rates foresee the next change, it is met where they do.
+        let is_open = !joins && !is_straight && sought.foreseen.is_none();
+        let next = tries.next.take().filter(|next| *next < MOST_OF_STEP * step && is_open);
         let next = next.and_then(|next| {
             let mut serving = None;
             tries.known = tries.known.or_else(|| Signature::past_start(start, next, &mut serving, work));

@@ -19,6 +19,7 @@ use super::reduced::{Factor, Reduced};
 use super::symmetric::SymmetricFactor;
 use super::unsymmetric::UnsymmetricFactor;
 use nalgebra::DMatrix;
+use smallvec::SmallVec;
 
 /// The system taken apart.
 pub(super) struct Blocks {
@@ -42,6 +43,14 @@ enum Row {
     Border(usize, Entries),
     /// The equilibrium along a held unknown.
     Equilibrium(usize),
+}
+
+/// What a right-hand side leaves at the nodes that are eliminated.
+struct AtNodes {
+    /// Forces, of each unknown.
+    force: Vec<f64>,
+    /// Motions of held unknowns.
+    held: Vec<f64>,
 }
 
 /// What becomes of a border row where nodes are eliminated.
@@ -154,8 +163,29 @@ impl Blocks {
         self.sign * self.reduced.sign()
     }
 
-    pub fn solve(&self, values: &mut [f64]) -> bool {
-        let (upper, lower) = values.split_at_mut(self.unknowns);
+    /// Solves for so many right-hand sides one after the other, overwritten by the solutions.
+    pub fn solve(&self, values: &mut [f64], count: usize) -> bool {
+        let size = values.len() / count.max(1);
+        let kept = self.kept_rows.len();
+        let mut motions = Vec::with_capacity(count * self.unknowns);
+        let mut weights = Vec::with_capacity(count * kept);
+        let mut at_nodes: SmallVec<[AtNodes; 1]> = SmallVec::with_capacity(count);
+        for right in values.chunks_exact(size.max(1)) {
+            at_nodes.push(self.without_nodes(right, &mut motions, &mut weights));
+        }
+        if !self.reduced.solve(&mut motions, &mut weights, count) {
+            return false;
+        }
+        for (number, (solution, at_nodes)) in values.chunks_exact_mut(size.max(1)).zip(at_nodes).enumerate() {
+            let motion = &mut motions[number * self.unknowns..][..self.unknowns];
+            self.with_nodes(motion, &weights[number * kept..][..kept], at_nodes, solution);
+        }
+        true
+    }
+
+    /// A right-hand side of the reduced system, which is appended, in its two parts; and what it leaves at the nodes.
+    fn without_nodes(&self, values: &[f64], motions: &mut Vec<f64>, weights: &mut Vec<f64>) -> AtNodes {
+        let (upper, lower) = values.split_at(self.unknowns);
         let mut force = upper.to_vec();
         self.elimination.rotate(&mut force, false);
         self.elimination.fold(&mut force);
@@ -177,15 +207,20 @@ impl Blocks {
                 given - entries.iter().map(|(unknown, value)| value * held[*unknown]).sum::<f64>()
             }
         };
-        let mut weights: Vec<f64> = self.kept_rows.iter().map(right).collect();
-        let mut motion = force.clone();
-        self.elimination.nodes().iter().flat_map(HeldNode::held).for_each(|unknown| motion[unknown] = 0.0);
-        if !self.reduced.solve(&mut motion, &mut weights) {
-            return false;
-        }
+        weights.extend(self.kept_rows.iter().map(right));
+        let first = motions.len();
+        motions.extend_from_slice(&force);
+        self.elimination.nodes().iter().flat_map(HeldNode::held).for_each(|unknown| motions[first + unknown] = 0.0);
+        AtNodes { force, held }
+    }
+
+    /// The solution from that of the reduced system.
+    fn with_nodes(&self, motion: &mut [f64], weights: &[f64], at_nodes: AtNodes, values: &mut [f64]) {
+        let AtNodes { mut force, mut held } = at_nodes;
+        let (upper, lower) = values.split_at_mut(self.unknowns);
         let mut borders = vec![0.0; self.borders];
         for ((column, weight), (shift, part)) in
-            self.kept_columns.iter().zip(&weights).zip(self.shifts.iter().zip(&self.held_parts))
+            self.kept_columns.iter().zip(weights).zip(self.shifts.iter().zip(&self.held_parts))
         {
             borders[*column] = *weight;
             shift.iter().for_each(|(unknown, motion)| held[*unknown] += weight * motion);
@@ -206,10 +241,9 @@ impl Blocks {
             }
             node.held().for_each(|unknown| motion[unknown] = held[unknown]);
         }
-        self.elimination.rotate(&mut motion, true);
-        upper.copy_from_slice(&motion);
+        self.elimination.rotate(motion, true);
+        upper.copy_from_slice(motion);
         lower.copy_from_slice(&borders[..lower.len()]);
-        true
     }
 }
 

@@ -15,15 +15,14 @@ use super::symmetric::SymmetricFactor;
 use crate::linear_algebra::{Inertia, Sink};
 use nalgebra::DVector;
 use smallvec::smallvec;
-use std::cell::OnceCell;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// See the module.
 pub struct SparseFactorisation {
     matrix: Bordered,
     blocks: Option<Blocks>,
     /// Made when first needed.
-    whole: OnceCell<Option<WholeLu>>,
+    whole: OnceLock<Option<WholeLu>>,
     sign: f64,
     pivot_ratio: f64,
 }
@@ -55,7 +54,7 @@ impl SparseFactorisation {
             Blocks::new(&matrix, holdings, friction).filter(|blocks| blocks.reduced.pivot_ratio() > f64::EPSILON);
         let (sign, pivot_ratio) =
             blocks.as_ref().map_or((1.0, 0.0), |blocks| (blocks.determinant_sign(), blocks.reduced.pivot_ratio()));
-        let factorisation = Self { matrix, blocks, whole: OnceCell::new(), sign, pivot_ratio };
+        let factorisation = Self { matrix, blocks, whole: OnceLock::new(), sign, pivot_ratio };
         (pivot_ratio > CERTAIN || factorisation.finds_what_is_known()).then_some(factorisation)
     }
 
@@ -71,7 +70,7 @@ impl SparseFactorisation {
         }
         let blocks = self.blocks.take()?.with_row(last, row)?;
         (self.sign, self.pivot_ratio) = (blocks.determinant_sign(), blocks.reduced.pivot_ratio());
-        (self.blocks, self.whole) = (Some(blocks), OnceCell::new());
+        (self.blocks, self.whole) = (Some(blocks), OnceLock::new());
         (self.pivot_ratio > CERTAIN).then_some(self)
     }
 
@@ -112,7 +111,9 @@ impl SparseFactorisation {
     /// Solves for one right-hand side, overwritten by the solution; `false` when no accurate solution was found.
     pub fn solve(&self, right_hand_side: &mut DVector<f64>) -> bool {
         let blocks = self.blocks.as_ref();
-        if let Some(solution) = blocks.and_then(|blocks| self.refined(right_hand_side, |values| blocks.solve(values))) {
+        if let Some(solution) =
+            blocks.and_then(|blocks| self.refined(right_hand_side, |values| blocks.solve(values, 1)))
+        {
             right_hand_side.copy_from(&solution);
             return true;
         }
@@ -128,7 +129,12 @@ impl SparseFactorisation {
 
     /// Solves without refinement; `false` where block elimination gives no result.
     pub fn solve_once(&self, values: &mut DVector<f64>) -> bool {
-        self.blocks.as_ref().is_some_and(|blocks| blocks.solve(values.as_mut_slice()))
+        self.solve_all_once(values.as_mut_slice(), 1)
+    }
+
+    /// The same for so many right-hand sides one after the other.
+    pub(super) fn solve_all_once(&self, values: &mut [f64], count: usize) -> bool {
+        self.blocks.as_ref().is_some_and(|blocks| blocks.solve(values, count))
     }
 
     /// Whether another matrix has the same unknowns and as many borders.

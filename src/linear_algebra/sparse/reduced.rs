@@ -174,41 +174,45 @@ impl Reduced {
         self.complement.pivot_ratio
     }
 
-    /// Solves, overwriting both parts of the right-hand side.
-    pub fn solve(&self, upper: &mut [f64], lower: &mut [f64]) -> bool {
-        let count = self.columns.len();
-        let right = self.responses.is_none().then(|| upper.to_vec());
-        if !self.factor.solve(upper, 1) {
+    /// Solves for so many right-hand sides one after the other, overwriting both parts of them.
+    pub fn solve(&self, upper: &mut [f64], lower: &mut [f64], count: usize) -> bool {
+        let mut right = self.responses.is_none().then(|| upper.to_vec());
+        if !self.factor.solve(upper, count) {
             return false;
         }
-        let mut weights = DVector::zeros(count);
-        weights.rows_mut(0, self.given).copy_from_slice(lower);
-        for (row, entries) in self.rows.iter().enumerate() {
-            weights[row] -= entries.iter().map(|(unknown, value)| value * upper[*unknown]).sum::<f64>();
-            weights[row] /= self.complement.scales[row];
-        }
-        // Without borders there is nothing to solve for.
-        if count > 0 && !self.complement.factors.solve_mut(&mut weights) {
-            return false;
-        }
-        match (&self.responses, right) {
-            (Some(responses), _) => {
-                for (response, weight) in responses.chunks_exact(self.size.max(1)).zip(weights.iter()) {
-                    upper.iter_mut().zip(response).for_each(|(value, response)| *value -= weight * response);
-                }
+        let borders = self.columns.len();
+        let mut weights = DVector::zeros(borders);
+        for number in 0..count {
+            let upper = &mut upper[number * self.size..][..self.size];
+            let lower = &mut lower[number * self.given..][..self.given];
+            weights.fill(0.0);
+            weights.rows_mut(0, self.given).copy_from_slice(lower);
+            for (row, entries) in self.rows.iter().enumerate() {
+                weights[row] -= entries.iter().map(|(unknown, value)| value * upper[*unknown]).sum::<f64>();
+                weights[row] /= self.complement.scales[row];
             }
-            (None, Some(right)) => {
-                upper.copy_from_slice(&right);
-                for (entries, weight) in self.columns.iter().zip(weights.iter()) {
-                    entries.iter().for_each(|(row, value)| upper[*row] -= weight * value);
-                }
-                if !self.factor.solve(upper, 1) {
-                    return false;
-                }
+            // Without borders there is nothing to solve for.
+            if borders > 0 && !self.complement.factors.solve_mut(&mut weights) {
+                return false;
             }
-            (None, None) => return false,
+            match (&self.responses, &mut right) {
+                (Some(responses), _) => {
+                    for (response, weight) in responses.chunks_exact(self.size.max(1)).zip(weights.iter()) {
+                        upper.iter_mut().zip(response).for_each(|(value, response)| *value -= weight * response);
+                    }
+                }
+                (None, Some(right)) => {
+                    let right = &mut right[number * self.size..][..self.size];
+                    for (entries, weight) in self.columns.iter().zip(weights.iter()) {
+                        entries.iter().for_each(|(row, value)| right[*row] -= weight * value);
+                    }
+                }
+                (None, None) => return false,
+            }
+            lower.copy_from_slice(&weights.as_slice()[..self.given]);
         }
-        lower.copy_from_slice(&weights.as_slice()[..self.given]);
-        true
+        let Some(right) = right else { return true };
+        upper.copy_from_slice(&right);
+        self.factor.solve(upper, count)
     }
 }

@@ -6,6 +6,7 @@ use crate::linear_algebra::sparse::{Holding, Holdings, SparseFactorisation};
 use crate::linear_algebra::{Factorisation, Sink, Stiffener, SystemFactorisation};
 use crate::path::state::Rate;
 use crate::structure::Stretching;
+use std::sync::Arc;
 
 /// Smallest pivot over the largest below which digits are worth the larger system that saves them.
 const SPREAD: f64 = 1e-4;
@@ -107,7 +108,7 @@ impl ModeSystem<'_> {
         if let Some(mut matrix) = self.assemble_sparse(iterate, kind) {
             put_last(&mut matrix);
             let factorisation = SparseFactorisation::new(matrix, self.holdings())?;
-            return Some(SystemFactorisation::Sparse(Box::new(factorisation)));
+            return Some(SystemFactorisation::Sparse(Arc::new(factorisation)));
         }
         self.factorise_dense(iterate, kind, put_last).map(SystemFactorisation::Dense)
     }

@@ -104,7 +104,7 @@ pub struct ModeSystem<'a> {
     pub(super) anchor: &'a State,
     pub(super) roles: Vec<Role>,
     pub(super) tracks: Vec<Track>,
-    modes: &'a [Mode],
+    pub(super) modes: &'a [Mode],
     /// First row and column of each closed contact.
     first_of: SmallVec<[usize; 4]>,
     pub(super) size: usize,

@@ -60,7 +60,8 @@ fn both(path: &Path<'_>, incoming: Option<&Rate>) -> Option<(Found, Found)> {
         })
         .collect();
     let system = ModeSystem::new(loading, &held, state);
-    let condensed = Condensed::new(&system, loading, state, &standings, incoming).expect("a regular point");
+    let condensed =
+        Condensed::new(&system, loading, state, &standings, incoming.map(Incoming::along)).expect("a regular point");
     condensed.enumerate(&held, state, incoming, effort, &mut others);
     Some((own, others))
 }
