@@ -1,5 +1,12 @@
 //! Full rates of the structure with given velocities of the contacts that can change, and with no load; and with none of
-//! them, its own direction.
+//! them, its own direction: the matrix `Z` and the vector `z₀` of `condensed` (the usual condensation on the contacts: A.
+//! Klarbring, Ing. Arch. 60 (1990) 529, doi:10.1007/BF00541909).
+//!
+//! With `A` the rate equations in which those contacts are held and a last row `l`, `A Z = v` (unit velocities in the rows
+//! of the contacts) and `A z₀ = (0, 1)`. Or, with `M` the equations of the modes just before, in which each such contact
+//! holds some velocities and not the others: `M x_j = e_j` with a unit velocity where one is held and a unit force where
+//! none is, and the incoming direction `t`. The rates that obey equilibrium with these forces free are the same space, so
+//! `[Z z₀] = [X t] G⁻¹`, `G` the velocities and the load rate of `[X t]`.
 
 use super::changeable::Changeable;
 use super::directions::RANK;
