@@ -93,6 +93,8 @@ pub enum Refused {
     Collapsed,
     /// The signs of the equations changed, and no bifurcation point could be made out.
     Unresolved,
+    /// Contact changes that were to be taken together cannot be.
+    Apart,
 }
 
 /// The direction may turn by this much in a step.
@@ -250,9 +252,8 @@ impl Start<'_> {
         work: &mut Work,
     ) -> Result<Attempt, Refused> {
         let foreseen = before.and_then(|before| before.foresee(self.state, self.rate, step));
-        let foreseen = foreseen.and_then(|guess| self.reach_by(guess, step, &mut serving, work).ok());
-        let straight = || self.reach_by(self.state.advanced(self.rate, step), step, &mut serving, work);
-        let mut reached = foreseen.map_or_else(straight, Ok)?;
+        let guess = foreseen.unwrap_or_else(|| self.state.advanced(self.rate, step));
+        let mut reached = self.reach_by(guess, step, &mut serving, work)?;
         may_turn(self.rate.product(&reached.rate))?;
         let watches = self.watches(ends, load_sign);
         let mut passed = self.passed(&watches, &reached);

@@ -15,6 +15,7 @@ use super::locate::Stretch;
 use super::mode_system::ModeSystem;
 use super::newton::Place;
 use super::scene::End;
+use super::state::Rate;
 use super::stepping::quantised;
 use super::tracer::Path;
 use super::watch::{self, Watch};
@@ -41,15 +42,14 @@ pub(super) struct Foreseen {
 }
 
 impl Path<'_> {
-    /// A shorter step that ends just past the change that comes first. `may_join`: those that may be taken together are
+    /// A shorter step along a direction that ends just past the change that comes first. `may_join`: those that may be taken together are
     /// not stopped at.
     ///
     /// Only where matrices are sparse: the factorisations that are saved of a dense one cost as little as the points that
     /// come on top.
-    pub(super) fn step_to_foreseen_change(&self, step: f64, may_join: bool) -> Option<Foreseen> {
+    pub(super) fn step_to_foreseen_change(&self, step: f64, rate: &Rate, may_join: bool) -> Option<Foreseen> {
         let (loading, here) = (self.loading(), &self.at.here);
         loading.structure.layout()?;
-        let rate = here.rate.as_ref()?;
         let way = |watch: &watch::Watch| {
             let slope = watch.slope(loading, &here.state, rate).filter(|slope| *slope < 0.0)?;
             let value = watch.value(loading, &here.modes, &here.state, rate);

@@ -57,7 +57,7 @@ const MOST_ITERATIONS: u64 = 16;
 /// converges has one on its way in at the most.
 const MOST_RISES: u64 = 2;
 /// A correction above this part of the one before has not fallen. At a singular point each is half of it.
-const RISES: f64 = 0.9;
+const RISES: f64 = 0.7;
 /// Relative residual that an accepted point must have.
 pub const ACCEPTED_RESIDUAL: f64 = 1e-11;
 /// Forces (dimensionless) below this are none: what rounding leaves where nothing is loaded.

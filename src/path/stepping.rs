@@ -40,6 +40,8 @@ const A_POINT: f64 = 1e-6;
 /// A step after which the next would have to be shorter than this fraction of it is taken again, shorter.
 const REJECTED: f64 = 0.55;
 
+/// The next step over this one, at the most.
+const MOST_GROWTH: f64 = 1.8;
 /// A step that ends before this fraction of what was tried does not let the next be longer.
 const CUT_SHORT: f64 = 0.5;
 
@@ -79,17 +81,18 @@ pub(super) fn quantised(factor: f64) -> f64 {
 impl Path<'_> {
     /// Steps until a point is accepted.
     pub(super) fn step(&mut self) -> Result<Accepted, StopReason> {
-        let sought = self.sought_step();
+        let mut sought = self.sought_step();
         let Some(rate) = self.at.here.rate.take() else { return Err(StopReason::NoDirection) };
-        let stepped = self.step_along(&rate, &sought);
+        let stepped = self.step_along(&rate, &mut sought);
         self.at.here.rate = Some(rate);
         stepped
     }
 
     /// The same along the direction just now.
-    fn step_along(&mut self, rate: &Rate, sought: &Sought) -> Result<Accepted, StopReason> {
+    fn step_along(&mut self, rate: &Rate, sought: &mut Sought) -> Result<Accepted, StopReason> {
         let least = self.scene.analysis.arc_length.min;
         let mut step = sought.step();
+        let mut was_shortened = false;
         let mut tries = Tries::new(&self.at.here, std::mem::take(&mut self.at_hand));
         loop {
             if self.cancel.is_cancelled() {
@@ -102,24 +105,38 @@ impl Path<'_> {
                 self.at.waiting.note(joined);
             }
             match outcome {
-                Ok(tried) => match self.weigh(rate, tried, step, sought) {
+                Ok(tried) => match self.weigh(rate, tried, step, sought, was_shortened) {
                     Ok(accepted) => return Ok(accepted),
-                    Err(factor) => step *= factor,
+                    Err(factor) => {
+                        step *= factor;
+                        was_shortened = true;
+                    }
                 },
                 Err(Refused::AtStart(watch)) if watch.is_of_contact() && self.mode_ends_here(rate) => {
                     let mut accepted = self.balance(rate, self.without_step(watch, rate));
                     accepted.mode_named = self.is_named_by_program().then_some(true);
                     return Ok(accepted);
                 }
+                Err(Refused::Apart) => {
+                    // Each of them ends a step then, the first of them this one.
+                    sought.may_join = false;
+                    sought.foreseen = self.step_to_foreseen_change(step, rate, false);
+                    step = sought.foreseen.map_or(step, |change| change.step);
+                }
                 Err(Refused::Unresolved) => {
                     tries.unresolved += 1;
                     step *= 0.7;
                 }
                 Err(refused) => {
+                    was_shortened = true;
                     step *= match refused {
                         Refused::Turned(angle) => (0.5 * TURN_SOUGHT / angle).clamp(0.1, 0.5),
                         Refused::Newton(_) => 0.5,
-                        Refused::AtStart(_) | Refused::Unlawful | Refused::Collapsed | Refused::Unresolved => 0.25,
+                        Refused::AtStart(_)
+                        | Refused::Unlawful
+                        | Refused::Collapsed
+                        | Refused::Unresolved
+                        | Refused::Apart => 0.25,
                     };
                     if step < least {
                         return Err(match refused {
@@ -144,13 +161,21 @@ impl Path<'_> {
         let joins = |event: &Foreseen| may_join && may_join_at(self.loading(), &self.at.here.modes, event.watch);
         let jump = ahead.filter(|event| event.step > ordinary || !joins(event));
         self.look_ahead(jump.map_or(ordinary, |event| event.step));
-        let foreseen = if jump.is_none() { self.step_to_foreseen_change(ordinary, may_join) } else { None };
+        let rate = self.at.here.rate.as_ref().filter(|_| jump.is_none());
+        let foreseen = rate.and_then(|rate| self.step_to_foreseen_change(ordinary, rate, may_join));
         Sought { ordinary, jump, foreseen, may_join }
     }
 
     /// Accepts a point with what its increment did to the energies and chooses the next step, or says by what factor a
     /// step is to be shorter that went too far for them.
-    fn weigh(&mut self, rate: &Rate, tried: Tried, step: f64, sought: &Sought) -> Result<Accepted, f64> {
+    fn weigh(
+        &mut self,
+        rate: &Rate,
+        tried: Tried,
+        step: f64,
+        sought: &Sought,
+        was_shortened: bool,
+    ) -> Result<Accepted, f64> {
         let (least, most) = (self.scene.analysis.arc_length.min, self.scene.analysis.arc_length.max);
         let Tried { reached, crossing, signature, returned, joined } = tried;
         let mut accepted = self.balance(rate, reached);
@@ -160,7 +185,7 @@ impl Path<'_> {
             // The kinks of a step with contact changes say nothing of its length.
             accepted.turned = rate.angle(&unchanged);
         }
-        let factor = self.next_step_factor(&accepted, step);
+        let factor = self.next_step_factor(&accepted, step, was_shortened);
         if factor <= REJECTED && step * factor >= least {
             return Err(factor);
         }
@@ -276,7 +301,7 @@ impl Path<'_> {
     }
 
     /// How the next step should compare with this one: by the path's turn, Newton's work and the energy balance.
-    fn next_step_factor(&self, accepted: &Accepted, tried: f64) -> f64 {
+    fn next_step_factor(&self, accepted: &Accepted, tried: f64, was_shortened: bool) -> f64 {
         let reached = &accepted.reached;
         let done = (reached.step / tried).clamp(0.1, 1.0);
         let turn = accepted.turned / done;
@@ -291,8 +316,10 @@ impl Path<'_> {
         let size = self.at.totals.largest_energy.max(added.external_work.abs()).max(added.strain.abs()).max(floor);
         // The balance of one increment has an error of fifth order in its arc length.
         let by_energy = (IMBALANCE_SOUGHT / (imbalance / size).max(1e-3 * IMBALANCE_SOUGHT)).powf(0.2);
-        // A step that an event cut short says little of a longer one in the mode that follows.
-        let most = if done < CUT_SHORT { 1.0 } else { 1.8 };
+        // A step that an event cut short says little of a longer one in the mode that follows. After one that was too long
+        // the next is no longer either (E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I,
+        // Springer 1993, section II.4).
+        let most = if done < CUT_SHORT || was_shortened { 1.0 } else { MOST_GROWTH };
         quantised(by_turn.min(by_work).min(by_energy).clamp(0.2, most))
     }
 }

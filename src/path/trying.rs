@@ -172,14 +172,12 @@ impl Path<'_> {
         work: &mut Work,
     ) -> Result<Ending, Refused> {
         let (ends, load_sign) = (&self.scene.stages[self.at.stage].ends, self.at.here.load_sign);
-        let mut may_join = sought.may_join && !sought.jumps(step);
+        let may_join = sought.may_join && !sought.jumps(step);
         let foreseen = may_join.then(|| start.join_foreseen(step, ends, load_sign, work)).flatten();
         if let Some(joined) = foreseen {
             tries.joined = Some(joined.is_some());
-            match joined {
-                Some(joined) => return Ok(Ending::Joined(joined)),
-                None => may_join = false,
-            }
+            // Where they cannot be taken together nothing but the first of them is to be gone to.
+            return joined.map(Ending::Joined).ok_or(Refused::Apart);
         }
         let tried = self.attempt(start, step, sought, tries, work)?;
         if may_join && let Some(first) = start.changes_to_join(&tried) {
