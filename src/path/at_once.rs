@@ -9,8 +9,9 @@
 //!
 //! by Newton's method in one mode after another: what a mode breaks at its end is changed, all of it at once (a
 //! primal-dual active set: M. Hintermüller, K. Ito, K. Kunisch, SIAM J. Optim. 13 (2002) 865,
-//! doi:10.1137/S1052623401383558). In large structures one iteration a mode tells that, until nothing is broken any more;
-//! then the point is solved for, and looked at again.
+//! doi:10.1137/S1052623401383558). In large structures one iteration a mode tells that, until nothing is broken any more,
+//! and from one mode to the next it is found with the equations of that iteration (`complementary`); then the point is
+//! solved for, and looked at again.
 //!
 //! That end is the path's where nothing on the way leaves a choice. With `M` the stiffness that the contacts which
 //! change feel (the others as they are), each sign of the load rate has exactly one direction in any mode of theirs if
@@ -29,6 +30,7 @@
 //! touches and leaves again within the step is not named.
 
 use super::advance::{Attempt, COINCIDING, PASSED, Reached, Start, Work, may_turn};
+use super::complementary::Complementary;
 use super::loading::Loading;
 use super::mode_system::ModeSystem;
 use super::newton::{Corrected, Place};
@@ -105,6 +107,8 @@ struct Far<'a> {
     state: &'a State,
     rate: &'a Rate,
     step: f64,
+    /// Of the equations whose solution the state is at first order.
+    factorisation: Option<&'a SystemFactorisation>,
 }
 
 /// The contact that touches or lifts off where a quantity is zero, if it has no friction and its node no other contact.
@@ -136,7 +140,7 @@ impl Start<'_> {
         let Attempt { reached, watches, .. } = tried;
         self.join(
             first,
-            Far { state: &reached.corrected.state, rate: &reached.rate, step: reached.step },
+            Far { state: &reached.corrected.state, rate: &reached.rate, step: reached.step, factorisation: None },
             watches,
             work,
         )
@@ -168,7 +172,8 @@ impl Start<'_> {
         };
         let passed: Vec<Watch> = watches.iter().copied().filter(negative).collect();
         let first = self.joinable(&watches, &passed, step)?;
-        Some(self.join(&first, Far { state: &state, rate: &rate, step }, &watches, work))
+        let far = Far { state: &state, rate: &rate, step, factorisation: Some(&factorisation) };
+        Some(self.join(&first, far, &watches, work))
     }
 
     fn joinable(&self, watches: &[Watch], passed: &[Watch], step: f64) -> Option<BTreeSet<usize>> {
@@ -247,14 +252,15 @@ impl Start<'_> {
         let mut tried = BTreeSet::new();
         // Contacts that were looked at together at the start, and the negative eigenvalues found.
         let mut counted: Option<(usize, usize)> = None;
+        let mut linearised = None;
         for round in 0..MOST_ROUNDS {
-            // What leaves a choice at the start is not worth the solves. One iteration tells most of what is asked besides,
-            // and what holds with more contacts held or free holds with fewer.
-            if counted.is_none() && (round > 0 || !roughly) {
-                counted = Some((asked.len(), self.negative_where_held_or_free(&asked, self.state)?));
-            }
             if wrong.len() > MOST_RISE * first.len() {
                 return None;
+            }
+            let nearby = linearised.as_ref().or(far.factorisation.filter(|_| round == 0));
+            if let Some(settled) = self.settled(&modes, &state, nearby, &wrong) {
+                (wrong, state) = (settled.changed, settled.state);
+                asked.extend(&wrong);
             }
             for contact in &wrong {
                 let held = modes[*contact].is_active();
@@ -268,17 +274,28 @@ impl Start<'_> {
             }
             let system = ModeSystem::new(self.loading, &modes, self.state);
             let place = Place::ArcLength { from: self.state, step: far.step };
+            // Each mode has equations of its own.
+            (*last, linearised) = (None, None);
             if roughly {
-                state = system.iterated_once(state, place, work)?.0;
+                let (next, factorisation) = system.iterated_once(state, place, work)?;
+                state = next;
                 wrong = self.broken(&modes, &state, self.force_scale)?;
                 asked.extend(&wrong);
-                if !wrong.is_empty() {
-                    continue;
+                if wrong.is_empty() {
+                    roughly = false;
+                    *last = system.may_serve(factorisation);
+                } else {
+                    linearised = Some(factorisation);
                 }
-                roughly = false;
             }
-            // Each mode has equations of its own.
-            *last = None;
+            // What leaves a choice at the start is not worth the solves. One iteration tells most of what is asked besides,
+            // and what holds with more contacts held or free holds with fewer.
+            if counted.is_none() {
+                counted = Some((asked.len(), self.negative_where_held_or_free(&asked, self.state)?));
+            }
+            if roughly {
+                continue;
+            }
             let corrected = system.correct_from(system.iterate(state), place, self.force_scale, last).ok()?;
             work.newton_iterations += corrected.iterations;
             work.factorisations += corrected.factorisations;
@@ -297,8 +314,20 @@ impl Start<'_> {
         None
     }
 
+    /// The contacts that change from some modes at about the state that one iteration in them led to, by that factorisation.
+    fn settled(
+        &self,
+        modes: &[Mode],
+        state: &State,
+        factorisation: Option<&SystemFactorisation>,
+        wrong: &[usize],
+    ) -> Option<Complementary> {
+        let broken = |state: &State| self.broken(modes, state, self.force_scale);
+        ModeSystem::new(self.loading, modes, self.state).complementary(state, factorisation?, wrong, broken)
+    }
+
     /// The contacts whose modes do not hold at a state; `None` where some other quantity is negative.
-    fn broken(&self, modes: &[Mode], state: &State, forces: f64) -> Option<Vec<usize>> {
+    pub(super) fn broken(&self, modes: &[Mode], state: &State, forces: f64) -> Option<Vec<usize>> {
         let broken = watch::of_mode(self.loading, modes, state, self.rate).into_iter().filter(|watch| {
             let value = watch.value(self.loading, modes, state, self.rate);
             value < -PASSED * watch.scale(self.loading, state, forces)

@@ -51,7 +51,7 @@ impl ModeSystem<'_> {
     }
 
     /// A right-hand side: the node of a closed contact moves along a direction, as far as the contact holds it.
-    fn moving(&self, contact: usize, direction: &Vector) -> DVector<f64> {
+    pub(super) fn moving(&self, contact: usize, direction: &Vector) -> DVector<f64> {
         let mut values = DVector::zeros(self.size);
         let row = self.row_of(contact);
         let normal = self.loading.frame(contact, self.anchor).normal;
@@ -150,7 +150,7 @@ impl ModeSystem<'_> {
     }
 
     /// A right-hand side: a unit force along a direction on the node of a contact.
-    fn pushed(&self, contact: usize, direction: &Vector) -> DVector<f64> {
+    pub(super) fn pushed(&self, contact: usize, direction: &Vector) -> DVector<f64> {
         let structure = self.loading.structure;
         let first = self.loading.contacts[contact].node * structure.dimension;
         let mut values = DVector::zeros(self.size);

@@ -43,6 +43,7 @@ mod changeable;
 pub mod checkpoint;
 mod columns;
 mod combinations;
+mod complementary;
 mod condensed;
 mod confirm;
 mod contact_law;

@@ -133,7 +133,7 @@ impl SparseFactorisation {
     }
 
     /// The same for so many right-hand sides one after the other.
-    pub(super) fn solve_all_once(&self, values: &mut [f64], count: usize) -> bool {
+    pub fn solve_all_once(&self, values: &mut [f64], count: usize) -> bool {
         self.blocks.as_ref().is_some_and(|blocks| blocks.solve(values, count))
     }
 
