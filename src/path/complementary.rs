@@ -189,9 +189,9 @@ mod tests {
                 let is_closed = modes[*contact].is_active();
                 modes[*contact] = if is_closed { Mode::Free } else { Mode::Slip { direction: [0.0; 3] } };
             }
-            for contact in 0..modes.len() {
+            for (contact, mode) in modes.iter().enumerate() {
                 let (gap, force) = (loading.gap(contact, &foreseen.state), foreseen.state.reactions[contact].normal);
-                let (none, some) = if modes[contact].is_active() { (gap, force) } else { (force, gap) };
+                let (none, some) = if mode.is_active() { (gap, force) } else { (force, gap) };
                 assert!(none.abs() < 1e-9 && some > -1e-9, "contact {contact} of {first:?}: gap {gap}, force {force}");
             }
             let system = ModeSystem::new(loading, &modes, &here.state);
