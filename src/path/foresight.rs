@@ -42,8 +42,8 @@ pub(super) struct Foreseen {
 }
 
 impl Path<'_> {
-    /// A shorter step along a direction that ends just past the change that comes first. `may_join`: those that may be taken together are
-    /// not stopped at.
+    /// A shorter step along the direction just now that ends just past the change that comes first. `may_join`: those that
+    /// may be taken together are not stopped at.
     ///
     /// Only where matrices are sparse: the factorisations that are saved of a dense one cost as little as the points that
     /// come on top.
