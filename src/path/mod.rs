@@ -12,7 +12,7 @@
 //! | `track`, `drift` | slip in a plane: its rule of fourth order; the error that is left |
 //! | `watch`, `advance` | what ends a mode; one step, ended exactly at the first event |
 //! | `interpolation`, `locate`, `root` | between points that are reached; where a quantity is zero |
-//! | `at_once`, `glance` | contact changes of one step that are taken together; one iteration of a mode, to see what it breaks |
+//! | `at_once`, `complementary`, `glance` | contact changes of one step that are taken together; which of them, by equations linearised once; one iteration of a mode, to see what it breaks |
 //! | `foresight`, `straight` | the next contact change that rates foresee, solved for at once; stretches without bend |
 //! | `singular`, `critical`, `branches` | whether a step passes a smooth bifurcation; where; which directions leave it |
 //! | `bound` | a bound of the stage at or beside a smooth bifurcation |
