@@ -230,3 +230,39 @@ fn changes_with_friction_are_points_each() {
     let point = |row: &Increment| (row.load_factor, row.point.clone());
     assert!(all.iter().map(point).eq(auto.iter().map(point)));
 }
+
+/// Springs alone, whose tangent is the same everywhere: smooth floors that they land on within one step are taken together
+/// here as well.
+#[test]
+fn springs_land_together() {
+    let landed = |events: &str| {
+        let count = 60;
+        let mut model = json!({
+            "name": "a row of springs over floors", "dimension": 2, "nodes": {}, "elements": [], "obstacles": {},
+            "contacts": [], "stages": [{"name": "press", "forces": {}, "until": {"load_above": 0.8}}]
+        });
+        let (mut elements, mut contacts) = (Vec::new(), Vec::new());
+        for index in 0..count {
+            let (name, floor) = (format!("node{index}"), format!("floor{index}"));
+            model["nodes"][&name] = json!([index as f64, 0]);
+            elements.push(json!({"kind": "spring", "nodes": [name], "stiffness": [[1, 0], [0, 1]]}));
+            if index > 0 {
+                let nodes = [format!("node{}", index - 1), name.clone()];
+                elements.push(json!({"kind": "spring", "nodes": nodes, "stiffness": [[0.1, 0], [0, 0.1]]}));
+            }
+            if index % 3 == 0 {
+                let height = -0.1 - 0.01 / 60.0 * f64::from(index * 7 % count);
+                model["obstacles"][&floor] = json!({"kind": "plane", "point": [0, height], "normal": [0, 1]});
+                contacts.push(json!({"node": name, "obstacle": floor, "friction": 0}));
+            }
+            model["stages"][0]["forces"][&name] = json!([0, -1]);
+        }
+        (model["elements"], model["contacts"]) = (json!(elements), json!(contacts));
+        let arc_length = json!({"initial": 0.1, "max": 0.3, "displacement_scale": 1.0, "load_scale": 0.1});
+        trace(&typed(json!({"model": model, "analysis": {"events": events, "arc_length": arc_length}})))
+    };
+    let ((joined, report), (single, reference)) = (landed("auto"), landed("all"));
+    assert_same_end(&joined, &single);
+    assert!(joined.len() < single.len(), "{} rows, one a change {}", joined.len(), single.len());
+    assert!(report.factorisations < reference.factorisations, "{report:?}, {reference:?}");
+}

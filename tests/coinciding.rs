@@ -92,3 +92,48 @@ fn a_mode_that_ends_where_a_step_starts_is_a_row() {
         }
     }
 }
+
+/// Nodes on springs of their own over smooth floors whose heights differ by about what counts as no gap: some of them touch
+/// where the first does, others by a hair later. All land, and press as each does alone.
+#[test]
+fn nodes_that_land_almost_at_once() {
+    let mut least_apart = f64::INFINITY;
+    for count in [4, 6, 12, 30] {
+        for seed in 0..8_u64 {
+            let names: Vec<String> = (0..count).map(|index| format!("node{index}")).collect();
+            let mut model = json!({
+                "name": "nodes over floors of almost one height", "dimension": 2, "nodes": {}, "elements": [],
+                "obstacles": {}, "contacts": [],
+                "stages": [{"name": "press", "forces": {}, "until": {"load_above": 0.5}}]
+            });
+            for (index, name) in names.iter().enumerate() {
+                let lower = ((7919 * (index as u64 + 1) * (seed + 3)) % 1000) as f64 * 1e-13;
+                let x = index as f64;
+                model["nodes"][name] = json!([x, 0]);
+                model["obstacles"][format!("floor{index}")] =
+                    json!({"kind": "plane", "point": [x, -0.1 - lower], "normal": [0, 1]});
+                model["stages"][0]["forces"][name] = json!([0, -1]);
+            }
+            let springs =
+                names.iter().map(|name| json!({"kind": "spring", "nodes": [name], "stiffness": [[1, 0], [0, 1]]}));
+            model["elements"] = springs.collect();
+            let contacts = names.iter().enumerate();
+            model["contacts"] = contacts
+                .map(|(index, name)| json!({"node": name, "obstacle": format!("floor{index}"), "friction": 0}))
+                .collect();
+            for events in ["auto", "all"] {
+                let (increments, report) =
+                    trace(&request(&json!({"model": model, "analysis": {"events": events}}).to_string()));
+                assert_eq!(report.stop_reason, StopReason::StagesCompleted, "{count} nodes, {seed}: {report:?}");
+                let last = increments.last().expect("an increment");
+                for contact in &last.contacts {
+                    close(contact.normal_reaction, 0.4, 1e-9, "what each presses with");
+                    assert!(contact.gap.abs() < 1e-9, "{contact:?}");
+                }
+                let steps = increments.iter().skip(1).map(|increment| increment.step);
+                least_apart = steps.fold(least_apart, f64::min);
+            }
+        }
+    }
+    assert!(least_apart < 1e-9, "some land later than others by a hair: {least_apart:e}");
+}

@@ -1,4 +1,4 @@
-//! The work of seven scenes, counted, beside what it was: more than `work.txt` says fails, and so does less, so that the file
+//! The work of eight scenes, counted, beside what it was: more than `work.txt` says fails, and so does less, so that the file
 //! stays true. The counts are the same whatever the machine does; of allocations, which a compiler may save, the file has
 //! the most that there may be.
 

@@ -17,9 +17,11 @@
 //! change feel (the others as they are), each sign of the load rate has exactly one direction in any mode of theirs if
 //! `M` is positive definite: see `rates`. By the additivity of inertia it is if and only if the reduced tangent has as
 //! many negative eigenvalues with all of them held as with all of them free. That is asked for at both ends of the
-//! step, and the same number at both: no eigenvalue crosses zero in between, so that no limit point and no bifurcation
-//! lies there in any mode that the path may have had. The way on from each change is then not the way back, and keeps the
-//! sign of the load rate. Contacts that change there and back within the step are asked for as well.
+//! step, and the same number at both: but for eigenvalues that cross zero to and fro in between, as they may in any step,
+//! no limit point and no bifurcation lies there in any mode that the path may have had. The way on from each change is then
+//! not the way back, and keeps the sign of the load rate. Contacts that change there and back within the step are asked for
+//! as well. Nor may the direction turn by more than in any other step: where closing contacts turn it further each change
+//! ends a step. Nothing slides against friction, so that the work of the step is taken from the energy stored.
 //!
 //! Where a try fails, as many in a row do as a rule (an arch that rolls onto a floor leaves it where it first touched, and
 //! stands only while one of the two contacts holds it): it waits for some steps, and for longer each time.
@@ -198,7 +200,7 @@ impl Start<'_> {
         if changes < 2 || turns || !self.nothing_else_ends(watches, &mut restless, &reached) {
             return None;
         }
-        let same = |state: &State| self.negative_where_held_or_free(&restless, state) == Some(negative);
+        let mut same = |state: &State| self.negative_where_held_or_free(&restless, state, work) == Some(negative);
         if (!restless.is_subset(&asked) && !same(self.state)) || !same(&reached.corrected.state) {
             return None;
         }
@@ -291,7 +293,7 @@ impl Start<'_> {
             // What leaves a choice at the start is not worth the solves. One iteration tells most of what is asked besides,
             // and what holds with more contacts held or free holds with fewer.
             if counted.is_none() {
-                counted = Some((asked.len(), self.negative_where_held_or_free(&asked, self.state)?));
+                counted = Some((asked.len(), self.negative_where_held_or_free(&asked, self.state, work)?));
             }
             if roughly {
                 continue;
@@ -304,7 +306,7 @@ impl Start<'_> {
             if wrong.is_empty() {
                 let negative = match counted {
                     Some((all, negative)) if all == asked.len() => negative,
-                    _ => self.negative_where_held_or_free(&asked, self.state)?,
+                    _ => self.negative_where_held_or_free(&asked, self.state, work)?,
                 };
                 return Some(EndModes { modes, corrected, asked, negative });
             }
@@ -363,11 +365,11 @@ impl Start<'_> {
     }
 
     /// Negative eigenvalues of the tangent at a state with some contacts held and with them free, where these are as many.
-    fn negative_where_held_or_free(&self, contacts: &BTreeSet<usize>, state: &State) -> Option<usize> {
-        let count = |mode: Mode| {
+    fn negative_where_held_or_free(&self, contacts: &BTreeSet<usize>, state: &State, work: &mut Work) -> Option<usize> {
+        let mut count = |mode: Mode| {
             let mut modes = self.modes.to_vec();
             contacts.iter().for_each(|contact| modes[*contact] = mode);
-            negative_eigenvalues(self.loading, &modes, self.state, state)
+            negative_eigenvalues(self.loading, &modes, self.state, state, work)
         };
         let free = count(Mode::Free)?;
         // Held they can only be fewer.

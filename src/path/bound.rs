@@ -44,7 +44,7 @@ pub fn beside_singular(
         (passed && beyond.determinant.is_some()).then_some(beyond)
     })?;
     let here = Signature::at(start.loading, start.modes, start.state, start.rate, &mut None, work);
-    let located = known.or(here).and_then(|before| match singular::compare(start, before, &beyond).1 {
+    let located = known.or(here).and_then(|before| match singular::compare(start, before, &beyond, work).1 {
         Change::None => None,
         change => critical::locate(start, before, change, &beyond, work),
     });

@@ -109,7 +109,7 @@ pub fn directions(
         found.corner_not_available = true;
         return found;
     }
-    if sole::directions(loading, state, standings, incoming, effort, &mut found) {
+    if sole::directions(loading, state, standings, incoming, effort, true, &mut found) {
         return found;
     }
     let Some(condensed) = Condensed::new(&system, loading, state, standings, incoming) else {
@@ -117,8 +117,14 @@ pub fn directions(
         found.mechanism = resists_nothing(&system, loading, state);
         return found;
     };
-    let incoming = incoming.map(|incoming| incoming.rate);
-    condensed.enumerate(&held, state, incoming, effort, &mut found);
+    condensed.enumerate(&held, state, incoming.map(|incoming| incoming.rate), effort, &mut found);
+    if found.unexplored > 0 && loading.structure.layout().is_some() {
+        // Where the search was cut there may be a proof.
+        let mut proven = Found::default();
+        if sole::directions(loading, state, standings, incoming, effort, false, &mut proven) && proven.is_proven {
+            return proven;
+        }
+    }
     found
 }
 

@@ -18,13 +18,15 @@
 //! | `bound` | a bound of the stage at or beside a smooth bifurcation |
 //! | `folded` | points of slip in a plane at which the direction is not determined |
 //! | `near` | which contacts are in reach |
-//! | `standing`, `incoming`, `directions`, `condensed`, `columns` | which contacts can change; how the path arrives; every direction; the structure's rates by the velocities of those contacts |
+//! | `standing`, `incoming`, `directions`, `condensed`, `changeable`, `columns` | which contacts can change; how the path arrives; every direction; the structure's rates by the velocities of those contacts |
+//! | `at_hand` | a factorisation that an earlier solve left over, for the next that it serves |
 //! | `sole` | many contacts that can change: one direction for each sign of the load rate, without condensation |
 //! | `going_on` | the directions where the mode goes on, if a cheap test says that there are two |
 //! | `combinations` | one of each of several lists, in one order |
 //! | `confirm`, `decide` | those that hold beyond first order; which one is taken |
 //! | `rates`, `turning`, `together` | all rays of a rate problem, linear forms only; slip whose direction is unknown, of one node and of several at once |
 //! | `program`, `naming` | the MPEC of an increment; where it names the mode |
+//! | `name_event`, `displacements` | an event in words; displacements by node for a row |
 //! | `energy`, `record`, `increment`, `report`, `stop` | balances, rows, totals, reasons |
 //! | `tracer`, `stages`, `stepping`, `trying`, `arrival` | the iterator; how a stage begins; how far a step goes; one try of it; what a point turned out to be |
 //! | `history` | states that the path has left, for telling a cycle |

@@ -27,8 +27,8 @@ use super::standing::ZERO;
 use super::state::{Rate, State};
 use super::watch::Watch;
 use crate::contact::{Contact, Mode};
-use crate::linear_algebra::sparse::held_inertia;
-use crate::linear_algebra::{Determinant, SystemFactorisation, determinant, inertia, null_space};
+use crate::linear_algebra::sparse::{Bordered, held_inertia};
+use crate::linear_algebra::{Determinant, Inertia, SystemFactorisation, determinant, inertia, null_space};
 use crate::structure::element::Element;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
@@ -74,7 +74,12 @@ fn slips(loading: Loading<'_>, modes: &[Mode]) -> bool {
 /// tangent cannot change.
 pub fn counted_tangent(loading: Loading<'_>, modes: &[Mode], start: &State, state: &State) -> Option<DMatrix<f64>> {
     let (modes, anchor) = counted_modes(loading, modes, start, state)?;
-    reduced_tangent(&ModeSystem::new(loading, &modes, anchor), loading, state)
+    let system = ModeSystem::new(loading, &modes, anchor);
+    let constraints = system.size() - 1 - loading.structure.unknowns();
+    if constraints + 2 > loading.structure.unknowns() {
+        return None;
+    }
+    reduced_tangent(&system, loading, state).filter(|tangent| tangent.nrows() > 1)
 }
 
 /// The modes in which the tangent is counted, and where they begin.
@@ -107,7 +112,13 @@ fn counted_modes<'s>(
 
 /// Negative eigenvalues of that tangent, by a sparse factorisation: `Some(None)` where they are not counted, `None` where
 /// the count fails.
-fn count_sparse(loading: Loading<'_>, modes: &[Mode], start: &State, state: &State) -> Option<Option<usize>> {
+fn count_sparse(
+    loading: Loading<'_>,
+    modes: &[Mode],
+    start: &State,
+    state: &State,
+    work: &mut Work,
+) -> Option<Option<usize>> {
     let Some((modes, anchor)) = counted_modes(loading, modes, start, state) else { return Some(None) };
     let system = ModeSystem::new(loading, &modes, anchor);
     let unknowns = loading.structure.unknowns();
@@ -115,31 +126,44 @@ fn count_sparse(loading: Loading<'_>, modes: &[Mode], start: &State, state: &Sta
         return Some(None);
     }
     let matrix = system.assemble_sparse(&system.iterate(state.clone()), Kind::Rates)?;
-    let inertia = held_inertia(&matrix, system.holdings(), ZERO_PIVOT)?;
-    Some(Some(inertia.negative))
+    inertia_of_sparse(&system, &matrix, work).map(|inertia| Some(inertia.negative))
 }
 
-/// Negative eigenvalues of the tangent reduced to the motions that a mode allows; `None` where they are not counted.
-pub fn negative_eigenvalues(loading: Loading<'_>, modes: &[Mode], start: &State, state: &State) -> Option<usize> {
-    if loading.structure.layout().is_some() {
-        return count_sparse(loading, modes, start, state)?;
-    }
-    Some(inertia(counted_tangent(loading, modes, start, state)?, ZERO_PIVOT)?.negative)
+/// Negative eigenvalues of the tangent reduced to the motions that a mode without slip against friction allows, however few;
+/// `None` where it is singular or the count fails.
+pub fn negative_eigenvalues(
+    loading: Loading<'_>,
+    modes: &[Mode],
+    start: &State,
+    state: &State,
+    work: &mut Work,
+) -> Option<usize> {
+    let system = ModeSystem::new(loading, modes, start);
+    let counted = match system.assemble_sparse(&system.iterate(state.clone()), Kind::Rates) {
+        Some(matrix) => inertia_of_sparse(&system, &matrix, work),
+        None => inertia(reduced_tangent(&system, loading, state)?, ZERO_PIVOT),
+    };
+    counted.filter(|counted| counted.zero == 0).map(|counted| counted.negative)
+}
+
+fn inertia_of_sparse(system: &ModeSystem<'_>, matrix: &Bordered, work: &mut Work) -> Option<Inertia> {
+    work.factorisations += 1;
+    held_inertia(matrix, system.holdings(), ZERO_PIVOT)
 }
 
 fn reduced_tangent(system: &ModeSystem<'_>, loading: Loading<'_>, state: &State) -> Option<DMatrix<f64>> {
     let unknowns = loading.structure.unknowns();
     let constraints = system.size() - 1 - unknowns;
-    if constraints + 2 > unknowns {
-        return None;
-    }
     let matrix = system.matrix(state);
     let tangent = matrix.view((0, 0), (unknowns, unknowns));
     if constraints == 0 {
         return Some(tangent.into_owned());
     }
     let basis = null_space(&matrix.view((unknowns, 0), (constraints, unknowns)).into_owned(), RANK)?;
-    let basis = if basis.ncols() < 2 { return None } else { basis.qr().q() };
+    if basis.ncols() == 0 {
+        return Some(DMatrix::zeros(0, 0));
+    }
+    let basis = basis.qr().q();
     let reduced = basis.transpose() * (tangent * &basis);
     Some((&reduced + reduced.transpose()) * 0.5)
 }
@@ -169,12 +193,13 @@ impl Signature {
         start: &State,
         state: &State,
         sign: f64,
+        work: &mut Work,
     ) -> Option<Self> {
         let negative = if loading.structure.layout().is_some() {
             if !loading.structure.allows_dense() {
                 return None;
             }
-            count_sparse(loading, modes, start, state)?
+            count_sparse(loading, modes, start, state, work)?
         } else {
             match counted_tangent(loading, modes, start, state) {
                 Some(tangent) => Some(inertia(tangent, ZERO_PIVOT)?.negative),
@@ -213,7 +238,7 @@ impl Signature {
             FURTHER_ON.iter().find_map(|part| {
                 let near = start.reach(part * step, work).ok()?;
                 let sign = near.determinant?;
-                Self::with_determinant(start.loading, start.modes, start.state, &near.corrected.state, sign)
+                Self::with_determinant(start.loading, start.modes, start.state, &near.corrected.state, sign, work)
             })
         })
     }
@@ -240,13 +265,13 @@ impl Signature {
             }
             let sign = bordered.determinant_sign();
             *serving = system.may_serve(bordered);
-            return Self::with_determinant(loading, modes, state, state, sign);
+            return Self::with_determinant(loading, modes, state, state, sign, work);
         }
         let determinant = bordered_determinant(&system, loading, state, rate)?;
         if determinant.pivot_ratio <= UNCERTAIN {
             return None;
         }
-        Self::with_determinant(loading, modes, state, state, determinant.sign)
+        Self::with_determinant(loading, modes, state, state, determinant.sign, work)
     }
 }
 
@@ -287,10 +312,16 @@ pub fn bordered_determinant(
 }
 
 /// The signature at the end of a step, and how it changed.
-pub fn compare(start: &Start<'_>, before: Signature, reached: &Reached) -> (Option<Signature>, Change) {
+pub fn compare(
+    start: &Start<'_>,
+    before: Signature,
+    reached: &Reached,
+    work: &mut Work,
+) -> (Option<Signature>, Change) {
     let Some(sign) = reached.determinant else { return (None, Change::None) };
     let state = &reached.corrected.state;
-    let Some(mut after) = Signature::with_determinant(start.loading, start.modes, start.state, state, sign) else {
+    let Some(mut after) = Signature::with_determinant(start.loading, start.modes, start.state, state, sign, work)
+    else {
         return (None, Change::None);
     };
     let odd = sign != before.determinant;

@@ -103,6 +103,7 @@ impl Path<'_> {
             self.at.totals.work = work;
             if let Some(joined) = tries.joined.take() {
                 self.at.waiting.note(joined);
+                sought.may_join &= joined;
             }
             match outcome {
                 Ok(tried) => match self.weigh(rate, tried, step, sought, was_shortened) {
@@ -119,7 +120,7 @@ impl Path<'_> {
                 }
                 Err(Refused::Apart) => {
                     // Each of them ends a step then, the first of them this one.
-                    sought.may_join = false;
+                    sought.ordinary = sought.ordinary.min(step);
                     sought.foreseen = self.step_to_foreseen_change(step, rate, false);
                     step = sought.foreseen.map_or(step, |change| change.step);
                 }

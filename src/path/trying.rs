@@ -250,7 +250,7 @@ fn crossing_when_loose(
     let before = Signature::past_start(&loosened, reached.step, &mut None, work)?;
     let mut end = loosened.reach_near(reached.corrected.state.clone(), reached.step, work).ok()?;
     end.event = reached.event;
-    let (_, change) = singular::compare(&loosened, before, &end);
+    let (_, change) = singular::compare(&loosened, before, &end, work);
     if change == Change::None {
         return None;
     }
@@ -279,11 +279,11 @@ fn crossing_in_mode(
         // The start is singular: signs are known from the end on.
         let state = &reached.corrected.state;
         let regular = reached.determinant.filter(|_| !matches!(reached.event, Some(Watch::LoadRate { .. })));
-        let after =
-            regular.and_then(|sign| Signature::with_determinant(start.loading, start.modes, start.state, state, sign));
+        let after = regular
+            .and_then(|sign| Signature::with_determinant(start.loading, start.modes, start.state, state, sign, work));
         return Ok((reached, None, after));
     };
-    let (after, change) = singular::compare(start, before, &reached);
+    let (after, change) = singular::compare(start, before, &reached, work);
     if after.is_none() && reached.event.is_none() && may_refuse {
         return Err(Refused::Unresolved);
     }

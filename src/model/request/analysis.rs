@@ -160,7 +160,8 @@ pub enum Selection {
 }
 
 /// Which contact changes become points of the path. Contacts without friction that touch or lift off within one step are
-/// taken together by `auto`, where that is certain to lead to the same state: the increment's event names each of them.
+/// taken together by `auto` where that leads to the same state, as far as counts of eigenvalues at both ends of the step
+/// tell: the increment's event names each of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(rename_all = "snake_case")]

@@ -5,9 +5,13 @@ use crate::contact::Reaction;
 use crate::contact::vector::scaled;
 use crate::linear_algebra::Sink;
 use crate::path::newton::Place;
+use crate::path::standing::ZERO;
 use crate::path::state::State;
 use crate::path::track;
 use nalgebra::DVector;
+
+/// A gap (dimensionless) up to this size is what rounding leaves of none.
+const ROUNDING: f64 = 1e-13;
 
 impl ModeSystem<'_> {
     /// Equilibrium and contact equations; returns the largest equilibrium residual and the force scale.
@@ -42,10 +46,12 @@ impl ModeSystem<'_> {
             match role {
                 // A sticking node is put in its place exactly: see `place_exactly`.
                 Role::Free | Role::Stick | Role::Held | Role::HeldBy => {}
-                Role::Frictionless | Role::Line { .. } | Role::Edge { .. } => values[row] = frame.gap,
+                Role::Frictionless | Role::Line { .. } | Role::Edge { .. } => {
+                    values[row] = frame.gap - self.left_open(contact);
+                }
                 Role::Plane { track } => {
                     let Track { start, turn } = &self.tracks[*track];
-                    values[row] = frame.gap;
+                    values[row] = frame.gap - self.left_open(contact);
                     let chord = self.chord(contact, state);
                     let rule = track::Rule::new(&frame, start, turn, &iterate.directions[contact], &chord);
                     values[row + 1] = rule.left_over;
@@ -58,6 +64,13 @@ impl ModeSystem<'_> {
             largest = largest.max(value.abs());
         }
         (largest, scale)
+    }
+
+    /// The gap that a contact keeps which closed where that was as good as none: where several touch at almost one place the
+    /// path goes on from there without a jump, however short the way to the next is.
+    fn left_open(&self, contact: usize) -> f64 {
+        let gap = self.loading.gap(contact, self.anchor);
+        if gap > ROUNDING && gap <= ZERO { gap } else { 0.0 }
     }
 
     /// Value of the last equation, and its row.

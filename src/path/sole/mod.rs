@@ -37,21 +37,25 @@ const FEW_TOUCHING: usize = 3;
 /// The same of structures with sparse matrices, at the least: each contact that can change is one more solve, and costs as
 /// much of the factorisations that a proof takes as the factor's columns are short.
 const FEW_OF_MANY: usize = 4;
+/// And at the most: the search, which may have to try every combination, is cut where it takes too long.
+const MOST_OF_MANY: usize = 24;
 /// Entries of a column of the factor for which one more contact is as quick.
 const ENTRIES_A_CONTACT: usize = 3;
 /// Numbers of the condensed equations (contacts that can change times what each moves) that are too many.
 const MOST_CONDENSED: usize = 25_000_000;
 
-/// Lists the directions; `false` where there is no proof that they are all and the contacts are few enough for a search.
+/// Lists the directions; `false` where there is no proof that they are all and the contacts are few enough for a search,
+/// or where `may_search` and that is quicker.
 pub(super) fn directions(
     loading: Loading<'_>,
     state: &State,
     standings: &[Standing],
     incoming: Option<Incoming<'_>>,
     effort: Effort<'_>,
+    may_search: bool,
     found: &mut Found,
 ) -> bool {
-    if !effort.certify || are_few(loading, standings) {
+    if !effort.certify || (may_search && are_few(loading, standings)) {
         return false;
     }
     let Some(equations) = Equations::new(loading, state, standings) else { return false };
@@ -100,7 +104,7 @@ fn are_few(loading: Loading<'_>, standings: &[Standing]) -> bool {
     let changing = standings.iter().filter(|standing| !matches!(standing, Standing::Settled(_))).count();
     let few = loading.structure.layout().map_or(FEW, |layout| {
         let entries_of_column = layout.pattern.factor_entries() / layout.pattern.size().max(1);
-        (entries_of_column / ENTRIES_A_CONTACT).clamp(FEW_OF_MANY, FEW)
+        (entries_of_column / ENTRIES_A_CONTACT).clamp(FEW_OF_MANY, MOST_OF_MANY)
     });
     changing <= few && touching <= FEW_TOUCHING
 }
