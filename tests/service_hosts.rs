@@ -99,7 +99,7 @@ async fn a_worker_that_was_halted_past_its_lease_writes_nothing_more() {
     let database = postgres.database().await;
     let client = client();
     // It outlasts the first halt where that was the other's.
-    let job = in_short_steps("one-bar-truss", 20_000, 20_000);
+    let job = in_short_steps("one-bar-truss", 60_000, 60_000);
     let expected = strip(&solved(&job));
     let server = Process::serve(&database, &SERVER);
     let (one, other) = (Process::work(&database, &WORKER), Process::work(&database, &WORKER));
