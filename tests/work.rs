@@ -6,6 +6,7 @@ mod common;
 
 use allocation_counter::measure;
 use arcslip::cancel::CancelFlag;
+use arcslip::linear_algebra::solves;
 use arcslip::model::JobRequest;
 use arcslip::model::request::Method;
 use arcslip::path::{Path, Scene};
@@ -14,8 +15,7 @@ use common::paths::scene_file;
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/work.txt");
 const RENEW: &str = "ARCSLIP_RENEW_WORK=1 cargo test --no-default-features --test work";
-const HEADER: &str =
-    "scene method increments factorisations newton_iterations qp_solves mpec_solves allocations_an_increment_at_most";
+const HEADER: &str = "scene method increments factorisations solves newton_iterations qp_solves mpec_solves allocations_an_increment_at_most";
 
 /// A sparse arch of some 400 unknowns that lands on its floor.
 fn lattice() -> JobRequest {
@@ -29,10 +29,10 @@ fn landing(friction: f64) -> JobRequest {
     arch.landing(10).request().expect("a request")
 }
 
-/// Scene and method, five counts, and allocations an increment.
+/// Scene and method, six counts, and allocations an increment.
 struct Work {
     name: String,
-    counts: [u64; 5],
+    counts: [u64; 6],
     allocations: f64,
 }
 
@@ -41,14 +41,21 @@ impl Work {
         request.analysis.method = method;
         let scene = Scene::new(&request).unwrap_or_else(|errors| panic!("{name}: {errors}"));
         let mut report = None;
+        let solved_before = solves();
         let allocated = measure(|| {
             let mut path = Path::new(&scene, CancelFlag::default());
             path.by_ref().for_each(drop);
             report = path.report();
         });
         let report = report.expect("an ended path has a report");
-        let counts =
-            [report.increments, report.factorisations, report.newton_iterations, report.qp_solves, report.mpec_solves];
+        let counts = [
+            report.increments,
+            report.factorisations,
+            solves() - solved_before,
+            report.newton_iterations,
+            report.qp_solves,
+            report.mpec_solves,
+        ];
         // The row of the start is one more.
         let allocations = allocated.count_total as f64 / (report.increments + 1) as f64;
         Self { name: format!("{name} {}", method.name()), counts, allocations }

@@ -1,6 +1,7 @@
 //! Dense LU factorisations with partial pivoting. The few equations of a small scene are factorised by code for just
 //! their number, which spends nothing on loops.
 
+use super::counted::count_solves;
 use nalgebra::allocator::Allocator;
 use nalgebra::constraint::{SameNumberOfRows, ShapeConstraint};
 use nalgebra::{Const, DMatrix, DVector, DefaultAllocator, Dim, DimMin, Dyn, LU, OMatrix, OVector, SMatrix};
@@ -167,6 +168,7 @@ impl Factorisation {
 
     /// Solves for one right-hand side, overwritten by the solution; `false` when the result is not finite.
     pub fn solve(&self, right_hand_side: &mut DVector<f64>) -> bool {
+        count_solves(1);
         let size = self.factors.size();
         if size == 0 {
             return true;

@@ -109,7 +109,8 @@ pub fn directions(
         found.corner_not_available = true;
         return found;
     }
-    if sole::directions(loading, state, standings, incoming, effort, true, &mut found) {
+    let are_few = sole::are_few(loading, standings);
+    if !are_few && sole::directions(loading, state, standings, incoming, effort, &mut found) {
         return found;
     }
     let Some(condensed) = Condensed::new(&system, loading, state, standings, incoming) else {
@@ -118,10 +119,10 @@ pub fn directions(
         return found;
     };
     condensed.enumerate(&held, state, incoming.map(|incoming| incoming.rate), effort, &mut found);
-    if found.unexplored > 0 && loading.structure.layout().is_some() {
+    if are_few && found.unexplored > 0 && loading.structure.layout().is_some() {
         // Where the search was cut there may be a proof.
         let mut proven = Found::default();
-        if sole::directions(loading, state, standings, incoming, effort, false, &mut proven) && proven.is_proven {
+        if sole::directions(loading, state, standings, incoming, effort, &mut proven) && proven.is_proven {
             return proven;
         }
     }

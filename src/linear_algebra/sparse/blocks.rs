@@ -18,6 +18,7 @@ use super::held::{Coupling, Elimination, Friction, HeldNode, Holdings, gathered,
 use super::reduced::{Factor, Reduced};
 use super::symmetric::SymmetricFactor;
 use super::unsymmetric::UnsymmetricFactor;
+use crate::linear_algebra::counted::count_solves;
 use nalgebra::DMatrix;
 use smallvec::SmallVec;
 
@@ -165,6 +166,7 @@ impl Blocks {
 
     /// Solves for so many right-hand sides one after the other, overwritten by the solutions.
     pub fn solve(&self, values: &mut [f64], count: usize) -> bool {
+        count_solves(count);
         let size = values.len() / count.max(1);
         let kept = self.kept_rows.len();
         let mut motions = Vec::with_capacity(count * self.unknowns);

@@ -1,5 +1,6 @@
 //! Sparse symmetric matrices that are positive definite, by their Cholesky factorisation.
 
+use crate::linear_algebra::counted::count_solves;
 use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::Llt;
 use faer::sparse::{SparseColMat, Triplet};
@@ -47,6 +48,7 @@ impl Definite {
 
     /// Solves for one right-hand side, overwritten by the solution.
     pub fn solve(&self, values: &mut [f64]) {
+        count_solves(1);
         values.iter_mut().zip(&self.scales).for_each(|(value, scale)| *value *= scale);
         let size = values.len();
         self.factor.solve_in_place(MatMut::from_column_major_slice_mut(values, size, 1));

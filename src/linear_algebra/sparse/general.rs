@@ -1,5 +1,6 @@
 //! Sparse LU factorisation of any square matrix, by its entries.
 
+use crate::linear_algebra::counted::count_solves;
 use faer::MatMut;
 use faer::linalg::solvers::SolveCore;
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
@@ -37,6 +38,7 @@ impl GeneralLu {
 
     /// Overwrites a right-hand side by the solution; `false` where that is not finite.
     pub fn solve(&self, values: &mut [f64]) -> bool {
+        count_solves(1);
         values.iter_mut().zip(&self.scales).for_each(|(value, scale)| *value /= scale);
         let size = values.len();
         self.lu.solve_in_place_with_conj(faer::Conj::No, MatMut::from_column_major_slice_mut(values, size, 1));
@@ -45,6 +47,7 @@ impl GeneralLu {
 
     /// The same for the transpose of the matrix.
     pub fn solve_transposed(&self, values: &mut [f64]) -> bool {
+        count_solves(1);
         let size = values.len();
         self.lu
             .solve_transpose_in_place_with_conj(faer::Conj::No, MatMut::from_column_major_slice_mut(values, size, 1));

@@ -44,18 +44,16 @@ const ENTRIES_A_CONTACT: usize = 3;
 /// Numbers of the condensed equations (contacts that can change times what each moves) that are too many.
 const MOST_CONDENSED: usize = 25_000_000;
 
-/// Lists the directions; `false` where there is no proof that they are all and the contacts are few enough for a search,
-/// or where `may_search` and that is quicker.
+/// Lists the directions; `false` where there is no proof that they are all and the contacts are few enough for a search.
 pub(super) fn directions(
     loading: Loading<'_>,
     state: &State,
     standings: &[Standing],
     incoming: Option<Incoming<'_>>,
     effort: Effort<'_>,
-    may_search: bool,
     found: &mut Found,
 ) -> bool {
-    if !effort.certify || (may_search && are_few(loading, standings)) {
+    if !effort.certify {
         return false;
     }
     let Some(equations) = Equations::new(loading, state, standings) else { return false };
@@ -99,7 +97,8 @@ pub(super) fn directions(
     true
 }
 
-fn are_few(loading: Loading<'_>, standings: &[Standing]) -> bool {
+/// Whether the search is quicker than a proof.
+pub(super) fn are_few(loading: Loading<'_>, standings: &[Standing]) -> bool {
     let touching = standings.iter().filter(|standing| matches!(standing, Standing::Touching)).count();
     let changing = standings.iter().filter(|standing| !matches!(standing, Standing::Settled(_))).count();
     let few = loading.structure.layout().map_or(FEW, |layout| {

@@ -47,7 +47,7 @@ fn both(path: &Path<'_>, incoming: Option<&Rate>) -> Option<(Found, Found)> {
     let (loading, state) = (path.loading(), &path.at.here.state);
     let (standings, effort) = (path.standings(state), path.rules().effort);
     let (mut own, mut others) = (Found::default(), Found::default());
-    if !directions(loading, state, &standings, incoming.map(Incoming::along), effort, false, &mut own) {
+    if !directions(loading, state, &standings, incoming.map(Incoming::along), effort, &mut own) {
         return None;
     }
     let held: Vec<Mode> = standings
