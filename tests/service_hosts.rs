@@ -21,7 +21,7 @@ const WORKER: [&str; 4] = ["--workers", "2", "--lease", "600ms"];
 
 /// A job of some seconds.
 fn long() -> Value {
-    in_short_steps("one-bar-truss", 6000, 6000)
+    in_short_steps("one-bar-truss", 20_000, 20_000)
 }
 
 async fn stored(client: &Client, url: &str, id: &str, least: u64) {
@@ -84,7 +84,7 @@ async fn a_worker_that_is_killed_costs_its_job_nothing_but_time() {
     let server = Process::serve(&database, &SERVER);
     let mut worker = Process::work(&database, &WORKER);
     let id = submit(&client, &server.url, "/v1/jobs", &long()).await;
-    for reached in [1, 1000, 3000] {
+    for reached in [1, 3000, 9000] {
         stored(&client, &server.url, &id, reached).await;
         worker.kill();
         worker = Process::work(&database, &WORKER);

@@ -4,9 +4,9 @@
 
 mod common;
 
-use common::load::{are_whole, listed, occupation, queue, stream_all, worked_off};
+use common::load::{are_whole, listed, queue, stream_all, worked_off};
 use common::process::{Process, client, solved};
-use common::service::{in_short_steps, scene};
+use common::service::{in_short_steps, occupation, scene};
 use std::time::Duration;
 
 const PATIENCE: Duration = Duration::from_secs(120);

@@ -51,7 +51,7 @@ async fn checks_under_way_do_not_keep_the_service() {
 async fn a_service_that_is_asked_to_end_does_so_and_goes_on_at_the_next_start() {
     let folder = tempfile::tempdir().expect("a folder");
     let database = folder.path().join("jobs.db");
-    let requests = [in_short_steps("one-bar-truss", 8000, 8000), in_short_steps("klarbring", 8000, 3000)];
+    let requests = [in_short_steps("one-bar-truss", 20_000, 20_000), in_short_steps("klarbring", 16_000, 6000)];
     let client = client();
     let process = Process::serve(&database, &["--workers", "2"]);
     let mut ids = Vec::new();

@@ -14,11 +14,11 @@ mod reader;
 #[path = "../common/service.rs"]
 mod service;
 
-use load::{are_whole, listed, occupation, queue, stream_all, worked_off};
+use load::{are_whole, listed, queue, stream_all, worked_off};
 use process::{Process, client, has_ended, solved, submit, until};
 use reqwest::{Client, RequestBuilder};
 use serde_json::{Value, json};
-use service::scene;
+use service::{occupation, scene};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};

@@ -1,6 +1,6 @@
 //! Debian's Chromium, driven through chromedriver: what a reader of the dashboard sees and does.
 
-use fantoccini::actions::{InputSource, MOUSE_BUTTON_LEFT, MouseActions, PointerAction};
+use fantoccini::actions::{InputSource, KeyAction, KeyActions, MOUSE_BUTTON_LEFT, MouseActions, PointerAction};
 use fantoccini::{Client, ClientBuilder};
 use hyper_util::client::legacy::connect::HttpConnector;
 use rustix::process::{Pid, Signal, kill_process};
@@ -91,9 +91,13 @@ impl Browser {
         self.page.execute(set, vec![json!(selector), json!(value)]).await.expect("it runs");
     }
 
-    /// Sends keys to what has focus.
+    /// Presses keys together and lets go of them, as a keyboard does: whatever has focus has them, also where the page
+    /// draws it anew meanwhile.
     pub async fn keys(&self, keys: &str) {
-        self.page.active_element().await.expect("an element").send_keys(keys).await.expect("sent");
+        let pressed = keys.chars().map(|value| KeyAction::Down { value });
+        let released = keys.chars().rev().map(|value| KeyAction::Up { value });
+        let stroke = pressed.chain(released).fold(KeyActions::new("keyboard".to_owned()), InputSource::then);
+        self.page.perform_actions(stroke).await.expect("pressed");
     }
 
     /// Moves the pointer to places of the window in turn, pressed between the first and the last where that is said.

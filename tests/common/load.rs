@@ -2,7 +2,7 @@
 
 use super::process::{client, get, lines, submit};
 use super::reader::{Format, Reader, Said};
-use super::service::{in_short_steps, without_elapsed};
+use super::service::without_elapsed;
 use reqwest::Client;
 use serde_json::{Value, json};
 use std::collections::hash_map::Entry;
@@ -11,14 +11,6 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
-
-/// A job that keeps a worker busy until it is cancelled, and stores next to nothing.
-pub fn occupation() -> Value {
-    let mut request = in_short_steps("one-bar-truss", 10_000_000, 1_000_000);
-    request["model"]["name"] = json!("keeps a worker busy");
-    request["analysis"]["record"] = json!({"every": 1_000_000, "directions": false});
-    request
-}
 
 /// So many jobs, queued by so many clients; answers their ids.
 pub async fn queue(url: &str, request: &Value, jobs: usize, clients: usize) -> Vec<String> {

@@ -33,6 +33,14 @@ pub fn in_short_steps(name: &str, increments: u64, of_a_unit: u64) -> Value {
     request
 }
 
+/// A job that keeps a worker busy until it is cancelled, and stores next to nothing.
+pub fn occupation() -> Value {
+    let mut request = in_short_steps("one-bar-truss", 10_000_000, 1_000_000);
+    request["model"]["name"] = json!("keeps a worker busy");
+    request["analysis"]["record"] = json!({"every": 1_000_000, "directions": false});
+    request
+}
+
 /// A line with its one value that differs from run to run taken out, and nothing else touched.
 pub fn without_elapsed(line: &str) -> String {
     let Some((before, rest)) = line.split_once("\"elapsed_s\":") else { return line.to_owned() };
