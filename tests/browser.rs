@@ -185,8 +185,8 @@ async fn a_path_goes_on_growing_without_a_gap_after_a_restart() {
     let client = process::client();
     let url = service.url.clone();
     // Long enough to be under way when the program goes down.
-    let mut request = in_short_steps("one-bar-truss", 2_000_000, 1_250_000);
-    request["analysis"]["record"] = json!({"every": 1000, "directions": false});
+    let mut request = in_short_steps("one-bar-truss", 800_000, 500_000);
+    request["analysis"]["record"] = json!({"every": 400, "directions": false});
     let id = process::submit(&client, &url, "/v1/jobs", &request).await;
     browser.page.goto(&format!("{url}/?jobs={id}")).await.expect("a page");
     browser.until("document.getElementById('path-plot').data?.[0]?.x.length > 20").await;

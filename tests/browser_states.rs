@@ -129,7 +129,7 @@ async fn the_structure_of_a_job_that_waits_is_drawn_as_the_model_has_it() {
     browser.until("document.querySelector('#heading button') === document.activeElement").await;
     browser.ask("history.back()").await;
     browser.until(&format!("{STATUS} === 'stopped'")).await;
-    browser.until("document.getElementById('structure').textContent.includes('Increment 79')").await;
+    browser.until("document.getElementById('structure').textContent.includes('Increment 78')").await;
     browser.close(&service.url, &[]).await;
 }
 

@@ -64,7 +64,7 @@ fn the_rule_decides_where_the_program_names_no_direction() {
         "stages": [
             {"name": "press", "forces": {"n0": [0, 0, -1], "n1": [0, 0, -1]}, "until": {"load_above": 0.3}},
             {"name": "s0", "forces": {"n0": [0.5, 0.3, 0], "n1": [-1, -0.1995592708888101, -0.3]}, "until": {"load_above": 0.5, "load_below": -1}}]
-    }, "analysis": {"max_increments": 150}});
+    }, "analysis": {"max_increments": 300}});
     let mut request = request(&model.to_string());
     let by_auto = trace(&request).0;
     request.analysis.method = Method::Mpec;

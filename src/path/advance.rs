@@ -162,10 +162,9 @@ impl Start<'_> {
         serving: &mut Option<SystemFactorisation>,
         work: &mut Work,
     ) -> Result<Box<Reached>, Refused> {
-        let corrected =
-            system.correct_from(system.iterate(guess), place, self.force_scale, serving).map_err(Refused::Newton)?;
-        work.newton_iterations += corrected.iterations;
-        work.factorisations += corrected.factorisations;
+        let corrected = system
+            .correct_from(system.iterate(guess), place, self.force_scale, serving, work)
+            .map_err(Refused::Newton)?;
         self.directed(system, corrected, place, serving, work)
     }
 
@@ -186,10 +185,8 @@ impl Start<'_> {
             for pass in 1.. {
                 let settles = system.set_turns(self.rate, &corrected, &tangent);
                 let again = system
-                    .correct_from(system.iterate_of(&corrected), place, self.force_scale, &mut None)
+                    .correct_from(system.iterate_of(&corrected), place, self.force_scale, &mut None, work)
                     .map_err(Refused::Newton)?;
-                work.newton_iterations += again.iterations;
-                work.factorisations += again.factorisations;
                 // How hard the increment is shows in the first solve.
                 let hardness = corrected.iterations_to_small;
                 let change = system.largest_turn(&again, Some(&corrected));
@@ -253,7 +250,10 @@ impl Start<'_> {
     ) -> Result<Attempt, Refused> {
         let foreseen = before.and_then(|before| before.foresee(self.state, self.rate, step));
         let guess = foreseen.unwrap_or_else(|| self.state.advanced(self.rate, step));
-        let mut reached = self.reach_by(guess, step, &mut serving, work)?;
+        let mut system = ModeSystem::new(self.loading, self.modes, self.state);
+        system.may_be_shorter = true;
+        let place = Place::ArcLength { from: self.state, step };
+        let mut reached = self.settle_by(system, guess, place, &mut serving, work)?;
         may_turn(self.rate.product(&reached.rate))?;
         let watches = self.watches(ends, load_sign);
         let mut passed = self.passed(&watches, &reached);

@@ -20,7 +20,8 @@
 //! step, and the same number at both: but for eigenvalues that cross zero to and fro in between, as they may in any step,
 //! no limit point and no bifurcation lies there in any mode that the path may have had. The way on from each change is then
 //! not the way back, and keeps the sign of the load rate. Contacts that change there and back within the step are asked for
-//! as well. Nor may the direction turn by more than in any other step: where closing contacts turn it further each change
+//! as well. Where the equations linearised once already tell of a choice, or of too great a turn, nothing more is looked at.
+//! Nor may the direction turn by more than in any other step: where closing contacts turn it further each change
 //! ends a step. Nothing slides against friction, so that the work of the step is taken from the energy stored.
 //!
 //! Where a try fails, as many in a row do as a rule (an arch that rolls onto a floor leaves it where it first touched, and
@@ -260,8 +261,12 @@ impl Start<'_> {
                 return None;
             }
             let nearby = linearised.as_ref().or(far.factorisation.filter(|_| round == 0));
-            if let Some(settled) = self.settled(&modes, &state, nearby, &wrong) {
+            if let Some(settled) = self.settled(&modes, &state, far.rate, nearby, &wrong) {
+                if !settled.leaves_no_choice {
+                    return None;
+                }
                 (wrong, state) = (settled.changed, settled.state);
+                may_turn(self.state.cosine_of_chord(&state, state.distance(self.state), self.rate)).ok()?;
                 asked.extend(&wrong);
             }
             for contact in &wrong {
@@ -298,9 +303,7 @@ impl Start<'_> {
             if roughly {
                 continue;
             }
-            let corrected = system.correct_from(system.iterate(state), place, self.force_scale, last).ok()?;
-            work.newton_iterations += corrected.iterations;
-            work.factorisations += corrected.factorisations;
+            let corrected = system.correct_from(system.iterate(state), place, self.force_scale, last, work).ok()?;
             let forces = self.force_scale.max(corrected.force_scale);
             wrong = self.broken(&modes, &corrected.state, forces)?;
             if wrong.is_empty() {
@@ -321,11 +324,12 @@ impl Start<'_> {
         &self,
         modes: &[Mode],
         state: &State,
+        rate: &Rate,
         factorisation: Option<&SystemFactorisation>,
         wrong: &[usize],
     ) -> Option<Complementary> {
         let broken = |state: &State| self.broken(modes, state, self.force_scale);
-        ModeSystem::new(self.loading, modes, self.state).complementary(state, factorisation?, wrong, broken)
+        ModeSystem::new(self.loading, modes, self.state).complementary(state, rate, factorisation?, wrong, broken)
     }
 
     /// The contacts whose modes do not hold at a state; `None` where some other quantity is negative.

@@ -19,7 +19,7 @@ use crate::contact::vector::dot;
 use crate::contact::{Mode, Reaction};
 use crate::linear_algebra::sparse::SparseFactorisation;
 use crate::linear_algebra::{Factorisation, SystemFactorisation};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector};
 
 /// Contacts that may change: for each a solution as large as the structure is kept.
 const MOST_CHANGING: usize = 64;
@@ -32,6 +32,8 @@ pub(super) struct Complementary {
     pub changed: Vec<usize>,
     /// About the end with them changed.
     pub state: State,
+    /// Whether the contacts that may change feel a positive definite stiffness.
+    pub leaves_no_choice: bool,
 }
 
 /// The contacts that may change, as far as they are known.
@@ -46,10 +48,11 @@ struct Changing {
 impl ModeSystem<'_> {
     /// The contacts that change at about the state that one iteration of this system led to, with its factorisation; the
     /// `first` are known to break their modes. `broken` tells those that do so at a state, and nothing where something else
-    /// is broken. `None` where that is not found.
+    /// is broken, and the path has about the direction `rate` there. `None` where that is not found.
     pub(super) fn complementary(
         &self,
         state: &State,
+        rate: &Rate,
         factorisation: &SystemFactorisation,
         first: &[usize],
         broken: impl Fn(&State) -> Option<Vec<usize>>,
@@ -65,9 +68,10 @@ impl ModeSystem<'_> {
             };
             let others: Vec<usize> = broken(&end)?.into_iter().filter(|contact| !is_changed(contact)).collect();
             if wrong.is_empty() && others.is_empty() {
+                let leaves_no_choice = self.leaves_no_choice(&changing, state, rate);
                 let changed = changing.contacts.into_iter().zip(changing.are_changed);
                 let changed = changed.filter_map(|(contact, is_changed)| is_changed.then_some(contact)).collect();
-                return Some(Complementary { changed, state: end });
+                return Some(Complementary { changed, state: end, leaves_no_choice });
             }
             let mut joining = Vec::new();
             for contact in others {
@@ -117,6 +121,34 @@ impl ModeSystem<'_> {
         Some(())
     }
 
+    /// Whether at a load that is held the gaps of the open contacts by forces there, and the forces of the closed ones by
+    /// gaps, are positive definite: then (additivity of inertia) the tangent has as many negative eigenvalues with all of
+    /// these contacts held as with all of them free.
+    fn leaves_no_choice(&self, changing: &Changing, state: &State, rate: &Rate) -> bool {
+        [false, true].into_iter().all(|are_closed| {
+            let contacts: Vec<usize> = (0..changing.contacts.len())
+                .filter(|at| self.modes[changing.contacts[*at]].is_active() == are_closed)
+                .collect();
+            let matrix = DMatrix::from_fn(contacts.len(), contacts.len(), |row, column| {
+                let (contact, column) = (changing.contacts[contacts[row]], &changing.columns[contacts[column]]);
+                // The columns have the arc length held.
+                let along = self.left_over_by(contact, rate, state) * column.load / rate.load;
+                self.left_over_by(contact, column, state) - along
+            });
+            Cholesky::new(matrix).is_some()
+        })
+    }
+
+    /// The rate of what a contact leaves over: the force of one that is closed, the gap of one that is not.
+    fn left_over_by(&self, contact: usize, rate: &Rate, state: &State) -> f64 {
+        if self.modes[contact].is_active() {
+            rate.reactions[contact].normal
+        } else {
+            let normal = self.loading.frame(contact, state).normal;
+            dot(&normal, &self.loading.relative_rate(contact, rate))
+        }
+    }
+
     /// The state at which nothing is left over of those that are changed, and which of them have the wrong sign there.
     fn with_changes(&self, changing: &Changing, state: &State) -> Option<(State, Vec<usize>)> {
         let changed: Vec<usize> = (0..changing.contacts.len()).filter(|at| changing.are_changed[*at]).collect();
@@ -125,13 +157,7 @@ impl ModeSystem<'_> {
             return Some((state.clone(), Vec::new()));
         }
         let entry = |row: usize, column: usize| {
-            let (contact, rate) = (changing.contacts[changed[row]], &changing.columns[changed[column]]);
-            if self.modes[contact].is_active() {
-                rate.reactions[contact].normal
-            } else {
-                let normal = self.loading.frame(contact, state).normal;
-                dot(&normal, &self.loading.relative_rate(contact, rate))
-            }
+            self.left_over_by(changing.contacts[changed[row]], &changing.columns[changed[column]], state)
         };
         let left_over = |row: usize| {
             let contact = changing.contacts[changed[row]];
@@ -183,7 +209,7 @@ mod tests {
             let guess = here.state.advanced(rate, step);
             let Some((far, factorisation)) = system.iterated_once(guess, place, &mut Work::default()) else { continue };
             let Some(first) = broken(&far).filter(|first| first.len() > 1) else { continue };
-            let Some(foreseen) = system.complementary(&far, &factorisation, &first, broken) else { continue };
+            let Some(foreseen) = system.complementary(&far, rate, &factorisation, &first, broken) else { continue };
             let mut modes = here.modes.clone();
             for contact in &foreseen.changed {
                 let is_closed = modes[*contact].is_active();

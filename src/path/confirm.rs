@@ -6,7 +6,7 @@
 //! an active set method. Only where that leads nowhere are combinations tried in turn, as many as there are up to a
 //! bound.
 
-use super::advance::may_turn;
+use super::advance::{Work, may_turn};
 use super::combinations;
 use super::decide::sign_of;
 use super::directions::Candidate;
@@ -112,7 +112,7 @@ fn stepped(
     let place = Place::ArcLength { from: state, step };
     let mut serving = None;
     let guess = system.iterate(state.advanced(rate, step));
-    let corrected = system.correct_from(guess, place, force_scale, &mut serving).ok()?;
+    let corrected = system.correct_from(guess, place, force_scale, &mut serving, &mut Work::default()).ok()?;
     let distance = state.distance(&corrected.state);
     may_turn(state.cosine_of_chord(&corrected.state, distance, rate)).ok()?;
     let rate = match serving {

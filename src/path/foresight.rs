@@ -93,9 +93,7 @@ impl Start<'_> {
         let own = at_hand.filter(|_| is_straight).and_then(|at_hand| at_hand.along(&system, self.rate));
         let mut serving = None;
         let guess = system.iterate(guess);
-        let corrected = system.correct_with(guess, place, self.force_scale, own, &mut serving).ok()?;
-        work.newton_iterations += corrected.iterations;
-        work.factorisations += corrected.factorisations;
+        let corrected = system.correct_with(guess, place, self.force_scale, own, &mut serving, work).ok()?;
         let mut reached = match &serving {
             Some(SystemFactorisation::Sparse(nearby)) if is_straight => {
                 let error = system.error_by(nearby, &corrected)?;

@@ -1,5 +1,6 @@
 //! Newton's method on the equations of a mode.
 
+use super::advance::Work;
 use super::loading::USUAL;
 use super::mode_system::{Iterate, Kind, ModeSystem, Role};
 use super::state::{Rate, State};
@@ -29,9 +30,6 @@ pub struct Corrected {
     pub state: State,
     /// The modes with the directions of slip as they are at the point.
     pub modes: Vec<Mode>,
-    pub iterations: u64,
-    /// Matrices factorised for them.
-    pub factorisations: u64,
     /// Iterations until the error was small; those after it polish, and their number is round-off's.
     pub iterations_to_small: u64,
     /// Equilibrium residual over the force scale; where the rounding of the displacements alone leaves more than is
@@ -58,6 +56,10 @@ const MOST_ITERATIONS: u64 = 16;
 const MOST_RISES: u64 = 2;
 /// A correction above this part of the one before has not fallen. At a singular point each is half of it.
 const RISES: f64 = 0.7;
+/// The second correction over the first, at the most, of a step that may be shorter instead, where a factorisation is most of
+/// the work: from farther away Newton's method need not converge (P. Deuflhard, Newton Methods for Nonlinear Problems,
+/// Springer 2011, section 5.1).
+const BEGINS_WELL: f64 = 0.25;
 /// Relative residual that an accepted point must have.
 pub const ACCEPTED_RESIDUAL: f64 = 1e-11;
 /// Forces (dimensionless) below this are none: what rounding leaves where nothing is loaded.
@@ -71,7 +73,7 @@ const NO_CORRECTION: f64 = 4e-15;
 const SMALL: f64 = 1e-6;
 /// Smallest pivot over the largest of a factorisation that may serve on: what is left over says little of the state where
 /// it is smaller.
-pub(super) const REGULAR: f64 = 1e-4;
+pub(super) const REGULAR: f64 = 3e-5;
 /// The same where the last correction is this part of that pivot at the most: so little moves it by this part of itself.
 const STILL_FALLS: f64 = 1e-2;
 /// Factor by which an error falls with a factorisation from elsewhere, at the least.
@@ -91,7 +93,7 @@ impl ModeSystem<'_> {
     /// `force_scale` is the largest force met so far on the path; residuals are relative to it or to the present
     /// forces, whichever is larger.
     pub fn correct(&self, guess: State, place: Place<'_>, force_scale: f64) -> Result<Corrected, Failure> {
-        self.correct_from(self.iterate(guess), place, force_scale, &mut None)
+        self.correct_from(self.iterate(guess), place, force_scale, &mut None, &mut Work::default())
     }
 
     /// `serving` is a factorisation of the equations nearby, if there is one, and becomes the last one.
@@ -101,8 +103,9 @@ impl ModeSystem<'_> {
         place: Place<'_>,
         force_scale: f64,
         serving: &mut Option<SystemFactorisation>,
+        work: &mut Work,
     ) -> Result<Corrected, Failure> {
-        self.correct_with(guess, place, force_scale, None, serving)
+        self.correct_with(guess, place, force_scale, None, serving, work)
     }
 
     /// The same; `own` is a factorisation of these very equations, with whatever border, if there is one.
@@ -113,6 +116,7 @@ impl ModeSystem<'_> {
         force_scale: f64,
         own: Option<SystemFactorisation>,
         serving: &mut Option<SystemFactorisation>,
+        work: &mut Work,
     ) -> Result<Corrected, Failure> {
         let mut iterate = guess;
         self.make_consistent(&mut iterate);
@@ -222,6 +226,7 @@ impl ModeSystem<'_> {
             if !reused && !std::mem::take(&mut is_own) {
                 last_factorisation = self.factorise(&iterate, Kind::Increment, put_place);
                 factorisations += 1;
+                work.factorisations += 1;
                 along = None;
             }
             let left_of_place = values[last];
@@ -235,6 +240,10 @@ impl ModeSystem<'_> {
                 return Err(Failure::Singular);
             }
             (before, correction) = (correction, values.rows(0, self.loading.structure.unknowns() + 1).norm());
+            let begins = iterations == 1 && self.may_be_shorter && self.loading.structure.layout().is_some();
+            if begins && !reused && correction > SMALL && correction > BEGINS_WELL * before {
+                return Err(Failure::NotConverged);
+            }
             if !reused && correction > SMALL && before.is_finite() && correction > RISES * before {
                 rises += 1;
                 if rises == MOST_RISES {
@@ -250,6 +259,7 @@ impl ModeSystem<'_> {
                     || self.is_rounding(&iterate.state, &values, contraction));
             self.correct_by(&mut iterate, &values, &mut change);
             iterations += 1;
+            work.newton_iterations += 1;
         }
         let Some((_, mut iterate, figures)) = best else { return Err(Failure::NotConverged) };
         let wrong_side = match place {
@@ -265,8 +275,6 @@ impl ModeSystem<'_> {
             modes: self.modes_at(&iterate),
             state: iterate.state,
             directions: iterate.directions,
-            iterations: figures.iterations,
-            factorisations,
             iterations_to_small: iterations_to_small.unwrap_or(figures.iterations).min(figures.iterations),
             residual: figures.residual,
             left_over: figures.left_over,
@@ -375,8 +383,6 @@ impl ModeSystem<'_> {
             modes: self.modes_at(&iterate),
             state: iterate.state,
             directions: iterate.directions,
-            iterations: 0,
-            factorisations: 0,
             iterations_to_small: 0,
             residual,
             left_over,

@@ -10,6 +10,7 @@ use super::energy;
 use super::foresight::Foreseen;
 use super::incoming::Incoming;
 use super::increment::Energy;
+use super::interpolation::unit;
 use super::mode_system::ModeSystem;
 use super::pocket::Pocket;
 use super::root::find_root;
@@ -42,6 +43,8 @@ const REJECTED: f64 = 0.55;
 
 /// The next step over this one, at the most.
 const MOST_GROWTH: f64 = 1.8;
+/// The curvature of the path over that of the step before, at the most, by which the next step's is foreseen.
+const MOST_BEND: f64 = 4.0;
 /// A step that ends before this fraction of what was tried does not let the next be longer.
 const CUT_SHORT: f64 = 0.5;
 
@@ -190,6 +193,7 @@ impl Path<'_> {
         if factor <= REJECTED && step * factor >= least {
             return Err(factor);
         }
+        let factor = factor.min(self.factor_foreseen(rate, &accepted, step));
         // Where the mode ends inside the step, the program names the next one, from there.
         accepted.mode_named = self.is_named_by_program().then(|| match accepted.joined {
             0 => self.program_keeps_mode(rate, &accepted.reached, step),
@@ -299,6 +303,24 @@ impl Path<'_> {
         let added = Added { step, external_work, dissipated, strain, force_scale };
         let (mode_named, crossing, signature) = (None, None, None);
         Accepted { reached, added, turned, mode_named, returned: false, crossing, signature, joined: 0 }
+    }
+
+    /// How the next step should compare with this one where the path bends more and more: its curvature is foreseen to grow
+    /// as it did from the step before to this one (predictive control: K. Gustafsson, ACM Trans. Math. Softw. 20 (1994)
+    /// 496, doi:10.1145/198429.198437).
+    fn factor_foreseen(&self, rate: &Rate, accepted: &Accepted, tried: f64) -> f64 {
+        let here = &self.at.here;
+        let before = here.before.as_ref().filter(|_| accepted.reached.step > 0.0);
+        let curvature_before = before.map(|before| unit(&before.rate).angle(rate) / -before.place);
+        let Some(curvature_before) = curvature_before.filter(|curvature| *curvature > 0.0) else {
+            return f64::INFINITY;
+        };
+        let curvature = accepted.turned / accepted.reached.step;
+        let growth = (curvature / curvature_before).min(MOST_BEND);
+        if growth <= 1.0 {
+            return f64::INFINITY;
+        }
+        quantised((TURN_SOUGHT / (curvature * growth * tried)).max(0.2))
     }
 
     /// How the next step should compare with this one: by the path's turn, Newton's work and the energy balance.

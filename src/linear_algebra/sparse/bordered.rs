@@ -79,30 +79,29 @@ impl Bordered {
     }
 
     /// The same of so many vectors one after the other: an entry that is looked up serves several of them.
-    pub(super) fn multiply_all(&self, x: &[f64], y: &mut [f64], sizes: &mut [f64]) {
+    /// The sizes are left as they are where they are not asked for.
+    pub(super) fn multiply_all<const WITH_SIZES: bool>(&self, x: &[f64], y: &mut [f64], sizes: &mut [f64]) {
         const SIDE_BY_SIDE: usize = 4;
         let size = self.size();
         let chunk = SIDE_BY_SIDE * size.max(1);
         for ((x, y), sizes) in x.chunks(chunk).zip(y.chunks_mut(chunk)).zip(sizes.chunks_mut(chunk)) {
-            if x.len() == size {
-                self.multiply(x, y, sizes);
-                continue;
-            }
             let mut rows = vec![[0.0; SIDE_BY_SIDE]; size];
             for (number, x) in x.chunks_exact(size).enumerate() {
                 rows.iter_mut().zip(x).for_each(|(row, value)| row[number] = *value);
             }
             let (mut sums, mut of_terms) = (vec![[0.0; SIDE_BY_SIDE]; size], vec![[0.0; SIDE_BY_SIDE]; size]);
             self.each_entry(&mut |row, column, entry| {
-                let (sum, of_terms) = (&mut sums[row], &mut of_terms[row]);
-                for (k, value) in rows[column].iter().enumerate() {
-                    sum[k] += entry * value;
-                    of_terms[k] += (entry * value).abs();
+                let terms = rows[column].map(|value| entry * value);
+                sums[row].iter_mut().zip(&terms).for_each(|(sum, term)| *sum += term);
+                if WITH_SIZES {
+                    of_terms[row].iter_mut().zip(&terms).for_each(|(sum, term)| *sum += term.abs());
                 }
             });
             for (number, (y, sizes)) in y.chunks_exact_mut(size).zip(sizes.chunks_exact_mut(size)).enumerate() {
                 y.iter_mut().zip(&sums).for_each(|(value, row)| *value = row[number]);
-                sizes.iter_mut().zip(&of_terms).for_each(|(value, row)| *value = row[number]);
+                if WITH_SIZES {
+                    sizes.iter_mut().zip(&of_terms).for_each(|(value, row)| *value = row[number]);
+                }
             }
         }
     }

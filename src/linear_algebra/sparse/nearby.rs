@@ -14,6 +14,8 @@ const NEAR: f64 = 1e-3;
 const GOOD: f64 = 1e-15;
 /// Backward error up to which a solution is accepted that gets no better.
 const ACCEPTED: f64 = 1e-14;
+/// Part of an accepted backward error up to which the next one, falling as the last did, need not be looked at.
+const CERTAIN: f64 = 1e-3;
 /// Corrections of one solution.
 const MOST_CORRECTIONS: usize = 8;
 
@@ -47,7 +49,11 @@ impl Nearby<'_> {
         let (mut rest, mut sizes) = (vec![0.0; solutions.len()], vec![0.0; solutions.len()]);
         let mut before = f64::INFINITY;
         for round in 0..MOST_CORRECTIONS {
-            self.matrix.multiply_all(&solutions, &mut rest, &mut sizes);
+            // The sizes of the terms hardly change from one solution to the next.
+            match round {
+                0 => self.matrix.multiply_all::<true>(&solutions, &mut rest, &mut sizes),
+                _ => self.matrix.multiply_all::<false>(&solutions, &mut rest, &mut sizes),
+            }
             let mut error = 0.0_f64;
             for ((rest, right), sizes) in
                 rest.chunks_exact_mut(size).zip(right_hand_sides.chunks_exact(size)).zip(sizes.chunks_exact(size))
@@ -65,8 +71,11 @@ impl Nearby<'_> {
             if round == 0 && changes().iter().zip(&firsts).any(|(change, first)| *change > NEAR * first) {
                 return None;
             }
-            before = error;
             solutions.iter_mut().zip(&rest).for_each(|(value, correction)| *value += correction);
+            if round > 0 && error * (error / before) <= CERTAIN * accepted {
+                return Some(solutions);
+            }
+            before = error;
         }
         None
     }

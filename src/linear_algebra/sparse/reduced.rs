@@ -3,7 +3,7 @@
 use super::Entries;
 use super::symmetric::SymmetricFactor;
 use super::unsymmetric::UnsymmetricFactor;
-use nalgebra::{DMatrix, DVector, Dyn, LU};
+use nalgebra::{DMatrix, Dyn, LU};
 use smallvec::smallvec;
 
 /// Factors of `K` with some diagonal entries raised.
@@ -111,7 +111,9 @@ impl Terms {
 }
 
 /// Right-hand sides that are solved for together.
-const TOGETHER: usize = 16;
+const TOGETHER: usize = 32;
+/// Rows that are looked at together: so many of some columns stay at hand.
+const ROWS_TOGETHER: usize = 512;
 /// Numbers of `K⁻¹ B` that are kept.
 const KEPT: usize = 4_000_000;
 
@@ -181,11 +183,10 @@ impl Reduced {
             return false;
         }
         let borders = self.columns.len();
-        let mut weights = DVector::zeros(borders);
-        for number in 0..count {
-            let upper = &mut upper[number * self.size..][..self.size];
+        let mut weights = DMatrix::zeros(borders, count);
+        for (number, mut weights) in weights.column_iter_mut().enumerate() {
+            let upper = &upper[number * self.size..][..self.size];
             let lower = &mut lower[number * self.given..][..self.given];
-            weights.fill(0.0);
             weights.rows_mut(0, self.given).copy_from_slice(lower);
             for (row, entries) in self.rows.iter().enumerate() {
                 weights[row] -= entries.iter().map(|(unknown, value)| value * upper[*unknown]).sum::<f64>();
@@ -195,24 +196,36 @@ impl Reduced {
             if borders > 0 && !self.complement.factors.solve_mut(&mut weights) {
                 return false;
             }
-            match (&self.responses, &mut right) {
-                (Some(responses), _) => {
-                    for (response, weight) in responses.chunks_exact(self.size.max(1)).zip(weights.iter()) {
-                        upper.iter_mut().zip(response).for_each(|(value, response)| *value -= weight * response);
-                    }
-                }
-                (None, Some(right)) => {
-                    let right = &mut right[number * self.size..][..self.size];
+            lower.copy_from_slice(&weights.as_slice()[..self.given]);
+        }
+        match (&self.responses, &mut right) {
+            (Some(responses), _) => self.take_responses(responses, &weights, upper),
+            (None, Some(right)) => {
+                for (right, weights) in right.chunks_exact_mut(self.size.max(1)).zip(weights.column_iter()) {
                     for (entries, weight) in self.columns.iter().zip(weights.iter()) {
                         entries.iter().for_each(|(row, value)| right[*row] -= weight * value);
                     }
                 }
-                (None, None) => return false,
             }
-            lower.copy_from_slice(&weights.as_slice()[..self.given]);
+            (None, None) => return false,
         }
         let Some(right) = right else { return true };
         upper.copy_from_slice(&right);
         self.factor.solve(upper, count)
+    }
+
+    /// Takes `K⁻¹ B` times its weights from each solution. Some rows at a time: what is read of `K⁻¹ B` serves them all.
+    fn take_responses(&self, responses: &[f64], weights: &DMatrix<f64>, upper: &mut [f64]) {
+        let size = self.size.max(1);
+        for first in (0..self.size).step_by(ROWS_TOGETHER) {
+            let rows = first..self.size.min(first + ROWS_TOGETHER);
+            for (upper, weights) in upper.chunks_exact_mut(size).zip(weights.column_iter()) {
+                let upper = &mut upper[rows.clone()];
+                for (response, weight) in responses.chunks_exact(size).zip(weights.iter()) {
+                    let response = &response[rows.clone()];
+                    upper.iter_mut().zip(response).for_each(|(value, response)| *value -= weight * response);
+                }
+            }
+        }
     }
 }

@@ -108,6 +108,8 @@ pub struct ModeSystem<'a> {
     /// First row and column of each closed contact.
     first_of: SmallVec<[usize; 4]>,
     pub(super) size: usize,
+    /// What is asked for is a step that can as well be shorter.
+    pub(super) may_be_shorter: bool,
     /// Made when first needed.
     holdings: OnceCell<Holdings>,
     /// See [`Self::held_directions`]; made when first needed.
@@ -165,6 +167,7 @@ impl<'a> ModeSystem<'a> {
             modes,
             first_of,
             size: next,
+            may_be_shorter: false,
             holdings: OnceCell::new(),
             held: OnceCell::new(),
         }
