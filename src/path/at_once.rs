@@ -369,7 +369,12 @@ impl Start<'_> {
     }
 
     /// Negative eigenvalues of the tangent at a state with some contacts held and with them free, where these are as many.
-    fn negative_where_held_or_free(&self, contacts: &BTreeSet<usize>, state: &State, work: &mut Work) -> Option<usize> {
+    pub(super) fn negative_where_held_or_free(
+        &self,
+        contacts: &BTreeSet<usize>,
+        state: &State,
+        work: &mut Work,
+    ) -> Option<usize> {
         let mut count = |mode: Mode| {
             let mut modes = self.modes.to_vec();
             contacts.iter().for_each(|contact| modes[*contact] = mode);

@@ -186,16 +186,18 @@ mod tests {
     use crate::path::state::State;
     use crate::path::{Path, Scene};
     use crate::scenes::lattice::LatticeArch;
+    use std::collections::BTreeSet;
 
     /// Where an arch lands on several contacts at a time, its equations linearised without them tell about where the arch
-    /// is with them: gaps and forces obey the law of contact, and the larger part of what the contacts do to the step is found.
+    /// is with them: gaps and forces obey the law of contact, the larger part of what the contacts do to the step is found, and
+    /// whether they leave a choice is what the tangent's eigenvalues say.
     #[test]
     fn the_end_of_a_step_onto_several_contacts_is_foreseen() {
         let arch = LatticeArch { increments: 150, friction: 0.0, ..LatticeArch::of_unknowns(400) }.landing(40);
         let mut scene = Scene::new(&arch.request().expect("a request")).expect("a scene");
         scene.structure.set_sparse(true);
         let mut path = Path::new(&scene, CancelFlag::default());
-        let (mut looks, mut most) = (0, 0.0_f64);
+        let (mut looks, mut choices, mut most) = (0, 0, 0.0_f64);
         while path.next().is_some() {
             let (loading, here) = (path.loading(), &path.at.here);
             let Some(rate) = &here.rate else { continue };
@@ -209,7 +211,12 @@ mod tests {
             let guess = here.state.advanced(rate, step);
             let Some((far, factorisation)) = system.iterated_once(guess, place, &mut Work::default()) else { continue };
             let Some(first) = broken(&far).filter(|first| first.len() > 1) else { continue };
-            let Some(foreseen) = system.complementary(&far, rate, &factorisation, &first, broken) else { continue };
+            let along = system.direction_about(&far, &factorisation, rate).expect("a direction");
+            let Some(foreseen) = system.complementary(&far, &along, &factorisation, &first, broken) else { continue };
+            let asked: BTreeSet<usize> = first.iter().chain(&foreseen.changed).copied().collect();
+            let counted = start.negative_where_held_or_free(&asked, &far, &mut Work::default());
+            assert_eq!(foreseen.leaves_no_choice, counted.is_some(), "{asked:?}");
+            choices += u32::from(!foreseen.leaves_no_choice);
             let mut modes = here.modes.clone();
             for contact in &foreseen.changed {
                 let is_closed = modes[*contact].is_active();
@@ -225,7 +232,7 @@ mod tests {
             looks += 1;
             most = most.max(end.state.distance(&foreseen.state) / far.distance(&foreseen.state));
         }
-        assert!(looks >= 10, "{looks} steps");
+        assert!(looks >= 10 && choices >= 1, "{looks} steps, {choices} with a choice");
         assert!(most < 0.4, "{most}");
     }
 }
