@@ -21,7 +21,7 @@ use nalgebra::{DMatrix, DVector};
 /// Cosine up to which a direction lies across a normal.
 const ACROSS: f64 = 1e-12;
 /// Backward error of the solutions that columns are made of, as of those by a factorisation of their own: on a lattice of
-/// 102,304 unknowns they tell rates to 2e-9 at the most.
+/// 102,304 unknowns they tell rates to about 2e-9.
 const ACCEPTED: f64 = 1e-11;
 /// Smallest pivot of the velocities and loads of solutions, of sizes about 1, at which these span all that is asked for.
 const SPANS: f64 = 1e-3;

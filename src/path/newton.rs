@@ -72,7 +72,8 @@ const NO_CORRECTION: f64 = 4e-15;
 /// Error below which Newton's method is as good as converged.
 const SMALL: f64 = 1e-6;
 /// Smallest pivot over the largest of a factorisation that may serve on: what is left over says little of the state where
-/// it is smaller.
+/// it is smaller. A large structure is soft beside its elements and the pivot falls with its size: it is 8e-5 in a lattice of
+/// 102,304 unknowns that touches with friction.
 pub(super) const REGULAR: f64 = 3e-5;
 /// The same where the last correction is this part of that pivot at the most: so little moves it by this part of itself.
 const STILL_FALLS: f64 = 1e-2;
