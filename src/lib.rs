@@ -29,6 +29,7 @@
 //! | `ε` | `relaxation` | bound on the products of complementary quantities |
 //! | `·̇` | `rate` | derivative by arc length |
 
+pub mod budget;
 pub mod cancel;
 pub mod contact;
 pub mod judged;

@@ -86,7 +86,9 @@ impl Arguments {
             tracing::warn!(asked, served = room, files, "fewer connections are served: each takes a file (ulimit -n)");
         }
         let all = usize::try_from(asked.min(room)).unwrap_or(usize::MAX);
-        Connections { all, an_address: NonZeroU32::new(self.address_connections) }
+        // Fewer files are no reason to let fewer wait.
+        let waiting = usize::try_from(asked).unwrap_or(usize::MAX);
+        Connections { all, waiting, an_address: NonZeroU32::new(self.address_connections) }
     }
 
     /// The tokens as the file has them now.

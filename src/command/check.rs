@@ -1,6 +1,6 @@
 //! `arcslip check`: is this model all right, and what would be done?
 
-use super::{Failure, Outcome, input, say};
+use super::{Failure, Outcome, bounds, input, say};
 use crate::path::Scene;
 use std::process::ExitCode;
 
@@ -9,6 +9,8 @@ use std::process::ExitCode;
 pub struct Arguments {
     #[command(flatten)]
     model: input::Model,
+    #[command(flatten)]
+    pub(super) bounds: bounds::Arguments,
 }
 
 pub fn run(arguments: &Arguments) -> Outcome {

@@ -1,6 +1,6 @@
 //! What a service takes and keeps, as arguments of `serve` and `work`.
 
-use super::duration;
+use super::{bounds, duration};
 use crate::jobs::Limits;
 use crate::model::limits::{MAX_CONTACTS, MAX_ELEMENTS, MAX_INCREMENTS, MAX_NODES, MAX_TEXT_BYTES};
 use crate::store::Keep;
@@ -10,6 +10,8 @@ use std::time::Duration;
 #[command(next_help_heading = "Limits")]
 #[group(skip)]
 pub struct Arguments {
+    #[command(flatten)]
+    bounds: bounds::Arguments,
     /// Jobs and studies that may wait; past that 429.
     #[arg(long, value_name = "N", default_value_t = Limits::default().queued, env = "ARCSLIP_MAX_QUEUED",
         value_parser = clap::value_parser!(u64).range(1..))]
@@ -33,6 +35,10 @@ pub struct Arguments {
     #[arg(long, value_name = "N", default_value_t = Limits::default().increments, env = "ARCSLIP_MAX_INCREMENTS",
         value_parser = clap::value_parser!(u64).range(1..=MAX_INCREMENTS))]
     max_increments: u64,
+    /// Time that checking a request may take, such as `30s`; past that 422.
+    #[arg(long, value_name = "DURATION", default_value = "2m", env = "ARCSLIP_MAX_CHECK_TIME",
+        value_parser = duration::positive)]
+    max_check_time: Duration,
     /// Time that a job may run in all, such as `30m` or `7d`.
     #[arg(long, value_name = "DURATION", default_value = "24h", env = "ARCSLIP_MAX_WALL_TIME",
         value_parser = duration::positive)]
@@ -54,8 +60,10 @@ impl Arguments {
             elements: self.max_elements,
             contacts: self.max_contacts,
             increments: self.max_increments,
+            check_time: self.max_check_time,
             wall_time: self.max_wall_time,
             stored_bytes: self.max_stored,
+            bounds: self.bounds.bounds(),
         }
     }
 }
@@ -83,7 +91,7 @@ fn body(text: &str) -> Result<usize, String> {
 }
 
 /// `1048576`, `1024KiB`, `1MiB`, `1GiB`.
-fn bytes(text: &str) -> Result<u64, String> {
+pub(super) fn bytes(text: &str) -> Result<u64, String> {
     let digits = text.trim_end_matches(|letter: char| !letter.is_ascii_digit());
     let unit = match text[digits.len()..].trim() {
         "" | "B" => 1,

@@ -4,6 +4,7 @@
 
 mod access;
 mod backup;
+mod bounds;
 mod check;
 mod duration;
 mod findings;
@@ -83,10 +84,10 @@ fn run_command() -> Outcome {
     match arguments.command {
         Command::Serve(arguments) => serve::run(&arguments, &settings::in_force(Arguments::command(), &matches)),
         Command::Work(arguments) => work::run(&arguments, &settings::in_force(Arguments::command(), &matches)),
-        Command::Solve(arguments) => solve::run(&arguments),
-        Command::Study(arguments) => study::run(&arguments),
-        Command::Sweep(arguments) => sweep::run(&arguments),
-        Command::Check(arguments) => check::run(&arguments),
+        Command::Solve(arguments) => arguments.bounds.within(|| solve::run(&arguments)),
+        Command::Study(arguments) => arguments.bounds.within(|| study::run(&arguments)),
+        Command::Sweep(arguments) => arguments.bounds.within(|| sweep::run(&arguments)),
+        Command::Check(arguments) => arguments.bounds.within(|| check::run(&arguments)),
         Command::Scenes(arguments) => scenes::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Health(arguments) => health::run(&arguments),

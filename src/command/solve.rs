@@ -1,7 +1,7 @@
 //! `arcslip solve`: a model's path, one line an increment, as it converges.
 
 use super::written::{is_standard_output, one_on_standard_output, write};
-use super::{Failure, Outcome, input};
+use super::{Failure, Outcome, bounds, input};
 use crate::cancel::CancelFlag;
 use crate::jobs::{PathSolver, Solver};
 use crate::judged::JudgedIncrement;
@@ -32,6 +32,8 @@ pub struct Arguments {
     /// The displacement that is drawn, such as `tip.x`. Default: the one that goes farthest.
     #[arg(long, value_name = "NODE.COMPONENT", requires = "plot")]
     against: Option<String>,
+    #[command(flatten)]
+    pub(super) bounds: bounds::Arguments,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

@@ -1,6 +1,6 @@
 //! `arcslip study`: a scene over a ladder of settings and over methods, error against run time.
 
-use super::{Failure, Outcome, findings, input};
+use super::{Failure, Outcome, bounds, findings, input};
 use crate::cancel::CancelFlag;
 use crate::model::StudyRequest;
 use crate::model::decode;
@@ -33,6 +33,8 @@ pub struct Arguments {
     repeats: Option<u64>,
     #[command(flatten)]
     written: findings::Written,
+    #[command(flatten)]
+    pub(super) bounds: bounds::Arguments,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

@@ -1,6 +1,6 @@
 //! `arcslip sweep`: one model with other values in its places, on all cores.
 
-use super::{Failure, Outcome, findings, input};
+use super::{Failure, Outcome, bounds, findings, input};
 use crate::judged::JudgedIncrement;
 use crate::model::{Sweep, decode};
 use crate::output::json_line;
@@ -36,6 +36,8 @@ pub struct Arguments {
     /// Write each path into this folder, as RUN.ndjson.
     #[arg(long, value_name = "FOLDER")]
     paths: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) bounds: bounds::Arguments,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

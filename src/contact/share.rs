@@ -22,9 +22,16 @@ pub struct Cone {
 }
 
 /// Newton iterations; a few are usual, since the function is piecewise quadratic in 2D.
-const ITERATIONS: usize = 60;
-/// The sum that is left over, relative to the force, may be this large.
+const ITERATIONS: usize = 200;
+/// The sum that is left over may be this large, over the largest of the force and the reactions: between cones that are
+/// nearly opposite these are far larger than the force.
 const LEFT_OVER: f64 = 1e-12;
+/// Part of the identity that makes Newton's matrix regular, over what is left over.
+const REGULAR: f64 = 1e-3;
+/// The function falls by at least this part of what its slope promises.
+const SUFFICIENT: f64 = 1e-4;
+/// Part of a step below which it is not shortened.
+const SHORTEST: f64 = 1e-15;
 
 impl Cone {
     /// The nearest force of the cone, and the derivative of that applied to a vector.
@@ -85,42 +92,82 @@ pub fn least_reactions(cones: &[Cone], free: &[Vector], force: &Vector) -> Optio
     if scale == 0.0 {
         return Some(vec![[0.0; 3]; cones.len()]);
     }
-    let held = |vector: &Vector| free.iter().fold([0.0; 3], |sum, one| add(&sum, dot(one, vector), one));
-    let sum_at = |y: &Vector| held(&cones.iter().fold([0.0; 3], |sum, cone| add(&sum, 1.0, &cone.project(y).0)));
-    let value = |y: &Vector| {
-        let squares: f64 = cones.iter().map(|cone| cone.project(y).0).map(|part| dot(&part, &part)).sum();
-        0.5 * squares - dot(force, y)
-    };
-    let mut y = scaled(force, 1.0 / cones.len() as f64);
+    let dual = Dual { cones, free, force: scaled(force, 1.0 / scale) };
+    let mut at = dual.at(scaled(&dual.force, 1.0 / cones.len() as f64));
     for _ in 0..ITERATIONS {
-        let rest = add(&sum_at(&y), -1.0, force);
-        if size(&rest) <= LEFT_OVER * scale {
-            return Some(cones.iter().map(|cone| cone.project(&y).0).collect());
+        if at.left_over <= f64::EPSILON {
+            break;
         }
-        // The derivative is symmetric and semidefinite; a small part of the identity makes it regular.
-        let mut matrix = nalgebra::Matrix3::identity() * 1e-15;
-        for cone in cones {
-            let (_, derivative) = cone.project(&y);
+        let Some(next) = dual.step(&at) else { break };
+        at = next;
+    }
+    let parts: Vec<Vector> = cones.iter().map(|cone| cone.project(&at.place).0).collect();
+    let largest = parts.iter().map(size).fold(1.0, f64::max);
+    (at.left_over <= LEFT_OVER * largest).then(|| parts.iter().map(|part| scaled(part, scale)).collect())
+}
+
+/// The convex function whose minimiser gives the reactions, for a force of unit size.
+struct Dual<'a> {
+    cones: &'a [Cone],
+    free: &'a [Vector],
+    force: Vector,
+}
+
+/// A place with what is there.
+struct At {
+    place: Vector,
+    value: f64,
+    /// Sum of the projections less the force: the gradient.
+    gradient: Vector,
+    left_over: f64,
+}
+
+impl Dual<'_> {
+    fn held(&self, vector: &Vector) -> Vector {
+        self.free.iter().fold([0.0; 3], |sum, one| add(&sum, dot(one, vector), one))
+    }
+
+    fn at(&self, place: Vector) -> At {
+        let (mut sum, mut squares) = ([0.0; 3], 0.0);
+        for cone in self.cones {
+            let part = cone.project(&place).0;
+            sum = add(&sum, 1.0, &part);
+            squares += dot(&part, &part);
+        }
+        let gradient = add(&self.held(&sum), -1.0, &self.force);
+        let value = 0.5 * squares - dot(&self.force, &place);
+        At { place, value, gradient, left_over: size(&gradient) }
+    }
+
+    /// Newton's step with a part of the identity that falls with the gradient, so that it is bounded wherever the second
+    /// derivative is singular and as good as Newton's in the end, shortened until the function falls (D. Li, M. Fukushima,
+    /// L. Qi, N. Yamashita, Comput. Optim. Appl. 28 (2004) 131). `None` where rounding lets it fall no more.
+    fn step(&self, at: &At) -> Option<At> {
+        let mut matrix = nalgebra::Matrix3::identity() * (REGULAR * at.left_over).max(f64::EPSILON);
+        for cone in self.cones {
+            let (_, derivative) = cone.project(&at.place);
             for column in 0..3 {
                 let mut unit = [0.0; 3];
                 unit[column] = 1.0;
-                let change = held(&derivative(&held(&unit)));
+                let change = self.held(&derivative(&self.held(&unit)));
                 (0..3).for_each(|row| matrix[(row, column)] += change[row]);
             }
         }
-        let step = matrix.lu().solve(&nalgebra::Vector3::from(rest))?;
+        let step = matrix.lu().solve(&nalgebra::Vector3::from(at.gradient))?;
         let step = [step[0], step[1], step[2]];
-        let (before, slope) = (value(&y), dot(&rest, &step));
+        let slope = dot(&at.gradient, &step);
         let mut length = 1.0;
-        while length > 1e-10 && value(&add(&y, -length, &step)) > before - 1e-4 * length * slope {
+        while length > SHORTEST {
+            let next = self.at(add(&at.place, -length, &step));
+            let falls = next.value <= at.value - SUFFICIENT * length * slope;
+            // Near the end values differ by less than their rounding.
+            if (falls && next.left_over < f64::INFINITY) || next.left_over <= 0.5 * at.left_over {
+                return Some(next);
+            }
             length *= 0.5;
         }
-        y = add(&y, -length, &step);
-        if !size(&y).is_finite() {
-            return None;
-        }
+        None
     }
-    None
 }
 
 #[cfg(test)]
@@ -177,6 +224,26 @@ mod tests {
             let angle = f64::from(k) * std::f64::consts::PI / 360.0;
             if let Some(other) = squares(&[1e-3 * angle.cos(), 1e-3 * angle.sin(), 0.0]) {
                 assert!(other >= least - 1e-12);
+            }
+        }
+    }
+
+    /// Two cones that together are all of space, one of them narrow: plain Newton's method does not settle everywhere.
+    #[test]
+    fn two_cones_that_are_all_of_space_share_any_force() {
+        let unit = |vector: [f64; 3]| scaled(&vector, 1.0 / size(&vector));
+        let first = Cone { normal: unit([-0.2297, 0.7365, -0.6362]), friction: 1.265, line: None };
+        let second = Cone { normal: unit([0.5639, -0.8116, -0.1529]), friction: 0.201, line: None };
+        for k in 0..2000 {
+            let angle = f64::from(k) * 2.399_963_229_728_653;
+            let height = 1.0 - (2.0 * f64::from(k) + 1.0) / 2000.0;
+            let across = (1.0 - height * height).sqrt();
+            let force = [across * angle.cos(), across * angle.sin(), height];
+            let parts = least_reactions(&[first, second], &SPACE, &force).expect("every force is held");
+            let sum = add(&parts[0], 1.0, &parts[1]);
+            assert!(size(&add(&sum, -1.0, &force)) <= 1e-12 * (1.0 + size(&parts[0])), "{force:?}");
+            for (part, cone) in parts.iter().zip([first, second]) {
+                assert!(size(&add(part, -1.0, &cone.project(part).0)) <= 1e-12 * (1.0 + size(part)), "{force:?}");
             }
         }
     }

@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use std::borrow::Cow;
 use std::fmt;
+use std::sync::Arc;
 use utoipa::ToSchema;
 
 /// The member that tells which points are not regular.
@@ -89,39 +90,45 @@ pub async fn columns(
     Parameters(parameters): Parameters<ColumnParameters>,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    let members = members(parameters.of.as_deref().unwrap_or_default())?;
+    let members = Arc::new(members(parameters.of.as_deref().unwrap_or_default())?);
     let mut after = index("after", parameters.after)?;
     let mut left = bounded("limit", parameters.limit, ROWS, ROWS)?;
-    let is_finished = service.jobs.find(&caller, Task::Path, id).await?.status.is_ended();
-    let names = members.iter().map(|member| (member.name.to_owned(), Vec::new()));
+    let is_finished = service.jobs.standing(&caller, Task::Path, id).await?.status.is_ended();
+    let names = members.iter().map(|member| (member.name.clone(), Vec::new()));
     let mut found = Columns { columns: names.collect(), ..Columns::default() };
     while left > 0 && found.bytes < LARGEST {
         let lines = service.jobs.store().increments(id, after, Page { rows: left, bytes: PART }).await?;
         let Some(last) = lines.last() else { break };
         after = Some(last.index);
         left = left.saturating_sub(u32::try_from(lines.len()).unwrap_or(u32::MAX));
-        for line in &lines {
-            found.take(line.index, &line.body, &members)?;
-        }
+        let bytes = lines.iter().map(|line| line.body.len()).sum();
+        let members = Arc::clone(&members);
+        let taken = move || {
+            for line in &lines {
+                found.take(line.index, &line.body, &members)?;
+            }
+            Ok::<_, Problem>(found)
+        };
+        found = service.aside.make(bytes, taken).await?;
     }
     found.next_after = after;
-    tag::json(&headers, is_finished, &found)
+    service.aside.make(found.bytes, move || tag::json(&headers, is_finished, &found)).await
 }
 
 /// A member of an increment: the steps to it.
-struct Member<'a> {
-    name: &'a str,
+struct Member {
+    name: String,
     steps: Vec<String>,
 }
 
-fn members(of: &str) -> Result<Vec<Member<'_>>, Problem> {
+fn members(of: &str) -> Result<Vec<Member>, Problem> {
     let mut members: Vec<Member> = Vec::new();
     for name in of.split(',').filter(|name| !name.is_empty()) {
         let steps: Vec<String> = name.strip_prefix('/').unwrap_or(name).split('/').map(unescaped).collect();
         if members.iter().any(|known| known.steps == steps) {
             return Err(Problem::parameter("of", format_args!("`{name}` stands twice; once would do")));
         }
-        members.push(Member { name, steps });
+        members.push(Member { name: name.to_owned(), steps });
     }
     match members.len() {
         found if found > COLUMNS => {
@@ -292,7 +299,7 @@ mod tests {
         let body = r#"{"load_factor":-0.10,"displacements":{"a,b":[1.50,2e-3],"c/d":[7]},"stage":"push","point":{"kind":"end","bifurcation":false}}"#;
         let of = "load_factor,/displacements/a~2b/1,/displacements/c~1d/0,/displacements/c~1d/1,/stage/x,step,/stage";
         let members = members(of).unwrap();
-        let names = members.iter().map(|member| (member.name.to_owned(), Vec::new()));
+        let names = members.iter().map(|member| (member.name.clone(), Vec::new()));
         let mut found = Columns { columns: names.collect(), ..Columns::default() };
         found.take(4, body, &members).unwrap();
         let written = serde_json::to_string(&found).unwrap();

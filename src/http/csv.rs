@@ -17,6 +17,7 @@ use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
 use std::io;
+use std::sync::Arc;
 use tokio_stream::Stream;
 use uuid::Uuid;
 
@@ -27,7 +28,8 @@ const PAGE: Page = Page { rows: 500, bytes: 1 << 20 };
 /// The first line names the columns: `index, stage, load_factor, arc_length, step, point, bifurcation, event`, then
 /// `node.x`, `node.y` for every node, `node/obstacle.status`, `.gap`, `.normal_reaction`, `.tangential_reaction.1`,
 /// `.slip.1` for every contact, the energies, the diagnostics, and the figures of the measure as `measure.equilibrium` and
-/// so on. A path without increments has no lines at all.
+/// so on. A path without increments has no lines at all. Names that a spreadsheet would take for formulas, those that begin
+/// with `=`, `+`, `-` or `@`, have an apostrophe before them; numbers have none.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/path.csv", tag = document::INCREMENTS, operation_id = "get_path_csv",
     params(("id" = Uuid, Path, description = "The job's id.")),
@@ -39,7 +41,7 @@ pub async fn path_csv(
     JobId(id): JobId,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    let job = service.jobs.find(&caller, Task::Path, id).await?;
+    let job = service.jobs.standing(&caller, Task::Path, id).await?;
     let own = [
         (header::CONTENT_TYPE, "text/csv; charset=utf-8".to_owned()),
         (header::CONTENT_DISPOSITION, format!("attachment; filename=\"path-{id}.csv\"")),
@@ -68,17 +70,24 @@ fn rows(service: Service, id: Uuid) -> impl Stream<Item = io::Result<String>> {
         let mut after = None;
         let request = service.jobs.store().request(id).await.map_err(io::Error::other)?;
         let request = request.ok_or_else(|| io::Error::other("the job has been deleted"))?;
-        let table = Table::of(&serde_json::from_str(&request)?);
+        let bytes = request.len();
+        let read = move || serde_json::from_str(&request).map(|request| Table::of(&request));
+        let table = Arc::new(service.aside.make(bytes, read).await?);
         loop {
             let page = service.jobs.store().increments(id, after, PAGE).await.map_err(io::Error::other)?;
             let Some(last) = page.last() else { break };
             let mut text = if after.is_none() { table.header() } else { String::new() };
             after = Some(last.index);
-            for line in &page {
-                let Stored { increment, measure } = serde_json::from_str(&line.body)?;
-                text.push_str(&table.row(&increment, measure.as_ref()));
-            }
-            yield text;
+            let bytes = page.iter().map(|line| line.body.len()).sum();
+            let table = Arc::clone(&table);
+            let write = move || {
+                for line in &page {
+                    let Stored { increment, measure } = serde_json::from_str(&line.body)?;
+                    text.push_str(&table.row(&increment, measure.as_ref()));
+                }
+                Ok::<_, io::Error>(text)
+            };
+            yield service.aside.make(bytes, write).await?;
         }
     }
 }

@@ -76,14 +76,23 @@ pub async fn exact(
     };
     let job = service.jobs.find(&caller, Task::Path, id).await?;
     let text = service.jobs.store().request(id).await?.ok_or_else(|| Problem::not_found(format_args!("job {id}")))?;
+    let bytes = text.len();
     // One that follows another direction goes elsewhere.
-    let request: Option<JobRequest> = if job.parent.is_none() { Some(serde_json::from_str(&text)?) } else { None };
-    let known = request.as_ref().and_then(|request| Some((request, exact::recognise(request)?)));
+    let is_whole = job.parent.is_none();
+    let make = move || {
+        let request: Option<JobRequest> = if is_whole { Some(serde_json::from_str(&text)?) } else { None };
+        tag::json(&headers, true, &path(request.as_ref(), reach))
+    };
+    service.aside.make(bytes, make).await
+}
+
+fn path(request: Option<&JobRequest>, reach: Reach) -> ExactPath {
+    let known = request.and_then(|request| Some((request, exact::recognise(request)?)));
     let Some((request, known)) = known else {
-        return tag::json(&headers, true, &ExactPath { name: None, formula: None, stages: Vec::new() });
+        return ExactPath { name: None, formula: None, stages: Vec::new() };
     };
     let stages = known.stages(reach).iter().map(|stage| sampled(request, stage)).collect();
-    tag::json(&headers, true, &ExactPath { name: Some(known.name()), formula: Some(known.formula()), stages })
+    ExactPath { name: Some(known.name()), formula: Some(known.formula()), stages }
 }
 
 fn positive(name: &str, given: Option<f64>) -> Result<f64, Problem> {

@@ -1,27 +1,18 @@
 //! What calls read from requests; every refusal is a problem.
 
 use super::Service;
+use super::access::rates::subscriber;
+use super::bodies::Read;
 use super::problem::{Kind, Problem};
-use crate::jobs::Posted;
+use crate::jobs::{Caller, Client, Posted};
 use crate::model::names::{quoted, suggestion};
-use axum::body::{Bytes, HttpBody};
-use axum::extract::rejection::BytesRejection;
-use axum::extract::{FromRequest, FromRequestParts, Path, Query, Request};
+use axum::extract::{ConnectInfo, FromRequest, FromRequestParts, Path, Query, Request};
 use axum::http::request::Parts;
-use axum::http::{HeaderMap, HeaderValue, StatusCode, Uri, header};
-use axum::response::IntoResponse;
+use axum::http::{HeaderMap, HeaderValue, Uri, header};
 use serde::de::DeserializeOwned;
-use std::sync::Arc;
-use std::time::Duration;
-use tokio::time::timeout;
+use std::net::SocketAddr;
 use uuid::Uuid;
 
-/// A body has to come within so long.
-const BODY: Duration = Duration::from_secs(60);
-/// Room for bodies is counted in so many bytes ...
-const BODY_UNIT: usize = 4096;
-/// ... and there is so much of it: 256 MiB for all that are being read.
-pub const BODIES: u32 = 65_536;
 const LONGEST_KEY: usize = 255;
 /// Of an increment or row: the largest that can be stored.
 const LARGEST_INDEX: u64 = i64::MAX as u64;
@@ -39,36 +30,26 @@ impl FromRequest<Service> for JsonText {
         if request.headers().get(header::CONTENT_ENCODING).is_some_and(|coding| coding != "identity") {
             return Err(Problem::new(Kind::UnsupportedMediaType, "send the body as it is, without a Content-Encoding"));
         }
-        let most = state.jobs.settings.limits.body_bytes;
-        let told = request.body().size_hint().exact().and_then(|bytes| usize::try_from(bytes).ok());
-        let bytes = told.unwrap_or(most).min(most);
-        let late = |_| Problem::new(Kind::RequestFailed, format!("the body did not come within {} s", BODY.as_secs()));
-        // The clock runs while it waits for room, too: who is slow takes it from nobody for longer than that.
-        let taken = timeout(BODY, async {
-            let room = u32::try_from(bytes.div_ceil(BODY_UNIT)).unwrap_or(u32::MAX).min(BODIES);
-            let room = Arc::clone(&state.bodies).acquire_many_owned(room).await.map_err(|_| gone_down())?;
-            let body = Bytes::from_request(request, state).await.map_err(|rejection| refused_body(rejection, most))?;
-            Ok(Self(Posted { text: body.into(), room: Some(Box::new(room)) }))
-        });
-        taken.await.map_err(late)?
+        let client = client(&request);
+        let Read { text, taken } =
+            state.bodies.read(request.into_body(), state.jobs.settings.limits.body_bytes).await?;
+        Ok(Self(Posted { text, room: Some(Box::new(taken)), client }))
     }
 }
 
-fn gone_down() -> Problem {
-    Problem::new(Kind::Unavailable, "the service is going down")
+/// Whose turn a request takes: its owner's, or where nobody has to say who they are its address's.
+fn client(request: &Request) -> Client {
+    if let Some(Caller::Named { owner, .. }) = request.extensions().get::<Caller>() {
+        return Client(owner.clone());
+    }
+    let place = request.extensions().get::<ConnectInfo<SocketAddr>>();
+    Client(place.map_or_else(String::new, |ConnectInfo(place)| subscriber(place.ip()).to_string()))
 }
 
 fn is_json(headers: &HeaderMap) -> bool {
     let media_type = headers.get(header::CONTENT_TYPE).and_then(|value| value.to_str().ok()).unwrap_or_default();
     let essence = media_type.split(';').next().unwrap_or_default();
     essence.trim().eq_ignore_ascii_case("application/json")
-}
-
-fn refused_body(rejection: BytesRejection, most: usize) -> Problem {
-    match rejection.into_response().status() {
-        StatusCode::PAYLOAD_TOO_LARGE => Problem::new(Kind::BodyTooLarge, format!("at most {most} bytes are taken")),
-        _ => Problem::new(Kind::RequestFailed, "the body broke off before its end"),
-    }
 }
 
 /// The id in the address, of a job or a study.

@@ -38,5 +38,6 @@ pub async fn follow(
     headers: HeaderMap,
     JsonText(request): JsonText,
 ) -> Result<Response, Problem> {
-    accepted::<Job>(service.jobs.follow(&caller, id, request, idempotency_key(&headers)?).await?, address)
+    let job = service.jobs.follow(&caller, id, request, idempotency_key(&headers)?).await?;
+    accepted::<Job>(&service, job, address).await
 }

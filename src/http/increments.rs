@@ -3,7 +3,7 @@
 use super::extract::{JobId, Parameters, Taken, bounded, index};
 use super::problem::Problem;
 use super::view::IncrementPage;
-use super::{Service, document, tag};
+use super::{Service, document, tag, tasks};
 use crate::jobs::Caller;
 use crate::store::{Page, Task};
 use axum::Extension;
@@ -11,7 +11,6 @@ use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
 use serde::Deserialize;
-use serde_json::value::RawValue;
 
 const PAGE_DEFAULT: u32 = 1_000;
 const PAGE_LARGEST: u32 = 10_000;
@@ -50,9 +49,9 @@ pub async fn page(
     let after = index("after", parameters.after)?;
     let rows = bounded("limit", parameters.limit, PAGE_DEFAULT, PAGE_LARGEST)?;
     let store = service.jobs.store();
-    let is_finished = service.jobs.find(&caller, Task::Path, id).await?.status.is_ended();
+    let is_finished = service.jobs.standing(&caller, Task::Path, id).await?.status.is_ended();
     let lines = store.increments(id, after, Page { rows, bytes: PAGE_BYTES }).await?;
     let next_after = lines.last().map(|line| line.index).or(after);
-    let increments = lines.into_iter().map(|line| RawValue::from_string(line.body)).collect::<Result<_, _>>()?;
-    tag::json(&headers, is_finished, &IncrementPage { increments, next_after })
+    let make = move |increments| tag::json(&headers, is_finished, &IncrementPage { increments, next_after });
+    tasks::of_lines(&service, lines, make).await
 }

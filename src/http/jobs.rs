@@ -4,7 +4,7 @@ use super::extract::{JobId, JsonText, Parameters, Taken, idempotency_key};
 use super::problem::Problem;
 use super::tasks::{SubmitParameters, accepted, page};
 use super::view::{Job, JobList, address};
-use super::{Service, document, tag, tasks};
+use super::{Service, document, tasks};
 use crate::jobs::Caller;
 use crate::model::JobRequest;
 use crate::path::Plan;
@@ -43,7 +43,7 @@ pub async fn submit(
     if parameters.validate {
         return Ok(Json(service.jobs.validate(request).await?).into_response());
     }
-    accepted::<Job>(service.jobs.submit(&caller, request, key).await?, address)
+    accepted::<Job>(&service, service.jobs.submit(&caller, request, key).await?, address).await
 }
 
 #[derive(Debug, Deserialize, utoipa::IntoParams)]
@@ -84,7 +84,7 @@ pub async fn list(
 ) -> Result<Json<JobList>, Problem> {
     let ListParameters { status, sweep, parent, cursor, limit } = parameters;
     let owner = caller.seen_owner().map(str::to_owned);
-    let filter = |limit| ListFilter { task: Task::Path, owner, status, sweep, parent, before: cursor, limit };
+    let filter = |page| ListFilter { task: Task::Path, owner, status, sweep, parent, before: cursor, page };
     let (jobs, next_cursor) = page(&service, limit, filter).await?;
     Ok(Json(JobList { jobs, next_cursor }))
 }
@@ -101,8 +101,7 @@ pub async fn get(
     JobId(id): JobId,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    let job = service.jobs.find(&caller, Task::Path, id).await?;
-    tag::json(&headers, job.status.is_ended(), &Job::try_from(job)?)
+    tasks::shown::<Job>(&service, headers, service.jobs.find(&caller, Task::Path, id).await?).await
 }
 
 /// Stop a job within one iteration; what is stored is kept. An ended job stays as it is.
@@ -115,8 +114,26 @@ pub async fn cancel(
     State(service): State<Service>,
     Extension(caller): Extension<Caller>,
     JobId(id): JobId,
-) -> Result<(StatusCode, Json<Job>), Problem> {
-    tasks::cancel(&service, &caller, Task::Path, id).await
+) -> Result<Response, Problem> {
+    tasks::cancel::<Job>(&service, &caller, Task::Path, id).await
+}
+
+/// Queue a failed job again.
+///
+/// What it has stored stands, and it goes on from there; the workers that it has lost are forgotten. Runs of sweeps are not
+/// queued again.
+#[utoipa::path(
+    post, path = "/v1/jobs/{id}/retry", tag = document::JOBS, operation_id = "retry_job",
+    params(("id" = Uuid, Path, description = "The job's id.")),
+    responses((status = 202, description = "The job, which waits.", body = Job,
+        headers(("Location" = String, description = "The job's address."))))
+)]
+pub async fn retry(
+    State(service): State<Service>,
+    Extension(caller): Extension<Caller>,
+    JobId(id): JobId,
+) -> Result<Response, Problem> {
+    accepted::<Job>(&service, service.jobs.retry(&caller, id).await?, address).await
 }
 
 /// Stop a job and drop what is stored.

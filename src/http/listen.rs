@@ -13,11 +13,12 @@ use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::server::graceful::GracefulShutdown;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::io;
 use std::net::{IpAddr, SocketAddr};
 use std::num::NonZeroU32;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
-use tokio::net::TcpListener;
+use tokio::net::{TcpListener, TcpSocket};
 use tokio::sync::Semaphore;
 use tokio_io_timeout::TimeoutStream;
 use tokio_util::sync::CancellationToken;
@@ -33,10 +34,24 @@ const PAUSE: Duration = Duration::from_millis(200);
 /// How many connections are served at a time.
 #[derive(Debug, Clone, Copy)]
 pub struct Connections {
-    /// Those past that wait.
+    /// Those past that wait ...
     pub all: usize,
+    /// ... up to so many, or as many as the system lets wait; those past that are asked to come back by the system.
+    pub waiting: usize,
     /// Those past that are closed at once; this machine's own addresses have no such bound.
     pub an_address: Option<NonZeroU32>,
+}
+
+/// Listens there.
+///
+/// # Errors
+/// The address is taken, or none of this machine's.
+pub fn bind(place: SocketAddr, connections: Connections) -> io::Result<TcpListener> {
+    let socket = if place.is_ipv4() { TcpSocket::new_v4()? } else { TcpSocket::new_v6()? };
+    // As a listener that is bound by name does: the port is free again at once when the service has gone.
+    socket.set_reuseaddr(true)?;
+    socket.bind(place)?;
+    socket.listen(u32::try_from(connections.waiting).unwrap_or(u32::MAX))
 }
 
 /// Takes connections until `shutdown`, then waits for those under way to end.

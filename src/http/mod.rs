@@ -1,7 +1,7 @@
 //! The service's HTTP face; version 1 of the interface.
 //!
 //! [`listen`] takes connections, [`access`] says who may call, [`problem`] is the one edge where errors become answers,
-//! [`extract`], [`parameters`] and [`accept`] read requests, [`view`], [`view_study`] and [`view_sweep`] hold what is
+//! [`extract`], [`parameters`] and [`accept`] read requests, [`bodies`] makes room for their bodies, [`aside`] is where large answers are made, [`view`], [`view_study`] and [`view_sweep`] hold what is
 //! answered, [`tag`] spares it to those who have it, [`tasks`] and [`findings`] are what several calls share; [`jobs`],
 //! [`request`], [`follow`], [`increments`], [`columns`], [`exact`], [`stream`], [`csv`], [`studies`], [`sweeps`], [`scenes`],
 //! [`probes`], [`metrics`] and [`pages`] are the calls, [`dashboard`] what a browser sees, [`document`] their OpenAPI
@@ -10,6 +10,8 @@
 
 pub mod accept;
 pub mod access;
+pub mod aside;
+pub mod bodies;
 pub mod columns;
 pub mod csv;
 pub mod dashboard;
@@ -42,7 +44,6 @@ pub mod view_sweep;
 use crate::jobs::crew::Attendance;
 use crate::jobs::{Jobs, Limits};
 use access::{Access, admission, headers};
-use axum::extract::DefaultBodyLimit;
 use axum::middleware::{from_fn, from_fn_with_state};
 use axum::{Router, routing};
 use parameters::Without;
@@ -61,7 +62,9 @@ pub struct Service {
     pub attendance: Attendance,
     pub access: Access,
     /// Room for bodies that are being read.
-    pub bodies: Arc<Semaphore>,
+    pub bodies: bodies::Bodies,
+    /// Where large answers are made.
+    pub aside: aside::Aside,
     /// Streams that read the store at a time.
     pub stream_turns: Arc<Semaphore>,
     /// Cancelled when the service goes down; open streams end then.
@@ -73,6 +76,7 @@ fn api() -> OpenApiRouter<Service> {
         .routes(routes!(jobs::submit, jobs::list))
         .routes(routes!(jobs::get, jobs::delete))
         .routes(routes!(jobs::cancel))
+        .routes(routes!(jobs::retry))
         .routes(routes!(request::request))
         .routes(routes!(follow::follow))
         .routes(routes!(increments::page))
@@ -122,7 +126,6 @@ pub fn router(service: Service) -> serde_json::Result<Router> {
         .route("/openapi.json", routing::get(move || pages::openapi(description.clone())))
         .with_state(service)
         .merge(SwaggerUi::new("/docs").config(Config::from("/openapi.json")))
-        .layer(DefaultBodyLimit::max(limits.body_bytes))
         .layer(from_fn_with_state(access.clone(), admission::admit))
         .layer(CatchPanicLayer::custom(problem::from_panic))
         .layer(from_fn(problem::every_error));

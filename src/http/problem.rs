@@ -5,7 +5,7 @@
 
 use crate::jobs::JobsError;
 use crate::model::{InputError, InputErrors};
-use crate::store::StoreError;
+use crate::store::{Status, StoreError};
 use axum::body::Body;
 use axum::extract::Request;
 use axum::http::{HeaderValue, StatusCode, header};
@@ -28,6 +28,8 @@ pub enum Kind {
     InvalidModel,
     InvalidParameter,
     NotFollowable,
+    NotRetryable,
+    CheckTime,
     KeyReused,
     NotFound,
     MethodNotAllowed,
@@ -39,6 +41,7 @@ pub enum Kind {
     Unauthorized,
     Forbidden,
     RateLimited,
+    AnswerTooLarge,
     Unavailable,
     StorageFull,
     StorageDamaged,
@@ -46,11 +49,13 @@ pub enum Kind {
 }
 
 impl Kind {
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 22] = [
         Self::InvalidJson,
         Self::InvalidModel,
         Self::InvalidParameter,
         Self::NotFollowable,
+        Self::NotRetryable,
+        Self::CheckTime,
         Self::KeyReused,
         Self::NotFound,
         Self::MethodNotAllowed,
@@ -62,6 +67,7 @@ impl Kind {
         Self::Unauthorized,
         Self::Forbidden,
         Self::RateLimited,
+        Self::AnswerTooLarge,
         Self::Unavailable,
         Self::StorageFull,
         Self::StorageDamaged,
@@ -80,6 +86,10 @@ impl Kind {
             }
             Self::NotFollowable => {
                 ("/problems/not-followable", StatusCode::UNPROCESSABLE_ENTITY, "There is no such direction to follow")
+            }
+            Self::NotRetryable => ("/problems/not-retryable", StatusCode::CONFLICT, "This job cannot be queued again"),
+            Self::CheckTime => {
+                ("/problems/check-time-limit", StatusCode::UNPROCESSABLE_ENTITY, "Checking this takes too long")
             }
             Self::KeyReused => (
                 "/problems/idempotency-key-reused",
@@ -111,6 +121,9 @@ impl Kind {
             Self::Forbidden => ("/problems/forbidden", StatusCode::FORBIDDEN, "This may not be done"),
             Self::RateLimited => {
                 ("/problems/rate-limited", StatusCode::TOO_MANY_REQUESTS, "Too many requests in too short a time")
+            }
+            Self::AnswerTooLarge => {
+                ("/problems/answer-too-large", StatusCode::UNPROCESSABLE_ENTITY, "The answer would be too large")
             }
             Self::QueueFull => ("/problems/queue-full", StatusCode::TOO_MANY_REQUESTS, "Too many jobs wait already"),
             Self::StorageDamaged => {
@@ -214,6 +227,27 @@ impl From<JobsError> for Problem {
                 Kind::QueueFull,
                 format!("at most {most} jobs may wait here, and there is no room for more now; come back later"),
             ),
+            JobsError::CheckTime(most) => Self::new(
+                Kind::CheckTime,
+                format!(
+                    "it is not checked after {:.3} s, the most that this service takes for it (--max-check-time); a smaller \
+                     model, or fewer runs at a time, would do",
+                    most.as_secs_f64()
+                ),
+            ),
+            JobsError::NotRetryable(job) if job.status != Status::Failed => Self::new(
+                Kind::NotRetryable,
+                format!("job {} is {}; only one that has failed can be queued again", job.id, job.status.name()),
+            ),
+            JobsError::NotRetryable(job) => Self::new(
+                Kind::NotRetryable,
+                format!(
+                    "job {0} is a run of a sweep, whose row stands; its request (GET /v1/jobs/{0}/request) can be posted as a \
+                     job of its own",
+                    job.id
+                ),
+            ),
+            JobsError::Abandoned => Self::new(Kind::Unavailable, "the check was stopped; try again"),
             JobsError::NoJob(id) => Self::not_found(format_args!("job {id}")),
             JobsError::NoStudy(id) => Self::not_found(format_args!("study {id}")),
             JobsError::NoSweep(id) => Self::not_found(format_args!("sweep {id}")),

@@ -23,8 +23,12 @@ pub async fn request(
     JobId(id): JobId,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    service.jobs.find(&caller, Task::Path, id).await?;
+    service.jobs.standing(&caller, Task::Path, id).await?;
     let text = service.jobs.store().request(id).await?.ok_or_else(|| Problem::not_found(format_args!("such job")))?;
     // It never changes, whatever becomes of the job.
-    tag::bytes(&headers, true, [(header::CONTENT_TYPE, "application/json")], text)
+    let bytes = text.len();
+    service
+        .aside
+        .make(bytes, move || tag::bytes(&headers, true, [(header::CONTENT_TYPE, "application/json")], text))
+        .await
 }

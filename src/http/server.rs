@@ -4,8 +4,9 @@
 //! solves stop and their jobs go back to the queue, then the database is closed; all of it within a bound.
 
 use super::access::Access;
-use super::extract::BODIES;
-use super::listen::{Connections, listen};
+use super::aside::Aside;
+use super::bodies::Bodies;
+use super::listen::{Connections, bind, listen};
 use super::stream::READING_AT_ONCE;
 use super::{Service, router};
 use crate::jobs::crew::wound_up;
@@ -13,7 +14,6 @@ use crate::jobs::{Crew, Jobs, Settings, Solver};
 use crate::store::Store;
 use std::net::SocketAddr;
 use std::sync::Arc;
-use tokio::net::TcpListener;
 use tokio::sync::Semaphore;
 use tokio::task::JoinHandle;
 use tokio_util::sync::CancellationToken;
@@ -53,7 +53,7 @@ impl Server {
     ) -> Result<Self, ServerError> {
         let Front { listen: place, connections, access } = front;
         let refused = |source| ServerError::Listen { address: place, source };
-        let listener = TcpListener::bind(place).await.map_err(refused)?;
+        let listener = bind(place, connections).map_err(refused)?;
         let address = listener.local_addr().map_err(refused)?;
         let shutdown = CancellationToken::new();
         let jobs = Jobs::new(store, solver, settings);
@@ -62,7 +62,8 @@ impl Server {
             jobs: jobs.clone(),
             attendance: crew.attendance(),
             access,
-            bodies: Arc::new(Semaphore::new(BODIES as usize)),
+            aside: Aside::default(),
+            bodies: Bodies::default(),
             stream_turns: Arc::new(Semaphore::new(READING_AT_ONCE)),
             shutdown: shutdown.clone(),
         };

@@ -78,7 +78,7 @@ pub(super) async fn answer(
     let format = Format::accepted(headers)?;
     let after = last_event_id(event_name(task), headers)?;
     let until = Until { shutdown: service.shutdown.clone(), exchange: service.access.next_exchange() };
-    service.jobs.find(caller, task, id).await?;
+    service.jobs.standing(caller, task, id).await?;
     Ok(match format {
         Format::Events => {
             let as_they_come = [(header::CONTENT_TYPE, EVENT_STREAM), (header::CACHE_CONTROL, "no-cache")];
@@ -128,13 +128,20 @@ impl Format {
 enum Happening {
     /// Lines that were read together.
     Lines(Vec<Line>),
-    Ended(Box<JobRecord>),
+    /// With what has ended, as it is answered.
+    Ended(serde_json::Result<String>),
     Deleted,
     Interrupted,
     Failed(StoreError),
 }
 
-fn follow(service: Service, until: Until, id: Uuid, mut after: Option<u64>) -> impl Stream<Item = Happening> {
+fn follow(
+    service: Service,
+    until: Until,
+    task: Task,
+    id: Uuid,
+    mut after: Option<u64>,
+) -> impl Stream<Item = Happening> {
     stream! {
         let store = service.jobs.store();
         let streams = &service.jobs.metrics().streams;
@@ -169,7 +176,7 @@ fn follow(service: Service, until: Until, id: Uuid, mut after: Option<u64>) -> i
             }
             if standing.status.is_ended() {
                 yield match store.job(id).await {
-                    Ok(Some(job)) => Happening::Ended(Box::new(job)),
+                    Ok(Some(job)) => Happening::Ended(service.aside.make(job.bytes(), move || end(task, job)).await),
                     Ok(None) => Happening::Deleted,
                     Err(error) => Happening::Failed(error),
                 };
@@ -218,7 +225,7 @@ fn events(
     // The request's span ends with its answer's head; what a stream has to say later still belongs to it.
     let span = tracing::Span::current();
     stream! {
-        let mut happenings = pin!(follow(service, until, id, after));
+        let mut happenings = pin!(follow(service, until, task, id, after));
         loop {
             let happening = match timeout(KEEP_ALIVE, happenings.next()).await {
                 Ok(Some(happening)) => happening,
@@ -232,7 +239,7 @@ fn events(
                     let event = |line: &Line| format!("event: {name}\nid: {}\ndata: {}\n\n", line.index, line.body);
                     lines.iter().map(event).collect()
                 }
-                Happening::Ended(job) => last_event(task, *job),
+                Happening::Ended(written) => last_event(id, written),
                 Happening::Deleted => format!("event: deleted\ndata: {{\"id\":\"{id}\"}}\n\n"),
                 Happening::Interrupted => come_back("the service goes down or its tokens have changed; come back"),
                 Happening::Failed(error) => {
@@ -244,9 +251,8 @@ fn events(
     }
 }
 
-fn last_event(task: Task, job: JobRecord) -> String {
-    let id = job.id;
-    match end(task, job) {
+fn last_event(id: Uuid, written: serde_json::Result<String>) -> String {
+    match written {
         Ok(job) => format!("event: end\ndata: {job}\n\n"),
         Err(error) => {
             tracing::error!(%error, job = %id, "the end cannot be written");
@@ -275,10 +281,10 @@ fn end(task: Task, job: JobRecord) -> serde_json::Result<String> {
 }
 
 /// What follows the last line of a path, which says itself that it is the end, or of a study or sweep, which does not.
-fn closing_line(task: Task, job: JobRecord) -> Option<io::Result<String>> {
+fn closing_line(task: Task, written: serde_json::Result<String>) -> Option<io::Result<String>> {
     match task {
         Task::Path => None,
-        Task::Study | Task::Sweep => Some(end(task, job).map(|whole| whole + "\n").map_err(|error| {
+        Task::Study | Task::Sweep => Some(written.map(|whole| whole + "\n").map_err(|error| {
             tracing::error!(%error, "the end cannot be written");
             io::Error::other("what has ended cannot be read")
         })),
@@ -295,12 +301,12 @@ fn lines(
     // An error breaks the body off, so that a client can tell a whole path from a part of one.
     let broken = |why: &str| Some(Err(io::Error::other(why.to_owned())));
     let span = tracing::Span::current();
-    follow(service, until, id, after).filter_map(move |happening| {
+    follow(service, until, task, id, after).filter_map(move |happening| {
         let _entered = span.enter();
         match happening {
             // In one piece: each is sent for itself.
             Happening::Lines(lines) => Some(Ok(lines.into_iter().map(|line| line.body + "\n").collect())),
-            Happening::Ended(job) => closing_line(task, *job),
+            Happening::Ended(written) => closing_line(task, written),
             Happening::Deleted => broken("the job was deleted"),
             Happening::Interrupted => broken("the service goes down or its tokens have changed"),
             Happening::Failed(error) => {

@@ -7,7 +7,7 @@ use super::tasks::{ListByStatus, SubmitParameters, accepted};
 use super::view::ServerEvent;
 use super::view_study::{Study, StudyList, StudyWithReport, address};
 use super::{Service, document, tag, tasks};
-use crate::jobs::Caller;
+use crate::jobs::{Caller, studies};
 use crate::model::StudyRequest;
 use crate::store::Task;
 use crate::studies::{Plan, Report, Run};
@@ -48,7 +48,7 @@ pub async fn submit(
     if parameters.validate {
         return Ok(Json(service.jobs.validate_study(request).await?).into_response());
     }
-    accepted::<Study>(service.jobs.submit_study(&caller, request, key).await?, address)
+    accepted::<Study>(&service, service.jobs.submit_study(&caller, request, key).await?, address).await
 }
 
 /// List studies, newest first.
@@ -78,12 +78,16 @@ pub async fn get(
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
     let study = service.jobs.find(&caller, Task::Study, id).await?;
-    let is_finished = study.status.is_ended();
     if study.report.is_some() {
-        return tag::json(&headers, is_finished, &StudyWithReport::try_from(study)?);
+        return tasks::shown::<StudyWithReport>(&service, headers, study).await;
     }
-    let report = service.jobs.study_so_far(&study).await?;
-    tag::json(&headers, is_finished, &StudyWithReport::so_far(study, report.as_ref())?)
+    let lines = service.jobs.lines_of_study(&study).await?;
+    let bytes = lines.iter().map(|line| line.body.len()).sum();
+    let make = move || {
+        let report = studies::found(&study, &lines)?;
+        tag::json(&headers, study.status.is_ended(), &StudyWithReport::so_far(study, report.as_ref())?)
+    };
+    service.aside.make(bytes, make).await
 }
 
 /// Follow a study: its rows as paths are traced, then its end.
@@ -124,8 +128,8 @@ pub async fn cancel(
     State(service): State<Service>,
     Extension(caller): Extension<Caller>,
     JobId(id): JobId,
-) -> Result<(StatusCode, Json<Study>), Problem> {
-    tasks::cancel(&service, &caller, Task::Study, id).await
+) -> Result<Response, Problem> {
+    tasks::cancel::<Study>(&service, &caller, Task::Study, id).await
 }
 
 /// Stop a study and drop what is stored.
@@ -154,7 +158,7 @@ pub async fn table_csv(
     JobId(id): JobId,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    found(&service, &caller, id).await?.csv(&headers)
+    found(&service, &caller, id, move |found| found.csv(&headers)).await
 }
 
 /// The rows found so far, as columns of text.
@@ -169,7 +173,7 @@ pub async fn table_txt(
     JobId(id): JobId,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    found(&service, &caller, id).await?.text(&headers)
+    found(&service, &caller, id, move |found| found.text(&headers)).await
 }
 
 /// Error against time so far, on logarithmic scales, one line a method.
@@ -186,18 +190,28 @@ pub async fn picture(
     JobId(id): JobId,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    found(&service, &caller, id).await?.picture(&headers)
+    found(&service, &caller, id, move |found| found.picture(&headers)).await
 }
 
-/// What a study has found so far; a problem before its first path.
-async fn found(service: &Service, caller: &Caller, id: Uuid) -> Result<SoFar<Report>, Problem> {
+/// An answer of what a study has found so far; a problem before its first path.
+async fn found(
+    service: &Service,
+    caller: &Caller,
+    id: Uuid,
+    make: impl FnOnce(SoFar<Report>) -> Result<Response, Problem> + Send + 'static,
+) -> Result<Response, Problem> {
     let task = Task::Study;
     let study = service.jobs.find(caller, task, id).await?;
-    let findings = match &study.report {
-        Some(report) => serde_json::from_str(report)?,
-        None => service.jobs.study_so_far(&study).await?.ok_or_else(|| {
-            Problem::not_found(format_args!("table of study {id}: no path of it has been traced yet"))
-        })?,
+    let lines = if study.report.is_some() { Vec::new() } else { service.jobs.lines_of_study(&study).await? };
+    let bytes = study.bytes() + lines.iter().map(|line| line.body.len()).sum::<usize>();
+    let made = move || {
+        let findings = match &study.report {
+            Some(report) => serde_json::from_str(report)?,
+            None => studies::found(&study, &lines)?.ok_or_else(|| {
+                Problem::not_found(format_args!("table of study {id}: no path of it has been traced yet"))
+            })?,
+        };
+        make(SoFar { task, id, findings, is_finished: study.status.is_ended() })
     };
-    Ok(SoFar { task, id, findings, is_finished: study.status.is_ended() })
+    service.aside.make(bytes, made).await
 }

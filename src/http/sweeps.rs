@@ -2,12 +2,12 @@
 
 use super::extract::{JobId, JsonText, Parameters, Taken, bounded, idempotency_key, index};
 use super::findings::SoFar;
-use super::problem::Problem;
+use super::problem::{Kind, Problem};
 use super::tasks::{ListByStatus, SubmitParameters, accepted};
 use super::view::ServerEvent;
 use super::view_sweep::{Sweep, SweepList, SweepPlan, SweepRows, address};
 use super::{Service, document, tag, tasks};
-use crate::jobs::Caller;
+use crate::jobs::{Caller, sweeps};
 use crate::model::SweepRequest;
 use crate::store::{Page, Task};
 use crate::sweeps::{Found, Row};
@@ -17,11 +17,12 @@ use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
 use serde::Deserialize;
-use serde_json::value::RawValue;
 use uuid::Uuid;
 
 const ROWS: u32 = 1_000;
 const PAGE_BYTES: usize = 1 << 20;
+/// Bytes of what a table or a picture is made of: it is held in memory.
+const MOST_OF_A_TABLE: usize = 64 << 20;
 
 /// Queue a sweep, or only check it.
 ///
@@ -51,9 +52,14 @@ pub async fn submit(
     let key = idempotency_key(&headers)?;
     if parameters.validate {
         let (variation, runs) = service.jobs.validate_sweep(request).await?;
-        return Ok(Json(SweepPlan { runs, variation }).into_response());
+        let bytes = variation.len();
+        let make = move || {
+            let variation = serde_json::from_str(&variation)?;
+            Ok::<_, Problem>(Json(SweepPlan { runs, variation }).into_response())
+        };
+        return service.aside.make(bytes, make).await;
     }
-    accepted::<Sweep>(service.jobs.submit_sweep(&caller, request, key).await?, address)
+    accepted::<Sweep>(&service, service.jobs.submit_sweep(&caller, request, key).await?, address).await
 }
 
 /// List sweeps, newest first.
@@ -82,8 +88,7 @@ pub async fn get(
     JobId(id): JobId,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    let sweep = service.jobs.find(&caller, Task::Sweep, id).await?;
-    tag::json(&headers, sweep.status.is_ended(), &Sweep::try_from(sweep)?)
+    tasks::shown::<Sweep>(&service, headers, service.jobs.find(&caller, Task::Sweep, id).await?).await
 }
 
 #[derive(Debug, Deserialize, utoipa::IntoParams)]
@@ -117,11 +122,11 @@ pub async fn rows(
 ) -> Result<Response, Problem> {
     let after = index("after", parameters.after)?;
     let rows = bounded("limit", parameters.limit, ROWS, ROWS)?;
-    let is_finished = service.jobs.find(&caller, Task::Sweep, id).await?.status.is_ended();
+    let is_finished = service.jobs.standing(&caller, Task::Sweep, id).await?.status.is_ended();
     let lines = service.jobs.store().increments(id, after, Page { rows, bytes: PAGE_BYTES }).await?;
     let next_after = lines.last().map(|line| line.index).or(after);
-    let rows = lines.into_iter().map(|line| RawValue::from_string(line.body)).collect::<Result<_, _>>()?;
-    tag::json(&headers, is_finished, &SweepRows { rows, next_after })
+    let make = move |rows| tag::json(&headers, is_finished, &SweepRows { rows, next_after });
+    tasks::of_lines(&service, lines, make).await
 }
 
 /// Follow a sweep: its runs as they end, then its own end.
@@ -160,8 +165,8 @@ pub async fn cancel(
     State(service): State<Service>,
     Extension(caller): Extension<Caller>,
     JobId(id): JobId,
-) -> Result<(StatusCode, Json<Sweep>), Problem> {
-    tasks::cancel(&service, &caller, Task::Sweep, id).await
+) -> Result<Response, Problem> {
+    tasks::cancel::<Sweep>(&service, &caller, Task::Sweep, id).await
 }
 
 /// Stop a sweep, and drop it and its jobs.
@@ -190,7 +195,7 @@ pub async fn table_csv(
     JobId(id): JobId,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    found(&service, &caller, id).await?.csv(&headers)
+    found(&service, &caller, id, move |found| found.csv(&headers)).await
 }
 
 /// The runs that have ended, as columns of text.
@@ -205,7 +210,7 @@ pub async fn table_txt(
     JobId(id): JobId,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    found(&service, &caller, id).await?.text(&headers)
+    found(&service, &caller, id, move |found| found.text(&headers)).await
 }
 
 /// The first limit load against the first parameter, one line for each set of values of the others.
@@ -220,13 +225,26 @@ pub async fn picture(
     JobId(id): JobId,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    found(&service, &caller, id).await?.picture(&headers)
+    found(&service, &caller, id, move |found| found.picture(&headers)).await
 }
 
-/// What a sweep has found so far.
-async fn found(service: &Service, caller: &Caller, id: Uuid) -> Result<SoFar<Found>, Problem> {
+/// An answer of what a sweep has found so far.
+async fn found(
+    service: &Service,
+    caller: &Caller,
+    id: Uuid,
+    make: impl FnOnce(SoFar<Found>) -> Result<Response, Problem> + Send + 'static,
+) -> Result<Response, Problem> {
     let task = Task::Sweep;
     let sweep = service.jobs.find(caller, task, id).await?;
-    let findings = service.jobs.sweep_so_far(&sweep).await?;
-    Ok(SoFar { task, id, findings, is_finished: sweep.status.is_ended() })
+    let lines = service.jobs.lines(id, None, MOST_OF_A_TABLE).await?;
+    let bytes = sweep.bytes() + lines.iter().map(|line| line.body.len()).sum::<usize>();
+    if bytes > MOST_OF_A_TABLE {
+        let detail =
+            format!("its rows have more than {MOST_OF_A_TABLE} bytes; read them page by page at {}/rows", address(id));
+        return Err(Problem::new(Kind::AnswerTooLarge, detail));
+    }
+    let is_finished = sweep.status.is_ended();
+    let make = move || make(SoFar { task, id, findings: sweeps::found(sweep, &lines)?, is_finished });
+    service.aside.make(bytes, make).await
 }

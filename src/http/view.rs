@@ -26,7 +26,9 @@ pub struct Submitted {
     pub attempt: u32,
     /// Workers that it has lost in a row (their process ended, or did not answer in time), nothing stored between.
     pub losses: u32,
-    /// So many of them, and it fails.
+    /// Those of them that speak against it: it was the only job that was lost then, or had lost a worker before.
+    pub counted_losses: u32,
+    /// So many of those, and it fails.
     pub max_attempts: u32,
     #[schema(value_type = String, format = DateTime)]
     pub created_at: Timestamp,
@@ -47,6 +49,7 @@ impl From<&JobRecord> for Submitted {
             cancel_requested: record.cancel_requested,
             attempt: record.attempt,
             losses: record.losses,
+            counted_losses: record.counted_losses,
             max_attempts: record.max_attempts,
             created_at: record.created_at,
             started_at: record.started_at,

@@ -1,10 +1,11 @@
 //! Sweeps as they are answered.
 
 use super::view::Submitted;
-use crate::model::sweep::Variation;
+use crate::model::VariationSummary;
+use crate::model::sweep::{Combine, Parameter};
 use crate::store::JobRecord;
 use crate::sweeps::Row;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use utoipa::ToSchema;
 use uuid::Uuid;
@@ -17,6 +18,26 @@ pub struct Sweep {
     pub progress: SweepProgress,
     #[serde(flatten)]
     pub variation: Variation,
+    pub links: SweepLinks,
+}
+
+/// What is varied, and how: passed on as it is stored.
+#[derive(Debug, Serialize, Deserialize, ToSchema)]
+pub struct Variation {
+    /// In the order of the request.
+    #[schema(value_type = Vec<Parameter>)]
+    parameters: Box<RawValue>,
+    combine: Combine,
+}
+
+/// A sweep as it is listed: what it varies is shortened.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct ListedSweep {
+    #[serde(flatten)]
+    pub submitted: Submitted,
+    pub progress: SweepProgress,
+    #[serde(flatten)]
+    pub variation: VariationSummary,
     pub links: SweepLinks,
 }
 
@@ -45,7 +66,7 @@ pub struct SweepLinks {
 #[derive(Debug, Serialize, ToSchema)]
 pub struct SweepList {
     /// Newest first.
-    pub sweeps: Vec<Sweep>,
+    pub sweeps: Vec<ListedSweep>,
     /// Pass it as `cursor` for the next page; null on the last one.
     pub next_cursor: Option<Uuid>,
 }
@@ -73,24 +94,47 @@ impl TryFrom<JobRecord> for Sweep {
     type Error = serde_json::Error;
 
     fn try_from(record: JobRecord) -> Result<Self, serde_json::Error> {
-        let itself = address(record.id);
         Ok(Self {
             submitted: Submitted::from(&record),
-            progress: SweepProgress {
-                ended: record.last_index.map_or(0, |index| index + 1),
-                of: record.max_increments,
-            },
+            progress: SweepProgress::of(&record),
             variation: serde_json::from_str(&record.plan)?,
-            links: SweepLinks {
-                rows: format!("{itself}/rows"),
-                stream: format!("{itself}/stream"),
-                jobs: format!("/v1/jobs?sweep={}", record.id),
-                table_csv: format!("{itself}/table.csv"),
-                table_txt: format!("{itself}/table.txt"),
-                picture: format!("{itself}/picture.svg"),
-                itself,
-            },
+            links: SweepLinks::of(record.id),
         })
+    }
+}
+
+/// Of a record as lists have it.
+impl TryFrom<JobRecord> for ListedSweep {
+    type Error = serde_json::Error;
+
+    fn try_from(record: JobRecord) -> Result<Self, serde_json::Error> {
+        Ok(Self {
+            submitted: Submitted::from(&record),
+            progress: SweepProgress::of(&record),
+            variation: VariationSummary::read(&record.plan)?,
+            links: SweepLinks::of(record.id),
+        })
+    }
+}
+
+impl SweepProgress {
+    fn of(record: &JobRecord) -> Self {
+        Self { ended: record.last_index.map_or(0, |index| index + 1), of: record.max_increments }
+    }
+}
+
+impl SweepLinks {
+    fn of(id: Uuid) -> Self {
+        let itself = address(id);
+        Self {
+            rows: format!("{itself}/rows"),
+            stream: format!("{itself}/stream"),
+            jobs: format!("/v1/jobs?sweep={id}"),
+            table_csv: format!("{itself}/table.csv"),
+            table_txt: format!("{itself}/table.txt"),
+            picture: format!("{itself}/picture.svg"),
+            itself,
+        }
     }
 }
 

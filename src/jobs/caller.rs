@@ -2,8 +2,6 @@
 //!
 //! What somebody cannot see is answered as if it were not there. Made by `http` from a request's token.
 
-use crate::store::JobRecord;
-
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Caller {
     /// Nobody has to say who they are: jobs belong to no one, and everyone sees all.
@@ -21,8 +19,9 @@ impl Caller {
         }
     }
 
-    pub fn sees(&self, job: &JobRecord) -> bool {
-        self.seen_owner().is_none_or(|owner| job.owner.as_deref() == Some(owner))
+    /// Whether jobs of that owner are seen.
+    pub fn sees(&self, owner: Option<&str>) -> bool {
+        self.seen_owner().is_none_or(|seen| owner == Some(seen))
     }
 
     /// Whose jobs alone are seen; `None`: everyone's.

@@ -1,7 +1,8 @@
 //! A new job along a direction that is listed at an increment of another.
 
+use super::checks::{Desk, Whole};
 use super::submission::wrong_input;
-use super::{Caller, Jobs, JobsError, Limits, Posted, Solver, branches, queued};
+use super::{Caller, Jobs, JobsError, Posted, branches, queued};
 use crate::metrics::Write;
 use crate::model::{InputError, InputErrors, decode};
 use crate::path::Increment;
@@ -17,8 +18,14 @@ impl Jobs {
         posted: impl Into<Posted>,
         idempotency_key: Option<String>,
     ) -> Result<JobRecord, JobsError> {
-        let Posted { text: body, room } = posted.into();
-        let asked = decode::follow(&body).map_err(|errors| wrong_input(&body, errors, JobsError::Follow))?;
+        let posted: Posted = posted.into();
+        let client = posted.client.clone();
+        let read = |text: Vec<u8>| {
+            Whole::of(move |_: &Desk<'_>| {
+                decode::follow(&text).map_err(|errors| wrong_input(&text, errors, JobsError::Follow))
+            })
+        };
+        let (asked, _) = self.checked(posted, read).await?;
         let limits = self.settings.limits;
         if let Some(past) = asked.max_increments.and_then(|most| limits.past_increments("/max_increments", most)) {
             return Err(JobsError::Follow(InputErrors(vec![past])));
@@ -53,17 +60,20 @@ impl Jobs {
             ));
         };
         let text = self.store.request(id).await?.ok_or(JobsError::NoJob(id))?;
-        let posted = Posted { text: text.into_bytes(), room };
-        let check = move |solver: &dyn Solver, _: &Limits, text: Vec<u8>| {
-            let request = decode::decode(&text).map_err(|errors| {
-                refused("", format!("the job's model is no longer accepted, post it anew: {errors}"))
-            })?;
-            let beginning = branches::beginning(&parent, &origin).map_err(|error| {
-                refused("/increment", format!("what is stored there cannot be read, trace the path anew: {error}"))
-            })?;
-            solver.check_beginning(&request, beginning).map_err(JobsError::Follow)
+        let posted = Posted { client, ..Posted::from(text.into_bytes()) };
+        let check = move |text: Vec<u8>| {
+            Whole::of(move |desk: &Desk<'_>| {
+                let request = decode::decode(&text).map_err(|errors| {
+                    refused("", format!("the job's model is no longer accepted, post it anew: {errors}"))
+                })?;
+                let beginning = branches::beginning(&parent, &origin).map_err(|error| {
+                    refused("/increment", format!("what is stored there cannot be read, trace the path anew: {error}"))
+                })?;
+                desk.go_on()?;
+                desk.solver.check_beginning(&request, beginning).map_err(JobsError::Follow)
+            })
         };
-        let ((), _room) = self.checked(posted, check).await?;
+        let _room = self.checked(posted, check).await?.1.leave();
         // The service may have taken more when the other one was queued.
         let max_increments = Some(asked.max_increments.unwrap_or(job.max_increments.min(limits.increments)));
         // Nothing to be found here any more: the parent was deleted just now.

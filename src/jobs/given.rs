@@ -81,6 +81,8 @@ impl<'a> Given<'a> {
             newton_iterations: totals.newton_iterations.saturating_sub(before.newton_iterations),
             qp_solves: totals.qp_solves.saturating_sub(before.qp_solves),
             mpec_solves: totals.mpec_solves.saturating_sub(before.mpec_solves),
+            sqp_iterations: totals.sqp_iterations.saturating_sub(before.sqp_iterations),
+            certificates: totals.certificates.saturating_sub(before.certificates),
         });
         let flow = match step.given {
             Some(judged) => self.send(judged, place),
@@ -164,7 +166,10 @@ impl<'a> Given<'a> {
         }
         let Some(mut judged) = report else { return SolveEnd::Silent };
         match &self.claim.last {
-            Some(last) if !has_arrived && judged.report.stop_reason != StopReason::Cancelled => {
+            Some(last)
+                if !has_arrived
+                    && !matches!(judged.report.stop_reason, StopReason::Cancelled | StopReason::MemoryLimit) =>
+            {
                 SolveEnd::Differs(last.index)
             }
             _ => {

@@ -1,6 +1,7 @@
 //! What one service takes, and how much of it one job may use. The limits of the [model](crate::model::limits) hold
 //! besides: a service may take less, never more.
 
+use crate::budget::Bounds;
 use crate::model::limits::{MAX_CONTACTS, MAX_ELEMENTS, MAX_INCREMENTS, MAX_NODES, MAX_TEXT_BYTES};
 use crate::model::{InputError, InputErrors, Model};
 use std::fmt;
@@ -19,10 +20,14 @@ pub struct Limits {
     pub contacts: usize,
     /// `max_increments` of a job.
     pub increments: u64,
+    /// Time that checking a request may take, its waits for others not counted.
+    pub check_time: Duration,
     /// Time that a job or study may run in all, its waits in the queue not counted.
     pub wall_time: Duration,
     /// Bytes that may be stored of a job or study: increments, and points from which directions can be followed.
     pub stored_bytes: u64,
+    /// What one solve, or check, may take.
+    pub bounds: Bounds,
 }
 
 impl Default for Limits {
@@ -34,8 +39,10 @@ impl Default for Limits {
             elements: MAX_ELEMENTS,
             contacts: MAX_CONTACTS,
             increments: MAX_INCREMENTS,
+            check_time: Duration::from_secs(120),
             wall_time: Duration::from_secs(24 * 3600),
             stored_bytes: 8 << 30,
+            bounds: Bounds::default(),
         }
     }
 }
@@ -104,6 +111,7 @@ impl fmt::Display for Limits {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "| limit | value | past it |\n|---|---|---|")?;
         let refused = "refused, 422";
+        let Bounds { memory, factor_entries, factor_work } = self.bounds;
         let rows = [
             ("bytes of a body", self.body_bytes.to_string(), "refused, 413"),
             ("nodes", self.nodes.to_string(), refused),
@@ -112,6 +120,10 @@ impl fmt::Display for Limits {
             ("`max_increments`", self.increments.to_string(), refused),
             ("bytes of the requests of a sweep's runs", super::sweeps::MOST_BYTES.to_string(), refused),
             ("jobs and studies that wait", self.queued.to_string(), "refused, 429 with `Retry-After`"),
+            ("seconds that a request is checked for", self.check_time.as_secs_f64().to_string(), refused),
+            ("entries of a factor of the stiffness", factor_entries.to_string(), refused),
+            ("multiplications of its factorisation", factor_work.to_string(), refused),
+            ("bytes that a solve holds at a time", memory.to_string(), "`stopped`, `memory_limit`"),
             ("seconds that a job runs", self.wall_time.as_secs_f64().to_string(), "`stopped`, `time_limit`"),
             ("bytes stored of a job", self.stored_bytes.to_string(), "`stopped`, `storage_limit`"),
         ];

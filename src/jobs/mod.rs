@@ -1,6 +1,7 @@
 //! From a request to a running solve: the queue's front (submit, cancel, delete) and the workers behind it.
 //!
-//! [`caller`] says on whose behalf, [`solver`] is the seam to the path tracer, [`submission`] what is done with a request before it is queued, [`solve`]
+//! [`caller`] says on whose behalf, [`solver`] is the seam to the path tracer, [`submission`] what is done with a request before it is queued,
+//! [`checks`] when and for how long, [`lanes`] in which order between clients, [`solve`]
 //! one solve on a thread of its own, [`batch`] its increments on their way to the store, [`worker`] the loop around both,
 //! [`given`] makes what a solve gives ready for the store, [`checkpoints`] says where it can be taken up after a loss, [`cadence`] how often,
 //! [`limits`] what is taken and how much a job may use, [`retention`] what is kept of ended jobs;
@@ -14,11 +15,13 @@ pub mod branches;
 pub mod cadence;
 pub mod caller;
 pub mod checkpoints;
+pub mod checks;
 pub mod crew;
 pub mod demonstration;
 pub mod explore;
 pub mod follow;
 pub mod given;
+pub mod lanes;
 pub mod limits;
 pub mod retention;
 pub mod running;
@@ -34,19 +37,21 @@ pub mod worker;
 use crate::metrics::{Metrics, Write};
 use crate::model::InputErrors;
 use crate::path::Plan;
-use crate::store::{JobRecord, NewJob, Store, StoreError, Submitted, Task};
+use crate::store::{JobRecord, NewJob, Retried, Standing, Store, StoreError, Submitted, Task};
+use checks::{Checks, Desk, Room, Whole};
 use running::Running;
-use std::num::NonZeroUsize;
 use std::sync::Arc;
-use tokio::sync::Semaphore;
+use std::time::Duration;
+use submission::Prepared;
 use uuid::Uuid;
 
 pub use caller::Caller;
+pub use checks::Posted;
 pub use crew::Crew;
+pub use lanes::Client;
 pub use limits::Limits;
 pub use settings::Settings;
 pub use solver::{PathSolver, Solver};
-pub use submission::Posted;
 
 /// Why a request was not carried out.
 #[derive(Debug, thiserror::Error)]
@@ -59,8 +64,15 @@ pub enum JobsError {
     KeyReused,
     #[error("{0} jobs wait already")]
     QueueFull(u64),
+    #[error("checking it takes longer than {0:?}")]
+    CheckTime(Duration),
+    /// Nobody waits for the answer.
+    #[error("the check was stopped")]
+    Abandoned,
     #[error("there is nothing to follow")]
     Follow(InputErrors),
+    #[error("job {} cannot be queued again", .0.id)]
+    NotRetryable(Box<JobRecord>),
     #[error("no job {0}")]
     NoJob(Uuid),
     #[error("no study {0}")]
@@ -83,15 +95,13 @@ pub struct Jobs {
     pub(crate) settings: Settings,
     pub(crate) running: Running,
     pub(crate) metrics: Arc<Metrics>,
-    /// Requests that are read and checked at a time.
-    checks: Arc<Semaphore>,
+    checks: Checks,
 }
 
 impl Jobs {
     pub fn new(store: Arc<dyn Store>, solver: Arc<dyn Solver>, settings: Settings) -> Self {
-        let processors = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
-        let checks = Arc::new(Semaphore::new(processors));
-        Self { store, solver, settings, running: Running::default(), metrics: Arc::default(), checks }
+        let (running, checks) = (Running::default(), Checks::default());
+        Self { store, solver, settings, running, metrics: Arc::default(), checks }
     }
 
     pub fn store(&self) -> &dyn Store {
@@ -102,9 +112,15 @@ impl Jobs {
         &self.metrics
     }
 
+    async fn prepared(&self, request: Posted) -> Result<(Prepared, Room), JobsError> {
+        let check = |text| Whole::of(|desk: &Desk<'_>| submission::prepare(desk, text));
+        let (prepared, held) = self.checked(request, check).await?;
+        Ok((prepared, held.leave()))
+    }
+
     /// The plan of a request; nothing is queued.
     pub async fn validate(&self, request: impl Into<Posted>) -> Result<Plan, JobsError> {
-        Ok(self.checked(request.into(), submission::prepare).await?.0.plan)
+        Ok(self.prepared(request.into()).await?.0.plan)
     }
 
     pub async fn submit(
@@ -113,7 +129,7 @@ impl Jobs {
         request: impl Into<Posted>,
         idempotency_key: Option<String>,
     ) -> Result<JobRecord, JobsError> {
-        let (prepared, _room) = self.checked(request.into(), submission::prepare).await?;
+        let (prepared, _room) = self.prepared(request.into()).await?;
         let job = NewJob {
             task: Task::Path,
             owner: caller.owner().map(str::to_owned),
@@ -122,6 +138,7 @@ impl Jobs {
             request: prepared.text,
             max_increments: prepared.max_increments,
             max_attempts: self.settings.max_attempts,
+            summary: None,
             most_queued: self.settings.limits.queued,
             priority: 0,
             idempotency_key,
@@ -132,12 +149,18 @@ impl Jobs {
 
     /// A job of that task that the caller sees.
     pub async fn find(&self, caller: &Caller, task: Task, id: Uuid) -> Result<JobRecord, JobsError> {
-        let found = self.store.job(id).await?.filter(|job| job.task == task && caller.sees(job));
-        found.ok_or_else(|| absent(task, id))
+        let seen = |job: &JobRecord| job.task == task && caller.sees(job.owner.as_deref());
+        self.store.job(id).await?.filter(seen).ok_or_else(|| absent(task, id))
+    }
+
+    /// How far a job has come that the caller sees; what can be large of it is not read.
+    pub async fn standing(&self, caller: &Caller, task: Task, id: Uuid) -> Result<Standing, JobsError> {
+        let seen = |job: &Standing| job.task == task && caller.sees(job.owner.as_deref());
+        self.store.standing(id).await?.filter(seen).ok_or_else(|| absent(task, id))
     }
 
     pub async fn cancel(&self, caller: &Caller, task: Task, id: Uuid) -> Result<JobRecord, JobsError> {
-        self.find(caller, task, id).await?;
+        self.standing(caller, task, id).await?;
         if task == Task::Sweep {
             self.store.cancel_sweep(id).await?.into_iter().for_each(|run| self.running.cancel(run));
         }
@@ -147,8 +170,19 @@ impl Jobs {
         Ok(job)
     }
 
+    /// Queues a failed job again: it goes on from what it has stored.
+    pub async fn retry(&self, caller: &Caller, id: Uuid) -> Result<JobRecord, JobsError> {
+        self.standing(caller, Task::Path, id).await?;
+        let most = self.settings.limits.queued;
+        match self.store.retry(id, most).await?.ok_or_else(|| absent(Task::Path, id))? {
+            Retried::Queued(job) => Ok(job),
+            Retried::NotRetryable(job) => Err(JobsError::NotRetryable(Box::new(job))),
+            Retried::QueueFull { most } => Err(JobsError::QueueFull(most)),
+        }
+    }
+
     pub async fn delete(&self, caller: &Caller, task: Task, id: Uuid) -> Result<(), JobsError> {
-        self.find(caller, task, id).await?;
+        self.standing(caller, task, id).await?;
         let deleted = self.store.delete(id).await?;
         self.running.cancel(id);
         if deleted { Ok(()) } else { Err(absent(task, id)) }

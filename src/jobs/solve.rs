@@ -7,6 +7,7 @@ use super::checkpoints::PutDown;
 use super::given::Given;
 use super::solver::ResumeError;
 use super::{Jobs, Solver, branches};
+use crate::budget::{Breach, Budget};
 use crate::cancel::CancelFlag;
 use crate::judged::JudgedReport;
 use crate::model::{InputErrors, decode};
@@ -46,6 +47,8 @@ pub enum SolveEnd {
     Studied(studies::Report),
     /// Cancelled before there was anything to report.
     Cancelled,
+    /// It would have gone past a bound where there is no path to report it.
+    Exceeded(Breach),
     /// Without a report: nobody listened any more, or a defect.
     Silent,
 }
@@ -84,13 +87,19 @@ pub fn start(jobs: &Jobs, claim: &Claim, stored: Vec<Line>, cancel: CancelFlag) 
     std::thread::Builder::new().name(format!("solve-{}", claim.lease.job)).stack_size(STACK_BYTES).spawn(
         move || {
             let _entered = span.enter();
-            let ended = catch_unwind(AssertUnwindSafe(|| match claim_of_thread.task {
+            let budget = Budget::new(cancel.clone(), jobs.settings.limits.bounds);
+            let solve = || match claim_of_thread.task {
                 Task::Path => run(&jobs, &claim_of_thread, cancel, &sender),
                 // Nobody claims one: its runs are claimed.
                 Task::Sweep => SolveEnd::Silent,
                 Task::Study => study(jobs.solver.as_ref(), &claim_of_thread, &stored, &cancel, &sender),
-            }))
-            .unwrap_or_else(|panic| SolveEnd::Panicked(panics::text(panic.as_ref())));
+            };
+            let ended = match catch_unwind(AssertUnwindSafe(|| budget.during(solve))) {
+                Ok(Ok(ended)) => ended,
+                Ok(Err(Breach::Cancelled)) => SolveEnd::Cancelled,
+                Ok(Err(breach)) => SolveEnd::Exceeded(breach),
+                Err(panic) => SolveEnd::Panicked(panics::text(panic.as_ref())),
+            };
             // Nobody waits for the end when the runtime is going down.
             let _ = end_sender.send(ended);
         },

@@ -1,11 +1,12 @@
 //! Sweeps: many jobs that are queued together.
 
+use super::checks::{Check, Desk};
 use super::submission::{not_text, wrong_input};
-use super::{Caller, Jobs, JobsError, Limits, Posted, Solver, queued};
+use super::{Caller, Jobs, JobsError, Posted, queued};
 use crate::metrics::Write;
 use crate::model::sweep::Variation;
-use crate::model::{InputError, InputErrors, RunMistakes, Sweep};
-use crate::store::{JobRecord, NewJob, NewRun, NewSweep, Task};
+use crate::model::{InputError, InputErrors, RunMistakes, Sweep, VariationSummary};
+use crate::store::{JobRecord, Line, NewJob, NewRun, NewSweep, Task};
 use crate::sweeps::{Found, Row};
 
 /// Bytes of the requests of a sweep's runs in all: each is stored with its job.
@@ -15,14 +16,16 @@ pub const MOST_BYTES: usize = 256 << 20;
 struct Prepared {
     text: String,
     name: Option<String>,
-    variation: Variation,
+    /// A [`Variation`] as JSON, and what lists show of it.
+    variation: String,
+    summary: String,
     runs: Vec<NewRun>,
 }
 
 impl Jobs {
-    /// What would be varied, every run checked; nothing is queued. Also answers how many runs there are.
-    pub async fn validate_sweep(&self, request: impl Into<Posted>) -> Result<(Variation, u64), JobsError> {
-        let (prepared, _room) = self.checked(request.into(), prepare).await?;
+    /// What would be varied, a [`Variation`] as JSON, every run checked; nothing is queued. Also answers how many runs there are.
+    pub async fn validate_sweep(&self, request: impl Into<Posted>) -> Result<(String, u64), JobsError> {
+        let (prepared, _held) = self.checked(request.into(), Preparation::Posted).await?;
         Ok((prepared.variation, prepared.runs.len() as u64))
     }
 
@@ -32,12 +35,14 @@ impl Jobs {
         request: impl Into<Posted>,
         idempotency_key: Option<String>,
     ) -> Result<JobRecord, JobsError> {
-        let (Prepared { text, name, variation, runs }, _room) = self.checked(request.into(), prepare).await?;
+        let (Prepared { text, name, variation, summary, runs }, _held) =
+            self.checked(request.into(), Preparation::Posted).await?;
         let whole = NewJob {
             task: Task::Sweep,
             owner: caller.owner().map(str::to_owned),
             name,
-            plan: serde_json::to_string(&variation)?,
+            plan: variation,
+            summary: Some(summary),
             request: text,
             max_increments: runs.len() as u64,
             max_attempts: self.settings.max_attempts,
@@ -49,56 +54,104 @@ impl Jobs {
         let sweep = NewSweep { whole, runs };
         queued(self.metrics.work.timed(Write::Submit, self.store.submit_sweep(sweep)).await?)
     }
+}
 
-    /// What a sweep has found so far, in the order of its runs.
-    ///
-    /// # Errors
-    /// A store that fails, or holds what is none of a sweep's.
-    pub async fn sweep_so_far(&self, sweep: &JobRecord) -> Result<Found, JobsError> {
-        let variation: Variation = serde_json::from_str(&sweep.plan)?;
-        let lines = self.lines(sweep.id, None).await?;
-        let mut rows: Vec<Row> = lines.iter().map(|line| serde_json::from_str(&line.body)).collect::<Result<_, _>>()?;
-        rows.sort_by_key(|row| row.run);
-        Ok(Found { name: sweep.name.clone(), variation, rows })
+/// What a sweep has found, in the order of its runs; `lines` are all of it that is stored.
+///
+/// # Errors
+/// What is stored is none of a sweep's.
+pub fn found(sweep: JobRecord, lines: &[Line]) -> serde_json::Result<Found> {
+    let variation: Variation = serde_json::from_str(&sweep.plan)?;
+    let mut rows: Vec<Row> = lines.iter().map(|line| serde_json::from_str(&line.body)).collect::<Result<_, _>>()?;
+    rows.sort_by_key(|row| row.run);
+    Ok(Found { name: sweep.name, variation, rows })
+}
+
+/// Reads and checks a sweep, run by run.
+enum Preparation {
+    Posted(Vec<u8>),
+    Begun(Box<Begun>),
+}
+
+/// A sweep of which some runs have been checked.
+struct Begun {
+    request: Vec<u8>,
+    sweep: Sweep,
+    runs: Vec<NewRun>,
+    /// Runs that have been checked.
+    checked: u64,
+    /// Of the requests and plans of the runs.
+    bytes: usize,
+    mistakes: RunMistakes,
+}
+
+impl Check for Preparation {
+    type Checked = Prepared;
+
+    fn go_on(&mut self, desk: &Desk<'_>) -> Result<Option<Prepared>, JobsError> {
+        let mut begun = match std::mem::replace(self, Self::Posted(Vec::new())) {
+            Self::Posted(request) => Box::new(Begun::read(desk, request)?),
+            Self::Begun(begun) => begun,
+        };
+        while begun.go_on(desk)? {
+            if desk.is_over_time() {
+                *self = Self::Begun(begun);
+                return Ok(None);
+            }
+        }
+        begun.end().map(Some)
     }
 }
 
-fn prepare(solver: &dyn Solver, limits: &Limits, request: Vec<u8>) -> Result<Prepared, JobsError> {
-    let sweep = Sweep::read(&request).map_err(|errors| wrong_input(&request, errors, JobsError::Input))?;
-    let refused = |detail| JobsError::Input(InputErrors(vec![InputError::new("/sweep/replace", detail)]));
-    if sweep.runs() > limits.queued {
-        let most = limits.queued;
-        return Err(refused(format!("these are {} runs; this service queues at most {most} jobs", sweep.runs())));
+impl Begun {
+    fn read(desk: &Desk<'_>, request: Vec<u8>) -> Result<Self, JobsError> {
+        let sweep = Sweep::read(&request).map_err(|errors| wrong_input(&request, errors, JobsError::Input))?;
+        if sweep.runs() > desk.limits.queued {
+            let most = desk.limits.queued;
+            return Err(refused(format!("these are {} runs; this service queues at most {most} jobs", sweep.runs())));
+        }
+        Ok(Self { request, sweep, runs: Vec::new(), checked: 0, bytes: 0, mistakes: RunMistakes::default() })
     }
-    let (mut runs, mut bytes, mut mistakes) = (Vec::new(), 0, RunMistakes::of(&sweep));
-    for run in 0..sweep.runs() {
-        match prepare_run(solver, limits, &sweep, run) {
+
+    /// Checks the next run; answers whether there are others.
+    fn go_on(&mut self, desk: &Desk<'_>) -> Result<bool, JobsError> {
+        desk.go_on()?;
+        let run = self.checked;
+        match prepare_run(desk, &self.sweep, run) {
             Ok(new) => {
-                bytes += new.request.len() + new.plan.len();
-                if bytes > MOST_BYTES {
+                self.bytes += new.request.len() + new.plan.len();
+                if self.bytes > MOST_BYTES {
                     return Err(refused(format!("the requests of its runs have more than {MOST_BYTES} bytes in all")));
                 }
-                runs.push(new);
-                mistakes.note(run, None);
+                self.runs.push(new);
+                self.mistakes.note(run, None);
             }
-            Err(JobsError::Input(errors)) => mistakes.note(run, Some(errors)),
+            Err(JobsError::Input(errors)) => self.mistakes.note(run, Some(errors)),
             Err(other) => return Err(other),
         }
-        if mistakes.are_enough() {
-            break;
-        }
+        self.checked += 1;
+        Ok(self.checked < self.sweep.runs() && !self.mistakes.are_enough())
     }
-    mistakes.result().map_err(JobsError::Input)?;
-    let Sweep { name, variation, .. } = sweep;
-    Ok(Prepared { text: String::from_utf8(request).map_err(not_text)?, name, variation, runs })
+
+    fn end(self) -> Result<Prepared, JobsError> {
+        let Self { request, sweep, runs, mistakes, .. } = self;
+        mistakes.result(&sweep).map_err(JobsError::Input)?;
+        let summary = serde_json::to_string(&VariationSummary::of(&sweep.variation))?;
+        let variation = serde_json::to_string(&sweep.variation)?;
+        Ok(Prepared { text: String::from_utf8(request).map_err(not_text)?, name: sweep.name, variation, summary, runs })
+    }
 }
 
-fn prepare_run(solver: &dyn Solver, limits: &Limits, sweep: &Sweep, run: u64) -> Result<NewRun, JobsError> {
+fn refused(detail: String) -> JobsError {
+    JobsError::Input(InputErrors(vec![InputError::new("/sweep/replace", detail)]))
+}
+
+fn prepare_run(desk: &Desk<'_>, sweep: &Sweep, run: u64) -> Result<NewRun, JobsError> {
     let wrong = |errors| JobsError::Input(sweep.located(run, errors));
     let crate::model::sweep::Run { text, request } = sweep.run(run).map_err(JobsError::Input)?;
     let max_increments = request.analysis.max_increments;
-    limits.check(&request.model, max_increments).map_err(wrong)?;
-    let plan = serde_json::to_string(&solver.plan(&request).map_err(wrong)?)?;
+    desk.limits.check(&request.model, max_increments).map_err(wrong)?;
+    let plan = serde_json::to_string(&desk.solver.plan(&request).map_err(wrong)?)?;
     let values = serde_json::to_string(&sweep.variation.values(run))?;
     Ok(NewRun { name: request.model.name, request: text, plan, values, max_increments })
 }

@@ -18,6 +18,9 @@ use tracing::Instrument;
 /// A job is tried to be handed back for so long while the database is not available; then its lease runs out.
 const TO_HAND_BACK: Duration = Duration::from_secs(1);
 
+/// The stop reason of a solve that would hold too much, as a path's.
+const MEMORY_LIMIT: &str = "memory_limit";
+
 /// Works until `shutdown`; a job under way then goes back to the queue.
 pub async fn work(jobs: Jobs, name: String, shutdown: CancellationToken) {
     let mut queue = jobs.store.queue_changes();
@@ -213,6 +216,12 @@ fn ending(end: SolveEnd) -> Ending {
             studied(&report).unwrap_or_else(|error| Ending::failed(format!("the report cannot be written: {error}")))
         }
         SolveEnd::Cancelled => cancelled(None),
+        SolveEnd::Exceeded(breach) => Ending {
+            status: Status::Stopped,
+            stop_reason: Some(MEMORY_LIMIT.to_owned()),
+            report: None,
+            error: Some(breach.to_string()),
+        },
         SolveEnd::Refused(errors) => Ending::failed(format!("the stored request is not accepted: {errors}")),
         SolveEnd::Panicked(text) => Ending::failed(format!("the solver panicked: {text}")),
         SolveEnd::Unwritable(error) => Ending::failed(format!("an increment cannot be written: {error}")),

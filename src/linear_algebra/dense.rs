@@ -2,6 +2,8 @@
 //! their number, which spends nothing on loops.
 
 use super::counted::count_solves;
+use super::large::LargeLu;
+use crate::budget;
 use nalgebra::allocator::Allocator;
 use nalgebra::constraint::{SameNumberOfRows, ShapeConstraint};
 use nalgebra::{Const, DMatrix, DVector, DefaultAllocator, Dim, DimMin, Dyn, LU, OMatrix, OVector, SMatrix};
@@ -30,9 +32,11 @@ pub struct Stiffener {
 
 /// Pivots below this fraction of the largest one count as zero (rows have unit size).
 const SMALLEST_PIVOT: f64 = 1e-14;
+/// Rows up to which a matrix is factorised in one piece.
+pub(super) const MOST_AT_ONCE: usize = 500;
 
 /// The factors of a matrix of any size, known to the compiler or not.
-trait Factors: Send + Sync {
+pub(super) trait Factors: Send + Sync {
     /// Number of rows.
     fn size(&self) -> usize;
     /// Sign of the determinant: 1 or -1.
@@ -96,6 +100,16 @@ fn divide_rows(entries: &mut [f64], scales: &mut [f64]) -> bool {
     true
 }
 
+/// The smallest pivot over the largest; `None` where it is too small, or no number.
+fn ratio(pivots: impl ExactSizeIterator<Item = f64>) -> Option<f64> {
+    let is_empty = pivots.len() == 0;
+    let (smallest, largest) = pivots.fold((f64::INFINITY, 0.0_f64), |(smallest, largest), pivot| {
+        (smallest.min(pivot.abs()), largest.max(pivot.abs()))
+    });
+    let regular = is_empty || (smallest.is_finite() && smallest > SMALLEST_PIVOT * largest);
+    regular.then_some(if largest > 0.0 { smallest / largest } else { 0.0 })
+}
+
 impl Factorisation {
     /// Factorises; `None` when the matrix is singular to working precision or holds a number that is not finite.
     pub fn new(mut matrix: DMatrix<f64>) -> Option<Self> {
@@ -108,9 +122,24 @@ impl Factorisation {
             size => {
                 let mut row_scales = DVector::zeros(size);
                 let is_regular = divide_rows(matrix.as_mut_slice(), row_scales.as_mut_slice());
-                is_regular.then(|| Self::scaled(matrix, row_scales)).flatten()
+                is_regular
+                    .then(|| {
+                        if size > MOST_AT_ONCE {
+                            Self::large(matrix, row_scales)
+                        } else {
+                            Self::scaled(matrix, row_scales)
+                        }
+                    })
+                    .flatten()
             }
         }
+    }
+
+    /// Of a large matrix whose rows are of unit size.
+    fn large(matrix: DMatrix<f64>, row_scales: DVector<f64>) -> Option<Self> {
+        let lu = LargeLu::new(matrix, row_scales);
+        let pivot_ratio = ratio(lu.pivots())?;
+        Some(Self { size: lu.size(), factors: Box::new(lu), pivot_ratio, sign: 1.0 })
     }
 
     fn of_known_size<const SIZE: usize>(matrix: &DMatrix<f64>) -> Option<Self>
@@ -130,14 +159,10 @@ impl Factorisation {
         Scaled<D>: Factors + 'static,
     {
         let size = matrix.nrows();
+        budget::spend(size * size * size / 3);
         let lu = LU::new(matrix);
-        let pivots = (0..size).map(|index| lu.lu_internal()[(index, index)]);
-        let (smallest, largest) = pivots.fold((f64::INFINITY, 0.0_f64), |(smallest, largest), pivot| {
-            (smallest.min(pivot.abs()), largest.max(pivot.abs()))
-        });
-        let regular = size == 0 || (smallest.is_finite() && smallest > SMALLEST_PIVOT * largest);
-        let pivot_ratio = if largest > 0.0 { smallest / largest } else { 0.0 };
-        regular.then(|| Self { size, factors: Box::new(Scaled { row_scales, lu }), pivot_ratio, sign: 1.0 })
+        let pivot_ratio = ratio((0..size).map(|index| lu.lu_internal()[(index, index)]))?;
+        Some(Self { size, factors: Box::new(Scaled { row_scales, lu }), pivot_ratio, sign: 1.0 })
     }
 
     /// Factorises `A + Σ k r cᵀ` as `[[A, R], [Cᵀ, -1/K]]`, where large and small stiffnesses are never added, so that
@@ -191,7 +216,7 @@ mod tests {
     /// that of a matrix of unknown size.
     #[test]
     fn every_size_is_solved() {
-        for size in 0..9 {
+        for size in (0..9).chain([MOST_AT_ONCE + 7]) {
             let entry = |row: usize, column: usize| ((1 + row * row + 5 * column * (row + 2)) as f64).sin();
             let matrix = DMatrix::from_fn(size, size, entry);
             let right_hand_side = DVector::from_fn(size, |row, _| 1.0 + row as f64);

@@ -4,6 +4,7 @@
 //! L. Kaufman, Math. Comp. 31 (1977) 163, doi:10.1090/S0025-5718-1977-0428694-0: half the operations of an LU
 //! factorisation, and stable for indefinite matrices.
 
+use crate::budget;
 use nalgebra::DMatrix;
 
 /// Numbers of eigenvalues by sign.
@@ -35,6 +36,7 @@ pub fn inertia(mut a: DMatrix<f64>, tolerance: f64) -> Option<Inertia> {
     let mut count = Inertia::default();
     let mut k = 0;
     while k < size {
+        budget::spend((size - k) * (size - k));
         let (row, below) = largest_below(&a, k, k);
         let diagonal = a[(k, k)].abs();
         if diagonal.max(below) <= zero {

@@ -4,8 +4,10 @@
 mod counted;
 mod dense;
 pub mod inertia;
+mod large;
 pub mod sparse;
 
+use crate::budget;
 pub use counted::solves;
 pub use dense::{Factorisation, Stiffener};
 pub use inertia::{Inertia, inertia};
@@ -79,13 +81,18 @@ pub fn determinant(matrix: DMatrix<f64>) -> Option<Determinant> {
     if !matrix.iter().all(|value| value.is_finite()) {
         return None;
     }
-    let lu = matrix.lu();
-    let factors = lu.lu_internal();
-    let (mut sign, mut logarithm): (f64, f64) = (lu.p().determinant(), 0.0);
+    let size = matrix.nrows();
+    let (pivots, mut sign): (DVector<f64>, f64) = if size > dense::MOST_AT_ONCE {
+        let lu = large::LargeLu::new(matrix, DVector::zeros(0));
+        (DVector::from_iterator(size, lu.pivots()), lu.exchange_sign())
+    } else {
+        let lu = matrix.lu();
+        (lu.lu_internal().diagonal(), lu.p().determinant())
+    };
+    let mut logarithm = 0.0;
     let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
-    for index in 0..factors.nrows() {
-        let pivot = factors[(index, index)];
-        sign *= if pivot == 0.0 { 0.0 } else { pivot.signum() };
+    for pivot in pivots.iter() {
+        sign *= if *pivot == 0.0 { 0.0 } else { pivot.signum() };
         logarithm += pivot.abs().ln();
         least = least.min(pivot.abs());
         most = most.max(pivot.abs());
@@ -134,6 +141,7 @@ fn eliminated(mut work: DMatrix<f64>, tolerance: f64, most: usize) -> Option<DMa
     let mut rank = 0;
     let mut first_pivot = 0.0_f64;
     while rank < rows.min(columns).min(most) {
+        budget::spend((rows - rank) * (columns - rank));
         let (mut best, mut place) = (0.0_f64, (rank, rank));
         for column in rank..columns {
             for (row, value) in work.column(column).iter().enumerate().skip(rank) {
@@ -167,6 +175,7 @@ fn eliminated(mut work: DMatrix<f64>, tolerance: f64, most: usize) -> Option<DMa
     }
     let mut basis = DMatrix::zeros(columns, columns - rank);
     for (vector, free) in (rank..columns).enumerate() {
+        budget::spend(rank * rank / 2);
         basis[(order[free], vector)] = 1.0;
         for row in (0..rank).rev() {
             let mut value = work[(row, free)];

@@ -33,6 +33,8 @@ pub struct Solved {
     pub newton_iterations: u64,
     pub qp_solves: u64,
     pub mpec_solves: u64,
+    pub sqp_iterations: u64,
+    pub certificates: u64,
 }
 
 #[derive(Debug)]
@@ -101,13 +103,16 @@ impl Work {
     }
 
     pub fn solved(&self, solved: Solved) {
-        let Solved { time, factorisations, newton_iterations, qp_solves, mpec_solves } = solved;
+        let Solved { time, factorisations, newton_iterations, qp_solves, mpec_solves, sqp_iterations, certificates } =
+            solved;
         self.solve_seconds.inc_by(time.as_secs_f64());
         for (kind, count) in [
             ("factorisation", factorisations),
             ("newton_iteration", newton_iterations),
             ("qp_solve", qp_solves),
             ("mpec_solve", mpec_solves),
+            ("sqp_iteration", sqp_iterations),
+            ("certificate", certificates),
         ] {
             self.solver_steps.get_or_create(&[("kind", kind)]).inc_by(count);
         }

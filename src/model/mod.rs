@@ -15,12 +15,14 @@ pub mod request;
 pub mod run_mistakes;
 pub mod study;
 pub mod sweep;
+pub mod variation_summary;
 
 pub use error::{InputError, InputErrors};
 pub use request::{Analysis, FollowRequest, JobRequest, Model};
 pub use run_mistakes::RunMistakes;
 pub use study::StudyRequest;
 pub use sweep::{Sweep, SweepRequest};
+pub use variation_summary::VariationSummary;
 
 /// Reads a job request from JSON text and checks it: what every edge (HTTP, command line) does with what comes in.
 ///

@@ -4,12 +4,13 @@ use super::limits::MAX_LISTED_MISTAKES;
 use super::{InputError, InputErrors, Sweep};
 
 /// Mistakes in runs that were checked, as mistakes in the sweep.
-pub struct RunMistakes<'s> {
-    sweep: &'s Sweep,
+#[derive(Debug, Default)]
+pub struct RunMistakes {
     checked: u64,
     told: Vec<Told>,
 }
 
+#[derive(Debug)]
 struct Told {
     error: InputError,
     /// The first run that has it.
@@ -17,11 +18,7 @@ struct Told {
     runs: u64,
 }
 
-impl<'s> RunMistakes<'s> {
-    pub fn of(sweep: &'s Sweep) -> Self {
-        Self { sweep, checked: 0, told: Vec::new() }
-    }
-
+impl RunMistakes {
     /// What checking a run gave; runs come in order.
     pub fn note(&mut self, run: u64, mistakes: Option<InputErrors>) {
         self.checked += 1;
@@ -38,12 +35,12 @@ impl<'s> RunMistakes<'s> {
         self.told.len() >= MAX_LISTED_MISTAKES
     }
 
-    /// All of them; a mistake that some runs have and others have not, and that is not at a value of its own, says which.
+    /// All of them, of the runs of that sweep; a mistake that some runs have and others have not, and that is not at a value of its own, says which.
     ///
     /// # Errors
     /// There are mistakes.
-    pub fn result(self) -> Result<(), InputErrors> {
-        let Self { sweep, checked, mut told } = self;
+    pub fn result(self, sweep: &Sweep) -> Result<(), InputErrors> {
+        let Self { checked, mut told } = self;
         told.truncate(MAX_LISTED_MISTAKES);
         let located = told.into_iter().map(|Told { error, first, runs }| {
             if runs == checked || error.pointer.starts_with("/sweep/") {
@@ -73,16 +70,16 @@ mod tests {
         document["sweep"] = json!({"replace": {"/analysis/max_modes": [5, 6, 7]}});
         let sweep = Sweep::read(document.to_string().as_bytes()).unwrap();
         let mistake = |pointer: &str| Some(InputErrors(vec![InputError::new(pointer, "wrong")]));
-        let mut mistakes = RunMistakes::of(&sweep);
+        let mut mistakes = RunMistakes::default();
         mistakes.note(0, None);
         mistakes.note(1, mistake("/model/nodes"));
         mistakes.note(2, mistake("/model/nodes"));
-        let told = mistakes.result().unwrap_err().0;
+        let told = mistakes.result(&sweep).unwrap_err().0;
         assert_eq!(told.len(), 1);
         assert_eq!(told[0].detail, "wrong (so it is in 2 of 3 runs; the first has /analysis/max_modes = 6)");
-        let mut all = RunMistakes::of(&sweep);
+        let mut all = RunMistakes::default();
         (0..3).for_each(|run| all.note(run, mistake("/model/nodes")));
-        assert_eq!(all.result().unwrap_err().0[0].detail, "wrong");
-        assert!(RunMistakes::of(&sweep).result().is_ok());
+        assert_eq!(all.result(&sweep).unwrap_err().0[0].detail, "wrong");
+        assert!(RunMistakes::default().result(&sweep).is_ok());
     }
 }

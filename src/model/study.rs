@@ -144,6 +144,9 @@ impl StudyRequest {
         if method != Method::Regularised {
             analysis.regularised = None;
         }
+        if method != Method::Mpec {
+            analysis.mpec = None;
+        }
         match parameter {
             Parameter::ArcLength => {
                 let longest = rungs.first().copied().unwrap_or(value);
@@ -164,7 +167,7 @@ impl StudyRequest {
         let (longest, shortest) = self.arc_lengths();
         let mut analysis = self.analysis.clone();
         analysis.method = Method::Auto;
-        analysis.regularised = None;
+        (analysis.mpec, analysis.regularised) = (None, None);
         // Rungs longer than the analysis' own arc length are no reason for more increments; the refinement is.
         let usual = longest.min(self.analysis.arc_length.max.max(shortest));
         set_arc_length(&mut analysis, shortest / divisor, usual);

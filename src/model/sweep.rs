@@ -1,7 +1,7 @@
 //! A sweep: one model, and values put in places of it, a job each, as `POST /v1/sweeps` and `arcslip sweep` take it.
 
 use super::error::{InputError, InputErrors};
-use super::limits::MAX_SWEEP_RUNS;
+use super::limits::{MAX_NAME_BYTES, MAX_SWEEP_RUNS};
 use super::request::{Analysis, JobRequest, Model};
 use super::{check, decode};
 use indexmap::IndexMap;
@@ -117,7 +117,9 @@ impl Sweep {
         let form = decode::replacements(text)?;
         let wrong = |error: serde_json::Error| InputErrors(vec![InputError::new("", error.to_string())]);
         let mut base: Value = serde_json::from_slice(text).map_err(wrong)?;
-        let name = base.pointer("/model/name").and_then(Value::as_str).map(str::to_owned);
+        let name = base.pointer("/model/name").and_then(Value::as_str);
+        // Where other names are put in its place, nothing else checks this one.
+        let name = name.filter(|name| name.len() <= MAX_NAME_BYTES).map(str::to_owned);
         let posted = base.as_object_mut().and_then(|members| members.remove("sweep")).unwrap_or_default();
         let mut mistakes = Vec::new();
         let mut parameters = Vec::with_capacity(form.replace.len());

@@ -18,7 +18,7 @@ use nalgebra::DVector;
 use super::active_set::{self, WorkingSet};
 use super::line::{Binding, LineSolver, Outcome};
 use super::quadratic::{ConeRows, InteriorSolver, QuadraticFailure, QuadraticProgram, QuadraticSolution};
-use super::result::Counts;
+use super::result::{Counts, Iterate};
 use super::sparse_rows::SparseRows;
 use crate::cancel::CancelFlag;
 
@@ -47,7 +47,13 @@ pub struct StepSolver {
     interior: InteriorSolver,
     /// Whether rows that contradict each other on a line are relaxed.
     pub is_elastic: bool,
+    /// Whether the interior-point method is asked for every program.
+    pub interior_only: bool,
     pub counts: Counts,
+    /// The last bound on products of a sequence.
+    pub relaxation: Option<f64>,
+    /// Where they are kept.
+    pub iterates: Option<Vec<Iterate>>,
 }
 
 impl Default for StepSolver {
@@ -57,7 +63,10 @@ impl Default for StepSolver {
             line: LineSolver::default(),
             interior: InteriorSolver::default(),
             is_elastic: true,
+            interior_only: false,
             counts: Counts::default(),
+            relaxation: None,
+            iterates: None,
         }
     }
 }
@@ -103,7 +112,8 @@ impl StepSolver {
         }
         self.counts.qp_solves += 1;
         let before = self.ended_with.take();
-        match self.line.solve(program) {
+        let on_line = if self.interior_only { Outcome::Declined } else { self.line.solve(program) };
+        match on_line {
             Outcome::Solved(solution, binding) => {
                 let ended = Ended::OnLine(binding);
                 // Before the first program nothing is taken to bind.
@@ -118,7 +128,8 @@ impl StepSolver {
             Some(Ended::With(set)) => set.clone(),
             Some(Ended::OnLine(_)) | None => WorkingSet::at_rest(program, REST_MARGIN),
         };
-        let mut solution = active_set::solve(program, &mut set, WORKING_SET_CHANGES);
+        let mut solution =
+            if self.interior_only { None } else { active_set::solve(program, &mut set, WORKING_SET_CHANGES) };
         if solution.is_none() {
             self.counts.interior_point_solves += 1;
             match self.interior.solve(program, cancel) {

@@ -1,6 +1,7 @@
 //! A problem's functions and derivatives at one point, checked for numbers that are not finite, and the measure of how
 //! far the point is from feasible.
 
+use crate::budget::{self, Taken};
 use nalgebra::{DMatrix, DVector};
 
 use super::cone;
@@ -49,6 +50,7 @@ pub struct ConeMembers {
     pub second: DVector<f64>,
     pub first_jacobian: DMatrix<f64>,
     pub second_jacobian: DMatrix<f64>,
+    _held: Taken,
 }
 
 impl ConeMembers {
@@ -59,12 +61,14 @@ impl ConeMembers {
             total += size;
             starts.push(total);
         }
+        let held = budget::take::<f64>(2 * total * variables);
         Self {
             starts,
             first: DVector::zeros(total),
             second: DVector::zeros(total),
             first_jacobian: DMatrix::zeros(total, variables),
             second_jacobian: DMatrix::zeros(total, variables),
+            _held: held,
         }
     }
 

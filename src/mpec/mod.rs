@@ -23,6 +23,7 @@
 //! | `stationarity` | how stationary a point is |
 //! | `sqp`, `secant` | one smooth program |
 //! | `pattern`, `relaxed` | the smooth program's rows and their linearisation |
+//! | `growth` | iterates on their way to infinity |
 //! | `evaluation`, `input` | the problem at one point; what the caller got wrong |
 //! | `elastic`, `line`, `active_set`, `active_cones`, [`quadratic`] | one quadratic program |
 //! | `sparse_rows`, `system` | matrices and linear systems by their entries |
@@ -38,6 +39,7 @@ pub mod cone;
 mod cone_rows;
 mod elastic;
 mod evaluation;
+mod growth;
 mod input;
 mod line;
 mod pattern;
@@ -56,8 +58,11 @@ mod system;
 
 pub use activity::Activities;
 pub use cone::ConeActivity;
+pub use growth::Growth;
 pub use problem::Problem;
-pub use result::{Counts, InputError, Multipliers, PairActivity, Quantity, Solution, StationarityKind, Status};
+pub use result::{
+    Counts, InputError, Iterate, Multipliers, PairActivity, Quantity, Solution, StationarityKind, Status,
+};
 pub use settings::{Finish, Settings};
 pub use solver::{follow_branch, solve};
 pub use sparse_rows::SparseRows;

@@ -40,6 +40,26 @@ impl Pattern {
         }
     }
 
+    /// The bound on the products, where they have one.
+    pub fn relaxation(&self) -> Option<f64> {
+        let of_pairs = self.pairs.iter().find_map(|treatment| match treatment {
+            PairTreatment::Product(relaxation) => Some(*relaxation),
+            PairTreatment::FirstZero
+            | PairTreatment::SecondZero
+            | PairTreatment::BothFree
+            | PairTreatment::BothZero => None,
+        });
+        of_pairs.or_else(|| {
+            self.cones.iter().find_map(|treatment| match treatment {
+                ConeTreatment::Product(relaxation) => Some(*relaxation),
+                ConeTreatment::FirstZero
+                | ConeTreatment::SecondZero
+                | ConeTreatment::AlongFirst
+                | ConeTreatment::AlongSecond => None,
+            })
+        })
+    }
+
     /// The same with the members zero that are named; what names none, or both, changes nothing.
     pub fn with_zeros(mut self, members: &[PairActivity]) -> Self {
         for (treatment, member) in self.pairs.iter_mut().zip(members) {

@@ -19,12 +19,16 @@ use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, S
 use nalgebra::{DMatrix, DVector};
 
 use super::sparse_rows::SparseRows;
+use crate::budget;
 use crate::cancel::CancelFlag;
+use crate::linear_algebra::sparse;
 
 /// Accuracy asked of the interior-point method; the active-set step that follows takes it to round-off.
 const TOLERANCE: f64 = 1e-10;
 /// Iterations of the interior-point method; 8 to 15 are usual.
 const ITERATIONS: u32 = 100;
+/// Multiplications of a factorisation that cannot be broken off: of the order of a second.
+const MOST_IN_ONE_PIECE: u64 = 2_000_000_000;
 
 /// Data of one convex quadratic program in `d` (n entries, dimensionless).
 #[derive(Debug, Clone)]
@@ -173,6 +177,7 @@ impl InteriorSolver {
         if !program.is_well_formed() {
             return Err(QuadraticFailure::NotFinite);
         }
+        budget::spend(program.gradient.len() * (1 + program.cones.len()));
         let data = Data::new(program);
         let gradient = program.gradient.as_slice().to_vec();
         let shape = Shape {
@@ -190,6 +195,7 @@ impl InteriorSolver {
         }
         if !updated {
             self.held = None;
+            allow(&data);
             let made =
                 DefaultSolver::new(&data.hessian, &gradient, &data.rows, &data.right, &data.cones, interior_settings());
             let mut solver = made.map_err(|_| QuadraticFailure::Inaccurate)?;
@@ -214,6 +220,24 @@ struct Data {
     above: Vec<usize>,
     /// First row in a cone.
     cones_start: usize,
+}
+
+/// Entries of a program's matrices up to which its factors are small in any case.
+const FEW_ENTRIES: usize = 2_000;
+
+/// Refuses a program whose `[[H, Aᵀ], [A, -1]]` takes too much to be factorised: each iteration does so, in one piece.
+fn allow(data: &Data) {
+    if data.hessian.nzval.len() + data.rows.nzval.len() <= FEW_ENTRIES {
+        return;
+    }
+    let variables = data.hessian.n;
+    let entries = |matrix: &CscMatrix<f64>, first: usize| -> Vec<(usize, usize)> {
+        let columns = (0..matrix.n)
+            .flat_map(|column| (matrix.colptr[column]..matrix.colptr[column + 1]).map(move |place| (place, column)));
+        columns.map(|(place, column)| (first + matrix.rowval[place], column)).collect()
+    };
+    let whole = entries(&data.hessian, 0).into_iter().chain(entries(&data.rows, variables));
+    sparse::allow_factor(variables + data.right.len(), whole, MOST_IN_ONE_PIECE);
 }
 
 impl Data {

@@ -90,6 +90,11 @@ impl Rows {
         Self { pattern, equality, inequality, in_cone }
     }
 
+    /// The bound on products; `None` where there is none.
+    pub fn relaxation(&self) -> Option<f64> {
+        self.pattern.relaxation()
+    }
+
     fn value(&self, at: &Evaluation, row: Row) -> f64 {
         match row {
             Row::Equality(i) => at.equality[i],

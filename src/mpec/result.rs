@@ -6,10 +6,11 @@ use thiserror::Error;
 pub use super::activity::PairActivity;
 use super::cone::ConeActivity;
 pub use super::evaluation::Quantity;
+use super::growth::Growth;
 pub use super::relaxed::Multipliers;
 
 /// Why a solve ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Status {
     /// Feasible, complementary, and stationary in the sense of [`Solution::stationarity`].
     Solved,
@@ -25,6 +26,8 @@ pub enum Status {
     NoProgress,
     /// The objective falls without bound on feasible points.
     Unbounded,
+    /// The infimum is not attained: the conditions of a solution hold better and better while a variable grows without end.
+    UnboundedIterates(Growth),
     /// A function returned a number that is not finite.
     NotFinite(Quantity),
     /// Stopped by the cancel flag.
@@ -89,6 +92,21 @@ pub struct Solution {
     /// Largest `|a_i b_i|`, of the cone pairs `|A_i·B_i|`.
     pub largest_product: f64,
     pub counts: Counts,
+    /// The last `ε` visited; `None` where the start's own pattern was enough.
+    pub last_relaxation: Option<f64>,
+    /// One a step of sequential quadratic programming, in order; empty unless asked for.
+    pub iterates: Vec<Iterate>,
+}
+
+/// A point on the way.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Iterate {
+    /// The bound on the products; `None` in a branch, which has none.
+    pub relaxation: Option<f64>,
+    pub x: DVector<f64>,
+    pub objective: f64,
+    /// Sum of the violations of the program's rows.
+    pub violation: f64,
 }
 
 /// Misuse.

@@ -7,6 +7,7 @@
 //! Mathematics 630 (1978), doi:10.1007/BFb0067703.
 
 use super::sparse_rows::SparseRows;
+use crate::budget::{self, Taken};
 use nalgebra::{DMatrix, DVector};
 
 /// Smallest curvature, relative to the identity, that an update may leave.
@@ -16,13 +17,15 @@ const LARGEST: f64 = 1e12;
 #[derive(Debug, Clone)]
 pub struct Secant {
     matrix: DMatrix<f64>,
+    _held: Taken,
     fresh: bool,
     idle: bool,
 }
 
 impl Secant {
     pub fn new(variables: usize) -> Self {
-        Self { matrix: DMatrix::identity(variables, variables), fresh: true, idle: false }
+        let held = budget::take::<f64>(variables * variables);
+        Self { matrix: DMatrix::identity(variables, variables), _held: held, fresh: true, idle: false }
     }
 
     /// The problem has a model of its own.

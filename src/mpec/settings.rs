@@ -34,6 +34,14 @@ pub struct Settings {
     /// Largest number of biactive pairs whose branches (2 to its power) are enumerated to judge a point; also of all
     /// pairs, before a problem is called infeasible. Capped at 16 and 10.
     pub enumeration_limit: usize,
+    /// Whether what passes for a solution is looked beyond, so that iterates without bound are told from it.
+    pub looks_beyond: bool,
+    /// `ε` falls to its last value whatever the pattern shows before; the start's own pattern is not tried first.
+    pub whole_sequence: bool,
+    /// Every quadratic program by the interior-point method, none by the working set of the one before.
+    pub interior_only: bool,
+    /// Iterates are kept: see [`super::Solution::iterates`].
+    pub keep_iterates: bool,
 }
 
 impl Default for Settings {
@@ -49,6 +57,10 @@ impl Default for Settings {
             finish: Finish::Converged,
             restarts: 3,
             enumeration_limit: 6,
+            looks_beyond: true,
+            whole_sequence: false,
+            interior_only: false,
+            keep_iterates: false,
         }
     }
 }

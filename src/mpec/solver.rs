@@ -19,11 +19,12 @@ use super::branch::{self, Candidate};
 use super::cone::ConeActivity;
 use super::elastic::StepSolver;
 use super::evaluation::{Evaluation, Quantity};
+use super::growth;
 use super::input::check_input;
 use super::pattern::Pattern;
 use super::problem::Problem;
 use super::relaxed::Rows;
-use super::result::{Counts, InputError, Solution, StationarityKind, Status};
+use super::result::{InputError, Solution, StationarityKind, Status};
 use super::settings::Settings;
 use super::sqp::{self, SqpEnd, SqpSettings};
 use crate::cancel::CancelFlag;
@@ -86,8 +87,10 @@ fn solve_by<'a, P: Problem + ?Sized>(
 ) -> Result<Solution, InputError> {
     let bounds = problem.bounds();
     check_input(problem, start, &bounds, settings)?;
-    let mut run =
-        Run { problem, bounds, settings, cancel, steps: StepSolver::default(), best: None, seen: Ends::default() };
+    let mut steps = StepSolver::default();
+    steps.interior_only = settings.interior_only;
+    steps.iterates = settings.keep_iterates.then(Vec::new);
+    let mut run = Run { problem, bounds, settings, cancel, steps, best: None, seen: Ends::default() };
     let mut at = Evaluation::new(problem);
     let is_finite = start.iter().all(|value| value.is_finite());
     let values = if is_finite { at.update_values(problem, start) } else { Err(Quantity::Start) };
@@ -122,7 +125,8 @@ impl<P: Problem + ?Sized> Run<'_, P> {
     /// Runs to the end; the reason where it was stopped before its time.
     fn go(&mut self, start: &DVector<f64>, at: &Evaluation) -> Option<Status> {
         let unpaired = self.problem.pairs() == 0 && at.cones.count() == 0;
-        if (unpaired || self.settings.warm_start && branch::is_clear(at))
+        let may_search = self.settings.warm_start && !self.settings.whole_sequence && branch::is_clear(at);
+        if (unpaired || may_search)
             && let Some(end) = self.search(start, at)
         {
             return end.reason();
@@ -168,6 +172,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         };
         for _ in 0..LEVEL_LIMIT {
             self.steps.counts.relaxation_levels += 1;
+            self.steps.relaxation = Some(relaxation);
             let treatments = Pattern::relaxed(self.problem.pairs(), cone_sizes.len(), relaxation);
             let rows = Rows::new(self.problem.equalities(), self.problem.inequalities(), &cone_sizes, treatments);
             let outcome = sqp::solve(self.problem, &rows, &self.bounds, &x, sequence, &mut self.steps, self.cancel);
@@ -187,7 +192,8 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             let pattern = branch::nearest_pattern(&outcome.at);
             let same = last_pattern.as_ref() == Some(&pattern);
             let hopeless = outcome.end == SqpEnd::Infeasible;
-            let worth_a_search = branch::is_clear(&outcome.at) || same || is_last || hopeless;
+            let is_certain = !self.settings.whole_sequence && (branch::is_clear(&outcome.at) || same);
+            let worth_a_search = is_certain || is_last || hopeless;
             if worth_a_search && last_searched.as_ref() != Some(&pattern) {
                 if let Some(over) = self.search(&x, &outcome.at) {
                     return Some(over);
@@ -249,10 +255,10 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         over
     }
 
-    fn finish(self, start: &DVector<f64>, stopped: Option<Status>) -> Solution {
+    fn finish(mut self, start: &DVector<f64>, stopped: Option<Status>) -> Solution {
         let tolerance = self.settings.tolerance;
-        let Some(candidate) = self.best else {
-            return empty_solution(self.problem, start, stopped.unwrap_or(self.seen.status()), self.steps.counts);
+        let Some(candidate) = self.best.take() else {
+            return empty_solution(self.problem, start, stopped.unwrap_or(self.seen.status()), self.steps);
         };
         let is_feasible = candidate.is_feasible(tolerance);
         let status = match (stopped, candidate.end) {
@@ -271,7 +277,12 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             ) => match (is_feasible, candidate.stationarity) {
                 (false, _) => self.seen.status(),
                 (true, StationarityKind::Unknown) => Status::Feasible,
-                (true, _) => Status::Solved,
+                (true, _) if !self.settings.looks_beyond => Status::Solved,
+                (true, _) => {
+                    let (problem, bounds, steps) = (self.problem, &self.bounds, &mut self.steps);
+                    growth::without_end(problem, bounds, &candidate, self.settings, steps, self.cancel)
+                        .map_or(Status::Solved, Status::UnboundedIterates)
+                }
             },
         };
         let both_zero = self.settings.biactive_tolerance;
@@ -289,6 +300,8 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             multipliers: candidate.multipliers,
             x: candidate.x,
             counts: self.steps.counts,
+            last_relaxation: self.steps.relaxation,
+            iterates: self.steps.iterates.unwrap_or_default(),
         }
     }
 }
@@ -334,7 +347,12 @@ fn is_better(candidate: &Candidate, best: &Candidate, tolerance: f64) -> bool {
 }
 
 /// The start itself, where nothing was computed that is worth returning.
-fn empty_solution<P: Problem + ?Sized>(problem: &P, start: &DVector<f64>, status: Status, counts: Counts) -> Solution {
+fn empty_solution<P: Problem + ?Sized>(
+    problem: &P,
+    start: &DVector<f64>,
+    status: Status,
+    steps: StepSolver,
+) -> Solution {
     Solution {
         status,
         x: start.clone(),
@@ -345,6 +363,8 @@ fn empty_solution<P: Problem + ?Sized>(problem: &P, start: &DVector<f64>, status
         stationarity: StationarityKind::Unknown,
         largest_violation: f64::INFINITY,
         largest_product: f64::INFINITY,
-        counts,
+        counts: steps.counts,
+        last_relaxation: steps.relaxation,
+        iterates: steps.iterates.unwrap_or_default(),
     }
 }

@@ -22,6 +22,7 @@ use super::evaluation::{Evaluation, Quantity};
 use super::problem::Problem;
 use super::quadratic::{QuadraticFailure, QuadraticProgram};
 use super::relaxed::{Multipliers, Rows};
+use super::result::Iterate;
 use super::secant::Secant;
 use super::sparse_rows::SparseRows;
 use crate::cancel::CancelFlag;
@@ -167,6 +168,11 @@ impl<P: Problem + ?Sized> Sequence<'_, P> {
             };
             std::mem::swap(&mut self.x, &mut self.trial_x);
             std::mem::swap(&mut self.at, &mut self.trial);
+            if let Some(iterates) = &mut steps.iterates {
+                let violation = self.rows.violation(&self.at);
+                let (x, objective) = (self.x.clone(), self.at.objective);
+                iterates.push(Iterate { relaxation: self.rows.relaxation(), x, objective, violation });
+            }
             if self.at.objective < UNBOUNDED_OBJECTIVE || self.x.amax() > UNBOUNDED_VARIABLE {
                 return SqpEnd::Unbounded;
             }

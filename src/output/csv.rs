@@ -1,5 +1,8 @@
 //! One row of CSV (RFC 4180), cell by cell.
 
+/// What formulas begin with. Spreadsheets skip a tab or a carriage return before one.
+const FORMULAS: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
+
 /// A row being written.
 #[derive(Default)]
 pub struct CsvRow(String);
@@ -11,12 +14,14 @@ impl CsvRow {
         self.0.push(',');
     }
 
-    /// A cell in quotes where it needs them.
+    /// Text, in quotes where it needs them. What a spreadsheet would take for a formula has an apostrophe before it, by which
+    /// it is text there too; numbers are written by [`number`](Self::number) and have none.
     pub fn text(&mut self, cell: &str) {
+        let apostrophe = if cell.starts_with(FORMULAS) { "'" } else { "" };
         if cell.contains(['"', ',', '\n', '\r']) {
-            self.raw(&format!("\"{}\"", cell.replace('"', "\"\"")));
+            self.raw(&format!("\"{apostrophe}{}\"", cell.replace('"', "\"\"")));
         } else {
-            self.raw(cell);
+            self.raw(&format!("{apostrophe}{cell}"));
         }
     }
 
@@ -45,5 +50,18 @@ impl CsvRow {
         self.0.pop();
         self.0.push('\n');
         self.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_is_no_formula_and_numbers_stay_numbers() {
+        let mut row = CsvRow::default();
+        ["=1+1", "+x", "-x", "@SUM(A1)", "=\"a\",b", "\t=1", "a=b", "x-", ""].iter().for_each(|cell| row.text(cell));
+        row.number(-0.5);
+        assert_eq!(row.end(), "'=1+1,'+x,'-x,'@SUM(A1),\"'=\"\"a\"\",b\",'\t=1,a=b,x-,,-0.5\n");
     }
 }

@@ -9,7 +9,7 @@ use crate::measure::Errors;
 use crate::model::JobRequest;
 use crate::model::request::{Contact, Record};
 use crate::path::Increment;
-use crate::path::increment::{PointKind, Status};
+use crate::path::increment::{Diagnostics, PointKind, Status};
 use std::collections::HashSet;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -75,7 +75,7 @@ impl Table {
         for name in ["elapsed_s", "residual", "complementarity", "energy_error", "error_estimate"] {
             line.text(name);
         }
-        for name in ["factorisations", "newton_iterations", "qp_solves", "mpec_solves"] {
+        for (name, _) in counts(&Diagnostics::default()) {
             line.text(name);
         }
         for name in Errors::NAMES {
@@ -123,14 +123,25 @@ impl Table {
         ] {
             line.number(value);
         }
-        for count in
-            [diagnostics.factorisations, diagnostics.newton_iterations, diagnostics.qp_solves, diagnostics.mpec_solves]
-        {
+        for (_, count) in counts(diagnostics) {
             line.raw(&count.to_string());
         }
         line.numbers(measure.map(Errors::values).as_ref().map_or(&[], <[f64; _]>::as_slice), Errors::NAMES.len());
         line.end()
     }
+}
+
+/// The counts of work with their columns.
+fn counts(diagnostics: &Diagnostics) -> [(&'static str, u64); 7] {
+    [
+        ("factorisations", diagnostics.factorisations),
+        ("newton_iterations", diagnostics.newton_iterations),
+        ("qp_solves", diagnostics.qp_solves),
+        ("mpec_solves", diagnostics.mpec_solves),
+        ("sqp_iterations", diagnostics.sqp_iterations),
+        ("certificates", diagnostics.certificates),
+        ("mpec_fallbacks", diagnostics.mpec_fallbacks),
+    ]
 }
 
 fn status(status: Status) -> &'static str {

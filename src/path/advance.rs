@@ -1,6 +1,7 @@
 //! One step along the current mode, ended early by the first event.
 
 use super::at_hand::AtHand;
+use super::common_limit;
 use super::drift::Pointed;
 use super::interpolation::Placed;
 use super::loading::Loading;
@@ -47,13 +48,16 @@ pub struct Reached {
     pub stopped: Option<usize>,
     /// A factorisation of the equations nearby.
     pub nearby: AtHand,
+    /// Motions that have the limit point in common, where they are several; else 0.
+    pub motions: usize,
 }
 
 impl Reached {
     /// A point without event. In a box, since it goes through many hands.
     pub(super) fn new(corrected: Corrected, rate: Rate, step: f64, error_estimate: f64) -> Box<Self> {
         let (drift, event, determinant, stopped, nearby) = (None, None, None, None, AtHand::default());
-        Box::new(Self { corrected, rate, step, error_estimate, drift, event, determinant, stopped, nearby })
+        let motions = 0;
+        Box::new(Self { corrected, rate, step, error_estimate, drift, event, determinant, stopped, nearby, motions })
     }
 }
 
@@ -77,6 +81,14 @@ pub struct Work {
     pub newton_iterations: u64,
     pub qp_solves: u64,
     pub mpec_solves: u64,
+    #[serde(default)]
+    pub sqp_iterations: u64,
+    /// Points shown to solve their increment's program without solving it.
+    #[serde(default)]
+    pub certificates: u64,
+    /// Increments whose end the program alone did not find.
+    #[serde(default)]
+    pub mpec_fallbacks: u64,
 }
 
 /// Why a step has to be shorter.
@@ -290,7 +302,11 @@ impl Start<'_> {
             {
                 // Quantities that are nothing but rounding would come by turns.
                 looks.next().ok_or(Refused::Newton(Failure::NotConverged))?;
-                reached = self.locate(watch, stretch, self.zero(watch, &reached), work)?;
+                let located = self.locate(watch, stretch, self.zero(watch, &reached), work);
+                reached = match watch {
+                    Watch::LoadRate { .. } => self.alone_or_common(located, watch, &reached, work)?,
+                    _ => located?,
+                };
                 event = Some(watch);
                 passed = self.passed(&watches, &reached);
                 passed.retain(|other| *other != watch);
@@ -332,6 +348,19 @@ impl Start<'_> {
         reached.drift = self.drift_at(&reached, work);
         reached.error_estimate += reached.drift.as_ref().map_or(0.0, Rate::size);
         Ok(reached)
+    }
+
+    /// A limit point as it was located; where its equations are singular, as several motions have it in common.
+    fn alone_or_common(
+        &self,
+        located: Result<Box<Reached>, Refused>,
+        watch: Watch,
+        end: &Reached,
+        work: &mut Work,
+    ) -> Result<Box<Reached>, Refused> {
+        let is_regular = located.as_ref().is_ok_and(|located| located.determinant.is_some());
+        let common = if is_regular { None } else { common_limit::locate(self, watch, end, work) };
+        common.map_or(located, Ok)
     }
 
     /// The path's error at a point reached, where it has one.

@@ -3,6 +3,7 @@
 use super::at_hand::AtHand;
 use super::branches;
 use super::carried::Carried;
+use super::common_limit;
 use super::confirm::later_load;
 use super::corner;
 use super::critical::Crossing;
@@ -46,6 +47,8 @@ pub(super) struct Came {
     /// See [`Incoming`].
     pub stopped: Option<usize>,
     pub nearby: AtHand,
+    /// See [`Reached`](super::advance::Reached).
+    pub motions: usize,
 }
 
 impl Path<'_> {
@@ -70,11 +73,17 @@ impl Path<'_> {
                 self.at.here.load_sign = -sign;
                 self.at.counts.limit_points += 1;
                 let what = if sign > 0.0 { "load maximum" } else { "load minimum" };
+                if came.motions > 1 {
+                    return self.common_limit(what, sign, came);
+                }
                 self.look_around(incoming, PointKind::SmoothLimit, Some(what.to_owned()), Some(-sign), false)
             }
+            // The mode goes on: the node is still held, by a force that a slide may have again.
+            Some(Watch::Return { .. }) => self.look_around(incoming, PointKind::Regular, None, None, false),
             Some(Watch::Gap(_) | Watch::Normal(_) | Watch::Cone { .. } | Watch::Sliding(_) | Watch::Facet { .. }) => {
                 self.contact_change(came)
             }
+            Some(Watch::Slide { .. } | Watch::Hold { .. }) => self.contact_change(came),
         }
     }
 
@@ -124,6 +133,39 @@ impl Path<'_> {
                 options.iter().any(|option| !option.retrace && option.dissipation > kept + tolerance);
         }
         Arrival { point, options, taken, stop: None, stage_ends, unconfirmed: false }
+    }
+
+    /// A limit point that several motions have in common: the path goes on in its own direction, the others are listed.
+    fn common_limit(&self, what: &str, sign: f64, came: &Came) -> Arrival {
+        let (loading, here, rules) = (self.loading(), &self.at.here, self.rules());
+        let (incoming, state) = (&came.rate, &here.state);
+        let standings = self.standings(state);
+        let at = branches::Here { loading, state, standings: &standings, force_scale: rules.force_scale };
+        let most = rules.effort.most_modes;
+        let found = common_limit::directions(at, &here.modes, incoming, came.motions, most)
+            .unwrap_or_else(|| branches::branches(at, &here.modes, incoming, came.motions - 1));
+        let branches::Branches { mut options, mut degenerate, mut unexplored } = found;
+        if !standings.iter().all(|standing| matches!(standing, Standing::Settled(_))) {
+            // Those along which the load changes at first order.
+            let before = Before::Incoming(Incoming::along(incoming));
+            let (others, listed) = decide::list(loading, state, &standings, before, rules);
+            options.extend(others.into_iter().filter(|other| decide::sign_of(other.rate.load) != 0.0));
+            unexplored = unexplored.saturating_add(listed.unexplored);
+        }
+        options.iter_mut().for_each(|option| option.retrace = false);
+        decide::mark_retrace(loading, state, &mut options, incoming);
+        let taken = options.iter().position(|option| option.rate.product(incoming) > 1.0 - 1e-9);
+        degenerate |= options.len() % 2 == 1 || taken.is_none();
+        let kept = taken.map_or(0.0, |taken| options[taken].dissipation) + 1e-8 * rules.force_scale;
+        let point = Point {
+            kind: PointKind::SmoothLimit,
+            bifurcation: decide::is_bifurcation(&options, taken, Some(-sign)),
+            event: Some(format!("{what} of {} motions at once", came.motions)),
+            better_direction: options.iter().any(|option| !option.retrace && option.dissipation > kept),
+            unexplored_modes: unexplored,
+            degenerate,
+        };
+        Arrival { point, options, taken, stop: None, stage_ends: false, unconfirmed: false }
     }
 
     /// An eigenvalue crosses zero within the mode: the path goes on in its own direction, the branches are listed.
@@ -204,7 +246,7 @@ impl Path<'_> {
 
     /// A contact has reached the end of its mode: list the directions and take one.
     fn contact_change(&mut self, came: &Came) -> Arrival {
-        let Came { rate: incoming, step, stopped, nearby } = came;
+        let Came { rate: incoming, step, stopped, nearby, .. } = came;
         self.at.counts.contact_changes += 1;
         let standings = self.standings(&self.at.here.state);
         for (reaction, standing) in self.at.here.state.reactions.iter_mut().zip(&standings) {
@@ -228,7 +270,7 @@ impl Path<'_> {
         // The rule decides among the directions, each of which holds over a finite step; the program says whether it names
         // the mode of the one taken.
         let confirmed = match decision.taken {
-            Some(taken) if self.scene.analysis.method == Method::Mpec => {
+            Some(taken) if self.scene.analysis.method == Method::Mpec && !self.scene.analysis.skips_certificate() => {
                 self.is_confirmed_by_program(&decision.options[taken], *step)
             }
             _ => true,

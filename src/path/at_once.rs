@@ -161,7 +161,7 @@ impl Start<'_> {
         self.loading.structure.layout()?;
         let watches = self.watches(ends, load_sign);
         let passes = |watch: &Watch| {
-            let slope = watch.slope(self.loading, self.state, self.rate).filter(|slope| *slope < 0.0);
+            let slope = watch.slope(self.loading, self.modes, self.state, self.rate).filter(|slope| *slope < 0.0);
             slope.is_some_and(|slope| self.value(*watch, self.state, self.rate) < -slope * step)
         };
         let foreseen: Vec<Watch> = watches.iter().copied().filter(passes).collect();

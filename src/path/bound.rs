@@ -80,7 +80,7 @@ fn at_crossing(
     if let Some(bound) = bounds.iter().find(|bound| left_to(bound, &point.corrected.state).abs() <= AT_END) {
         // Both are within round-off of each other; the bound is met exactly.
         let watch = Watch::End(*bound);
-        let slope = watch.slope(start.loading, &point.corrected.state, &point.rate).unwrap_or(0.0);
+        let slope = watch.slope(start.loading, start.modes, &point.corrected.state, &point.rate).unwrap_or(0.0);
         let ahead = -left_to(bound, &point.corrected.state) / slope;
         let state = point.corrected.state.advanced(&point.rate, if ahead.abs() <= ALONG { ahead } else { 0.0 });
         let found = ended(start, state, &point.rate, *bound, width, beyond)?;

@@ -9,6 +9,7 @@ use super::rates::{Choice, Entity, Signed, Touching};
 use super::standing::Standing;
 use super::state::{Rate, State};
 use super::turning::Touch;
+use crate::budget::Taken;
 use crate::contact::vector::{Vector, add, dot, scaled, size, unit};
 use crate::contact::{Frame, Mode, Reaction, Sliding};
 use nalgebra::DVector;
@@ -270,8 +271,7 @@ impl Changeable {
             let of_contact = |(contact, frame): (&usize, &Frame)| corner::force(frame, &rate.reactions[*contact]);
             let parts = self.contacts.iter().zip(&self.frames).map(of_contact);
             let whole = pocket.free_part(&parts.fold([0.0; 3], |sum, part| add(&sum, 1.0, &part)));
-            let ready = if unloaded { Vec::new() } else { pocket.ready(&self.force, zero) };
-            pocket.margin_of_rate(&ready, unloaded, zero, &whole)
+            pocket.margin_of_rate(&self.force, unloaded, zero, &whole)
         })
     }
 
@@ -382,11 +382,14 @@ pub(super) struct Forms<'a> {
     pub normals: &'a dyn Fn(usize) -> Vector,
     pub rows: Vec<DVector<f64>>,
     pub is_force: Vec<bool>,
+    /// What the rows hold.
+    pub held: Taken,
 }
 
 impl Forms<'_> {
     /// A velocity or the load rate, of each weight.
     pub(super) fn motion(&mut self, of: impl Fn(&Rate) -> f64) -> usize {
+        self.held.add::<f64>(self.columns.len());
         let row = DVector::from_iterator(self.columns.len(), self.columns.iter().map(of));
         self.rows.push(row);
         self.is_force.push(false);
@@ -395,6 +398,7 @@ impl Forms<'_> {
 
     /// Velocity of the node along a direction.
     pub(super) fn velocity(&mut self, entry: &Changeable, direction: &Vector) -> usize {
+        self.held.add::<f64>(self.columns.len());
         let mut row = DVector::zeros(self.columns.len());
         for (column, velocity) in &entry.velocities {
             row[*column] = dot(velocity, direction);
@@ -421,6 +425,7 @@ impl Forms<'_> {
     }
 
     pub(super) fn force(&mut self, rate: DVector<f64>) -> usize {
+        self.held.add::<f64>(self.columns.len());
         self.rows.push(rate);
         self.is_force.push(true);
         self.rows.len() - 1

@@ -13,6 +13,7 @@ use super::directions::RANK;
 use super::incoming::Incoming;
 use super::mode_system::{Kind, ModeSystem, Role};
 use super::state::Rate;
+use crate::budget;
 use crate::contact::Reaction;
 use crate::contact::vector::{Vector, dot};
 use crate::linear_algebra::{Factorisation, Sink, SystemFactorisation, null_space};
@@ -44,6 +45,7 @@ impl ModeSystem<'_> {
     fn columns_held(&self, changeable: &[Changeable], incoming: Option<&Rate>) -> Option<Vec<Rate>> {
         let factorisation = self.bordered_somehow(incoming)?;
         let solved = |mut values: DVector<f64>| {
+            budget::spend(self.size);
             let is_solved = factorisation.solve(&mut values);
             is_solved.then(|| self.rate_from(self.anchor, &values))
         };
@@ -107,6 +109,8 @@ impl ModeSystem<'_> {
         let iterate = system.iterate(state.clone());
         let nearby = nearby.nearby(system.assemble_sparse(&iterate, Kind::Rates)?)?;
         let velocities: Vec<(usize, &Vector)> = velocities(changeable).collect();
+        // The right-hand sides, what comes of them, and the rates.
+        let _held = budget::take::<f64>((velocities.len() + 1) * (5 * system.size + 4 * loading.contacts.len()));
         let mut rights = Vec::with_capacity(velocities.len() * system.size);
         for (contact, direction) in &velocities {
             let is_held = system.holds(*contact, direction)?;
@@ -166,6 +170,7 @@ impl ModeSystem<'_> {
     /// The columns as combinations of solutions, as many, that span them.
     fn combined(&self, velocities: &[(usize, &Vector)], solutions: &[Rate]) -> Option<Vec<Rate>> {
         let count = solutions.len();
+        let _held = budget::take::<f64>(2 * count * count);
         let mut parts = DMatrix::zeros(count, count);
         for (row, (contact, direction)) in velocities.iter().enumerate() {
             for (column, solution) in solutions.iter().enumerate() {
@@ -187,6 +192,7 @@ impl ModeSystem<'_> {
             if !factorisation.solve(&mut weights) {
                 return None;
             }
+            budget::spend(count * self.size);
             let mut rate = self.no_rate();
             solutions.iter().zip(weights.iter()).for_each(|(solution, weight)| rate.add(solution, *weight));
             Some(rate)

@@ -16,6 +16,7 @@ use super::standing::Standing;
 use super::state::{Rate, State};
 use super::together;
 use super::turning::{self, Touch, Turning};
+use crate::budget::{self, Taken};
 use crate::contact::vector::{Vector, add, dot, scaled};
 use crate::contact::{Mode, Reaction};
 use nalgebra::{DMatrix, DVector};
@@ -32,6 +33,7 @@ pub(super) struct Condensed<'a> {
     problem: RateProblem,
     /// What the options of each mean.
     outcomes: Vec<Vec<Outcome>>,
+    _held: Taken,
 }
 
 impl<'a> Condensed<'a> {
@@ -44,10 +46,16 @@ impl<'a> Condensed<'a> {
         incoming: Option<Incoming<'_>>,
     ) -> Option<Self> {
         let changeable = changeable(loading, state, standings);
+        let of_column = loading.structure.freedoms() + 4 * loading.contacts.len();
+        let velocities: usize = changeable.iter().map(|entry| entry.velocities.len()).sum();
+        // The columns themselves, and the matrices of their motions and reactions.
+        let held = budget::take::<f64>(2 * (velocities + 1) * of_column);
         let columns = system.columns(&changeable, incoming)?;
         let normals = |contact: usize| loading.frame(contact, state).normal;
-        let mut forms = Forms { columns: &columns, normals: &normals, rows: Vec::new(), is_force: Vec::new() };
+        let mut forms = Forms { columns: &columns, normals: &normals, rows: Vec::new(), is_force: Vec::new(), held };
         let (entities, outcomes) = changeable.iter().map(|entry| entry.options(loading, state, &mut forms)).unzip();
+        forms.held.add::<f64>(forms.rows.len() * columns.len());
+        budget::spend((forms.rows.len() + of_column) * columns.len());
         let freedoms = columns[0].displacement.len();
         let motion = DMatrix::from_fn(freedoms + 1, columns.len(), |row, column| {
             if row < freedoms { columns[column].displacement[row] } else { columns[column].load }
@@ -63,7 +71,8 @@ impl<'a> Condensed<'a> {
             motion,
             reactions,
         };
-        Some(Self { loading, columns, changeable, problem, outcomes })
+        let held = forms.held;
+        Some(Self { loading, columns, changeable, problem, outcomes, _held: held })
     }
 
     /// The rate problem, for those who try every combination.
@@ -146,6 +155,7 @@ impl<'a> Condensed<'a> {
             normals: &normals,
             rows: self.problem.forms.row_iter().map(|row| row.transpose()).collect(),
             is_force: self.problem.is_force.clone(),
+            held: Taken::default(),
         };
         let mut touches = Vec::new();
         for (entity, entry) in self.changeable.iter().enumerate() {
@@ -154,6 +164,8 @@ impl<'a> Condensed<'a> {
         if touches.is_empty() {
             return;
         }
+        let copied = self.problem.motion.len() + self.problem.reactions.len() + forms.rows.len() * self.columns.len();
+        forms.held.add::<f64>(copied);
         let rows = DMatrix::from_fn(forms.rows.len(), self.columns.len(), |row, column| forms.rows[row][column]);
         let problem = RateProblem {
             forms: rows,
@@ -225,6 +237,7 @@ impl<'a> Condensed<'a> {
     /// The weights that come nearest to a rate: its velocities, and what it has along `z₀`.
     fn weights_of(&self, rate: &Rate) -> DVector<f64> {
         let last = self.columns.len() - 1;
+        budget::spend(last * rate.displacement.len());
         let mut weights = DVector::zeros(last + 1);
         for entry in &self.changeable {
             let motion = self.loading.relative_rate(entry.contacts[0], rate);
@@ -291,6 +304,7 @@ impl<'a> Condensed<'a> {
         rate: &Rate,
         force: f64,
     ) -> Vec<Vec<Alternative>> {
+        budget::spend(self.changeable.len());
         let of_entity = |((entry, outcomes), in_doubt): ((&Changeable, &Vec<Outcome>), &Vec<usize>)| {
             if turning.iter().any(|(turning, _)| entry.contacts.contains(turning)) {
                 return vec![entry.contacts.iter().map(|contact| (*contact, modes[*contact])).collect()];
@@ -298,6 +312,7 @@ impl<'a> Condensed<'a> {
             let mut alternatives: Vec<Alternative> =
                 in_doubt.iter().map(|&choice| outcomes[choice].modes.clone()).collect();
             alternatives.retain(|alternative| {
+                budget::spend(modes.len());
                 let mut modes = modes.to_vec();
                 alternative.iter().for_each(|(contact, mode)| modes[*contact] = *mode);
                 entry.is_in_cone(self.loading, &modes, rate, force)
@@ -316,6 +331,7 @@ impl<'a> Condensed<'a> {
     /// The rate of unit arc length for weights of the columns, and the weights that give it; of no size where the
     /// weights move nothing.
     pub(super) fn combine(&self, weights: &DVector<f64>) -> (Rate, DVector<f64>) {
+        budget::spend(self.columns.len() * (self.columns[0].displacement.len() + 4 * self.loading.contacts.len()));
         let mut rate = self.columns[0].clone();
         rate.scale(weights[0]);
         for (column, weight) in self.columns.iter().zip(weights.iter()).skip(1) {

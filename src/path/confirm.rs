@@ -15,6 +15,7 @@ use super::mode_system::ModeSystem;
 use super::newton::{Corrected, Place};
 use super::state::{Rate, State};
 use super::watch::{self, Watch};
+use crate::budget::{self, Taken};
 use crate::contact::Mode;
 use crate::contact::vector::size as size_of;
 use std::collections::BTreeSet;
@@ -64,11 +65,12 @@ pub(super) fn confirm_by(
     steps: &[f64],
 ) -> Option<(Vec<Mode>, f64)> {
     let trial = Trial { loading, state, candidate, force_scale, steps };
-    let mut tried = BTreeSet::new();
+    let (mut tried, mut held) = (BTreeSet::new(), Taken::default());
     let mut places = vec![0; candidate.alternatives.len()];
     // Every contact in doubt may be changed a few times before it is given up.
     let most = candidate.alternatives.iter().map(|alternatives| 2 * (alternatives.len() - 1)).sum::<usize>() + 1;
     for _ in 0..most {
+        held.add::<usize>(places.len());
         if !tried.insert(places.clone()) {
             break;
         }
@@ -147,6 +149,7 @@ struct Trial<'a> {
 impl Trial<'_> {
     /// The modes of a combination and the load rate after a small step, or who is to blame.
     fn judge(&self, places: &[usize]) -> Result<(Vec<Mode>, f64), Vec<usize>> {
+        budget::spend(self.loading.structure.freedoms());
         let mut modes = self.candidate.modes.clone();
         for (&place, alternatives) in places.iter().zip(&self.candidate.alternatives) {
             alternatives[place].iter().for_each(|(contact, mode)| modes[*contact] = *mode);
@@ -177,7 +180,7 @@ impl Trial<'_> {
         let mut culprits = Vec::new();
         for watch in watch::of_mode(loading, modes, state, &candidate.rate) {
             let first = watch.value(loading, modes, state, &candidate.rate);
-            let tendency = watch.slope(loading, state, &candidate.rate);
+            let tendency = watch.slope(loading, modes, state, &candidate.rate);
             let most = if watch.is_of_forces() { rates } else { 1.0 };
             if tendency.is_some_and(|slope| slope > IN_DOUBT * most)
                 || watch.is_above_zero(loading, state, first, IN_DOUBT, forces)
@@ -190,7 +193,7 @@ impl Trial<'_> {
                 continue;
             }
             let last = watch.value(loading, modes, &corrected.state, &rate) / scale;
-            let grown = watch.slope(loading, &corrected.state, &rate).map_or(last, |slope| slope / size);
+            let grown = watch.slope(loading, modes, &corrected.state, &rate).map_or(last, |slope| slope / size);
             let clear = match watch {
                 // A node on a stiff spring is slow, and its direction is as clear.
                 Watch::Gap(contact) | Watch::Sliding(contact) => {
@@ -201,7 +204,8 @@ impl Trial<'_> {
                     let own = candidate.rate.reactions[contact].size().max(rate.reactions[contact].size());
                     (CLEAR * own / size).max(CLEAR_OF_ROUND_OFF)
                 }
-                Watch::Facet { .. } | Watch::LoadRate { .. } | Watch::End(_) => CLEAR,
+                Watch::Facet { .. } | Watch::Slide { .. } | Watch::Hold { .. } | Watch::Return { .. } => CLEAR,
+                Watch::LoadRate { .. } | Watch::End(_) => CLEAR,
             };
             if last < -TRIAL_TOLERANCE || grown < -clear {
                 culprits.extend(contacts_of(loading, watch));
@@ -224,7 +228,9 @@ fn contacts_of(loading: Loading<'_>, watch: Watch) -> Vec<usize> {
         Watch::Gap(contact) | Watch::Normal(contact) | Watch::Cone { contact, .. } | Watch::Sliding(contact) => {
             vec![contact]
         }
-        Watch::Facet { corner, .. } => loading.corners[corner].contacts.clone(),
+        Watch::Facet { corner, .. } | Watch::Slide { corner } | Watch::Hold { corner } | Watch::Return { corner } => {
+            loading.corners[corner].contacts.clone()
+        }
         Watch::LoadRate { .. } | Watch::End(_) => Vec::new(),
     }
 }

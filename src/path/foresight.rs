@@ -51,7 +51,7 @@ impl Path<'_> {
         let (loading, here) = (self.loading(), &self.at.here);
         loading.structure.layout()?;
         let way = |watch: &watch::Watch| {
-            let slope = watch.slope(loading, &here.state, rate).filter(|slope| *slope < 0.0)?;
+            let slope = watch.slope(loading, &here.modes, &here.state, rate).filter(|slope| *slope < 0.0)?;
             let value = watch.value(loading, &here.modes, &here.state, rate);
             // What is zero here has just changed.
             let is_above = watch.is_above(loading, &here.state, value, PASSED, self.at.totals.force_scale);
@@ -83,7 +83,7 @@ impl Start<'_> {
     ) -> Option<Attempt> {
         let Foreseen { watch, way, step, is_straight } = foreseen;
         let system = ModeSystem::new(self.loading, self.modes, self.state);
-        if watch.slope(self.loading, self.state, self.rate).is_none() || system.has_tracks() {
+        if watch.slope(self.loading, self.modes, self.state, self.rate).is_none() || system.has_tracks() {
             return None;
         }
         let guess = before.and_then(|before| before.foresee(self.state, self.rate, way));
@@ -102,7 +102,7 @@ impl Start<'_> {
             _ => self.directed(system, corrected, place, &mut serving, work).ok()?,
         };
         let state = &reached.corrected.state;
-        let falls = watch.slope(self.loading, state, &reached.rate).is_some_and(|slope| slope < 0.0);
+        let falls = watch.slope(self.loading, self.modes, state, &reached.rate).is_some_and(|slope| slope < 0.0);
         let is_zero = self.value(watch, state, &reached.rate).abs() <= self.zero(watch, &reached);
         let turns = may_turn(self.rate.product(&reached.rate)).is_err();
         if !falls || !is_zero || turns || reached.step > step || reached.step < LEAST_OF_WAY * way {

@@ -155,7 +155,22 @@ pub struct Diagnostics {
     pub factorisations: u64,
     pub newton_iterations: u64,
     pub qp_solves: u64,
+    /// Programs of increments that were solved; a certificate is not one.
     pub mpec_solves: u64,
+    /// Steps of sequential quadratic programming.
+    #[serde(default)]
+    pub sqp_iterations: u64,
+    /// Points shown to solve their increment's program without solving it.
+    #[serde(default)]
+    pub certificates: u64,
+    /// Increments whose end the program alone did not find (`mpec.certificate: "skip"`): they stand as the contact mode's
+    /// own equations gave them.
+    #[serde(default)]
+    pub mpec_fallbacks: u64,
+    /// The last bound `ε` on the products of complementary quantities, of the last program that was solved; absent before
+    /// the first, and where no program needed one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub last_relaxation: Option<f64>,
     /// With `method: "mpec"`: whether the program named the mode of this increment. Where it did not (it is solved
     /// locally, and a contact just at the end of its mode is a coin's edge), the mode was kept by continuity.
     #[serde(default, skip_serializing_if = "Option::is_none")]

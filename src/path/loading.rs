@@ -113,13 +113,17 @@ impl Loading<'_> {
     /// The force against which a contact's reaction is zero: those that meet at its node, or the largest of the path where
     /// that is less. Structures with forces far apart each have their own.
     pub fn force_scale_at(&self, contact: usize, state: &State, force_scale: f64) -> f64 {
+        self.forces_meeting_at(contact, state).min(force_scale).max(f64::EPSILON * force_scale)
+    }
+
+    /// Size of the forces that meet at a contact's node.
+    pub fn forces_meeting_at(&self, contact: usize, state: &State) -> f64 {
         let node = self.contacts[contact].node;
         let own = |pattern: &LoadPattern| largest_of(&of_node(self.structure.dimension, node, &pattern.forces));
-        let meeting = self.structure.force_size_at(node, &state.displacement, USUAL)
+        self.structure.force_size_at(node, &state.displacement, USUAL)
             + state.load.abs() * own(self.pattern)
             + own(self.held)
-            + state.reactions[contact].size();
-        meeting.min(force_scale).max(f64::EPSILON * force_scale)
+            + state.reactions[contact].size()
     }
 
     /// Whether a force at a contact is at most so many times the forces against which its reaction is zero.

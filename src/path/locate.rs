@@ -149,7 +149,7 @@ impl Start<'_> {
         let whole = watch.whole(self.loading, self.modes, self.state, &at.state);
         let knot = match whole {
             Some(whole) => Knot { place: at.place, value: whole, slope: Some(value) },
-            None => Knot { place: at.place, value, slope: watch.slope(self.loading, &at.state, &at.rate) },
+            None => Knot { place: at.place, value, slope: watch.slope(self.loading, self.modes, &at.state, &at.rate) },
         };
         Sample { value, knot, is_slope: whole.is_some() }
     }

@@ -15,6 +15,7 @@
 //! | `at_once`, `complementary`, `glance` | contact changes of one step that are taken together; which of them, by equations linearised once; one iteration of a mode, to see what it breaks |
 //! | `foresight`, `straight` | the next contact change that rates foresee, solved for at once; stretches without bend |
 //! | `singular`, `critical`, `branches` | whether a step passes a smooth bifurcation; where; which directions leave it |
+//! | `common_limit` | limit points that uncoupled parts have in common |
 //! | `bound` | a bound of the stage at or beside a smooth bifurcation |
 //! | `folded` | points of slip in a plane at which the direction is not determined |
 //! | `near` | which contacts are in reach |
@@ -25,7 +26,7 @@
 //! | `combinations` | one of each of several lists, in one order |
 //! | `confirm`, `decide` | those that hold beyond first order; which one is taken |
 //! | `rates`, `turning`, `together` | all rays of a rate problem, linear forms only; slip whose direction is unknown, of one node and of several at once |
-//! | `program`, `naming` | the MPEC of an increment; where it names the mode |
+//! | `program`, `naming`, `by_program` | the MPEC of an increment; where it names the mode; increments found by it alone |
 //! | `name_event`, `displacements` | an event in words; displacements by node for a row |
 //! | `energy`, `record`, `increment`, `report`, `stop` | balances, rows, totals, reasons |
 //! | `tracer`, `stages`, `stepping`, `trying`, `arrival` | the iterator; how a stage begins; how far a step goes; one try of it; what a point turned out to be |
@@ -40,11 +41,13 @@ mod at_hand;
 mod at_once;
 mod bound;
 mod branches;
+mod by_program;
 mod carried;
 mod changeable;
 pub mod checkpoint;
 mod columns;
 mod combinations;
+mod common_limit;
 mod complementary;
 mod condensed;
 mod confirm;
@@ -104,6 +107,7 @@ mod trying;
 mod turning;
 mod watch;
 
+pub use by_program::{ContactIterate, ProgramIterate};
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use increment::Increment;
 pub use plan::Plan;

@@ -64,7 +64,7 @@ impl Path<'_> {
         let Some(mut program) = program else { return Foreseen::Named(Named::of(modes)) };
         let end = Arrived { state: ends.1, rate: &reached.rate, error: reached.error_estimate };
         let foreseen = program.solved_at(end, modes);
-        self.at.totals.work.mpec_solves += u64::from(matches!(foreseen, Foreseen::Named(_)));
+        self.at.totals.work.certificates += u64::from(matches!(foreseen, Foreseen::Named(_)));
         foreseen
     }
 
@@ -153,7 +153,7 @@ impl Path<'_> {
             .into_iter()
             .filter_map(|watch| {
                 let value = watch.value(loading, modes, state, rate);
-                let slope = watch.slope(loading, state, rate)?;
+                let slope = watch.slope(loading, modes, state, rate)?;
                 // What is zero here is not ahead.
                 (value > ZERO * watch.scale(loading, state, forces) && slope < 0.0).then(|| value / -slope)
             })
@@ -169,10 +169,21 @@ impl Path<'_> {
         expected: &'a Rate,
         step: f64,
     ) -> Option<IncrementProgram<'a>> {
+        let program = Self::increment_program(loading, force_scale, (base, ahead), expected, step);
+        (program.pairs() > 0).then_some(program)
+    }
+
+    /// The same, whether or not a contact can be reached.
+    pub(super) fn increment_program<'a>(
+        loading: Loading<'a>,
+        force_scale: f64,
+        (base, ahead): (&'a State, &State),
+        expected: &'a Rate,
+        step: f64,
+    ) -> IncrementProgram<'a> {
         let reactions = ahead.reactions.iter().fold(0.0_f64, |largest, reaction| largest.max(reaction.size()));
         let force = force_scale.max(ahead.load.abs()).max(reactions).max(f64::MIN_POSITIVE);
-        let program = IncrementProgram::new(loading, base, expected, step, force);
-        (program.pairs() > 0).then_some(program)
+        IncrementProgram::new(loading, base, expected, step, force)
     }
 
     fn name(&mut self, base: &State, expected: &Rate, modes: &[Mode], step: f64) -> Option<Named> {
@@ -195,9 +206,12 @@ impl Path<'_> {
         foreseen
     }
 
-    fn count(&mut self, counts: Counts) {
-        self.at.totals.work.qp_solves += counts.qp_solves;
-        self.at.totals.work.mpec_solves += counts.mpec_solves;
+    pub(super) fn count(&mut self, counts: Counts) {
+        let totals = &mut self.at.totals;
+        totals.work.qp_solves += counts.qp_solves;
+        totals.work.mpec_solves += counts.mpec_solves;
+        totals.work.sqp_iterations += counts.sqp_iterations;
+        totals.last_relaxation = counts.last_relaxation.or(totals.last_relaxation);
     }
 
     /// Whether the program confirms a direction at the present point: started along it, it ends in the direction's own

@@ -299,7 +299,7 @@ impl ModeSystem<'_> {
         let Place::Zero { watch, scale, .. } = place else { return true };
         let slope = |values: &DVector<f64>| {
             let rate = self.rate_at(iterate, values, Kind::Increment);
-            watch.slope(self.loading, &iterate.state, &rate).map(|slope| slope / scale)
+            watch.slope(self.loading, self.modes, &iterate.state, &rate).map(|slope| slope / scale)
         };
         if along.is_none() {
             let mut values = self.bordering();

@@ -53,6 +53,13 @@ pub(super) fn left_out(scene: &Scene) -> Vec<LeftOut> {
             "a linear complementarity problem with a P-matrix has one solution",
         );
     }
+    if !contacts.is_empty() && analysis.method == Method::Mpec && !analysis.skips_certificate() {
+        leave(
+            "the program of an increment, where a certificate shows that a point of the expected contact mode solves it",
+            "first and second derivatives along the mode's curve prove a strict local solution; `mpec.certificate: \"skip\"` \
+             finds every increment by its program alone",
+        );
+    }
     if !scene.structure.allows_dense() {
         leave(
             "smooth bifurcation points, and directions at points where the held structure is singular",

@@ -33,6 +33,8 @@ pub(super) struct Progress {
     pub step: f64,
     /// When contact changes are to be taken together again.
     pub waiting: Waiting,
+    /// Steps without event, one after another up to here, that are too short to get anywhere.
+    pub creeping: u64,
     pub totals: Totals,
     pub counts: StageCounts,
     /// States at which a direction was taken, for telling a cycle.
@@ -152,6 +154,7 @@ impl Progress {
             },
             step: scene.analysis.arc_length.initial,
             waiting: Waiting::default(),
+            creeping: 0,
             totals: Totals::begun(),
             counts: StageCounts::default(),
             visited: History::default(),

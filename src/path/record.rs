@@ -94,6 +94,10 @@ pub(super) fn increment(scene: &Scene, totals: &Totals, row: &Row<'_>) -> Increm
             newton_iterations: totals.work.newton_iterations,
             qp_solves: totals.work.qp_solves,
             mpec_solves: totals.work.mpec_solves,
+            sqp_iterations: totals.work.sqp_iterations,
+            certificates: totals.work.certificates,
+            mpec_fallbacks: totals.work.mpec_fallbacks,
+            last_relaxation: totals.last_relaxation,
             mode_named_by_mpec: row.mode_named,
         },
     }

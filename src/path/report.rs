@@ -18,7 +18,18 @@ pub struct Report {
     pub factorisations: u64,
     pub newton_iterations: u64,
     pub qp_solves: u64,
+    /// Programs of increments that were solved; a certificate is not one.
     pub mpec_solves: u64,
+    /// Steps of sequential quadratic programming.
+    #[serde(default)]
+    pub sqp_iterations: u64,
+    /// Points shown to solve their increment's program without solving it.
+    #[serde(default)]
+    pub certificates: u64,
+    /// Increments whose end the program alone did not find (`mpec.certificate: "skip"`): they stand as the contact mode's
+    /// own equations gave them.
+    #[serde(default)]
+    pub mpec_fallbacks: u64,
 }
 
 impl Report {
@@ -36,6 +47,9 @@ impl Report {
             newton_iterations: 0,
             qp_solves: 0,
             mpec_solves: 0,
+            sqp_iterations: 0,
+            certificates: 0,
+            mpec_fallbacks: 0,
         }
     }
 }

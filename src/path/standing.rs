@@ -74,7 +74,7 @@ fn standing_in_pocket(loading: Loading<'_>, state: &State, closed: &[usize], for
     let force = pocket.force(loading, state);
     let zero = ZERO * force_scale;
     let unloaded = size(&force) <= zero;
-    if unloaded || pocket.is_driven || !pocket.ready(&force, zero).is_empty() {
+    if unloaded || pocket.is_driven || !pocket.ready(&force, zero).is_empty() || pocket.is_at_bound(&force, zero) {
         Standing::Cornered { facets: [true; 2], unloaded, zero }
     } else {
         Standing::Settled(Mode::Stick)

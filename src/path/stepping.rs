@@ -3,7 +3,6 @@
 use super::advance::{Reached, Refused, Start, Work};
 use super::arrival::SAME_STATE;
 use super::at_once::may_join_at;
-use super::corner;
 use super::critical::Crossing;
 use super::decide::{self, Before};
 use super::energy;
@@ -12,7 +11,6 @@ use super::incoming::Incoming;
 use super::increment::Energy;
 use super::interpolation::unit;
 use super::mode_system::ModeSystem;
-use super::pocket::Pocket;
 use super::root::find_root;
 use super::scene::End;
 use super::singular::Signature;
@@ -34,6 +32,8 @@ const ITERATIONS_SOUGHT: f64 = 4.0;
 const IMBALANCE_SOUGHT: f64 = 5e-9;
 /// What rounding may do to the work of an increment, over the largest force and the arc length.
 const ROUNDING_OF_WORK: f64 = 16.0 * f64::EPSILON;
+/// Arc length from which on the rounding of forces, which falls with it, is let be.
+const SHORT: f64 = 1e-3;
 /// Stretch of a bar at which steps that do not converge are its collapse.
 pub(super) const COLLAPSED: f64 = 1e-4;
 /// Stretch of a bar at which the rounding of displacements of its length turns it by as much as forces may be off.
@@ -45,6 +45,12 @@ const REJECTED: f64 = 0.55;
 const MOST_GROWTH: f64 = 1.8;
 /// The curvature of the path over that of the step before, at the most, by which the next step's is foreseen.
 const MOST_BEND: f64 = 4.0;
+/// Arc length below which a step that no event ends creeps, over the longest that is asked for and no more than 1. From the
+/// shortest at which a path can be told from rounding a step grows beyond this within a few.
+const CREEPS: f64 = 2e-8;
+/// Steps that creep one after another, at the most: the sharpest bend, there and back, takes fewer at the turn that a step
+/// aims at, and what takes more turns to and fro.
+const MOST_CREEPING: u64 = 48;
 /// A step that ends before this fraction of what was tried does not let the next be longer.
 const CUT_SHORT: f64 = 0.5;
 
@@ -110,6 +116,10 @@ impl Path<'_> {
             }
             match outcome {
                 Ok(tried) => match self.weigh(rate, tried, step, sought, was_shortened) {
+                    // A search that was broken off says nothing of its increment.
+                    Ok(accepted) if accepted.mode_named == Some(false) && self.cancel.is_cancelled() => {
+                        return Err(StopReason::Cancelled);
+                    }
                     Ok(accepted) => return Ok(accepted),
                     Err(factor) => {
                         step *= factor;
@@ -144,8 +154,6 @@ impl Path<'_> {
                     };
                     if step < least {
                         return Err(match refused {
-                            // Past the cones together of a node that no slide can free.
-                            Refused::Unlawful if self.is_held_beyond(rate) => StopReason::NoDirection,
                             Refused::Unlawful => StopReason::ContactViolated,
                             Refused::Collapsed => StopReason::CollapsedBar,
                             _ => self.reason_of_underflow(),
@@ -195,10 +203,14 @@ impl Path<'_> {
         }
         let factor = factor.min(self.factor_foreseen(rate, &accepted, step));
         // Where the mode ends inside the step, the program names the next one, from there.
-        accepted.mode_named = self.is_named_by_program().then(|| match accepted.joined {
-            0 => self.program_keeps_mode(rate, &accepted.reached, step),
-            _ => self.program_joins_changes(rate, step, &accepted.reached.corrected.modes),
-        });
+        if self.scene.analysis.skips_certificate() && self.is_named_by_program() {
+            accepted = self.found_by_program(rate, accepted);
+        } else {
+            accepted.mode_named = self.is_named_by_program().then(|| match accepted.joined {
+                0 => self.program_keeps_mode(rate, &accepted.reached, step),
+                _ => self.program_joins_changes(rate, step, &accepted.reached.corrected.modes),
+            });
+        }
         if !sought.jumps(step) {
             let was_cut = sought.foreseen.is_some_and(|foreseen| foreseen.step == step) && factor >= 1.0;
             let next = if was_cut { sought.ordinary } else { step * factor };
@@ -207,15 +219,13 @@ impl Path<'_> {
         Ok(accepted)
     }
 
-    /// Whether several obstacles hold some node by a force beyond the slides that leave them.
-    fn is_held_beyond(&self, rate: &Rate) -> bool {
-        let (loading, here) = (self.loading(), &self.at.here);
-        loading.corners.iter().any(|corner| {
-            let holding: Vec<usize> = corner.holding(&here.modes).collect();
-            !holding.is_empty()
-                && !corner::is_in_plane(loading, corner)
-                && !Pocket::new(loading, &holding, &here.state).keeps(loading, &here.state, rate)
-        })
+    /// Why a path that has come to a point by a step of this length, ended by an event or not, gets nowhere, if it does not.
+    pub(super) fn reason_of_creep(&mut self, step: f64, at_event: bool) -> Option<StopReason> {
+        // Scales that are larger than the scene's own make every step as much shorter.
+        let enlarged = self.scene.stages[self.at.stage].enlarged;
+        let creeps = !at_event && step < CREEPS * self.scene.analysis.arc_length.max.min(1.0 / enlarged);
+        self.at.creeping = if creeps { self.at.creeping + 1 } else { 0 };
+        (self.at.creeping >= MOST_CREEPING).then(|| self.reason_of_underflow())
     }
 
     /// Whether some bar has come to have no direction that the displacements could tell.
@@ -337,6 +347,15 @@ impl Path<'_> {
         let imbalance = if imbalance <= rounding { 0.0 } else { imbalance };
         let floor = (NO_ENERGY * self.at.totals.force_scale.max(reached.corrected.force_scale)).max(f64::MIN_POSITIVE);
         let size = self.at.totals.largest_energy.max(added.external_work.abs()).max(added.strain.abs()).max(floor);
+        // Beside stiff elements the forces themselves are no better than what rounding leaves of them: what is stored against
+        // soft ones alone may be less than that, and no step short enough. So one that is short is not made any shorter.
+        let by_stiffness = || {
+            let of_forces = self.scene.structure.rounding(&reached.corrected.state.displacement);
+            reached.step * of_forces.iter().fold(0.0_f64, |most, value| value.max(most))
+        };
+        let is_too_large = imbalance > IMBALANCE_SOUGHT * size;
+        let is_none = is_too_large && reached.step <= SHORT && imbalance <= by_stiffness();
+        let imbalance = if is_none { IMBALANCE_SOUGHT * size } else { imbalance };
         // The balance of one increment has an error of fifth order in its arc length.
         let by_energy = (IMBALANCE_SOUGHT / (imbalance / size).max(1e-3 * IMBALANCE_SOUGHT)).powf(0.2);
         // A step that an event cut short says little of a longer one in the mode that follows. After one that was too long
@@ -344,5 +363,51 @@ impl Path<'_> {
         // Springer 1993, section II.4).
         let most = if done < CUT_SHORT || was_shortened { 1.0 } else { MOST_GROWTH };
         quantised(by_turn.min(by_work).min(by_energy).clamp(0.2, most))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cancel::CancelFlag;
+    use crate::model::request::ArcLength;
+    use crate::path::Scene;
+    use crate::scenes;
+
+    fn scene(change: impl Fn(&mut ArcLength)) -> Scene {
+        let built_in = scenes::find("one-bar-truss").expect("a scene");
+        let mut request = crate::model::decode::decode(built_in.request.as_bytes()).expect("a request");
+        change(&mut request.analysis.arc_length);
+        Scene::new(&request).expect("a scene")
+    }
+
+    /// After how many steps of a length the path is given up, of a hundred.
+    fn given_up_after(scene: &Scene, step: f64) -> Option<u64> {
+        let mut path = Path::new(scene, CancelFlag::default());
+        (1..=100).find(|_| path.reason_of_creep(step, false).is_some())
+    }
+
+    #[test]
+    fn steps_that_change_nothing_end_the_path_within_fifty() {
+        let plain = scene(|_| {});
+        assert_eq!(given_up_after(&plain, 2e-9), Some(MOST_CREEPING));
+        const { assert!(MOST_CREEPING < 50) };
+        assert_eq!(given_up_after(&plain, 1e-7), None);
+        // One that is no shorter than others were asked to be, or than larger scales make it, is no creep.
+        let short = |arc_length: &mut ArcLength| {
+            (arc_length.min, arc_length.initial, arc_length.max) = (1e-10, 1e-8, 1e-8);
+        };
+        assert_eq!(given_up_after(&scene(short), 5e-9), None);
+        assert_eq!(given_up_after(&scene(|arc_length| arc_length.displacement_scale = Some(1e8)), 2e-9), None);
+        assert_eq!(given_up_after(&scene(|arc_length| arc_length.load_scale = Some(1e8)), 2e-9), None);
+    }
+
+    #[test]
+    fn an_event_is_progress() {
+        let scene = scene(|_| {});
+        let mut path = Path::new(&scene, CancelFlag::default());
+        for step in 1..=1000 {
+            assert_eq!(path.reason_of_creep(1e-9, step % 40 == 0), None);
+        }
     }
 }

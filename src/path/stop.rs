@@ -17,7 +17,7 @@ pub enum StopReason {
     NoDirection,
     /// The path is back at a state it has been in.
     Cycle,
-    /// No step of at least `arc_length.min` converges.
+    /// No step of at least `arc_length.min` converges, or steps are so short that the path gets nowhere.
     StepUnderflow,
     /// A bar has shrunk to a point, where its direction is lost.
     CollapsedBar,
@@ -33,6 +33,8 @@ pub enum StopReason {
     ModeLimit,
     /// Several nodes that touch in space without reaction may begin to slip at once, and no such direction was found.
     SlipsNotFound,
+    /// More memory would be held at a time than a solve may hold, or a factorisation would be too large.
+    MemoryLimit,
     /// The caller asked for it.
     Cancelled,
 }
@@ -60,7 +62,8 @@ impl StopReason {
             | Self::CornerNotAvailable
             | Self::ContactViolated
             | Self::ModeLimit
-            | Self::SlipsNotFound => Outcome::Stopped,
+            | Self::SlipsNotFound
+            | Self::MemoryLimit => Outcome::Stopped,
         }
     }
 
@@ -74,7 +77,7 @@ impl StopReason {
                 "no quasi-static continuation exists: from here the structure can only move dynamically"
             }
             Self::Cycle => "the path is back at a state it has been in",
-            Self::StepUnderflow => "no step of at least arc_length.min converges",
+            Self::StepUnderflow => "no step of at least arc_length.min converges, or gets anywhere",
             Self::CollapsedBar => "a bar has shrunk to a point, where its direction is lost",
             Self::Degenerate => "the possible directions form a set of more than one dimension: none can be named",
             Self::CornerNotAvailable => {
@@ -90,6 +93,7 @@ impl StopReason {
                 "several nodes that touch in space without reaction may begin to slip at once, and no direction in which \
                  they do was found"
             }
+            Self::MemoryLimit => "going on would take more memory than a solve may hold",
             Self::Cancelled => "cancelled",
         }
     }

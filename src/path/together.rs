@@ -18,6 +18,7 @@ use super::combinations::{combinations, count};
 use super::rates::{Local, RateProblem, Ray, Signed, own_column, rising};
 use super::root::find_root;
 use super::turning::{SECTORS, Touch, Turning};
+use crate::budget;
 use crate::cancel::CancelFlag;
 use crate::linear_algebra::Factorisation;
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2, Vector3};
@@ -159,6 +160,7 @@ impl<'a> System<'a> {
             if cancel.is_cancelled() {
                 return None;
             }
+            budget::spend(self.problem.forms.len());
             let before = weights.clone();
             for (node, own) in self.nodes.iter().zip(&mut pattern.own) {
                 let velocity = node.velocity(&weights);
@@ -216,6 +218,8 @@ impl<'a> System<'a> {
     fn equations(&self, pattern: &Pattern, weights: &DVector<f64>) -> Option<(DMatrix<f64>, DVector<f64>)> {
         let count = weights.len();
         let angles = pattern.own.iter().filter(|own| matches!(own, Own::Slip { .. })).count();
+        let _rows = budget::take::<f64>(count * (count + angles));
+        budget::spend(4 * count * (count + angles));
         let mut rows: Vec<Row> = Vec::new();
         let plain = |form: usize| (self.problem.forms.row(form).transpose(), None);
         for (entity, _) in &self.others {
@@ -250,6 +254,7 @@ impl<'a> System<'a> {
         if rows.len() + 1 != size {
             return None;
         }
+        let _held = budget::take::<f64>(size * size);
         let (mut matrix, mut values) = (DMatrix::zeros(size, size), DVector::zeros(size));
         for (place, (row, by_angle)) in rows.iter().enumerate() {
             matrix.view_mut((place, 0), (1, count)).copy_from(&row.transpose());

@@ -4,6 +4,7 @@ use super::advance::Work;
 use super::increment::{Energy, Increment};
 use super::report::Report;
 use super::stop::StopReason;
+use crate::budget::Breach;
 use serde::{Deserialize, Serialize};
 
 /// Energies below this fraction of the force scale times the displacement scale are round-off.
@@ -22,6 +23,9 @@ pub(super) struct Totals {
     /// Largest force so far.
     pub force_scale: f64,
     pub work: Work,
+    /// Of the last program solved.
+    #[serde(default)]
+    pub last_relaxation: Option<f64>,
     pub report: Report,
 }
 
@@ -46,6 +50,7 @@ impl Totals {
             largest_energy: 0.0,
             force_scale: 0.0,
             work: Work::default(),
+            last_relaxation: None,
             report: Report::begun(),
         }
     }
@@ -79,6 +84,17 @@ impl Totals {
         report.largest_energy_error = report.largest_energy_error.max(diagnostics.energy_error);
     }
 
+    /// Completes the report of a path that was ended within an increment.
+    pub fn break_off(&mut self, breach: Breach, elapsed_s: f64) {
+        match breach {
+            Breach::Cancelled => self.end(StopReason::Cancelled, elapsed_s),
+            Breach::Memory { .. } | Breach::FactorEntries { .. } | Breach::FactorWork { .. } => {
+                self.end(StopReason::MemoryLimit, elapsed_s);
+                self.report.sentence = format!("{}: {breach}", StopReason::MemoryLimit.sentence());
+            }
+        }
+    }
+
     /// Completes the report.
     pub fn end(&mut self, reason: StopReason, elapsed_s: f64) {
         self.report.stop_reason = reason;
@@ -88,5 +104,8 @@ impl Totals {
         self.report.newton_iterations = self.work.newton_iterations;
         self.report.qp_solves = self.work.qp_solves;
         self.report.mpec_solves = self.work.mpec_solves;
+        self.report.sqp_iterations = self.work.sqp_iterations;
+        self.report.certificates = self.work.certificates;
+        self.report.mpec_fallbacks = self.work.mpec_fallbacks;
     }
 }

@@ -5,6 +5,7 @@
 
 use super::arrival::{Came, ROUND_OFF};
 use super::at_hand::AtHand;
+use super::by_program::ProgramIterate;
 use super::carried::Carried;
 use super::contact_law;
 use super::corner::{is_in_plane, taken_apart, total_force};
@@ -26,6 +27,7 @@ use super::state::State;
 use super::stepping::Accepted;
 use super::stop::{Outcome, StopReason};
 use super::watch::Watch;
+use crate::budget::{self, Breach, Budget};
 use crate::cancel::CancelFlag;
 use crate::contact::{Mode, Reaction};
 use std::borrow::Cow;
@@ -35,6 +37,7 @@ use std::time::Instant;
 pub struct Path<'a> {
     pub(super) scene: &'a Scene,
     pub(super) cancel: CancelFlag,
+    budget: Budget,
     began: Instant,
     /// Solver time before this process took the path up.
     pub(super) elapsed_before: f64,
@@ -45,6 +48,8 @@ pub struct Path<'a> {
     pub(super) far: FarContacts,
     /// For the next step.
     pub(super) at_hand: AtHand,
+    /// Of the programs of the last increment, where they are kept.
+    pub(super) iterates: Option<Vec<ProgramIterate>>,
 }
 
 impl<'a> Path<'a> {
@@ -61,6 +66,7 @@ impl<'a> Path<'a> {
         let far = near::far_contacts(scene, &at);
         Self {
             scene,
+            budget: Budget::under_way(cancel.clone()),
             cancel,
             began: Instant::now(),
             elapsed_before,
@@ -69,6 +75,7 @@ impl<'a> Path<'a> {
             near,
             far,
             at_hand: AtHand::default(),
+            iterates: None,
         }
     }
 
@@ -107,6 +114,16 @@ impl<'a> Path<'a> {
         let reason = if broken_off { StopReason::Cancelled } else { reason };
         self.at.phase = Phase::Ended;
         self.at.totals.end(reason, self.elapsed_s());
+    }
+
+    /// Ends the path within an increment, which is lost.
+    fn break_off(&mut self, breach: Breach, index: u64) {
+        self.at.phase = Phase::Ended;
+        self.at.totals.index = index;
+        let elapsed_s = self.elapsed_s();
+        self.at.totals.break_off(breach, elapsed_s);
+        // What was left over for the next step holds memory.
+        self.at_hand = AtHand::default();
     }
 
     pub(super) fn standings(&self, state: &State) -> Vec<Standing> {
@@ -175,19 +192,27 @@ impl<'a> Path<'a> {
         here.signature = accepted.signature;
         let arriving = Arriving { modes: here.modes.clone(), load_sign: here.load_sign, counts: self.at.counts };
         let at_bound = self.at_bound(&reached.rate);
+        let at_event = reached.event.is_some() || accepted.crossing.is_some() || accepted.joined > 0 || at_bound;
+        let creeps = self.reason_of_creep(reached.step, at_event);
         let arrived = changes.then(|| self.at.here.state.reactions.clone());
         let mut arrival = if accepted.joined > 0 {
             let arrival = self.joined_changes(&modes, accepted.joined, reached.rate);
             modes.clone_from(&self.at.here.modes);
             arrival
         } else {
-            let came =
-                Came { rate: reached.rate, step: reached.step, stopped: reached.stopped, nearby: reached.nearby };
+            let came = Came {
+                rate: reached.rate,
+                step: reached.step,
+                stopped: reached.stopped,
+                nearby: reached.nearby,
+                motions: reached.motions,
+            };
             self.classify(reached.event, accepted.crossing, came)
         };
         if accepted.returned {
             arrival.stop = Some(StopReason::Cycle);
         }
+        arrival.stop = arrival.stop.or(creeps);
         // A change may have moved reactions.
         if changes && !contact_law::holds(self.loading(), &self.at.here.state, self.at.totals.force_scale) {
             self.at.totals.index -= 1;
@@ -293,9 +318,21 @@ impl Iterator for Path<'_> {
     type Item = Increment;
 
     fn next(&mut self) -> Option<Increment> {
+        let (budget, index) = (self.budget.clone(), self.at.totals.index);
+        budget.during(|| self.increment()).unwrap_or_else(|breach| {
+            self.break_off(breach, index);
+            None
+        })
+    }
+}
+
+impl Path<'_> {
+    /// The next increment; `None` where the path has ended.
+    fn increment(&mut self) -> Option<Increment> {
         match self.at.phase {
             Phase::Ended => return None,
             Phase::NotStarted => {
+                budget::spend(0);
                 return Some(match self.at.followed.take() {
                     Some(followed) => self.followed_row(followed),
                     None => self.begin_stage(),

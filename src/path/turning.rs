@@ -14,6 +14,7 @@
 
 use super::rates::{self, Choice, Effort, Entity, RateProblem, Ray, own_column};
 use super::root::find_root;
+use crate::budget;
 use nalgebra::DVector;
 use std::f64::consts::TAU;
 
@@ -102,6 +103,9 @@ impl Touch {
 
     /// The rays for one angle, and how far the traction is from the direction, over the size of the force rates.
     fn rays(&self, problem: &RateProblem, angle: f64, effort: Effort<'_>) -> Vec<(Ray, f64)> {
+        let copied = problem.forms.len() + problem.motion.len() + problem.reactions.len();
+        let _held = budget::take::<f64>(copied);
+        budget::spend(copied);
         let (sine, cosine) = angle.sin_cos();
         let row = |forms: [usize; 3], parts: [f64; 3]| {
             (0..3).fold(DVector::zeros(problem.weights()), |sum, k| {

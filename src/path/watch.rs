@@ -27,11 +27,22 @@ pub enum Watch {
         side: f64,
     },
     Sliding(usize),
-    /// The force on a node that several contacts hold, off a bound of the sum of their cones; in space, or guided, off all
-    /// bounds of what holds it (side 0).
+    /// The force on a node that several contacts hold in the plane, off a bound of the sum of their cones.
     Facet {
         corner: usize,
         side: usize,
+    },
+    /// The same in space, or guided, off all bounds at which a slide begins.
+    Slide {
+        corner: usize,
+    },
+    /// The force on such a node that is held beyond any slide, off the end of what the cones hold together ...
+    Hold {
+        corner: usize,
+    },
+    /// ... and off the forces that a slide may have.
+    Return {
+        corner: usize,
     },
     LoadRate {
         sign: f64,
@@ -51,7 +62,9 @@ pub fn of_mode(loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate)
             if corner::is_in_plane(loading, data) {
                 watches.extend([0, 1].map(|side| Watch::Facet { corner, side }));
             } else if Pocket::new(loading, &together[before..], state).keeps(loading, state, rate) {
-                watches.push(Watch::Facet { corner, side: 0 });
+                watches.push(Watch::Slide { corner });
+            } else {
+                watches.extend([Watch::Hold { corner }, Watch::Return { corner }]);
             }
         }
     }
@@ -82,13 +95,18 @@ impl Watch {
     pub fn is_of_contact(self) -> bool {
         match self {
             Self::Gap(_) | Self::Normal(_) | Self::Cone { .. } | Self::Sliding(_) | Self::Facet { .. } => true,
-            Self::LoadRate { .. } | Self::End(_) => false,
+            Self::Slide { .. } | Self::Hold { .. } => true,
+            Self::Return { .. } | Self::LoadRate { .. } | Self::End(_) => false,
         }
     }
 
     /// Whether the quantity is a force.
     pub fn is_of_forces(self) -> bool {
-        matches!(self, Self::Normal(_) | Self::Cone { .. } | Self::Facet { .. })
+        match self {
+            Self::Normal(_) | Self::Cone { .. } | Self::Facet { .. } => true,
+            Self::Slide { .. } | Self::Hold { .. } | Self::Return { .. } => true,
+            Self::Gap(_) | Self::Sliding(_) | Self::LoadRate { .. } | Self::End(_) => false,
+        }
     }
 
     /// The quantity at a point with its direction.
@@ -110,15 +128,20 @@ impl Watch {
             }
             Self::Facet { corner, side } => {
                 let holding: Vec<usize> = loading.corners[corner].holding(modes).collect();
-                if !corner::is_in_plane(loading, &loading.corners[corner]) {
-                    let pocket = Pocket::new(loading, &holding, state);
-                    return pocket.margin(&pocket.force(loading, state));
-                }
                 // No bound: the node is jammed.
                 let Some(inward) = corner::sector(loading, &holding, |contact| modes[contact], state).inward else {
                     return f64::INFINITY;
                 };
                 dot(&inward[side], &corner::total_force(loading, holding.into_iter(), state))
+            }
+            Self::Slide { corner } | Self::Hold { corner } | Self::Return { corner } => {
+                let pocket = pocket(loading, corner, modes, state);
+                let force = pocket.force(loading, state);
+                match self {
+                    Self::Hold { .. } => pocket.hold(&force),
+                    Self::Return { .. } => -pocket.margin(&force),
+                    _ => pocket.margin(&force),
+                }
             }
             Self::LoadRate { sign } => sign * rate.load,
             Self::End(End::Load { bound, sign }) => sign * (bound - state.load),
@@ -128,7 +151,7 @@ impl Watch {
     }
 
     /// Derivative by arc length; `None` for quantities that are themselves rates.
-    pub fn slope(self, loading: Loading<'_>, state: &State, rate: &Rate) -> Option<f64> {
+    pub fn slope(self, loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate) -> Option<f64> {
         match self {
             Self::Gap(contact) => {
                 Some(dot(&loading.frame(contact, state).normal, &loading.relative_rate(contact, rate)))
@@ -142,6 +165,15 @@ impl Watch {
                     side * dot(&change.tangential, &loading.frame(contact, state).tangents[0])
                 };
                 Some(loading.contacts[contact].friction * change.normal + traction)
+            }
+            Self::Slide { corner } | Self::Hold { corner } | Self::Return { corner } => {
+                let pocket = pocket(loading, corner, modes, state);
+                let (force, change) = (pocket.force(loading, state), pocket.force_rate(loading, state, rate));
+                Some(match self {
+                    Self::Hold { .. } => pocket.hold_slope(&force, &change),
+                    Self::Return { .. } => -pocket.margin_slope(&force, &change),
+                    _ => pocket.margin_slope(&force, &change),
+                })
             }
             Self::Sliding(_) | Self::LoadRate { .. } | Self::Facet { .. } => None,
             Self::End(End::Load { sign, .. }) => Some(-sign * rate.load),
@@ -161,6 +193,7 @@ impl Watch {
             }
             Self::LoadRate { sign } => Some(sign * (end.load - start.load)),
             Self::Gap(_) | Self::Normal(_) | Self::Cone { .. } | Self::Facet { .. } | Self::End(_) => None,
+            Self::Slide { .. } | Self::Hold { .. } | Self::Return { .. } => None,
         }
     }
 
@@ -179,7 +212,7 @@ impl Watch {
     pub fn scale(self, loading: Loading<'_>, state: &State, force_scale: f64) -> f64 {
         match self {
             Self::Normal(contact) | Self::Cone { contact, .. } => loading.force_scale_at(contact, state, force_scale),
-            Self::Facet { corner, .. } => {
+            Self::Facet { corner, .. } | Self::Slide { corner } | Self::Hold { corner } | Self::Return { corner } => {
                 let of = |contact: &usize| loading.force_scale_at(*contact, state, force_scale);
                 loading.corners[corner].contacts.iter().map(of).fold(0.0, f64::max)
             }
@@ -226,7 +259,7 @@ impl Watch {
         zero: f64,
     ) -> Option<f64> {
         let ends = || (self.value(loading, modes, start.0, start.1), self.value(loading, modes, end.0, end.1));
-        let slopes = (self.slope(loading, start.0, start.1), self.slope(loading, end.0, end.1));
+        let slopes = (self.slope(loading, modes, start.0, start.1), self.slope(loading, modes, end.0, end.1));
         if let (Some(first_slope), Some(last_slope)) = slopes {
             if first_slope >= 0.0 || last_slope <= 0.0 {
                 return None;
@@ -238,6 +271,12 @@ impl Watch {
         let (first, last) = ends();
         dip_of_slope(change / step, first, last, zero).map(|place| place * step)
     }
+}
+
+/// The obstacles that hold a node in space, or a guided one, in these modes.
+fn pocket(loading: Loading<'_>, corner: usize, modes: &[Mode], state: &State) -> Pocket {
+    let holding: Vec<usize> = loading.corners[corner].holding(modes).collect();
+    Pocket::new(loading, &holding, state)
 }
 
 /// The direction of a slip at a state.

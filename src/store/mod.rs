@@ -24,8 +24,9 @@ use uuid::Uuid;
 pub use error::StoreError;
 pub use location::Location;
 pub use record::{
-    Batch, Branch, Checkpoint, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Membership,
-    NewFollower, NewJob, NewRun, NewSweep, Origin, Page, Parent, RunOf, Standing, Status, Submitted, Task,
+    Batch, Branch, Checkpoint, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Listed,
+    Membership, NewFollower, NewJob, NewRun, NewSweep, Origin, Page, Parent, Retried, RunOf, Standing, Status,
+    Submitted, Task,
 };
 
 pub use signals::Change;
@@ -64,8 +65,8 @@ pub trait Store: Send + Sync + 'static {
     /// Answers how many were queued.
     async fn explore(&self) -> Result<u64>;
 
-    /// Jobs of one task, newest first.
-    async fn jobs(&self, filter: ListFilter) -> Result<Vec<JobRecord>>;
+    /// Jobs of one task, newest first, shortened. What is read and held for a page is bounded, however large they are.
+    async fn jobs(&self, filter: ListFilter) -> Result<Listed>;
 
     /// How many jobs have each status; told without counting them.
     async fn tally(&self) -> Result<Vec<(Status, u64)>>;
@@ -80,7 +81,8 @@ pub trait Store: Send + Sync + 'static {
     /// Drops a job and all its increments; a worker on it loses its lease. `false`: no such job.
     async fn delete(&self, id: Uuid) -> Result<bool>;
 
-    /// Takes the next queued job, if any. Of jobs that have lost their worker and stored nothing since, any of which may end
+    /// Takes the next queued job, if any: by priority, then in turn between owners and between an owner's single jobs and those
+    /// of which it has many. Of jobs that have lost their worker and stored nothing since, any of which may end
     /// the process that works on it, no two are worked on at a time: a job is not lost more than once for another's sake.
     async fn claim(&self, worker: &str, lease: Duration) -> Result<Option<Claim>>;
 
@@ -97,8 +99,11 @@ pub trait Store: Send + Sync + 'static {
     /// Hands a job back to the queue with its attempt, for a worker that is going away in good order.
     async fn release(&self, lease: &Lease) -> Result<LeaseAnswer>;
 
+    /// Queues a failed job again, what it has stored kept. `None`: no such job.
+    async fn retry(&self, id: Uuid, most_queued: u64) -> Result<Option<Retried>>;
+
     /// Puts jobs whose lease has run out back into the queue; one that has lost `max_attempts` workers in a row, with nothing
-    /// stored between, becomes `failed`.
+    /// stored between, becomes `failed`. A loss of several jobs at once counts for none that had lost no worker before.
     /// Answers how many were touched.
     async fn reclaim_expired(&self) -> Result<u64>;
 

@@ -86,8 +86,10 @@ pub struct NewJob {
     pub request: String,
     /// JSON.
     pub plan: String,
+    /// What lists show of the plan, JSON; none where they show all of it.
+    pub summary: Option<String>,
     pub max_increments: u64,
-    /// Workers that it may lose in a row, nothing stored between.
+    /// Workers that it may lose in a row, nothing stored between, but for those of which it is not suspected.
     pub max_attempts: u32,
     /// It is refused where so many wait already.
     pub most_queued: u64,
@@ -204,6 +206,17 @@ pub enum Submitted {
     },
 }
 
+/// What became of a call to queue a failed job again.
+#[derive(Debug, Clone)]
+pub enum Retried {
+    Queued(JobRecord),
+    /// It has not failed, or is a run of a sweep, whose rows are written once.
+    NotRetryable(JobRecord),
+    QueueFull {
+        most: u64,
+    },
+}
+
 /// Which ended jobs are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Keep {
@@ -232,8 +245,11 @@ pub struct JobRecord {
     /// Times it was started.
     pub attempt: u32,
     pub max_attempts: u32,
-    /// Workers that it has lost in a row, nothing stored between; at `max_attempts` it fails.
+    /// Workers that it has lost in a row, nothing stored between.
     pub losses: u32,
+    /// Those of them that speak against it: it was the only one lost then, or had lost a worker before. At `max_attempts` it
+    /// fails.
+    pub counted_losses: u32,
     pub cancel_requested: bool,
     pub created_at: Timestamp,
     pub started_at: Option<Timestamp>,
@@ -246,9 +262,19 @@ pub struct JobRecord {
     pub membership: Option<Membership>,
 }
 
+impl JobRecord {
+    /// Of its texts.
+    pub fn bytes(&self) -> usize {
+        let texts = [&self.owner, &self.name, &self.report, &self.stop_reason, &self.error];
+        self.plan.len() + texts.into_iter().flatten().map(String::len).sum::<usize>()
+    }
+}
+
 /// How far a job has come. What has ended has all its increments.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Standing {
+    pub task: Task,
+    pub owner: Option<String>,
     pub status: Status,
     pub last_index: Option<u64>,
 }
@@ -266,7 +292,17 @@ pub struct ListFilter {
     pub parent: Option<Uuid>,
     /// Only jobs older than this one.
     pub before: Option<Uuid>,
-    pub limit: u32,
+    /// Past the first no more than so many of them, and about so many bytes.
+    pub page: Page,
+}
+
+/// A page of jobs as lists show them: what can be large is shortened. A plan that has a summary is that, names and errors are
+/// cut, and only paths have their report.
+#[derive(Debug, Clone)]
+pub struct Listed {
+    pub jobs: Vec<JobRecord>,
+    /// There are others past these.
+    pub more: bool,
 }
 
 /// How much to read at once.

@@ -1,6 +1,7 @@
 //! Where the tangent of a structure with many unknowns has its entries.
 
 use super::Structure;
+use crate::budget::{self, Taken};
 use crate::linear_algebra::sparse::Pattern;
 use std::sync::Arc;
 
@@ -11,6 +12,7 @@ pub struct Layout {
     /// For each call that `Structure::each_stiffness` makes, in its order, the place of the entry; `None` where its row or
     /// column is supported.
     places: Vec<Option<u32>>,
+    _held: Taken,
 }
 
 impl Layout {
@@ -34,6 +36,8 @@ impl Layout {
         if u32::try_from(pattern.entries()).is_err() {
             return None;
         }
+        // Three by three entries for each pair of an element's two nodes at the most.
+        let held = budget::take::<Option<u32>>(36 * structure.elements.len());
         let mut places = Vec::new();
         structure.each_stiffness(&vec![0.0; structure.freedoms()], &mut |row, column, _| {
             let place = match (structure.unknown_of[row], structure.unknown_of[column]) {
@@ -42,7 +46,7 @@ impl Layout {
             };
             places.push(place);
         });
-        Some(Self { pattern: Arc::new(pattern), places })
+        Some(Self { pattern: Arc::new(pattern), places, _held: held })
     }
 
     /// Places of the entries of the calls, in their order.

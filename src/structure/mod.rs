@@ -77,6 +77,10 @@ impl Structure {
     /// Whether matrices are to be sparse; they stay dense where there is not the memory to find their layout.
     pub fn set_sparse(&mut self, sparse: bool) {
         self.layout = if sparse { Layout::new(self).map(Arc::new) } else { None };
+        if self.layout.is_none() {
+            // Whether there is room for a dense matrix is not left to the moment when it is formed.
+            drop(crate::budget::take::<f64>(self.unknowns().saturating_mul(self.unknowns())));
+        }
     }
 
     /// Whether dense matrices of this size may be formed.

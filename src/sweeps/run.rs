@@ -1,6 +1,7 @@
 //! All runs of a sweep on the cores of this machine.
 
 use super::{LimitLoad, Row};
+use crate::budget::{self, Budget};
 use crate::cancel::CancelFlag;
 use crate::judged::{JudgedIncrement, JudgedPath};
 use crate::model::{InputErrors, RunMistakes, Sweep};
@@ -46,11 +47,11 @@ fn check(sweep: &Sweep, threads: NonZeroUsize) -> Result<(), InputErrors> {
         let request = sweep.run(run)?.request;
         Scene::new(&request).map_err(|errors| sweep.located(run, errors)).map(|_| ())
     });
-    let mut mistakes = RunMistakes::of(sweep);
+    let mut mistakes = RunMistakes::default();
     for (run, checked) in (0..).zip(checked) {
         mistakes.note(run, checked.err());
     }
-    mistakes.result()
+    mistakes.result(sweep)
 }
 
 fn trace(sweep: &Sweep, run: u64, accept: Accept<'_>) -> Result<Row, InputErrors> {
@@ -103,6 +104,8 @@ fn panicked(sweep: &Sweep, run: u64, text: &str) -> Row {
 
 /// Calls `work` for each number below `count` on so many threads; the results are in order.
 fn on_threads<T: Send>(count: u64, threads: NonZeroUsize, work: impl Fn(u64) -> T + Sync) -> Vec<T> {
+    // Each has these for itself.
+    let bounds = budget::bounds();
     let next = AtomicU64::new(0);
     let results = Mutex::new(Vec::new());
     let take_part = || {
@@ -111,7 +114,8 @@ fn on_threads<T: Send>(count: u64, threads: NonZeroUsize, work: impl Fn(u64) -> 
             if number >= count {
                 return;
             }
-            let result = work(number);
+            let budget = Budget::new(CancelFlag::default(), bounds);
+            let result = budget.during(|| work(number)).unwrap_or_else(|breach| budget::end(breach));
             results.lock().unwrap_or_else(PoisonError::into_inner).push((number, result));
         }
     };

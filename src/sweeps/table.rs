@@ -61,7 +61,12 @@ fn csv_row(row: &Row) -> serde_json::Result<String> {
     let mut line = CsvRow::default();
     line.raw(&row.run.to_string());
     line.raw(row.job.as_deref().unwrap_or_default());
-    row.values.iter().for_each(|value| line.text(&shown(value)));
+    for value in &row.values {
+        match value {
+            Value::Number(number) => line.raw(&number.to_string()),
+            other => line.text(&shown(other)),
+        }
+    }
     line.raw(&row.status);
     line.raw(row.stop_reason.as_deref().unwrap_or_default());
     line.raw(&row.last_index.map(|index| index.to_string()).unwrap_or_default());

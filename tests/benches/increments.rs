@@ -6,27 +6,34 @@
 use arcslip::cancel::CancelFlag;
 use arcslip::measure::Judge;
 use arcslip::model::JobRequest;
-use arcslip::model::request::Method;
+use arcslip::model::request::{Certificate, Method, Mpec};
 use arcslip::path::{Increment, Path, Scene};
 use std::time::Instant;
 
 /// Whole paths traced; the median is printed.
 const REPEATS: usize = 41;
+/// With the certificate, and by the programs alone.
+const WAYS: [(&str, Method, Option<Certificate>); 3] = [
+    ("auto", Method::Auto, None),
+    ("mpec", Method::Mpec, Some(Certificate::Use)),
+    ("mpec, skip", Method::Mpec, Some(Certificate::Skip)),
+];
 
 fn main() {
     println!(
-        "{:<22} {:<6} {:>10} {:>12} {:>12} {:>12} {:>8} {:>8} {:>9} {:>7}",
+        "{:<22} {:<10} {:>10} {:>12} {:>12} {:>12} {:>8} {:>8} {:>9} {:>7}",
         "scene", "method", "increments", "median us", "least us", "largest us", "LU/inc", "QP/inc", "judge us", "share"
     );
     for name in ["one-bar-truss", "one-bar-truss-rough", "klarbring", "arch-type-truss", "three-snapping-bars"] {
         let Some(built_in) = arcslip::scenes::find(name) else { continue };
         let mut medians = Vec::new();
-        for method in [Method::Auto, Method::Mpec] {
+        for (way, method, certificate) in WAYS {
             let mut request = match arcslip::model::decode::decode(built_in.request.as_bytes()) {
                 Ok(request) => request,
                 Err(errors) => panic!("{errors}"),
             };
             request.analysis.method = method;
+            request.analysis.mpec = certificate.map(|certificate| Mpec { certificate });
             let scene = match Scene::new(&request) {
                 Ok(scene) => scene,
                 Err(errors) => panic!("{errors}"),
@@ -47,9 +54,9 @@ fn main() {
             let share = 100.0 * judging / (judging + times[REPEATS / 2]);
             let each = |count: u64| count as f64 / report.increments as f64;
             println!(
-                "{:<22} {:<6} {:>10} {:>12.2} {:>12.2} {:>12.2} {:>8.1} {:>8.1} {:>9.3} {:>5.1} %",
+                "{:<22} {:<10} {:>10} {:>12.2} {:>12.2} {:>12.2} {:>8.1} {:>8.1} {:>9.3} {:>5.1} %",
                 name,
-                format!("{method:?}").to_lowercase(),
+                way,
                 report.increments,
                 times[REPEATS / 2],
                 times[0],
@@ -61,8 +68,8 @@ fn main() {
             );
             medians.push(times[REPEATS / 2]);
         }
-        if let [auto, mpec] = medians[..] {
-            println!("{:<22} mpec/auto {:.1}", name, mpec / auto);
+        if let [auto, mpec, skip] = medians[..] {
+            println!("{:<22} mpec/auto {:.1}, certificates skipped {:.0}", name, mpec / auto, skip / auto);
         }
     }
 }

@@ -9,7 +9,7 @@
 
 use arcslip::cancel::CancelFlag;
 use arcslip::model::JobRequest;
-use arcslip::model::request::Method;
+use arcslip::model::request::{Certificate, Method, Mpec};
 use arcslip::path::increment::PointKind;
 use arcslip::path::{Path, Scene};
 use arcslip::scenes::of_any_size::row_of_bars;
@@ -30,15 +30,16 @@ const SECONDS: f64 = 8.0;
 const FEWEST: usize = 9;
 const MOST_SECONDS: f64 = 30.0;
 
-/// A program, the method that it is compared with, and the sizes of the row.
-const PEERS: [(&str, &str, Method, &[usize]); 2] = [
-    ("OpenSees", "opensees_row.py", Method::Auto, &[1, 20, 100, 500]),
-    ("CasADi + IPOPT", "casadi_row.py", Method::Mpec, &[5, 20, 50, 100]),
+/// A program, the method that it is compared with, with its certificate or without, and the sizes of the row.
+const PEERS: [(&str, &str, Method, Certificate, &[usize]); 3] = [
+    ("OpenSees", "opensees_row.py", Method::Auto, Certificate::Use, &[1, 20, 100, 500]),
+    ("CasADi + IPOPT", "casadi_row.py", Method::Mpec, Certificate::Use, &[5, 20, 50, 100]),
+    ("CasADi + IPOPT", "casadi_row.py", Method::Mpec, Certificate::Skip, &[5, 20]),
 ];
 
 fn main() {
     let asked: Vec<usize> = std::env::args().filter_map(|word| word.parse().ok()).collect();
-    for (name, script, method, sizes) in PEERS {
+    for (name, script, method, certificate, sizes) in PEERS {
         let mut peer = match Peer::start(script) {
             Ok(peer) => peer,
             Err(why) => {
@@ -46,13 +47,18 @@ fn main() {
                 continue;
             }
         };
-        println!("\n`{}` and {name}, ms per increment (least to largest)\n", method.name());
+        let way = match (method, certificate) {
+            (Method::Mpec, Certificate::Use) => ", certificates used",
+            (Method::Mpec, Certificate::Skip) => ", certificates skipped",
+            (Method::Auto | Method::Regularised, _) => "",
+        };
+        println!("\n`{}`{way}, and {name}, ms per increment (least to largest)\n", method.name());
         println!(
             "| n | arcslip | increments | events | limit load | end | {name} | increments | iterations | largest load | its error | went to | end | ratio |"
         );
         println!("|--:|--:|--:|--:|--:|---|--:|--:|--:|--:|--:|--:|---|--:|");
         for &size in if asked.is_empty() { sizes } else { &asked } {
-            if let Err(why) = compare(size, method, &mut peer) {
+            if let Err(why) = compare(size, (method, certificate), &mut peer) {
                 println!("n = {size}: {why}");
                 break;
             }
@@ -61,9 +67,10 @@ fn main() {
 }
 
 /// One row of the table.
-fn compare(size: usize, method: Method, peer: &mut Peer) -> Result<(), String> {
+fn compare(size: usize, (method, certificate): (Method, Certificate), peer: &mut Peer) -> Result<(), String> {
     let mut request: JobRequest = serde_json::from_value(row_of_bars(size)).map_err(|error| error.to_string())?;
     request.analysis.method = method;
+    request.analysis.mpec = (method == Method::Mpec).then_some(Mpec { certificate });
     let scene = Scene::new(&request).map_err(|errors| errors.to_string())?;
     let (mut ours, mut theirs) = (Vec::new(), Vec::new());
     let mut last = None;

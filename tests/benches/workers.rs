@@ -174,6 +174,7 @@ fn small_job() -> NewJob {
         name: None,
         request: scene("klarbring").to_string(),
         plan: "{}".to_owned(),
+        summary: None,
         max_increments: 10_000,
         max_attempts: 3,
         most_queued: 100_000,

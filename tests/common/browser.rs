@@ -10,7 +10,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_secs(600);
 const DRIVER: &str = "chromedriver";
 /// It takes a port that is free by one protocol and ends where another program has it by the other.
 const STARTS: usize = 5;

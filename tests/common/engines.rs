@@ -79,6 +79,7 @@ pub fn job(max_attempts: u32) -> NewJob {
         name: Some("queued".to_owned()),
         request: request("queued", 6).to_string(),
         plan: "{}".to_owned(),
+        summary: None,
         max_increments: 6,
         max_attempts,
         most_queued: 100,

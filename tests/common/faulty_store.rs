@@ -1,8 +1,8 @@
 //! A store whose writes can be made to fail; everything else is the real one.
 
 use arcslip::store::{
-    Batch, Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, NewSweep,
-    Origin, Page, Result, Standing, Status, Store, StoreError, Submitted,
+    Batch, Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Listed, NewFollower, NewJob,
+    NewSweep, Origin, Page, Result, Retried, Standing, Status, Store, StoreError, Submitted,
 };
 use async_trait::async_trait;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -103,7 +103,7 @@ impl Store for FaultyStore {
         self.inner.standing(id).await
     }
 
-    async fn jobs(&self, filter: ListFilter) -> Result<Vec<JobRecord>> {
+    async fn jobs(&self, filter: ListFilter) -> Result<Listed> {
         self.inner.jobs(filter).await
     }
 
@@ -152,6 +152,10 @@ impl Store for FaultyStore {
 
     async fn release(&self, lease: &Lease) -> Result<LeaseAnswer> {
         self.inner.release(lease).await
+    }
+
+    async fn retry(&self, id: Uuid, most_queued: u64) -> Result<Option<Retried>> {
+        self.inner.retry(id, most_queued).await
     }
 
     async fn reclaim_expired(&self) -> Result<u64> {

@@ -23,6 +23,7 @@ pub mod postgres;
 #[cfg(feature = "server")]
 pub mod process;
 pub mod random;
+pub mod random_corners;
 #[cfg(feature = "server")]
 pub mod reader;
 #[cfg(feature = "server")]
@@ -31,5 +32,7 @@ pub mod server;
 pub mod service;
 #[cfg(feature = "server")]
 pub mod solver;
+pub mod sum_of_cones;
+pub mod variants;
 #[cfg(feature = "server")]
 pub mod watched;

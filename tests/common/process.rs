@@ -9,7 +9,8 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-const PATIENCE: Duration = Duration::from_secs(60);
+/// For what has to come: a guard against a test that hangs, and no more, so that a busy machine fails nothing.
+pub const PATIENCE: Duration = Duration::from_secs(600);
 
 pub struct Process {
     child: Child,
@@ -67,9 +68,25 @@ impl Process {
         self.child.wait().expect("gone");
     }
 
-    /// SIGSTOP: it stands still, with everything that it holds.
+    /// SIGSTOP: it stands still, with everything that it holds. A signal that is sent has not yet come: a thread that runs
+    /// goes on for a moment, so each is waited for.
     pub fn stop(&self) {
         self.signal(Signal::STOP);
+        let began = Instant::now();
+        while !self.stands_still() {
+            assert!(began.elapsed() < PATIENCE, "it goes on");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    /// Whether each of its threads is stopped, as Linux tells it.
+    fn stands_still(&self) -> bool {
+        let threads = std::fs::read_dir(format!("/proc/{}/task", self.id())).expect("its threads");
+        threads.map_while(Result::ok).all(|thread| {
+            // The state follows the name, which is in parentheses. A thread that has ended meanwhile has no file.
+            let line = std::fs::read_to_string(thread.path().join("stat")).unwrap_or_default();
+            line.rsplit_once(") ").is_none_or(|(_, rest)| rest.starts_with('T'))
+        })
     }
 
     /// SIGCONT: it goes on as if no time had passed.

@@ -6,10 +6,10 @@ use serde_json::{Map, Value, json};
 use super::paths::typed;
 
 /// splitmix64 (G. L. Steele, D. Lea, C. H. Flood, *Fast splittable pseudorandom number generators*, OOPSLA 2014).
-struct Numbers(u64);
+pub struct Numbers(pub u64);
 
 impl Numbers {
-    fn bits(&mut self) -> u64 {
+    pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -18,32 +18,32 @@ impl Numbers {
     }
 
     /// In [from, to); of three decimals, so that a document shows what it is.
-    fn between(&mut self, from: f64, to: f64) -> f64 {
+    pub fn between(&mut self, from: f64, to: f64) -> f64 {
         let unit = (self.bits() >> 11) as f64 / (1_u64 << 53) as f64;
         ((from + (to - from) * unit) * 1000.0).round() / 1000.0
     }
 
-    fn chance(&mut self, probability: f64) -> bool {
+    pub fn chance(&mut self, probability: f64) -> bool {
         self.between(0.0, 1.0) < probability
     }
 
-    fn below(&mut self, count: usize) -> usize {
+    pub fn below(&mut self, count: usize) -> usize {
         (self.bits() % count as u64) as usize
     }
 
-    fn vector(&mut self, dimension: usize, size: f64) -> Vec<f64> {
+    pub fn vector(&mut self, dimension: usize, size: f64) -> Vec<f64> {
         (0..dimension).map(|_| self.between(-size, size)).collect()
     }
 
     /// `Aᵀ A + least 1`
-    fn positive_definite(&mut self, least: f64, most: f64) -> Vec<Vec<f64>> {
+    pub fn positive_definite(&mut self, least: f64, most: f64) -> Vec<Vec<f64>> {
         let rows: Vec<Vec<f64>> = (0..3).map(|_| self.vector(3, most.sqrt())).collect();
         let product = |i: usize, j: usize| rows.iter().map(|row| row[i] * row[j]).sum::<f64>();
         let entry = |i: usize, j: usize| product(i, j) + if i == j { least } else { 0.0 };
         (0..3).map(|i| (0..3).map(|j| entry(i, j)).collect()).collect()
     }
 
-    fn friction(&mut self) -> f64 {
+    pub fn friction(&mut self) -> f64 {
         if self.chance(0.2) { 0.0 } else { self.between(0.05, 2.0) }
     }
 }

@@ -106,6 +106,9 @@ impl Solver for MadeUp {
             newton_iterations: increments,
             qp_solves: 0,
             mpec_solves: 0,
+            sqp_iterations: 0,
+            certificates: 0,
+            mpec_fallbacks: 0,
         };
         let measure = MeasureReport { largest: Maxima::default(), bar: None, off_measure: 0 };
         Ok(Some(JudgedReport { report, measure }))

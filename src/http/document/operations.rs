@@ -26,7 +26,7 @@ const TAGGED: [&str; 15] = [
     "get_sweep_picture",
 ];
 /// What can be asked of a job that has been queued, by its id; of a study likewise.
-const OF_A_JOB: [&str; 10] = [
+const OF_A_JOB: [&str; 11] = [
     "get_job",
     "get_request",
     "list_increments",
@@ -36,6 +36,7 @@ const OF_A_JOB: [&str; 10] = [
     "stream_increments",
     "follow_direction",
     "cancel_job",
+    "retry_job",
     "delete_job",
 ];
 const OF_A_STUDY: [&str; 7] = [

@@ -1,19 +1,29 @@
 //! Sparse symmetric matrices that are positive definite, by their Cholesky factorisation.
 
+use super::panels;
+use super::symbolic::Symbolic;
+use crate::budget::{self, Taken};
 use crate::linear_algebra::counted::count_solves;
-use faer::linalg::solvers::Solve;
-use faer::sparse::linalg::solvers::Llt;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::sparse::linalg::cholesky::{LdltRef, LltRef};
 use faer::sparse::{SparseColMat, Triplet};
-use faer::{MatMut, Side};
+use faer::{Conj, MatMut, Par, Side};
+
+/// Multiplications for each entry of the factor from which it goes by dense blocks.
+const BY_BLOCKS: f64 = 40.0;
 
 /// Entries of the lower triangle, diagonal included; several at one place are added up.
 pub type Triangle = Vec<(usize, usize, f64)>;
 
 /// A factorisation of a matrix that is positive definite.
 pub struct Definite {
-    factor: Llt<usize, f64>,
+    symbolic: Symbolic,
+    /// Of `L Lᵀ`; done in pieces, of `L D Lᵀ`.
+    values: Vec<f64>,
     /// What rows and columns were multiplied by.
     scales: Vec<f64>,
+    _held: Taken,
 }
 
 impl Definite {
@@ -41,9 +51,51 @@ impl Definite {
             lower.iter().map(|&(row, column, value)| Triplet::new(row, column, value * scales[row] * scales[column]));
         let shifts = (0..size).map(|place| Triplet::new(place, place, shift));
         let triplets: Vec<Triplet<usize, usize, f64>> = scaled.chain(shifts).collect();
+        let _triplets = budget::take::<Triplet<usize, usize, f64>>(2 * triplets.len());
+        budget::spend(triplets.len());
         let matrix = SparseColMat::try_new_from_triplets(size, size, &triplets).ok()?;
-        let factor = matrix.sp_cholesky(Side::Lower).ok()?;
-        Some(Self { factor, scales })
+        let (starts, rows) = (matrix.symbolic().col_ptr(), matrix.symbolic().row_idx());
+        let whole = both_triangles(starts, rows);
+        let symbolic = Symbolic::new((starts, rows), (&whole.0, &whole.1), BY_BLOCKS)?;
+        let held = budget::take::<f64>(symbolic.cholesky.len_val() + symbolic.indices());
+        let values = vec![0.0; symbolic.cholesky.len_val()];
+        let mut definite = Self { symbolic, values, scales, _held: held };
+        definite.factorise(&matrix, &whole).then_some(definite)
+    }
+
+    /// Whether the scaled matrix, whose lower triangle is given, is positive definite.
+    fn factorise(&mut self, matrix: &SparseColMat<usize, f64>, whole: &(Vec<usize>, Vec<usize>)) -> bool {
+        if let Some((blocks, (order, place_of))) = self.symbolic.in_pieces() {
+            let each_below = |place: usize, each: &mut dyn FnMut(usize, f64)| {
+                let unknown = order[place];
+                for row in whole.1[whole.0[unknown]..whole.0[unknown + 1]].iter().filter(|row| place_of[**row] >= place)
+                {
+                    let value = matrix.get((*row).max(unknown), (*row).min(unknown));
+                    value.into_iter().for_each(|value| each(place_of[*row], *value));
+                }
+            };
+            panels::factorise(blocks, &mut self.values, &each_below, 0.0);
+            let pivots = (0..blocks.n_supernodes()).flat_map(|block| {
+                let columns = blocks.supernode_end()[block] - blocks.supernode_begin()[block];
+                let rows = columns + blocks.supernode(block).pattern().len();
+                (0..columns).map(move |column| blocks.col_ptr_for_val()[block] + column * (rows + 1))
+            });
+            return pivots.into_iter().all(|place| self.values[place] > 0.0);
+        }
+        let symbolic = &self.symbolic.cholesky;
+        budget::spend(usize::try_from(self.symbolic.fill.multiplications).unwrap_or(usize::MAX));
+        let request = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
+        let Ok(mut memory) = MemBuffer::try_new(request) else { return false };
+        let done = symbolic.factorize_numeric_llt(
+            &mut self.values,
+            matrix.as_ref(),
+            Side::Lower,
+            LltRegularization::default(),
+            Par::Seq,
+            MemStack::new(&mut memory),
+            Default::default(),
+        );
+        done.is_ok()
     }
 
     /// Solves for one right-hand side, overwritten by the solution.
@@ -51,7 +103,17 @@ impl Definite {
         count_solves(1);
         values.iter_mut().zip(&self.scales).for_each(|(value, scale)| *value *= scale);
         let size = values.len();
-        self.factor.solve_in_place(MatMut::from_column_major_slice_mut(values, size, 1));
+        budget::spend(2 * self.values.len());
+        let symbolic = &self.symbolic.cholesky;
+        // A few numbers for each unknown.
+        let mut memory = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
+        let (right, stack) = (MatMut::from_column_major_slice_mut(values, size, 1), MemStack::new(&mut memory));
+        match self.symbolic.in_pieces() {
+            Some(_) => {
+                LdltRef::new(symbolic, &self.values).solve_in_place_with_conj(Conj::No, right, Par::Seq, stack);
+            }
+            None => LltRef::new(symbolic, &self.values).solve_in_place_with_conj(Conj::No, right, Par::Seq, stack),
+        }
         values.iter_mut().zip(&self.scales).for_each(|(value, scale)| *value *= scale);
     }
 
@@ -72,6 +134,31 @@ impl Definite {
         vector.iter_mut().for_each(|value| *value /= largest);
         vector
     }
+}
+
+/// The pattern of a lower triangle, by columns, with its mirror image.
+fn both_triangles(starts: &[usize], rows: &[usize]) -> (Vec<usize>, Vec<usize>) {
+    let size = starts.len().saturating_sub(1);
+    let each =
+        || (0..size).flat_map(|column| rows[starts[column]..starts[column + 1]].iter().map(move |row| (*row, column)));
+    let mut whole = vec![0; size + 1];
+    for (row, column) in each() {
+        whole[column + 1] += 1;
+        whole[row + 1] += usize::from(row != column);
+    }
+    (0..size).for_each(|column| whole[column + 1] += whole[column]);
+    let (mut next, mut all) = (whole.clone(), vec![0; whole[size]]);
+    let mut put = |row: usize, column: usize| {
+        all[next[column]] = row;
+        next[column] += 1;
+    };
+    for (row, column) in each() {
+        put(row, column);
+        if row != column {
+            put(column, row);
+        }
+    }
+    (whole, all)
 }
 
 #[cfg(test)]

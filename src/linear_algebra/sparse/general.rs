@@ -1,10 +1,17 @@
 //! Sparse LU factorisation of any square matrix, by its entries.
 
+use super::symbolic::allow_factor;
+use crate::budget;
 use crate::linear_algebra::counted::count_solves;
 use faer::MatMut;
 use faer::linalg::solvers::SolveCore;
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{SparseColMat, Triplet};
+
+/// Entries up to which factors are small in any case.
+const FEW_ENTRIES: usize = 20_000;
+/// Multiplications of a factorisation that cannot be broken off. Counted as without exchanges, of which there are some.
+const MOST_IN_ONE_PIECE: u64 = 1_000_000_000;
 
 /// `D⁻¹ A = L U` with permutations, `D` the sizes of the rows.
 pub struct GeneralLu {
@@ -29,8 +36,15 @@ impl GeneralLu {
         let (columns, rows) = (matrix.symbolic().col_ptr(), matrix.symbolic().row_idx());
         let symbolic = match before.filter(|before| before.columns == columns && before.rows == rows) {
             Some(before) => before.symbolic.clone(),
-            None => SymbolicLu::try_new(matrix.symbolic()).ok()?,
+            None => {
+                if entries.len() > FEW_ENTRIES {
+                    let places = entries.iter().map(|entry| (entry.row, entry.col));
+                    allow_factor(size, places, MOST_IN_ONE_PIECE);
+                }
+                SymbolicLu::try_new(matrix.symbolic()).ok()?
+            }
         };
+        budget::spend(entries.len());
         let lu = Lu::try_new_with_symbolic(symbolic.clone(), matrix.as_ref()).ok()?;
         let (columns, rows) = (columns.to_vec(), rows.to_vec());
         Some(Self { lu, scales, symbolic, columns, rows })

@@ -1,7 +1,9 @@
 //! Sparse systems with thin borders, `[[K, B], [C, D]]`, `K` symmetric but for friction: as the path's equations are for many unknowns.
 //!
-//! * [`pattern`]: where `K` may have entries, found once, with the order of elimination that keeps its factors sparse (AMD).
+//! * [`pattern`]: where `K` may have entries, found once.
+//! * `symbolic`: the order of elimination that keeps its factors sparse (AMD), and what they take.
 //! * [`symmetric`]: `K = L D Lᵀ`; small pivots are raised, and the raise is taken back by a border.
+//! * `panels`: the same of large matrices, in pieces.
 //! * `unsymmetric`: `K = L U` in the same order, where friction makes `K` unsymmetric, and for few unknowns.
 //! * [`bordered`]: the matrix as it is assembled.
 //! * [`definite`]: whether a symmetric matrix is positive definite.
@@ -20,8 +22,10 @@ pub mod general;
 mod held;
 mod lu;
 mod nearby;
+mod panels;
 pub mod pattern;
 mod reduced;
+mod symbolic;
 pub mod symmetric;
 #[cfg(test)]
 mod tests;
@@ -31,6 +35,7 @@ pub use bordered::Bordered;
 pub use factorisation::{SparseFactorisation, held_inertia};
 pub use held::{Holding, Holdings, Places};
 pub use pattern::Pattern;
+pub use symbolic::allow_factor;
 
 use smallvec::SmallVec;
 

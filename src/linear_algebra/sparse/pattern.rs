@@ -1,17 +1,15 @@
 //! Where a symmetric sparse matrix may have entries, and the order in which it is eliminated.
 
 use super::held::LastNodes;
+use super::symbolic::Symbolic;
 use super::unsymmetric::Fill;
+use crate::budget::{self, Taken};
 use faer::sparse::SymbolicSparseColMatRef;
-use faer::sparse::linalg::SupernodalThreshold;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
-};
 use std::sync::OnceLock;
 
-/// Work of a factorisation by entry of the factor, over forty, from which it goes by dense blocks: those of a plane lattice of
-/// 10,000 unknowns take two thirds of the time so.
-const BY_BLOCKS: SupernodalThreshold = SupernodalThreshold(0.25);
+/// Work of a factorisation by entry of the factor from which it goes by dense blocks: those of a plane lattice of 10,000
+/// unknowns take two thirds of the time so.
+const BY_BLOCKS: f64 = 10.0;
 
 /// The entries of a symmetric matrix, both triangles, column by column; with the symbolic factorisation.
 #[derive(Debug)]
@@ -22,18 +20,17 @@ pub struct Pattern {
     pub(super) rows: Vec<usize>,
     /// Place of the transposed entry.
     pub(super) mirrors: Vec<usize>,
-    pub(super) symbolic: SymbolicCholesky<usize>,
+    pub(super) symbolic: Symbolic,
     /// Made when first needed.
     fill: OnceLock<Fill>,
     pub(super) last_nodes: LastNodes,
+    _held: Taken,
 }
 
 impl Pattern {
     /// A pattern with entries on the diagonal and at the given `(row, column)` and their transposes, in any order, repeated
-    /// or not. `None` where a place is outside or memory does not suffice.
-    ///
-    /// The order of elimination is that of P. R. Amestoy, T. A. Davis, I. S. Duff, SIAM J. Matrix Anal. Appl. 17 (1996)
-    /// 886, doi:10.1137/S0895479894278952.
+    /// or not. `None` where a place is outside or the system has no memory. Where the factors would be too large, the
+    /// budget of the solve under way ends it.
     pub fn new(size: usize, entries: impl IntoIterator<Item = (usize, usize)>) -> Option<Self> {
         let mut places: Vec<(usize, usize)> = (0..size).map(|index| (index, index)).collect();
         for (row, column) in entries {
@@ -43,6 +40,8 @@ impl Pattern {
             places.push((column, row));
             places.push((row, column));
         }
+        let sorting = budget::take::<(usize, usize)>(places.capacity());
+        budget::spend(places.len());
         places.sort_unstable();
         places.dedup();
         let mut starts = vec![0; size + 1];
@@ -58,15 +57,11 @@ impl Pattern {
                 next[*row] - 1
             })
             .collect();
-        let view = SymbolicSparseColMatRef::new_checked(size, size, &starts, None, &rows);
-        let symbolic = factorize_symbolic_cholesky(
-            view,
-            faer::Side::Lower,
-            SymmetricOrdering::Amd,
-            CholeskySymbolicParams { supernodal_flop_ratio_threshold: BY_BLOCKS, ..Default::default() },
-        )
-        .ok()?;
-        Some(Self { size, starts, rows, mirrors, symbolic, fill: OnceLock::new(), last_nodes: LastNodes::default() })
+        drop((places, sorting));
+        let symbolic = Symbolic::new((&starts, &rows), (&starts, &rows), BY_BLOCKS)?;
+        let held = budget::take::<usize>(size + 2 * rows.len() + symbolic.indices());
+        let (fill, last_nodes) = (OnceLock::new(), LastNodes::default());
+        Some(Self { size, starts, rows, mirrors, symbolic, fill, last_nodes, _held: held })
     }
 
     /// Rows of the matrix.
@@ -81,7 +76,7 @@ impl Pattern {
 
     /// Number of entries of the factor.
     pub fn factor_entries(&self) -> usize {
-        self.symbolic.len_val()
+        self.symbolic.cholesky.len_val()
     }
 
     /// Place of an entry among all; `None` where there is none.

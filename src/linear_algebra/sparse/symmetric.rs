@@ -5,7 +5,9 @@
 //! `K + Σ θ e eᵀ`, and the caller takes the raises back by borders `[[K + θ e eᵀ, -θ e], [eᵀ, -1]]`. So the factors are
 //! never near singular, however many eigenvalues of `K` are zero.
 
+use super::panels;
 use super::pattern::Pattern;
+use crate::budget::{self, Taken};
 use crate::linear_algebra::inertia::{Inertia, inertia};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::{LdltError, LdltRegularization};
@@ -32,6 +34,7 @@ pub struct SymmetricFactor {
     scales: Vec<f64>,
     /// Unknown and raise `θ`, in the units of the matrix.
     raised: Vec<(usize, f64)>,
+    _held: Taken,
 }
 
 /// Pivots below this are raised, entries of the row being about 1.
@@ -55,7 +58,9 @@ impl SymmetricFactor {
                 scaled[place] = values[place] * scales[pattern.rows[place]] * scales[column];
             }
         }
-        let mut factor = Self { values: vec![0.0; pattern.factor_entries()], pattern, scales, raised: Vec::new() };
+        let held = budget::take::<f64>(pattern.factor_entries() + values.len() + size);
+        let mut factor =
+            Self { values: vec![0.0; pattern.factor_entries()], pattern, scales, raised: Vec::new(), _held: held };
         factor.raise(factor.last(), &mut scaled);
         loop {
             factor.factorise(&scaled)?;
@@ -82,7 +87,7 @@ impl SymmetricFactor {
     /// solve more and spares a second factorisation.
     fn last(&self) -> Option<usize> {
         let last = self.pattern.size().checked_sub(1)?;
-        Some(self.pattern.symbolic.perm().map_or(last, |perm| perm.arrays().0[last]))
+        Some(self.pattern.symbolic.cholesky.perm().map_or(last, |perm| perm.arrays().0[last]))
     }
 
     fn raise(&mut self, unknown: Option<usize>, scaled: &mut [f64]) {
@@ -96,6 +101,21 @@ impl SymmetricFactor {
 
     fn factorise(&mut self, scaled: &[f64]) -> Result<(), Failure> {
         let symbolic = &self.pattern.symbolic;
+        if let Some((blocks, (order, place_of))) = symbolic.in_pieces() {
+            let pattern = &self.pattern;
+            let each_below = |place: usize, each: &mut dyn FnMut(usize, f64)| {
+                for entry in pattern.column(order[place]) {
+                    let row = place_of[pattern.rows[entry]];
+                    if row >= place {
+                        each(row, scaled[entry]);
+                    }
+                }
+            };
+            panels::factorise(blocks, &mut self.values, &each_below, ZERO);
+            return Ok(());
+        }
+        budget::spend(usize::try_from(symbolic.fill.multiplications).unwrap_or(usize::MAX));
+        let symbolic = &symbolic.cholesky;
         let request = symbolic.factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Default::default());
         let mut memory = MemBuffer::try_new(request).map_err(|_| Failure::OutOfMemory)?;
         let regularization = LdltRegularization {
@@ -120,9 +140,9 @@ impl SymmetricFactor {
 
     /// Calls with each unknown and its pivot in `D`, of the scaled matrix.
     fn each_pivot(&self, each: &mut dyn FnMut(usize, f64)) {
-        let order = self.pattern.symbolic.perm().map(|perm| perm.arrays().0);
+        let order = self.pattern.symbolic.cholesky.perm().map(|perm| perm.arrays().0);
         let unknown = |place: usize| order.map_or(place, |order| order[place]);
-        match self.pattern.symbolic.raw() {
+        match self.pattern.symbolic.cholesky.raw() {
             SymbolicCholeskyRaw::Simplicial(symbolic) => {
                 for (place, start) in symbolic.col_ptr().iter().take(self.pattern.size()).enumerate() {
                     each(unknown(place), self.values[*start]);
@@ -220,7 +240,8 @@ impl SymmetricFactor {
             }
         };
         scale(right_hand_sides);
-        let symbolic = &self.pattern.symbolic;
+        budget::spend(2 * self.values.len() * count);
+        let symbolic = &self.pattern.symbolic.cholesky;
         let Ok(mut memory) = MemBuffer::try_new(symbolic.solve_in_place_scratch::<f64>(count, Par::Seq)) else {
             return false;
         };

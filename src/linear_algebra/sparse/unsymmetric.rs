@@ -7,6 +7,7 @@
 
 use super::pattern::Pattern;
 use super::symmetric::{SMALL, scales};
+use crate::budget::{self, Taken};
 use std::sync::Arc;
 
 /// Where `L` (by columns) and `U` (by columns) have entries off the diagonal.
@@ -23,13 +24,14 @@ pub(super) struct Fill {
     upper_rows: Vec<usize>,
     /// Multiplications of a factorisation.
     pub work: u64,
+    _held: Taken,
 }
 
 impl Fill {
     /// By the elimination tree (J. W. H. Liu, SIAM J. Matrix Anal. Appl. 11 (1990) 134, doi:10.1137/0611010).
     pub fn new(pattern: &Pattern) -> Self {
         let size = pattern.size();
-        let order: Vec<usize> = match pattern.symbolic.perm() {
+        let order: Vec<usize> = match pattern.symbolic.cholesky.perm() {
             Some(perm) => perm.arrays().0.to_vec(),
             None => (0..size).collect(),
         };
@@ -60,6 +62,9 @@ impl Fill {
                     node = parent[node];
                 }
             }
+            if column % COLUMNS_AT_ONCE == 0 {
+                budget::spend(upper_rows.len());
+            }
             upper_rows[upper_starts[column]..].sort_unstable();
             upper_starts.push(upper_rows.len());
         }
@@ -67,6 +72,7 @@ impl Fill {
         upper_rows.iter().for_each(|row| lower_starts[row + 1] += 1);
         let work = lower_starts.iter().fold(0_u64, |sum, count| sum.saturating_add((count * count) as u64));
         (0..size).for_each(|column| lower_starts[column + 1] += lower_starts[column]);
+        let held = budget::take::<usize>(2 * upper_rows.len() + 4 * size);
         let mut next = lower_starts.clone();
         let mut lower_rows = vec![0; upper_rows.len()];
         for column in 0..size {
@@ -75,7 +81,7 @@ impl Fill {
                 next[*row] += 1;
             }
         }
-        Self { order, place_of, lower_starts, lower_rows, upper_starts, upper_rows, work }
+        Self { order, place_of, lower_starts, lower_rows, upper_starts, upper_rows, work, _held: held }
     }
 
     fn lower(&self, column: usize) -> std::ops::Range<usize> {
@@ -97,10 +103,14 @@ pub(super) struct UnsymmetricFactor {
     scales: Vec<f64>,
     /// Unknown and raise, in the units of the matrix.
     raised: Vec<(usize, f64)>,
+    _held: Taken,
 }
 
 /// Raises beyond which there is something else wrong.
 const MOST_RAISED: usize = 64;
+/// Multiplications, and columns, between two looks at whether the solve goes on.
+const AT_ONCE: usize = 1_000_000;
+const COLUMNS_AT_ONCE: usize = 256;
 
 impl UnsymmetricFactor {
     /// Factorises; `values` as the pattern has them. `None` where a number is not finite or too many pivots are lost.
@@ -108,6 +118,7 @@ impl UnsymmetricFactor {
         let size = pattern.size();
         let scales = scales(&pattern, values);
         let fill = pattern.fill();
+        let held = budget::take::<f64>(fill.lower_rows.len() + fill.upper_rows.len() + 2 * size);
         let mut factor = Self {
             lower: vec![0.0; fill.lower_rows.len()],
             upper: vec![0.0; fill.upper_rows.len()],
@@ -115,13 +126,20 @@ impl UnsymmetricFactor {
             raised: Vec::new(),
             scales,
             pattern: pattern.clone(),
+            _held: held,
         };
         let mut work = vec![0.0; size];
+        // Multiplications since the last look at the flag, roughly.
+        let mut ahead = 0;
         for column in 0..size {
             let unknown = fill.order[column];
             for entry in pattern.column(unknown) {
                 let row = pattern.rows[entry];
                 work[fill.place_of[row]] = values[entry] * factor.scales[row] * factor.scales[unknown];
+            }
+            ahead += fill.upper(column).len() * (1 + fill.lower(column).len());
+            if ahead > AT_ONCE {
+                budget::spend(std::mem::take(&mut ahead));
             }
             for entry in fill.upper(column) {
                 let row = fill.upper_rows[entry];
@@ -179,6 +197,7 @@ impl UnsymmetricFactor {
         let fill = self.pattern.fill();
         let mut work = vec![0.0; size];
         for values in right_hand_sides.chunks_exact_mut(size) {
+            budget::spend(self.lower.len() + self.upper.len());
             for (place, unknown) in work.iter_mut().zip(&fill.order) {
                 *place = values[*unknown] * self.scales[*unknown];
             }

@@ -29,6 +29,9 @@ pub(super) fn analysis(analysis: &Analysis, at: &Place, mistakes: &mut Mistakes)
             mistakes.add(&at.member("directions"), || "`explore` follows directions, which this leaves out; give true");
         }
     }
+    if analysis.mpec.is_some() && analysis.method != Method::Mpec {
+        mistakes.add(&at.member("mpec"), || "parameters of the method `mpec`, which is not the one chosen; leave them out, or give `\"method\": \"mpec\"`".to_owned());
+    }
     if let Some(given) = &analysis.regularised {
         let at = at.member("regularised");
         if analysis.method != Method::Regularised {

@@ -5,6 +5,7 @@ use std::collections::{HashMap, HashSet};
 use super::Scope;
 use super::numbers::{self, dot};
 use super::obstacles::{Facing, facing};
+use crate::budget;
 use crate::model::mistakes::{Mistakes, Place};
 use crate::model::names::quoted;
 use crate::model::request::{Contact, Obstacle, Side};
@@ -110,6 +111,7 @@ fn start(contact: &Contact, obstacle: &Obstacle, facing: &Facing, at: &Place, mi
 
 /// Notes a second plane that faces one before it with no room between.
 fn room(contact: &Contact, gap: &Gap, others: &[Gap], at: &Place, mistakes: &mut Mistakes) {
+    budget::spend(others.len());
     let faces = |other: &&Gap| dot(&gap.normal, &other.normal) <= OPPOSED - 1.0;
     for other in others.iter().filter(faces) {
         let room = gap.gap + other.gap;

@@ -3,8 +3,8 @@
 use super::reader::{Choices, Fields, Input, boolean, count, number, text};
 use crate::model::mistakes::Mistakes;
 use crate::model::request::{
-    Analysis, ArcLength, ContactRange, Events, Explore, LoadSign, Method, Record, RecordedContact, RecordedContacts,
-    Regularised, Selection,
+    Analysis, ArcLength, Certificate, ContactRange, Events, Explore, LoadSign, Method, Mpec, Record, RecordedContact,
+    RecordedContacts, Regularised, Selection,
 };
 
 const ANALYSIS: Fields = Fields {
@@ -19,6 +19,7 @@ const ANALYSIS: Fields = Fields {
         "explore",
         "record",
         "keep_all",
+        "mpec",
         "regularised",
     ],
     later: &[],
@@ -40,6 +41,14 @@ const CONTACT_RANGE: Choices<ContactRange> = Choices {
     later: &[],
 };
 const RECORDED_CONTACT: Fields = Fields { what: "a recorded contact", known: &["node", "obstacle"], later: &[] };
+
+const MPEC: Fields = Fields { what: "parameters of the program", known: &["certificate"], later: &[] };
+
+const CERTIFICATE: Choices<Certificate> = Choices {
+    what: "a use of the certificate",
+    known: &[("use", Certificate::Use), ("skip", Certificate::Skip)],
+    later: &[],
+};
 
 const REGULARISED: Fields = Fields {
     what: "a regularisation",
@@ -87,6 +96,7 @@ pub(super) fn analysis(input: &Input, mistakes: &mut Mistakes) -> Option<Analysi
     let explore = object.optional("explore", mistakes, explore);
     let record = object.optional("record", mistakes, record);
     let keep_all = object.with_default("keep_all", default.keep_all, mistakes, boolean);
+    let mpec = object.optional("mpec", mistakes, mpec);
     let regularised = object.optional("regularised", mistakes, regularised);
     Some(Analysis {
         method: method?,
@@ -98,6 +108,7 @@ pub(super) fn analysis(input: &Input, mistakes: &mut Mistakes) -> Option<Analysi
         explore: explore?,
         record: record?,
         keep_all: keep_all?,
+        mpec: mpec?,
         regularised: regularised?,
     })
 }
@@ -147,6 +158,15 @@ fn recorded_contact(input: &Input, mistakes: &mut Mistakes) -> Option<RecordedCo
     let node = object.required("node", mistakes, text);
     let obstacle = object.required("obstacle", mistakes, text);
     Some(RecordedContact { node: node?, obstacle: obstacle? })
+}
+
+fn mpec(input: &Input, mistakes: &mut Mistakes) -> Option<Mpec> {
+    let object = input.object(&MPEC, mistakes)?;
+    let default = Mpec::default();
+    let certificate = object.with_default("certificate", default.certificate, mistakes, |input, mistakes| {
+        input.choice(&CERTIFICATE, mistakes)
+    });
+    Some(Mpec { certificate: certificate? })
 }
 
 fn regularised(input: &Input, mistakes: &mut Mistakes) -> Option<Regularised> {

@@ -141,7 +141,9 @@ fn analysis() -> impl Strategy<Value = Analysis> {
     let record = (of(vec(name(), 0..3)), of(contacts), any::<u64>(), any::<bool>())
         .prop_map(|(nodes, contacts, every, directions)| Record { nodes, contacts, every, directions });
     let counts = (any::<u64>(), any::<u64>(), any::<bool>());
-    (method, selection, events, arc_length, counts, explore, of(record), of(regularised)).prop_map(
+    let certificate = prop_oneof![Just(Certificate::Use), Just(Certificate::Skip)];
+    let mpec = certificate.prop_map(|certificate| Mpec { certificate });
+    (method, selection, events, arc_length, counts, explore, of(record), (of(mpec), of(regularised))).prop_map(
         |(
             method,
             selection,
@@ -150,7 +152,7 @@ fn analysis() -> impl Strategy<Value = Analysis> {
             (max_increments, max_modes, keep_all),
             explore,
             record,
-            regularised,
+            (mpec, regularised),
         )| Analysis {
             method,
             selection,
@@ -161,6 +163,7 @@ fn analysis() -> impl Strategy<Value = Analysis> {
             explore,
             record,
             keep_all,
+            mpec,
             regularised,
         },
     )

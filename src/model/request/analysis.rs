@@ -27,6 +27,9 @@ pub struct Analysis {
     pub record: Option<Record>,
     /// Keep contacts that are out of reach in the equations, too. For comparison: the path is the same.
     pub keep_all: bool,
+    /// Parameters of `method: "mpec"`; given with that method only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mpec: Option<Mpec>,
     /// Parameters of `method: "regularised"`; given with that method only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub regularised: Option<Regularised>,
@@ -52,6 +55,14 @@ pub struct Explore {
     pub max_jobs: u64,
 }
 
+impl Analysis {
+    /// Whether every increment is found by its program alone.
+    pub fn skips_certificate(&self) -> bool {
+        let asked = self.mpec.unwrap_or_default().certificate == Certificate::Skip;
+        self.method == Method::Mpec && (asked || self.keep_all)
+    }
+}
+
 impl Default for Analysis {
     fn default() -> Self {
         Self {
@@ -64,9 +75,31 @@ impl Default for Analysis {
             explore: None,
             record: None,
             keep_all: false,
+            mpec: None,
             regularised: None,
         }
     }
+}
+
+/// Parameters of `method: "mpec"`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct Mpec {
+    pub certificate: Certificate,
+}
+
+/// Whether a point that Newton's method found in the mode at hand, and that is shown to solve the program of its increment,
+/// spares solving that program. Either way the path is the same.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Certificate {
+    #[default]
+    Use,
+    /// Every increment's end is found by its program alone, from the point before and the direction there. `keep_all`
+    /// skips, too.
+    Skip,
 }
 
 /// How increments are found. `auto`: arc-length steps in the current contact mode, which is decided where it can change;
@@ -95,7 +128,7 @@ impl Method {
 
 /// Parameters of the rival method: penalties of contact and friction, and Crisfield's arc-length control.
 ///
-/// Penalties are multiples of the plan's `force_scale / displacement_scale`, the stiffness of the softest bar.
+/// Penalties are multiples of the plan's `force_scale / displacement_scale`, the stiffness of the softest bar that resists the load.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[serde(default, deny_unknown_fields)]

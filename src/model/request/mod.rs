@@ -12,7 +12,7 @@ mod structure;
 
 use serde::{Deserialize, Serialize};
 
-pub use analysis::{Analysis, ArcLength, Events, Explore, LoadSign, Method, Regularised, Selection};
+pub use analysis::{Analysis, ArcLength, Certificate, Events, Explore, LoadSign, Method, Mpec, Regularised, Selection};
 pub use record::{ContactRange, Record, RecordedContact, RecordedContacts};
 pub use structure::{Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Strain, Until};
 

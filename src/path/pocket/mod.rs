@@ -17,12 +17,15 @@
 //!
 //! There it slides, although obstacles that press it against each other could hold more: that takes reactions which nothing
 //! has brought about. A node that comes from one obstacle with a force beyond this bound, and within the sum of the friction
-//! cones, is held, since no slide has such a force. Where the cones together are all of space the node is jammed and
-//! stays, as in the plane.
+//! cones, is held, since no slide has such a force: where it comes back within the bound the node may slide again, and where
+//! it leaves the sum no motion has it. Where the cones together are all of space the node is jammed and stays, as in the
+//! plane.
 //! What is not free of the node (supported components) is left out of `R` and of the normals.
 //!
-//! `sliding` has what follows of a node that slides out, `options` its ways as parts of the rate problem.
+//! `hold` has what the cones hold together, `sliding` what follows of a node that slides out, `options` its ways as parts of
+//! the rate problem.
 
+mod hold;
 mod options;
 mod sliding;
 
@@ -33,6 +36,7 @@ use super::corner::{is_driven, total_force};
 use super::energy::reaction_in_space;
 use super::loading::Loading;
 use super::state::{Rate, State};
+use crate::budget;
 use crate::contact::Frame;
 use crate::contact::share::{Cone, least_reactions};
 use crate::contact::vector::{Vector, add, cross, dot, scaled, size, unit};
@@ -75,8 +79,10 @@ const SAME: f64 = 1e-9;
 const INDEPENDENT: f64 = 1e-6;
 /// Cones closer to all of space than this (angle) are taken as not quite.
 const FLAT: f64 = 1e-12;
-/// A force is at a bound within this part of it.
+/// A force is at a bound within this part of it ...
 const AT_BOUND: f64 = 1e-9;
+/// ... or of the forces that meet at the node, whose rounding it may be.
+const ROUND_OFF: f64 = 1e-12;
 /// Parts of a force below this part of it are none.
 const NONE: f64 = 1e-12;
 
@@ -137,55 +143,9 @@ impl Pocket {
 
     fn pairs(&self) -> impl Iterator<Item = [usize; 2]> + use<> {
         let count = self.contacts.len();
-        (0..count).flat_map(move |first| (first + 1..count).map(move |second| [first, second]))
-    }
-
-    /// Whether the friction cones together are all of space: no direction keeps off all of them.
-    pub fn is_jammed(&self) -> bool {
-        // Directions within `sine` of every normal make a set whose corners are on two of the bounds or which is one cap.
-        let sine = |(normal, friction): (&Vector, &f64)| friction / friction.hypot(size(normal));
-        let sines: Vec<f64> = self.normals.iter().zip(&self.frictions).map(sine).collect();
-        let keeps_off = |direction: &Vector| {
-            let fits = |(normal, sine): (&Vector, &f64)| dot(&unit(normal), direction) >= sine - FLAT;
-            self.normals.iter().zip(&sines).all(fits)
-        };
-        if self.normals.iter().any(|normal| keeps_off(&unit(normal))) {
-            return false;
-        }
-        let corner = |[first, second]: [usize; 2]| {
-            let (a, b) = (unit(&self.normals[first]), unit(&self.normals[second]));
-            let cosine = dot(&a, &b);
-            let determinant = 1.0 - cosine * cosine;
-            let (x, y) = (sines[first] - cosine * sines[second], sines[second] - cosine * sines[first]);
-            let inside = add(&scaled(&a, x / determinant), y / determinant, &b);
-            let rest = 1.0 - dot(&inside, &inside);
-            let across = unit(&cross(&a, &b));
-            let height = if self.free.len() == 3 { rest.max(0.0).sqrt() } else { 0.0 };
-            let reached = rest >= -FLAT && (self.free.len() == 3 || rest.abs() <= FLAT);
-            reached && [height, -height].iter().any(|height| keeps_off(&add(&inside, *height, &across)))
-        };
-        let opposed = |[first, second]: [usize; 2]| {
-            self.free.len() == 1 && dot(&self.normals[first], &self.normals[second]) < 0.0
-        };
-        if self.free.len() == 1 {
-            return self.pairs().any(opposed);
-        }
-        if self.free.len() == 2 {
-            return !self.bounds_in_a_plane(&sines).iter().any(keeps_off);
-        }
-        !self.pairs().any(corner)
-    }
-
-    /// The bounds of the directions that keep off each cone, in a plane.
-    fn bounds_in_a_plane(&self, sines: &[f64]) -> Vec<Vector> {
-        let [first, second] = self.free[..] else { return Vec::new() };
-        let axis = cross(&first, &second);
-        let of = |(normal, sine): (&Vector, &f64)| {
-            let (along, across) = (unit(normal), cross(&axis, &unit(normal)));
-            let cosine = (1.0 - sine * sine).max(0.0).sqrt();
-            [cosine, -cosine].map(|cosine| add(&scaled(&along, *sine), cosine, &across))
-        };
-        self.normals.iter().zip(sines).flat_map(of).collect()
+        let all = (0..count).flat_map(move |first| (first + 1..count).map(move |second| [first, second]));
+        // Whoever takes a pair looks at all obstacles of the node.
+        all.inspect(move |_| budget::spend(count))
     }
 
     /// Every way of sliding out; of edges those that lead away from the other obstacles.
@@ -269,18 +229,46 @@ impl Pocket {
         drives.map(|drive| -drive.excess).fold(size(force), f64::min)
     }
 
+    /// The derivative of the margin along a rate of the force.
+    pub fn margin_slope(&self, force: &Vector, rate: &Vector) -> f64 {
+        if self.is_jammed() {
+            return 0.0;
+        }
+        if self.opens(&scaled(&unit(force), -1.0), &[]) {
+            return -dot(&unit(force), rate);
+        }
+        let drives = self.slides().into_iter().filter_map(|slide| Some((slide, self.drive(&slide, force)?)));
+        let nearest = drives.max_by(|a, b| a.1.excess.total_cmp(&b.1.excess));
+        match nearest {
+            Some((_, drive)) if -drive.excess > size(force) => dot(&unit(force), rate),
+            Some((Slide::Edge { places, direction }, _)) => -dot(&self.edge_drive(places, &direction), rate),
+            Some((Slide::Face { place }, drive)) => {
+                dot(&add(&drive.direction, self.frictions[place], &self.face_form(place)), rate)
+            }
+            None => dot(&unit(force), rate),
+        }
+    }
+
+    /// Rate of the whole force, as far as the node is free.
+    pub fn force_rate(&self, loading: Loading<'_>, state: &State, rate: &Rate) -> Vector {
+        let parts = self.contacts.iter().map(|contact| reaction_in_space(loading, *contact, (state, rate)).1);
+        self.free_part(&parts.fold([0.0; 3], |sum, part| add(&sum, 1.0, &part)))
+    }
+
     /// Whether the node is on its way within what holds it without wedging, so that it slides where that ends. A node that
     /// arrives from one obstacle may be held beyond: no slide can begin there.
     pub fn keeps(&self, loading: Loading<'_>, state: &State, rate: &Rate) -> bool {
-        let force = self.force(loading, state);
-        let parts = self.contacts.iter().map(|contact| reaction_in_space(loading, *contact, (state, rate)).1);
-        let change = self.free_part(&parts.fold([0.0; 3], |sum, part| add(&sum, 1.0, &part)));
-        let zero = AT_BOUND * size(&force);
+        let (force, change) = (self.force(loading, state), self.force_rate(loading, state, rate));
+        let meeting = self.contacts.iter().map(|contact| loading.forces_meeting_at(*contact, state));
+        let round_off = ROUND_OFF * meeting.fold(0.0, f64::max);
+        let zero = round_off.max(AT_BOUND * size(&force));
+        let unloaded = size(&force) <= round_off;
         let margin = self.margin(&force);
-        if zero > 0.0 && margin.abs() > zero {
+        if !unloaded && margin.abs() > zero {
             return margin > 0.0;
         }
-        self.margin_of_rate(&self.ready(&force, zero), zero == 0.0, zero, &change) >= -AT_BOUND * size(&change)
+        let slides = if unloaded { Vec::new() } else { self.ready(&force, zero) };
+        self.margin_of_slides(&slides, unloaded, zero, &change) >= -AT_BOUND * size(&change)
     }
 
     /// The slides that a force is just enough for.
@@ -314,9 +302,16 @@ impl Pocket {
         }
     }
 
+    /// How far a rate of the force is from making the node slide or leave, or from what no motion has.
+    pub fn margin_of_rate(&self, force: &Vector, unloaded: bool, zero: f64, rate: &Vector) -> f64 {
+        let slides = if unloaded { Vec::new() } else { self.ready(force, zero) };
+        let margin = self.margin_of_slides(&slides, unloaded, zero, rate);
+        if unloaded { margin } else { margin.min(self.slope_at_bound(force, zero, rate)) }
+    }
+
     /// How far a rate of force is from making the node slide or leave, where `ready` slides are at their limit; without a
     /// force all are.
-    pub fn margin_of_rate(&self, ready: &[(Slide, Drive)], unloaded: bool, zero: f64, rate: &Vector) -> f64 {
+    fn margin_of_slides(&self, ready: &[(Slide, Drive)], unloaded: bool, zero: f64, rate: &Vector) -> f64 {
         if unloaded {
             return self.margin(rate);
         }
@@ -361,9 +356,13 @@ impl Pocket {
         self.frames.iter().zip(&self.frictions).map(of).collect()
     }
 
-    /// Reactions of least norm that make up a force; where they are not found, just at a slide, those of the slide.
+    /// Reactions of least norm that make up a force; where they are not found, just at the end of what holds it or at a
+    /// slide, those that are left there.
     pub fn share(&self, force: &Vector) -> Option<Vec<Vector>> {
-        least_reactions(&self.cones(), &self.free, force).or_else(|| self.resting(force)).or_else(|| self.parts(force))
+        least_reactions(&self.cones(), &self.free, force)
+            .or_else(|| self.at_bound(force))
+            .or_else(|| self.resting(force))
+            .or_else(|| self.parts(force))
     }
 
     /// Normal reactions of three obstacles that make up a force in space.

@@ -3,12 +3,9 @@
 use super::frame;
 use super::{InReach, IncrementProgram, Named};
 use crate::cancel::CancelFlag;
-use crate::contact::Mode;
-#[cfg(test)]
-use crate::contact::Reaction;
+use crate::contact::{Mode, Reaction};
 use crate::mpec::semismooth::{self, Polished};
 use crate::mpec::{Activities, ConeActivity, PairActivity, Problem, Solution};
-#[cfg(test)]
 use crate::path::state::State;
 use nalgebra::DVector;
 
@@ -84,8 +81,7 @@ impl IncrementProgram<'_> {
     }
 
     /// The state at variables of the program, reactions included.
-    #[cfg(test)]
-    fn end_state(&self, x: &DVector<f64>) -> State {
+    pub(super) fn end_state(&self, x: &DVector<f64>) -> State {
         let mut state = self.state(x);
         state.reactions.fill(Reaction::default());
         for entry in &self.reach {

@@ -1,9 +1,7 @@
 //! Between a contact's vectors and their components along the obstacle's tangents, in which the program is written.
 
-#[cfg(test)]
-use crate::contact::Reaction;
 use crate::contact::vector::{Vector, add, dot, scaled, unit};
-use crate::contact::{Frame, Mode};
+use crate::contact::{Frame, Mode, Reaction};
 
 /// Components along the two tangents; the second is 0 where there is one.
 pub type Components = [f64; 2];
@@ -19,7 +17,6 @@ pub fn vector(tangents: &[Vector; 2], components: Components) -> Vector {
 }
 
 /// The reaction of a normal part and components along the tangents.
-#[cfg(test)]
 pub fn reaction(tangents: &[Vector; 2], normal: f64, tangential: Components) -> Reaction {
     Reaction { normal, tangential: vector(tangents, tangential) }
 }

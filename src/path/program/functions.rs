@@ -70,7 +70,11 @@ impl Problem for IncrementProgram<'_> {
                 lower[part] = 0.0;
             }
         }
-        (lower, DVector::repeat(self.variables, f64::INFINITY))
+        let mut upper = DVector::repeat(self.variables, f64::INFINITY);
+        for unknown in 0..=self.loading.structure.unknowns() {
+            (lower[unknown], upper[unknown]) = (-self.most_motion, self.most_motion);
+        }
+        (lower, upper)
     }
 
     fn objective(&self, x: &DVector<f64>) -> f64 {

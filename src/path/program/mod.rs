@@ -28,6 +28,7 @@ mod certificate;
 mod end;
 mod frame;
 mod functions;
+mod search;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
@@ -43,10 +44,11 @@ use super::track::Start;
 use crate::cancel::CancelFlag;
 use crate::contact::vector::{Vector, dot, scaled};
 use crate::contact::{Frame, Mode};
-use crate::mpec::{self, Finish, PairActivity, Settings, StationarityKind};
+use crate::mpec::{self, Finish, PairActivity, Settings, Solution, StationarityKind};
 pub use certificate::Arrived;
 use frame::Components;
 use nalgebra::DVector;
+pub use search::{End, Searched};
 
 /// Contacts whose gap is beyond this many arc lengths cannot close in the increment and are left out.
 const REACH: f64 = 3.0;
@@ -74,6 +76,8 @@ pub struct IncrementProgram<'a> {
     pub forward_weight: f64,
     reach: Vec<InReach>,
     variables: usize,
+    /// Bound on each displacement and on the load, over the arc length sought; infinite where there is none.
+    most_motion: f64,
 }
 
 /// A contact of the program and its first variable: `ρ_n`, then with friction in 2D `ρ_t`, `α⁺`, `α⁻`, in 3D `ρ_t`
@@ -161,6 +165,18 @@ pub enum Foreseen {
 pub struct Counts {
     pub qp_solves: u64,
     pub mpec_solves: u64,
+    pub sqp_iterations: u64,
+    /// The last bound on products that was visited; `None` where the start's own branch was enough.
+    pub last_relaxation: Option<f64>,
+}
+
+impl Counts {
+    fn add(&mut self, solution: &Solution) {
+        self.qp_solves += solution.counts.qp_solves as u64;
+        self.mpec_solves += 1;
+        self.sqp_iterations += solution.counts.sqp_iterations as u64;
+        self.last_relaxation = solution.last_relaxation.or(self.last_relaxation);
+    }
 }
 
 impl<'a> IncrementProgram<'a> {
@@ -185,8 +201,10 @@ impl<'a> IncrementProgram<'a> {
                 _ => 6,
             };
         }
+        let (arc_weight, forward_weight, most_motion) = (1.0, 1.0, f64::INFINITY);
+        let variables = next;
         let mut program =
-            Self { loading, base, step, forward, force, arc_weight: 1.0, forward_weight: 1.0, reach, variables: next };
+            Self { loading, base, step, forward, force, arc_weight, forward_weight, reach, variables, most_motion };
         let dissipation = program.dissipation_along(forward);
         if dissipation > LEAST_DISSIPATION {
             program.forward_weight = FORWARD_SHARE * dissipation;
@@ -315,6 +333,8 @@ impl<'a> IncrementProgram<'a> {
             restarts: 0,
             iteration_limit: 20,
             enumeration_limit: 3,
+            // The arc length bounds every increment.
+            looks_beyond: false,
             tolerance: warm.tolerance.max(self.rounding(start)).min(LOOSEST),
             ..warm
         };
@@ -326,8 +346,7 @@ impl<'a> IncrementProgram<'a> {
                 Some(members) => mpec::follow_branch(self, &start, members, &settings, cancel),
             };
             let Ok(solution) = solution else { break };
-            counts.qp_solves += solution.counts.qp_solves as u64;
-            counts.mpec_solves += 1;
+            counts.add(&solution);
             let size = solution.x.rows(0, self.loading.structure.unknowns() + 1).norm();
             match solution.status {
                 mpec::Status::Feasible if branch.is_some() => return (Foreseen::EndsAfter(size), counts),

@@ -10,6 +10,7 @@
 use super::dictionary::{Dictionary, Feasibility};
 use super::lemke::lemke;
 use super::problem::{Choice, Entity, RateProblem, Signed};
+use crate::budget::{self, Taken};
 use crate::cancel::CancelFlag;
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeSet;
@@ -95,6 +96,7 @@ fn explore_by(
         problem,
         findings: Findings::default(),
         seen: BTreeSet::new(),
+        held: Taken::default(),
         effort,
         common: Vec::new(),
         coupling: DMatrix::zeros(0, 0),
@@ -141,6 +143,8 @@ pub(super) struct Search<'a> {
     pub findings: Findings,
     /// Combinations whose equations were solved.
     pub seen: BTreeSet<Vec<usize>>,
+    /// What they and the rays hold.
+    pub held: Taken,
     pub effort: Effort<'a>,
     /// What all options of each entity have in common, once there is branching.
     common: Vec<Vec<Signed>>,
@@ -194,6 +198,7 @@ impl Search<'_> {
                 break;
             }
             self.findings.examined += self.cost;
+            budget::spend(self.problem.weights());
             for child in self.look_at(task) {
                 if child.parent.in_set { in_sets.push(child) } else { tasks.push(child) }
             }

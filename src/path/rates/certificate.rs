@@ -19,6 +19,7 @@
 //! Math. Comp. 63 (1994) 625, doi:10.1090/S0025-5718-1994-1250776-4; the safeguard is K. G. Murty's least-index method,
 //! finite for P-matrices).
 
+use crate::budget::{self, Taken};
 use crate::linear_algebra::Factorisation;
 use nalgebra::{DMatrix, DVector};
 
@@ -48,10 +49,11 @@ pub type Pairs = Vec<[f64; 2]>;
 /// `b` and the load rate are no coordinates.
 pub fn reduce(a: &DMatrix<f64>, b: &DMatrix<f64>, load: &[f64]) -> Option<(DMatrix<f64>, DVector<f64>)> {
     let count = b.nrows();
-    let mut coordinates = DMatrix::zeros(count + 1, count + 1);
     if b.ncols() != count + 1 || load.len() != count + 1 {
         return None;
     }
+    let _coordinates = budget::take::<f64>((count + 1) * (count + 1));
+    let mut coordinates = DMatrix::zeros(count + 1, count + 1);
     coordinates.rows_mut(0, count).copy_from(b);
     coordinates.row_mut(count).copy_from_slice(load);
     // The forms have unit size: what is left of one that vanishes is round-off.
@@ -59,8 +61,10 @@ pub fn reduce(a: &DMatrix<f64>, b: &DMatrix<f64>, load: &[f64]) -> Option<(DMatr
         return None;
     }
     let factorisation = Factorisation::new(coordinates)?;
+    let _held = budget::take::<f64>(2 * count * count);
     let mut product = DMatrix::zeros(count, count + 1);
     for column in 0..=count {
+        budget::spend(count * count);
         let mut unit = DVector::zeros(count + 1);
         unit[column] = 1.0;
         if !factorisation.solve(&mut unit) {
@@ -103,7 +107,7 @@ pub fn is_monotone(matrix: &DMatrix<f64>, bounds: &[usize]) -> bool {
     for index in 0..symmetric.nrows() {
         symmetric[(index, index)] += ROUND_OFF * size;
     }
-    size == 0.0 || symmetric.cholesky().is_some()
+    size == 0.0 || has_cholesky(&symmetric, 0.0)
 }
 
 /// Factors of rows and columns that make every diagonal entry 1: a congruence, so that definiteness stays. `None` where
@@ -142,11 +146,14 @@ pub fn is_definite(mut matrix: DMatrix<f64>) -> bool {
 /// Symmetric part positive definite, with a margin: by a Cholesky factorisation within the profile, so that a matrix with
 /// a narrow band costs no more than its band (A. Jennings, Comput. J. 9 (1966) 281, doi:10.1093/comjnl/9.3.281).
 fn is_positive_definite(matrix: &DMatrix<f64>) -> bool {
-    let count = matrix.nrows();
     let size = matrix.amax();
-    if !size.is_finite() {
-        return false;
-    }
+    size.is_finite() && has_cholesky(matrix, MARGIN * size)
+}
+
+/// Whether the Cholesky factorisation of the symmetric part exists with so much taken from every pivot.
+fn has_cholesky(matrix: &DMatrix<f64>, margin: f64) -> bool {
+    let count = matrix.nrows();
+    let mut held = Taken::default();
     let mut factor: Vec<f64> = Vec::with_capacity(count);
     // First column and place of each row.
     let mut rows: Vec<(usize, usize)> = Vec::with_capacity(count);
@@ -154,6 +161,8 @@ fn is_positive_definite(matrix: &DMatrix<f64>) -> bool {
     for row in 0..count {
         let first = (0..row).find(|&column| entry(row, column) != 0.0).unwrap_or(row);
         let start = factor.len();
+        held.add::<f64>(row + 1 - first);
+        budget::spend((row + 1 - first) * (row + 1 - first) / 2);
         rows.push((first, start));
         for column in first..=row {
             let (other, place) = rows[column];
@@ -165,8 +174,8 @@ fn is_positive_definite(matrix: &DMatrix<f64>) -> bool {
             if column < row {
                 let pivot = factor[place + column - other];
                 factor.push(value / pivot);
-            } else if value > MARGIN * size {
-                factor.push((value - MARGIN * size).sqrt());
+            } else if value > margin {
+                factor.push((value - margin).sqrt());
             } else {
                 return false;
             }
@@ -195,6 +204,7 @@ pub fn solve_complementarity(matrix: &DMatrix<f64>, constant: &DVector<f64>) -> 
     let mut fewest = count + 1;
     let mut patience = PATIENCE;
     for _ in 0..20 * (count + 5) {
+        budget::spend(count * count);
         let pairs = basic_solution(matrix, constant, &active)?;
         let size = pairs.iter().fold(0.0_f64, |size, [_, b]| size.max(b.abs()));
         let force = pairs.iter().fold(constant.amax(), |size, [a, _]| size.max(a.abs()));

@@ -5,6 +5,7 @@ use super::branch::{FITS, Node, Ray, Search};
 use super::certificate::{is_monotone, options_of, reduce};
 use super::parametric::all_solutions;
 use super::problem::{Entity, Signed};
+use crate::budget;
 use nalgebra::{DMatrix, DVector};
 
 impl Search<'_> {
@@ -16,6 +17,7 @@ impl Search<'_> {
         let Some(pairs) = self.problem.entities.iter().map(Entity::pair).collect::<Option<Vec<_>>>() else {
             return false;
         };
+        let _held = budget::take::<f64>(2 * pairs.len() * self.problem.weights());
         let (a, b, load) = self.coordinates(&pairs);
         let open: Vec<usize> = (0..pairs.len()).collect();
         let chosen = vec![None; pairs.len()];
@@ -27,6 +29,7 @@ impl Search<'_> {
     /// Forces, velocities and load rate over weights that each move by one.
     fn coordinates(&self, pairs: &[[Signed; 2]]) -> (DMatrix<f64>, DMatrix<f64>, Vec<f64>) {
         let motion = &self.problem.motion;
+        budget::spend(motion.len() + 2 * pairs.len() * motion.ncols());
         let scales = DVector::from_iterator(motion.ncols(), motion.column_iter().map(|column| 1.0 / column.norm()));
         let rows = |side: usize| {
             DMatrix::from_fn(pairs.len(), scales.len(), |row, column| {
@@ -47,6 +50,7 @@ impl Search<'_> {
             bounds.extend(entity.touching.map(|_| next));
             next += pairs.len();
         }
+        let _held = budget::take::<f64>(2 * next * self.problem.weights());
         let (a, b, load) = self.coordinates(&conjugates.concat());
         let Some((matrix, _)) = reduce(&a, &b, &load) else { return Vec::new() };
         if !is_monotone(&matrix, &bounds) {
@@ -94,6 +98,7 @@ impl Search<'_> {
         }
         let pairs = open.iter().map(|&entity| self.problem.entities[entity].pair());
         let Some(pairs) = pairs.collect::<Option<Vec<_>>>() else { return false };
+        let _held = budget::take::<f64>(2 * pairs.len() * (pairs.len() + 1));
         let rows = |side: usize| {
             let mut rows = DMatrix::zeros(pairs.len(), pairs.len() + 1);
             for (row, pair) in pairs.iter().enumerate() {

@@ -16,6 +16,7 @@
 mod simplex;
 
 use super::problem::{RateProblem, Signed};
+use crate::budget::{self, Taken};
 
 /// Coefficients (of forms and weights of unit size) below this are zero.
 const NOTHING: f64 = 1e-11;
@@ -61,6 +62,7 @@ pub struct Dictionary {
     nonnegative: Vec<bool>,
     /// Everything but lines has been found empty: `t = 0`, and no form known not to be negative differs from zero.
     lines_only: bool,
+    _held: Taken,
 }
 
 impl Dictionary {
@@ -73,6 +75,8 @@ impl Dictionary {
             return None;
         }
         let width = weights + 1;
+        let held = budget::take::<f64>((count + 1) * width);
+        budget::spend((count + 1) * width);
         let mut table = vec![0.0; (count + 1) * width];
         for form in 0..count {
             let row = &mut table[form * width..(form + 1) * width];
@@ -101,6 +105,7 @@ impl Dictionary {
             sign: vec![1.0; count],
             nonnegative: vec![false; count],
             lines_only: false,
+            _held: held,
         };
         common.iter().flatten().for_each(|signed| dictionary.declare(*signed));
         dictionary.normalise(count);
@@ -171,6 +176,7 @@ impl Dictionary {
     fn exchange(&mut self, row: usize, column: usize) {
         let width = self.width;
         let used = self.columns.len();
+        budget::spend(self.table.len() / width * used);
         let start = row * width;
         let inverse = 1.0 / self.table[start + column];
         for k in 0..used {
@@ -240,6 +246,7 @@ impl Dictionary {
 
     /// Replaces a free weight by a form that is known not to be negative, by the largest pivot; the column if it did.
     fn replace_weight(&mut self) -> Option<usize> {
+        budget::spend(self.rows.len() * self.columns.len());
         let mut best = (NOTHING, 0, 0);
         for column in 1..self.columns.len() {
             if self.columns[column] != Variable::Weight {

@@ -29,6 +29,7 @@ impl Search<'_> {
         if !self.seen.insert(chosen.to_vec()) {
             return Examined::Before;
         }
+        self.held.add::<usize>(chosen.len());
         self.findings.examined += self.cost;
         match self.problem.line(chosen) {
             Line::Nothing => Examined::Nothing,
@@ -57,6 +58,7 @@ impl Search<'_> {
                     self.keep(chosen, weights, &along);
                 }
                 if self.findings.planes.len() < MOST_PLANES {
+                    self.held.add::<f64>(basis.len());
                     self.findings.planes.push(basis);
                 }
                 Examined::Nothing
@@ -73,6 +75,8 @@ impl Search<'_> {
         if !self.findings.rays.iter().any(|ray| (&ray.weights - &weights).amax() <= SAME * size) {
             let fitting = along.fitting(chosen);
             let weak = along.is_weak(&fitting);
+            // A list of its own for each entity, twice.
+            self.held.add::<f64>(weights.len() + 8 * chosen.len());
             let in_doubt = along.in_doubt(chosen);
             self.findings.rays.push(Ray { weights, fitting, in_doubt, weak });
         }

@@ -15,6 +15,7 @@
 
 use super::problem::RateProblem;
 use super::sweeps::{Local, rising};
+use crate::budget::{self, Taken};
 use crate::cancel::CancelFlag;
 use nalgebra::DMatrix;
 use std::collections::BTreeSet;
@@ -42,6 +43,8 @@ pub fn lemke(problem: &RateProblem, cancel: &CancelFlag) -> Vec<Vec<usize>> {
     let locals: Option<Vec<Local>> = problem.entities.iter().map(|entity| Local::of(problem, entity)).collect();
     let (Some(locals), Some(rising)) = (locals, rising(problem)) else { return Vec::new() };
     let pairs: Vec<Pair> = locals.iter().flat_map(pairs_of).collect();
+    let _held = budget::take::<f64>(pairs.len() * pairs.len());
+    budget::spend(pairs.len() * pairs.len());
     let (matrix, load) = coefficients(problem, &pairs);
     let mut left = WORK;
     let mut found = Vec::new();
@@ -138,11 +141,14 @@ fn options(locals: &[Local], positive: &[bool]) -> Vec<usize> {
 struct Table {
     rows: DMatrix<f64>,
     basic: Vec<usize>,
+    _held: Taken,
 }
 
 impl Table {
     fn new(matrix: &DMatrix<f64>, constant: &[f64], cover: &[f64]) -> Self {
         let count = constant.len();
+        let held = budget::take::<f64>(count * (2 * count + 2));
+        budget::spend(count * count);
         let mut rows = DMatrix::zeros(count, 2 * count + 2);
         for row in 0..count {
             rows[(row, row)] = 1.0;
@@ -152,7 +158,7 @@ impl Table {
             rows[(row, 2 * count)] = -cover[row];
             rows[(row, 2 * count + 1)] = constant[row];
         }
-        Self { rows, basic: (0..count).collect() }
+        Self { rows, basic: (0..count).collect(), _held: held }
     }
 
     /// Which `z` are basic at the solution; `None` on a secondary ray, or where the bound on pivots is met.
@@ -169,6 +175,7 @@ impl Table {
         let mut entering = complement(self.pivot(first, artificial));
         for _ in 0..MOST_PIVOTS * (count + 1) {
             *left = left.saturating_sub(self.rows.len());
+            budget::spend(2 * self.rows.len());
             if *left == 0 || self.rows.iter().any(|value| !value.is_finite()) {
                 return None;
             }

@@ -1,6 +1,7 @@
 //! The ray of one combination of options, exactly: the null vector of its equations in both senses.
 
 use super::problem::{Choice, Entity, RateProblem};
+use crate::budget;
 use crate::linear_algebra::null_space;
 use nalgebra::{DMatrix, DVector};
 
@@ -54,6 +55,9 @@ impl RateProblem {
     pub(super) fn line(&self, chosen: &[usize]) -> Line {
         let choices = || self.entities.iter().zip(chosen).map(|(entity, &choice)| &entity.options[choice]);
         let rows: Vec<usize> = choices().flat_map(|choice| choice.zero.iter().copied()).collect();
+        // Its scaled copy, and the basis.
+        let _held = budget::take::<f64>(3 * rows.len() * self.weights());
+        budget::spend(rows.len() * self.weights());
         let equations = self.forms.select_rows(&rows);
         let Some(basis) = null_space(&equations, RANK) else { return Line::NotFinite };
         if basis.ncols() > 1 {
@@ -104,6 +108,7 @@ impl RateProblem {
         let choices = self.entities.iter().zip(chosen).map(|(entity, &choice)| &entity.options[choice]);
         let mut edges: Vec<DVector<f64>> = Vec::new();
         for signed in choices.flat_map(|choice| &choice.nonnegative) {
+            budget::spend((self.motion.nrows() + self.reactions.nrows()) * self.weights());
             let row = self.forms.row(signed.form);
             let parts = [0, 1].map(|column| row.transpose().dot(&basis.column(column)));
             if parts[0].abs().max(parts[1].abs()) <= WEAK * row.amax() * basis.amax() {
@@ -126,6 +131,7 @@ impl RateProblem {
 
     /// What the forms are along a vector of weights of unit arc length.
     pub(in crate::path) fn along(&self, weights: &DVector<f64>) -> Along<'_> {
+        budget::spend((self.forms.nrows() + 2 * self.reactions.nrows()) * self.weights());
         Along { problem: self, values: &self.forms * weights, forces: self.forces(weights) }
     }
 }

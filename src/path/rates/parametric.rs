@@ -18,6 +18,7 @@
 //! Nothing is said where no such `j` is found, or where `a_j` vanishes along a whole piece.
 
 use super::certificate::{Certified, Pairs, is_p_matrix, scale, scales, solve_complementarity};
+use crate::budget;
 use crate::linear_algebra::Factorisation;
 use nalgebra::{DMatrix, DVector};
 
@@ -190,6 +191,7 @@ impl Pieces {
 
     /// Exchanges the two of a pair; `None` where the pivot is lost.
     fn pivot(&mut self, index: usize) -> Option<()> {
+        budget::spend(self.table.len());
         let width = self.count + 2;
         let (before, rest) = self.table.split_at_mut(index * width);
         let (own, after) = rest.split_at_mut(width);
@@ -216,6 +218,7 @@ impl Pieces {
         let mut load = 0.0;
         let mut changing: Option<usize> = None;
         for _ in 0..MOST_PIECES * (self.count + 5) {
+            budget::spend(self.count);
             self.turn_into(load, sense, changing)?;
             let next = self.next(load, sense);
             let (here, size) = self.value(last, load);

@@ -1,6 +1,10 @@
 //! Data of a rate problem.
 
+use crate::budget;
 use nalgebra::DMatrix;
+
+/// Columns of a product that are formed at a time.
+const TOGETHER: usize = 8;
 
 /// A form with a sign: `sign F_form w`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,18 +75,28 @@ impl RateProblem {
 
     /// How strongly entities feel each other: products of the sizes of their forms' coefficients, forms of unit size.
     pub(super) fn coupling(&self) -> DMatrix<f64> {
-        let mut footprints: DMatrix<f64> = DMatrix::zeros(self.entities.len(), self.weights());
+        let (count, weights) = (self.entities.len(), self.weights());
+        let _held = budget::take::<f64>(2 * count * weights + count * count);
+        let mut footprints: DMatrix<f64> = DMatrix::zeros(count, weights);
         for (row, entity) in self.entities.iter().enumerate() {
             for form in entity.options.iter().flat_map(|choice| &choice.zero) {
+                budget::spend(2 * weights);
                 let values = self.forms.row(*form);
                 let size = values.amax().max(f64::MIN_POSITIVE);
                 // The last weight, the held structure's own, couples everything.
-                for column in 0..self.weights().saturating_sub(1) {
+                for column in 0..weights.saturating_sub(1) {
                     footprints[(row, column)] += values[column].abs() / size;
                 }
             }
         }
-        &footprints * footprints.transpose()
+        let transposed = footprints.transpose();
+        let mut coupling = DMatrix::zeros(count, count);
+        for first in (0..count).step_by(TOGETHER) {
+            let columns = TOGETHER.min(count - first);
+            budget::spend(count * weights * columns);
+            footprints.mul_to(&transposed.columns(first, columns), &mut coupling.columns_mut(first, columns));
+        }
+        coupling
     }
 
     /// Number of combinations of options, saturating.

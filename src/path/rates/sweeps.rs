@@ -7,6 +7,7 @@
 //! SIAM J. Control 9 (1971) 385, doi:10.1137/0309028), and plain again where that does not settle.
 
 use super::problem::{Entity, RateProblem, Touching};
+use crate::budget;
 use crate::cancel::CancelFlag;
 use nalgebra::{DMatrix, DVector};
 
@@ -151,6 +152,7 @@ fn settle(
     let (mut worked, mut unchanged, mut enough) = (0, 0, UNCHANGED);
     let mut first: Option<f64> = None;
     loop {
+        budget::spend(forms.len());
         if cancel.is_cancelled() || worked > WORK {
             return None;
         }

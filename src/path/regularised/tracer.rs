@@ -5,6 +5,7 @@ use super::law::Penalties;
 use super::record::{give, modes, work_and_dissipation};
 use super::stepping::Accepted;
 use super::system::{Point, System};
+use crate::budget::{self, Budget};
 use crate::cancel::CancelFlag;
 use crate::linear_algebra::Factorisation;
 use crate::model::request::Regularised;
@@ -25,6 +26,7 @@ pub struct RegularisedPath<'a> {
     pub(super) scene: &'a Scene,
     pub(super) settings: Regularised,
     pub(super) cancel: CancelFlag,
+    budget: Budget,
     began: Instant,
     phase: Phase,
     pub(super) stage: usize,
@@ -53,6 +55,7 @@ impl<'a> RegularisedPath<'a> {
         let contacts = vec![super::law::Response::default(); scene.contacts.len()];
         Self {
             settings: scene.analysis.regularised.unwrap_or_default(),
+            budget: Budget::under_way(cancel.clone()),
             cancel,
             began: Instant::now(),
             phase: Phase::NotStarted,
@@ -214,9 +217,26 @@ impl Iterator for RegularisedPath<'_> {
     type Item = Increment;
 
     fn next(&mut self) -> Option<Increment> {
+        let (budget, index) = (self.budget.clone(), self.totals.index);
+        budget.during(|| self.increment()).unwrap_or_else(|breach| {
+            self.phase = Phase::Ended;
+            self.totals.index = index;
+            self.totals.break_off(breach, self.began.elapsed().as_secs_f64());
+            self.tangent = None;
+            None
+        })
+    }
+}
+
+impl RegularisedPath<'_> {
+    /// The next increment; `None` where the path has ended.
+    fn increment(&mut self) -> Option<Increment> {
         match self.phase {
             Phase::Ended => return None,
-            Phase::NotStarted => return Some(self.begin_stage()),
+            Phase::NotStarted => {
+                budget::spend(0);
+                return Some(self.begin_stage());
+            }
             Phase::Running => {}
         }
         if std::mem::take(&mut self.stage_over) && !self.next_stage() {

@@ -1,6 +1,7 @@
 //! From the request's names and units to numbers without.
 
 use super::{End, Reported, StageLoad};
+use crate::budget;
 use crate::contact::obstacle::Obstacle;
 use crate::contact::vector::{Vector, size};
 use crate::contact::{Contact, Sliding};
@@ -18,57 +19,8 @@ use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 /// Euclidean norm: the scales must not depend on the axes.
-fn norm(values: &[f64]) -> f64 {
+pub(super) fn norm(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum::<f64>().sqrt()
-}
-
-/// The load factor at which a stage is to end, if it says so; else 1.
-fn expected_load_factor(stage: &request::Stage) -> f64 {
-    let bounds = stage.until.iter().flat_map(|until| [until.load_above, until.load_below]);
-    bounds.flatten().map(f64::abs).reduce(f64::max).unwrap_or(1.0)
-}
-
-/// `ℓ` and `φ`.
-pub(super) fn scales(model: &Model, analysis: &Analysis) -> (f64, f64) {
-    let (mut longest, mut softest, mut spring) = (0.0_f64, f64::INFINITY, 0.0_f64);
-    for element in &model.elements {
-        match element {
-            request::Element::Bar { nodes, axial_stiffness, .. } => {
-                let ends = (&model.nodes[&nodes[0]], &model.nodes[&nodes[1]]);
-                let difference: Vec<f64> = ends.0.iter().zip(ends.1).map(|(a, b)| a - b).collect();
-                longest = longest.max(norm(&difference));
-                softest = softest.min(*axial_stiffness);
-            }
-            request::Element::Spring { stiffness, .. } => {
-                spring = spring.max(norm(&stiffness.concat()));
-            }
-        }
-    }
-    let (mut largest_load, mut largest_motion) = (0.0_f64, 0.0_f64);
-    for stage in &model.stages {
-        let factor = expected_load_factor(stage);
-        for force in stage.forces.values() {
-            largest_load = largest_load.max(factor * norm(force));
-        }
-        for motion in stage.displacements.values().chain(stage.obstacle_motion.values()) {
-            largest_motion = largest_motion.max(factor * norm(motion));
-        }
-    }
-    let (mut length, mut force) = if longest > 0.0 {
-        (longest, softest)
-    } else if spring > 0.0 && largest_load.max(spring * largest_motion) > 0.0 {
-        let force = largest_load.max(spring * largest_motion);
-        (force / spring, force)
-    } else {
-        (1.0, 1.0)
-    };
-    if let Some(given) = analysis.arc_length.displacement_scale {
-        if longest == 0.0 && spring > 0.0 {
-            force = spring * given;
-        }
-        length = given;
-    }
-    (length, force)
 }
 
 pub(super) fn build_structure(model: &Model, numbers: &HashMap<&str, usize>, length: f64, force: f64) -> Structure {
@@ -144,6 +96,7 @@ pub(super) fn build_contacts(
     // By node and gap, so that only those of nearly the same gap are compared.
     let mut by_gap: HashMap<usize, BTreeMap<u64, Vec<usize>>> = HashMap::new();
     for (index, contact) in model.contacts.iter().enumerate() {
+        budget::spend(1);
         let built = build_contact(model, contact, numbers[contact.node.as_str()], length, structure);
         if built.friction == 0.0 && contact.friction > 0.0 {
             left_out.push(LeftOut {
@@ -203,6 +156,17 @@ pub(super) fn build_contacts(
         .map(|contacts| Corner { contacts: contacts.clone() })
         .collect();
     Contacts { contacts, contact_names, reported, corners }
+}
+
+/// The request's contact for which each one that is solved for is numbered: the first.
+pub(super) fn first_contacts(reported: &[Reported], count: usize) -> Vec<usize> {
+    let mut first: Vec<usize> = Vec::with_capacity(count);
+    for (index, one) in reported.iter().enumerate() {
+        if one.contact == first.len() {
+            first.push(index);
+        }
+    }
+    first
 }
 
 /// Numbers in the order of these.
@@ -288,17 +252,24 @@ pub(super) struct Scaled<'a> {
     pub first_contacts: &'a [usize],
     pub length: f64,
     pub force: f64,
+    /// `ℓ` over what it would be if none were given.
+    pub stretched: f64,
 }
 
-pub(super) fn build_stage(stage: &request::Stage, scaled: &Scaled<'_>) -> StageLoad {
-    let &Scaled { model, analysis, numbers, structure, first_contacts, length, force } = scaled;
+/// `resistance` is the force that the load scale goes by.
+pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &Scaled<'_>) -> StageLoad {
+    let &Scaled { model, analysis, numbers, structure, first_contacts, length, force, stretched } = scaled;
     let dimension = structure.dimension;
+    // Forces and motions of supports, and shifts of obstacles.
+    let held = budget::take::<f64>(2 * structure.freedoms() + 3 * first_contacts.len());
+    budget::spend(structure.freedoms());
     let largest = |vectors: &IndexMap<String, Vec<f64>>| vectors.values().map(|v| norm(v)).fold(0.0_f64, f64::max);
-    let by_force = force / largest(&stage.forces);
+    let by_force = resistance / largest(&stage.forces);
     let by_motion = length / largest(&stage.displacements).max(largest(&stage.obstacle_motion));
     let natural = by_force.min(by_motion);
     let natural = if natural.is_finite() { natural } else { 1.0 };
     let load_scale = analysis.arc_length.load_scale.unwrap_or(natural);
+    let enlarged = stretched.max(load_scale / natural).max(1.0);
     let over_freedoms = |vectors: &IndexMap<String, Vec<f64>>, unit: f64| {
         let mut values = vec![0.0; structure.freedoms()];
         for (name, vector) in vectors {
@@ -338,5 +309,5 @@ pub(super) fn build_stage(stage: &request::Stage, scaled: &Scaled<'_>) -> StageL
     }
     let loads = stage.until.as_ref().map(|until| [until.load_above, until.load_below]);
     let given_loads = loads.into_iter().flatten().flatten().collect();
-    StageLoad { name: Arc::from(stage.name.as_str()), pattern, load_scale, ends, given_loads }
+    StageLoad { name: Arc::from(stage.name.as_str()), pattern, load_scale, enlarged, ends, given_loads, _held: held }
 }

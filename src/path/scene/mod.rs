@@ -2,13 +2,17 @@
 //!
 //! Lengths are divided by `displacement_scale` `ℓ`, forces by `force_scale` `φ`, each stage's load factor by its
 //! `load_scale` `σ`; a pattern `f` becomes `f σ/φ`. By default `ℓ` is the longest bar and `φ` the smallest axial
-//! stiffness; without bars, `φ` is the largest force of any stage at the load factor at which the stage is to end (1 where
-//! it names none), or the largest spring stiffness (Frobenius norm) times the largest prescribed motion if that is more,
-//! and `ℓ` that force over that stiffness.
-//! `σ` is the smaller of `φ / max |f|` and `ℓ / max |motion|`. All follow the units of the input, so that a change of units changes nothing but round-off.
+//! stiffness of those that resist the load; without bars, `φ` is the largest force of any stage at the load factor at which
+//! the stage is to end (1 where it names none), or the stiffness of the springs that resist the load (the largest Frobenius
+//! norm) times the largest prescribed motion if that is more, and `ℓ` that force over that stiffness. What resists is
+//! found by `resistance`; where the bars' stiffnesses differ by no more than a factor of two it need not be.
+//! `σ` is the smaller of `φ / max |f|`, with the `φ` of what resists the stage's own load, and `ℓ / max |motion|`. All follow
+//! the units of the input, so that a change of units changes nothing but round-off.
 
 mod build;
 mod refuse;
+mod resistance;
+mod scales;
 
 use super::corner::Corner;
 use super::displacements::Displacements;
@@ -16,11 +20,13 @@ use super::loading::LoadPattern;
 use super::newton::Place;
 use super::plan::Plan;
 use super::state::State;
+use crate::budget::{self, Breach, Budget, Taken};
 use crate::contact::Contact;
-use crate::model::InputErrors;
 use crate::model::request::{Analysis, JobRequest};
+use crate::model::{InputError, InputErrors};
 use crate::structure::Structure;
-use build::{Contacts, Scaled, build_contacts, build_stage, build_structure, scales};
+use build::{Contacts, Scaled, build_contacts, build_stage, build_structure, first_contacts};
+use scales::{Scales, scales};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -67,9 +73,12 @@ pub(super) struct StageLoad {
     pub name: Arc<str>,
     pub pattern: LoadPattern,
     pub load_scale: f64,
+    /// By how many times the scales that are given exceed those that would be if none were; no less than 1.
+    pub enlarged: f64,
     pub ends: Vec<End>,
     /// The loads at which the stage may end, in the user's units, in the order of those `ends`.
     given_loads: Vec<f64>,
+    _held: Taken,
 }
 
 impl StageLoad {
@@ -137,24 +146,34 @@ impl End {
 }
 
 impl Scene {
-    /// Checks the request as a whole and makes it dimensionless.
+    /// Checks the request as a whole and makes it dimensionless, within the budget of the solve under way.
+    ///
+    /// # Errors
+    /// What is wrong with the request, and a structure whose matrices are too large for that budget.
     pub fn new(request: &JobRequest) -> Result<Self, InputErrors> {
+        Budget::under_way(budget::cancel_flag()).during(|| Self::built(request)).unwrap_or_else(|breach| {
+            let what = match breach {
+                Breach::Cancelled => budget::end(breach),
+                Breach::Memory { .. } => "the model is too large",
+                Breach::FactorEntries { .. } | Breach::FactorWork { .. } => {
+                    "the elements join too many nodes to too many others"
+                }
+            };
+            Err(InputErrors(vec![InputError::new("/model/elements", format!("{what}: {breach}"))]))
+        })
+    }
+
+    fn built(request: &JobRequest) -> Result<Self, InputErrors> {
         crate::model::check::check(request)?;
         let model = &request.model;
-        let (length, force) = scales(model, &request.analysis);
         let numbers: HashMap<&str, usize> =
             model.nodes.keys().enumerate().map(|(number, name)| (name.as_str(), number)).collect();
+        let Scales { length, force, resistances, stretched } = scales(model, &request.analysis, &numbers);
         let structure = build_structure(model, &numbers, length, force);
         let mut left_out = Vec::new();
         let Contacts { contacts, contact_names, reported, corners } =
             build_contacts(model, &numbers, length, &structure, &mut left_out);
-        // A contact that is solved for is numbered when the first of the request's for it is read.
-        let mut first_contacts: Vec<usize> = Vec::with_capacity(contacts.len());
-        for (index, one) in reported.iter().enumerate() {
-            if one.contact == first_contacts.len() {
-                first_contacts.push(index);
-            }
-        }
+        let first_contacts = first_contacts(&reported, contacts.len());
         let scaled = Scaled {
             model,
             analysis: &request.analysis,
@@ -163,8 +182,10 @@ impl Scene {
             first_contacts: &first_contacts,
             length,
             force,
+            stretched,
         };
-        let stages: Vec<StageLoad> = model.stages.iter().map(|stage| build_stage(stage, &scaled)).collect();
+        let stages: Vec<StageLoad> =
+            model.stages.iter().zip(&resistances).map(|(stage, force)| build_stage(stage, *force, &scaled)).collect();
         let plan = Plan {
             unknowns: structure.unknowns() as u64,
             contacts: reported.len() as u64,

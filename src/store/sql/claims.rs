@@ -9,7 +9,9 @@
 //! Which job ends the process that works on it cannot be seen from outside: all that ran there are lost alike. So a loss
 //! counts for as long as nothing of the job was stored after it, and of the jobs with a loss that counts one is worked on
 //! at a time, next to others that have none. One that ends every process is then alone among the suspects at each of its
-//! attempts; a job that was beside it at the first is not beside it at the next.
+//! attempts; a job that was beside it at the first is not beside it at the next. What makes a job fail are the losses that
+//! speak against it: those as a suspect, and those of a job that was lost alone. A host that goes down takes several along,
+//! which says nothing of any of them.
 
 use super::dialect::{Cells, Dialect, Value, values};
 use super::store::{Engine, Of, writer};
@@ -47,10 +49,10 @@ macro_rules! claimed {
 /// Takes the next job from the queue: `$1` worker, `$2` milliseconds. However long the queue is, it looks at its front only.
 pub(in crate::store) const TAKE: &str = concat!(
     "UPDATE jobs SET status = 'running', worker = $1, lease_until = {now} + $2, attempt = attempt + 1, \
-     started_at = coalesce(started_at, {now}), updated_at = {now} \
+     accompanied = 0, started_at = coalesce(started_at, {now}), updated_at = {now} \
      WHERE id = (SELECT id FROM jobs {waiting} WHERE status = 'queued' AND (losses = 0 OR NOT EXISTS \
      (SELECT 1 FROM jobs AS suspect WHERE suspect.status = 'running' AND suspect.losses > 0)) \
-     ORDER BY priority DESC, id LIMIT 1 {free})",
+     ORDER BY priority DESC, turn, id LIMIT 1 {free})",
     claimed!()
 );
 
@@ -155,23 +157,55 @@ pub(super) async fn release<E: Engine>(engine: &E, lease: &Lease) -> Result<Leas
     answer(row.as_ref())
 }
 
+/// Which process a worker is of: its name begins with that, 36 characters long.
+macro_rules! process {
+    ($worker:literal) => {
+        concat!("substr(", $worker, ", 1, 36)")
+    };
+}
+
+/// A loss that counts, as 1; otherwise 0.
+macro_rules! counts {
+    () => {
+        concat!(
+            "CASE WHEN losses > 0 OR (accompanied = 0 AND NOT EXISTS (SELECT 1 FROM jobs AS other \
+             WHERE other.status = 'running' AND other.id <> jobs.id AND (other.lease_until < {clock} OR ",
+            process!("other.worker"),
+            " = ",
+            process!("jobs.worker"),
+            "))) THEN 1 ELSE 0 END"
+        )
+    };
+}
+
+const RECLAIM: &str = concat!(
+    "UPDATE jobs SET losses = losses + 1, counted_losses = counted_losses + ",
+    counts!(),
+    ", status = CASE WHEN cancel_requested <> 0 THEN 'cancelled' WHEN counted_losses + ",
+    counts!(),
+    " < max_attempts THEN 'queued' ELSE 'failed' END, stop_reason = CASE WHEN cancel_requested <> 0 THEN 'cancelled' END, \
+     error = CASE WHEN cancel_requested = 0 AND counted_losses + ",
+    counts!(),
+    " >= max_attempts THEN 'the worker was lost ' || (losses + 1) || ' times in a row, nothing stored between: the process that \
+works on the job ends, or does not answer in time' END, \
+     ended_at = CASE WHEN cancel_requested <> 0 OR counted_losses + ",
+    counts!(),
+    " >= max_attempts THEN {now} END, worker = NULL, lease_until = NULL, updated_at = {now} \
+     WHERE id IN (SELECT id FROM jobs WHERE status = 'running' AND lease_until < {clock} {free}) RETURNING id, sweep"
+);
+
 pub(super) async fn reclaim_expired<E: Engine>(engine: &E) -> Result<u64> {
     let mut connection = writer(engine).await?;
-    let touched = Of::<E>::rows(
-        &mut connection,
-        "UPDATE jobs SET losses = losses + 1, \
-         status = CASE WHEN cancel_requested <> 0 THEN 'cancelled' WHEN losses + 1 < max_attempts THEN 'queued' \
-                  ELSE 'failed' END, \
-         stop_reason = CASE WHEN cancel_requested <> 0 THEN 'cancelled' END, \
-         error = CASE WHEN cancel_requested = 0 AND losses + 1 >= max_attempts \
-                 THEN 'the worker was lost ' || (losses + 1) || ' times in a row, nothing stored between: the process that \
-works on the job ends, or does not answer in time' END, \
-         ended_at = CASE WHEN cancel_requested <> 0 OR losses + 1 >= max_attempts THEN {now} END, \
-         worker = NULL, lease_until = NULL, updated_at = {now} \
-         WHERE id IN (SELECT id FROM jobs WHERE status = 'running' AND lease_until < {clock} {free}) RETURNING id, sweep",
-        values![],
-    )
-    .await?;
+    // Leases of one process do not run out at the same moment: those that are left are told that others were lost before.
+    let tell = concat!(
+        "UPDATE jobs SET accompanied = 1 WHERE status = 'running' AND lease_until >= {clock} AND accompanied = 0 AND ",
+        process!("worker"),
+        " IN (SELECT ",
+        process!("worker"),
+        " FROM jobs WHERE status = 'running' AND lease_until < {clock})"
+    );
+    Of::<E>::run(&mut connection, tell, values![]).await?;
+    let touched = Of::<E>::rows(&mut connection, RECLAIM, values![]).await?;
     for row in &touched {
         engine.signals().job_changed(rows::id(row, "id")?);
         tell_sweep(engine, Some(row))?;

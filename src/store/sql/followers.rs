@@ -1,9 +1,10 @@
 //! Jobs that follow a direction of another, and what they begin from.
 
-use super::dialect::{Dialect, values};
+use super::dialect::{Cells, Dialect, values};
 use super::jobs::{self, waiting};
 use super::rows::{self, job_columns};
-use super::store::{Engine, Of, begin, reader};
+use super::store::{Engine, Of, begin, give_up, reader};
+use super::turns::{self, Class, next_turn};
 use crate::store::{NewFollower, Origin, Parent, Result, Submitted};
 use uuid::Uuid;
 
@@ -37,7 +38,7 @@ pub(super) async fn follow<E: Engine>(engine: &E, job: NewFollower) -> Result<Op
     )
     .await?;
     let full = jobs::is_full::<Of<E>>(&mut transaction, job.most_queued).await?;
-    transaction.rollback().await?;
+    give_up(transaction).await;
     let Some(known) = known else {
         return Ok(full.then_some(Submitted::QueueFull { most: job.most_queued }));
     };
@@ -57,16 +58,18 @@ pub(super) async fn insert<D: Dialect>(
     let Parent { job: parent, increment, direction } = job.parent;
     let (id, key) = (Uuid::now_v7(), jobs::owned_key(job.owner.as_deref(), job.idempotency_key.as_deref()));
     // Nobody drops the parent, and what is copied of it, meanwhile.
-    let inserted = D::run(
+    let class = if place.is_some() { Class::Many } else { Class::Single };
+    let inserted = D::first(
         connection,
         concat!(
             "INSERT INTO jobs (id, name, status, priority, request, idempotency_key, plan, max_increments, max_attempts, \
-             created_at, updated_at, parent, parent_increment, parent_direction, family, family_number, generation, owner) \
+             created_at, updated_at, parent, parent_increment, parent_direction, family, family_number, generation, owner, class, turn) \
              SELECT $2, name, 'queued', priority, request, $3, plan, coalesce($4, max_increments), max_attempts, \
-             {now}, {now}, id, $5, $6, $7, $8, $9, coalesce($11, owner) \
-             FROM jobs WHERE id = $10 AND EXISTS (SELECT 1 FROM branches WHERE job = $10 AND increment_index <= $5) AND ",
+             {now}, {now}, id, $5, $6, $7, $8, $9, coalesce($11, owner), $12, ",
+            next_turn!("parent.priority", "coalesce($11, parent.owner)"),
+            " FROM jobs AS parent WHERE id = $10 AND EXISTS (SELECT 1 FROM branches WHERE job = $10 AND increment_index <= $5) AND ",
             waiting!(),
-            " < $1 {there} ON CONFLICT (idempotency_key) DO NOTHING",
+            " < $1 {there} ON CONFLICT (idempotency_key) DO NOTHING RETURNING priority, owner",
         ),
         values![
             job.most_queued,
@@ -80,12 +83,13 @@ pub(super) async fn insert<D: Dialect>(
             place.map_or(0, |place| place.generation),
             parent,
             &job.owner,
+            class.number(),
         ],
     )
     .await?;
-    if inserted == 0 {
-        return Ok(None);
-    }
+    let Some(row) = inserted else { return Ok(None) };
+    let (priority, owner) = (rows::signed(&row, "priority")?, row.text("owner")?);
+    turns::put_between::<D>(connection, id, class, priority, owner.as_deref()).await?;
     let copied = concat!(
         "INSERT INTO origins (job, body, trail) SELECT $4, body, ",
         passed!(),

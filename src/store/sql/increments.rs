@@ -3,7 +3,7 @@
 use super::claims::{self, held, milliseconds, ran};
 use super::dialect::{Dialect, values};
 use super::rows;
-use super::store::{Engine, Of, begin, reader};
+use super::store::{Engine, Of, begin, give_up, reader};
 use crate::store::{Batch, Checkpoint, Ending, Lease, LeaseAnswer, Line, Origin, Page, Result};
 use std::time::Duration;
 use tokio_stream::StreamExt;
@@ -23,7 +23,7 @@ pub(super) async fn append<E: Engine>(
     let row = Of::<E>::first(
         &mut transaction,
         concat!(
-            "UPDATE jobs SET last_index = coalesce($4, last_index), lease_until = {now} + $6, losses = 0, \
+            "UPDATE jobs SET last_index = coalesce($4, last_index), lease_until = {now} + $6, losses = 0, counted_losses = 0, \
              stored_bytes = stored_bytes + $5, first_limit = coalesce(first_limit, $7), ",
             ran!(),
             held!(),
@@ -42,11 +42,11 @@ pub(super) async fn append<E: Engine>(
     .await?;
     let answer = claims::answer(row.as_ref())?;
     if answer == LeaseAnswer::Lost {
-        transaction.rollback().await?;
+        give_up(transaction).await;
         return Ok(answer);
     }
     if let Err(error) = Of::<E>::insert_lines(&mut transaction, lease.job, lines).await {
-        transaction.rollback().await?;
+        give_up(transaction).await;
         // The answer to the first try was lost, and the worker asks again.
         if claims::is_repeated(&error) && are_stored(engine, lease.job, lines).await? {
             engine.signals().job_changed(lease.job);
@@ -78,7 +78,7 @@ pub(super) async fn finish<E: Engine>(
         concat!(
             "UPDATE jobs SET status = $4, stop_reason = $5, report = $6, error = $7, last_index = coalesce($8, last_index), \
              stored_bytes = stored_bytes + $9, first_limit = coalesce(first_limit, $10), worker = NULL, lease_until = NULL, \
-             losses = 0, ended_at = {now}, ",
+             losses = 0, counted_losses = 0, ended_at = {now}, ",
             ran!(),
             held!(),
             "RETURNING cancel_requested, sweep"

@@ -2,9 +2,11 @@
 
 use super::claims;
 use super::dialect::{Cells, Dialect, Value, values};
-use super::rows::{self, job_columns};
-use super::store::{Engine, Of, begin, reader, writer};
-use crate::store::{JobRecord, Keep, ListFilter, NewJob, Result, Standing, Status, Submitted};
+use super::rows::{self, job_columns, listed_columns};
+use super::store::{Engine, Of, begin, give_up, reader, writer};
+use super::turns::{self, Class, next_turn};
+use crate::store::{JobRecord, Keep, ListFilter, Listed, NewJob, Result, Retried, Standing, Status, Submitted};
+use tokio_stream::StreamExt;
 use uuid::Uuid;
 
 /// Ended jobs that are dropped in one go.
@@ -23,12 +25,15 @@ pub(super) use waiting;
 pub(in crate::store) async fn insert<D: Dialect>(connection: &mut D::Connection, job: &NewJob) -> Result<Submitted> {
     let id = Uuid::now_v7();
     let key = owned_key(job.owner.as_deref(), job.idempotency_key.as_deref());
+    let class = Class::of(job.task);
     let inserted = D::first(
         connection,
         concat!(
             "INSERT INTO jobs (id, name, status, priority, request, idempotency_key, plan, max_increments, max_attempts, \
-             created_at, updated_at, family, task, owner) \
-             SELECT $2, $3, 'queued', $4, $5, $6, $7, $8, $9, {now}, {now}, $10, $11, $12 WHERE ",
+             created_at, updated_at, family, task, owner, summary, class, turn) \
+             SELECT $2, $3, 'queued', $4, $5, $6, $7, $8, $9, {now}, {now}, $10, $11, $12, $13, $14, ",
+            next_turn!("$4", "$12"),
+            " WHERE ",
             waiting!(),
             " < $1 ON CONFLICT (idempotency_key) DO NOTHING RETURNING ",
             job_columns!(),
@@ -46,10 +51,13 @@ pub(in crate::store) async fn insert<D: Dialect>(connection: &mut D::Connection,
             job.explore.map(|_| id),
             job.task.name(),
             &job.owner,
+            &job.summary,
+            class.number(),
         ],
     )
     .await?;
     if let Some(row) = inserted {
+        turns::put_between::<D>(connection, id, class, job.priority.into(), job.owner.as_deref()).await?;
         let Some(explore) = job.explore else { return Ok(Submitted::Created(rows::job(&row)?)) };
         let insert = "INSERT INTO families (id, depth, max_jobs) VALUES ($1, $2, $3)";
         D::run(connection, insert, values![id, explore.depth, explore.max_jobs]).await?;
@@ -89,15 +97,16 @@ pub(super) async fn get<E: Engine>(engine: &E, id: Uuid) -> Result<Option<JobRec
 }
 
 pub(super) async fn standing<E: Engine>(engine: &E, id: Uuid) -> Result<Option<Standing>> {
-    let select = "SELECT status, last_index FROM jobs WHERE id = $1";
+    let select = "SELECT task, owner, status, last_index FROM jobs WHERE id = $1";
     let row = Of::<E>::first(&mut *reader(engine).await?, select, values![id]).await?;
-    let standing = |row: &_| Ok(Standing { status: rows::status(row)?, last_index: rows::last_index(row)? });
-    row.as_ref().map(standing).transpose()
+    let Some(row) = row else { return Ok(None) };
+    let (task, status, last_index) = (rows::task(&row)?, rows::status(&row)?, rows::last_index(&row)?);
+    Ok(Some(Standing { task, owner: row.text("owner")?, status, last_index }))
 }
 
-pub(super) async fn list<E: Engine>(engine: &E, filter: ListFilter) -> Result<Vec<JobRecord>> {
+pub(super) async fn list<E: Engine>(engine: &E, filter: ListFilter) -> Result<Listed> {
     // Only the conditions that are asked for, so that the statement can walk an index.
-    let mut select = concat!("SELECT ", job_columns!(), " FROM jobs WHERE task = $1").to_owned();
+    let mut select = concat!("SELECT ", listed_columns!(), " FROM jobs WHERE task = $1").to_owned();
     let mut values = vec![Value::from(filter.task.name())];
     let mut add = |condition: &str, value| {
         values.push(value);
@@ -118,8 +127,20 @@ pub(super) async fn list<E: Engine>(engine: &E, filter: ListFilter) -> Result<Ve
     if let Some(before) = filter.before {
         add(" AND id < ", Value::from(before));
     }
-    add(" ORDER BY id DESC LIMIT ", Value::from(filter.limit));
-    Of::<E>::rows(&mut *reader(engine).await?, &select, &values).await?.iter().map(rows::job).collect()
+    // One more than asked for tells whether there are others.
+    add(" ORDER BY id DESC LIMIT ", Value::from(filter.page.rows.saturating_add(1)));
+    let mut connection = reader(engine).await?;
+    let mut stream = Of::<E>::stream(&mut connection, &select, &values);
+    let (mut jobs, mut bytes): (Vec<JobRecord>, usize) = (Vec::new(), 0);
+    while let Some(row) = stream.next().await {
+        if jobs.len() >= filter.page.rows as usize || bytes >= filter.page.bytes {
+            return Ok(Listed { jobs, more: true });
+        }
+        let job = rows::job(&row?)?;
+        bytes += job.bytes();
+        jobs.push(job);
+    }
+    Ok(Listed { jobs, more: false })
 }
 
 pub(super) async fn tally<E: Engine>(engine: &E) -> Result<Vec<(Status, u64)>> {
@@ -142,6 +163,33 @@ pub(super) async fn request_cancel<E: Engine>(engine: &E, id: Uuid) -> Result<Op
     engine.signals().job_changed(id);
     claims::tell_sweep(engine, row.as_ref())?;
     get(engine, id).await
+}
+
+pub(super) async fn retry<E: Engine>(engine: &E, id: Uuid, most: u64) -> Result<Option<Retried>> {
+    let mut transaction = begin(engine).await?;
+    // An exploration looks at it once more.
+    let again = concat!(
+        "UPDATE jobs AS job SET status = 'queued', losses = 0, counted_losses = 0, cancel_requested = 0, stop_reason = NULL, \
+         report = NULL, error = NULL, ended_at = NULL, explored = 0, updated_at = {now}, turn = ",
+        next_turn!("job.priority", "job.owner"),
+        " WHERE job.id = $1 AND job.status = 'failed' AND job.sweep IS NULL AND ",
+        waiting!(),
+        " < $2 RETURNING priority, owner, class"
+    );
+    let Some(row) = Of::<E>::first(&mut transaction, again, values![id, most]).await? else {
+        give_up(transaction).await;
+        let Some(job) = get(engine, id).await? else { return Ok(None) };
+        let may = job.status == Status::Failed && job.run.is_none();
+        return Ok(Some(if may { Retried::QueueFull { most } } else { Retried::NotRetryable(job) }));
+    };
+    let class = Class::numbered(rows::number(&row, "class")?);
+    let (priority, owner) = (rows::signed(&row, "priority")?, row.text("owner")?);
+    turns::put_between::<Of<E>>(&mut transaction, id, class, priority, owner.as_deref()).await?;
+    let job = record::<Of<E>>(&mut transaction, id).await?;
+    transaction.commit().await?;
+    engine.signals().job_changed(id);
+    engine.signals().queue_changed();
+    Ok(Some(Retried::Queued(job)))
 }
 
 pub(super) async fn delete<E: Engine>(engine: &E, id: Uuid) -> Result<bool> {

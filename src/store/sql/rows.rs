@@ -10,17 +10,33 @@ use uuid::Uuid;
 /// The columns [`job`] reads.
 macro_rules! job_columns {
     () => {
-        "id, task, owner, name, status, plan, report, stop_reason, error, max_increments, last_index, attempt, max_attempts, losses, \
+        $crate::store::sql::rows::job_columns!("name, plan, report, error")
+    };
+    // Those that can be large, as they are wanted.
+    ($large:literal) => {
+        concat!($large, ", id, task, owner, status, stop_reason, max_increments, last_index, attempt, max_attempts, losses, counted_losses, \
          cancel_requested, created_at, started_at, ended_at, sweep, sweep_run, parent, parent_increment, parent_direction, \
          (SELECT count(*) FROM jobs AS child WHERE child.parent = jobs.id AND child.owner IS NOT DISTINCT FROM jobs.owner) \
          AS children, family, generation, explored, not_queued, \
          (SELECT depth FROM families WHERE families.id = jobs.family) AS depth, \
          (SELECT max_jobs FROM families WHERE families.id = jobs.family) AS max_jobs, \
          (SELECT queued FROM families WHERE families.id = jobs.family) AS family_queued, \
-         (SELECT CAST(sum(not_queued) AS BIGINT) FROM jobs AS member WHERE member.family = jobs.family) AS family_not_queued"
+         (SELECT CAST(sum(not_queued) AS BIGINT) FROM jobs AS member WHERE member.family = jobs.family) AS family_not_queued")
     };
 }
 pub(super) use job_columns;
+
+/// The same columns for lists, each of a bounded size: what is not shown is not read. Sweeps of before there were summaries
+/// show their plan where it is short.
+macro_rules! listed_columns {
+    () => {
+        $crate::store::sql::rows::job_columns!(
+            "substr(name, 1, 200) AS name, substr(error, 1, 1000) AS error, CASE WHEN task = 'path' THEN report END AS report, \
+             coalesce(summary, CASE WHEN task <> 'sweep' OR octet_length(plan) <= 16384 THEN plan END, '{}') AS plan"
+        )
+    };
+}
+pub(super) use listed_columns;
 
 pub(super) fn job(row: &impl Cells) -> Result<JobRecord> {
     Ok(JobRecord {
@@ -38,6 +54,7 @@ pub(super) fn job(row: &impl Cells) -> Result<JobRecord> {
         attempt: count(row, "attempt")?,
         max_attempts: count(row, "max_attempts")?,
         losses: count(row, "losses")?,
+        counted_losses: count(row, "counted_losses")?,
         cancel_requested: flag(row, "cancel_requested")?,
         created_at: time(there(row.number("created_at")?, "created_at")?)?,
         started_at: row.number("started_at")?.map(time).transpose()?,
@@ -106,6 +123,10 @@ pub(super) fn text(row: &impl Cells, column: &str) -> Result<String> {
 
 pub(super) fn number(row: &impl Cells, column: &str) -> Result<u64> {
     unsigned(there(row.number(column)?, column)?)
+}
+
+pub(super) fn signed(row: &impl Cells, column: &str) -> Result<i64> {
+    there(row.number(column)?, column)
 }
 
 pub(super) fn count(row: &impl Cells, column: &str) -> Result<u32> {

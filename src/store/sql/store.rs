@@ -1,11 +1,11 @@
 //! The [`Store`] over an engine that speaks SQL, and what it asks of the engine.
 
 use super::dialect::Dialect;
-use super::{claims, families, followers, increments, jobs, sweeps};
+use super::{claims, families, followers, increments, jobs, sweeps, turns};
 use crate::store::signals::Signals;
 use crate::store::{
-    Batch, Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, NewSweep,
-    Origin, Page, Result, Standing, Status, Store, StoreError, Submitted,
+    Batch, Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Listed, NewFollower, NewJob,
+    NewSweep, Origin, Page, Result, Retried, Standing, Status, Store, StoreError, Submitted,
 };
 use async_trait::async_trait;
 use sqlx::pool::PoolConnection;
@@ -57,6 +57,14 @@ pub(super) async fn writer<E: Engine>(engine: &E) -> sqlx::Result<PoolConnection
 
 pub(super) async fn begin<E: Engine>(engine: &E) -> sqlx::Result<Transaction<'static, E::Dialect>> {
     engine.writers().begin().await
+}
+
+/// Rolls a transaction back whose end is decided already. Where that fails there is nothing of it any more, and why it was
+/// given up is what counts: SQLite rolls back by itself on a full disk, and a connection that is lost takes it along.
+pub(super) async fn give_up<D: Dialect>(transaction: Transaction<'static, D>) {
+    if let Err(error) = transaction.rollback().await {
+        tracing::debug!(%error, "nothing was left to be rolled back");
+    }
 }
 
 /// Damage that any statement meets, or the look through everything at the start, is remembered: nothing new is taken or begun
@@ -170,7 +178,7 @@ impl<E: Engine> Store for SqlStore<E> {
         self.begin(families::explore(&self.engine)).await
     }
 
-    async fn jobs(&self, filter: ListFilter) -> Result<Vec<JobRecord>> {
+    async fn jobs(&self, filter: ListFilter) -> Result<Listed> {
         self.call(jobs::list(&self.engine, filter)).await
     }
 
@@ -217,8 +225,14 @@ impl<E: Engine> Store for SqlStore<E> {
         self.call(claims::release(&self.engine, lease)).await
     }
 
+    async fn retry(&self, id: Uuid, most_queued: u64) -> Result<Option<Retried>> {
+        self.begin(jobs::retry(&self.engine, id, most_queued)).await
+    }
+
     async fn reclaim_expired(&self) -> Result<u64> {
-        self.call(claims::reclaim_expired(&self.engine)).await
+        let touched = self.call(claims::reclaim_expired(&self.engine)).await?;
+        self.call(turns::close_gaps(&self.engine)).await?;
+        Ok(touched)
     }
 
     async fn retire(&self, keep: Keep) -> Result<u64> {

@@ -3,7 +3,8 @@
 //! Its lines are its runs as they end; triggers store them with the end of each, whoever brings that about.
 
 use super::dialect::{Dialect, values};
-use super::store::{Engine, Of, begin, writer};
+use super::store::{Engine, Of, begin, give_up, writer};
+use super::turns::next_turn;
 use super::{jobs, rows};
 use crate::store::{NewRun, NewSweep, Result, Submitted};
 use uuid::Uuid;
@@ -19,6 +20,8 @@ pub(in crate::store) struct Runs<'r> {
     pub sweep: Uuid,
     pub priority: i64,
     pub max_attempts: i64,
+    /// Of the first one; each next one has the next.
+    pub turn: u64,
     pub owner: Option<&'r str>,
     pub runs: &'r [NewRun],
 }
@@ -35,7 +38,7 @@ pub(super) async fn submit<E: Engine>(engine: &E, sweep: NewSweep) -> Result<Sub
     whole.most_queued = most.saturating_sub(sweep.runs.len().saturating_sub(1) as u64);
     let submitted = jobs::insert::<Of<E>>(&mut transaction, &whole).await?;
     let Submitted::Created(record) = submitted else {
-        transaction.rollback().await?;
+        give_up(transaction).await;
         return Ok(match submitted {
             Submitted::QueueFull { .. } => Submitted::QueueFull { most },
             other => other,
@@ -47,7 +50,10 @@ pub(super) async fn submit<E: Engine>(engine: &E, sweep: NewSweep) -> Result<Sub
         values![record.id, HOLDER, FOR_EVER],
     )
     .await?;
+    let turn = concat!("SELECT ", next_turn!("$1", "$2"), " AS turn");
+    let turn = Of::<E>::first(&mut transaction, turn, values![i64::from(whole.priority), &whole.owner]).await?;
     let runs = Runs {
+        turn: rows::number(&turn.ok_or(sqlx::Error::RowNotFound)?, "turn")?,
         sweep: record.id,
         priority: whole.priority.into(),
         max_attempts: whole.max_attempts.into(),

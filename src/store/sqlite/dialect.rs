@@ -22,7 +22,12 @@ impl Dialect for Sqlite {
     const THERE: &'static str = "";
     const UNSYNCED: &'static str = "";
     const IN_TURN: Option<&'static str> = None;
+    // Rows are read ahead of whoever takes them, so the bytes are counted first, which reads none of them.
     const PAGE: &'static str = "SELECT increment_index, body FROM increments WHERE job = $1 AND increment_index > $2 \
+                                AND increment_index <= (SELECT max(increment_index) FROM (SELECT increment_index, \
+                                sum(bytes) OVER (ORDER BY increment_index ROWS UNBOUNDED PRECEDING) - bytes AS before \
+                                FROM (SELECT increment_index, octet_length(body) AS bytes FROM increments WHERE job = $1 \
+                                AND increment_index > $2 ORDER BY increment_index LIMIT $3)) WHERE before < $4) \
                                 ORDER BY increment_index LIMIT $3";
     const SWEEP: Option<&'static str> = None;
 
@@ -57,8 +62,8 @@ impl Dialect for Sqlite {
 
     async fn insert_runs(connection: &mut SqliteConnection, runs: &Runs<'_>) -> sqlx::Result<()> {
         let insert = "INSERT INTO jobs (id, name, status, priority, request, plan, max_increments, max_attempts, created_at, updated_at, \
-             task, owner, sweep, sweep_run, sweep_values) \
-             VALUES ($1, $2, 'queued', $3, $4, $5, $6, $7, {now}, {now}, 'path', $8, $9, $10, $11)";
+             task, owner, sweep, sweep_run, sweep_values, class, turn) \
+             VALUES ($1, $2, 'queued', $3, $4, $5, $6, $7, {now}, {now}, 'path', $8, $9, $10, $11, 2, $12)";
         for (number, run) in (0_u64..).zip(runs.runs) {
             Self::run(
                 connection,
@@ -75,6 +80,7 @@ impl Dialect for Sqlite {
                     runs.sweep,
                     number,
                     &run.values,
+                    runs.turn + number,
                 ],
             )
             .await?;

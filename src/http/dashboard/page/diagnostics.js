@@ -12,8 +12,10 @@ const ERRORS = [
 ];
 const WORK = [
   ["factorisations", "factorisations"], ["newton_iterations", "Newton iterations"], ["qp_solves", "quadratic programs"],
-  ["mpec_solves", "MPECs"],
+  ["sqp_iterations", "SQP iterations"], ["mpec_solves", "MPECs solved"], ["certificates", "certificates"],
+  ["mpec_fallbacks", "increments that the MPEC did not find"],
 ];
+const RELAXATION = "last_relaxation";
 const of = (name) => `/diagnostics/${name}`;
 /** Below this it is nothing, and a logarithm has no place for it. */
 const NOTHING = 1e-20;
@@ -50,7 +52,7 @@ export class Diagnostics {
     let defaults;
     try {
       defaults = await analysisDefaults();
-      await path.need([of("elapsed_s"), ...ERRORS.concat(WORK).map(([name]) => of(name))]);
+      await path.need([of("elapsed_s"), ...ERRORS.concat(WORK).map(([name]) => of(name)), of(RELAXATION)]);
     } catch (problem) {
       if (!isGivenUp(problem)) fill(this.work, element("p", { class: "bad" }, problem.message));
       return;
@@ -70,6 +72,12 @@ export class Diagnostics {
     this.tables(defaults);
   }
 
+  /** The bound on products at which the last program of an increment ended. */
+  lastRelaxation() {
+    const last = (this.path.columns.get(of(RELAXATION)) ?? []).findLast((value) => value !== null && value !== undefined);
+    return last === undefined ? null : element("p", { class: "quiet" }, `The last MPEC was solved down to ε = ${short(last)}.`);
+  }
+
   tables(defaults) {
     const { path } = this;
     const many = path.index.length || 1;
@@ -77,7 +85,7 @@ export class Diagnostics {
       // Counted from the start of the job.
       const sum = path.job.report?.[name] ?? path.columns.get(of(name)).at(-1) ?? 0;
       return [words, sum, Number(short(sum / many))];
-    })));
+    })), this.lastRelaxation());
     const told = path.points.filter(({ point }) => point.event);
     fill(this.events, element("h3", {}, "Events"), told.length === 0 ? element("p", { class: "quiet" }, "None so far.")
       : table([], told.slice(0, ROWS).map(({ index, point }) => [index, point.event])),

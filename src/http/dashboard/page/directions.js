@@ -33,7 +33,16 @@ export class Directions {
     if (wanted !== this.wanted) return;
     this.shown = wanted;
     if (increment?.directions) this.draw(path, at, increment);
-    else this.hide(path, index);
+    else if (increment || index === null) this.hide(path, index);
+    else this.miss(index);
+  }
+
+  /** What there is to choose between is not known. */
+  miss(index) {
+    this.shown = "";
+    this.panel.hidden = false;
+    fill(this.panel, element("h2", {}, "Directions"), element("p", { class: "bad", role: "alert" },
+      `The directions at increment ${index} cannot be shown: the service does not give it.`));
   }
 
   /** Nothing to choose between here; where there was says so. */

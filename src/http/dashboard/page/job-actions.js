@@ -12,6 +12,11 @@ export function jobActions(job, done, failed) {
   const then = doing(done, failed);
   return element("div", { class: "actions" },
     isGoingOn(job) ? button("Cancel", then(() => call(`/v1/jobs/${id}/cancel`, { method: "POST" }))) : null,
+    job.status === "failed" && !job.sweep ? button("Queue again", then(async () => {
+      await call(`/v1/jobs/${id}/retry`, { method: "POST" });
+      // What is shown of the path is of its end before.
+      location.reload();
+    })) : null,
     button("Path (csv)", then(() => download(`/v1/jobs/${id}/path.csv`, `path-${id}.csv`))),
     button("Increments (json)", then(() => downloadIncrements(id))),
     button("Model (json)", then(() => download(`/v1/jobs/${id}/request`, `request-${id}.json`))),

@@ -6,10 +6,13 @@ import { displacement, isAbscissa, isOrdinate, unescaped } from "./path-axes.js"
 import { follow } from "./stream.js";
 import { isGoingOn } from "./words.js";
 
-/** Increments that are fetched together when one of them is looked at. */
+/** Increments that are fetched together when one of them is looked at, at most. */
 const WHOLE = 64;
-/** Increments that are held whole as they stream in; those past it are fetched again where they are looked at. */
-const HELD = 20000;
+/** Increments that are held whole, times the nodes and contacts of the model; the others are fetched again where they are
+ *  looked at. */
+const HELD = 500000;
+/** So many are held in any case. */
+const FEWEST_HELD = 256;
 const ALWAYS = ["stage", "load_factor", "arc_length"];
 
 export class PathData {
@@ -25,6 +28,8 @@ export class PathData {
     this.columns = new Map();
     this.points = [];
     this.whole = new Map();
+    /** Increments that are fetched together: as many as one page was seen to have room for. */
+    this.together = WHOLE;
     this.problem = null;
     this.isLoaded = false;
     this.isConnected = true;
@@ -101,7 +106,7 @@ export class PathData {
       for (const [name, column] of this.columns) column.push(pick(increment, name));
       const { point } = increment;
       if (point.kind !== "regular" || point.bifurcation) this.points.push({ index: increment.index, point });
-      if (this.whole.size < HELD) this.whole.set(increment.index, increment);
+      this.hold(increment);
     }
     this.told("grown", this);
   }
@@ -128,18 +133,40 @@ export class PathData {
     });
   }
 
-  /** An increment as it is stored; null where there is none. */
+  /** Keeps an increment whole; the first that were kept give way. */
+  hold(increment) {
+    const { nodes, contacts } = this.request.model;
+    const size = Object.keys(nodes).length + (contacts?.length ?? 0);
+    this.whole.set(increment.index, increment);
+    while (this.whole.size > Math.max(FEWEST_HELD, HELD / Math.max(1, size))) {
+      this.whole.delete(this.whole.keys().next().value);
+    }
+  }
+
+  /** An increment as it is stored; null where there is none. Those around it come along. */
   async increment(index) {
     if (this.whole.has(index)) return this.whole.get(index);
-    const from = Math.max(-1, index - WHOLE / 2 - 1);
+    // A page of large increments ends before it has as many as were asked for: the next one begins nearer to the wanted
+    // one, and at last with it.
+    for (let rows = this.together; ; ) {
+      const from = index - Math.floor(rows / 2) - 1;
+      const increments = await this.wholeAfter(from, rows);
+      for (const found of increments) this.hold(found);
+      const wanted = this.whole.get(index);
+      if (wanted) this.together = rows;
+      if (wanted || rows === 1 || increments.at(-1)?.index > index) return wanted ?? null;
+      rows = Math.max(1, Math.min(increments.length, Math.floor(rows / 2)));
+    }
+  }
+
+  async wholeAfter(from, rows) {
     const after = from < 0 ? "" : `&after=${from}`;
-    const place = `/v1/jobs/${this.id}/increments?limit=${WHOLE}${after}`;
+    const place = `/v1/jobs/${this.id}/increments?limit=${rows}${after}`;
     const { increments } = await get(place, this.given.signal).catch((problem) => {
       if (problem.status === 404) this.gone();
       throw problem;
     });
-    for (const found of increments) this.whole.set(found.index, found);
-    return this.whole.get(index) ?? null;
+    return increments;
   }
 
   /** Whether any increment that is held has a value of this column. */

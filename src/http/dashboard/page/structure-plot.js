@@ -101,7 +101,11 @@ export class StructurePlot {
       // While one is fetched others may be wanted: the last of them is drawn.
       while (this.shown?.index !== this.wanted || this.isStale) {
         const found = await path.increment(this.wanted);
-        if (path !== this.path || !found) break;
+        if (path !== this.path) break;
+        if (!found) {
+          this.words.textContent = `Increment ${this.wanted} cannot be shown: the service does not give it.`;
+          break;
+        }
         this.shown = found;
         this.isStale = false;
         await this.redraw();

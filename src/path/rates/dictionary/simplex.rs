@@ -1,6 +1,7 @@
 //! The dual simplex method on a dictionary, and coordinates that it forces to zero.
 
 use super::{Dictionary, Feasibility, INFEASIBLE, NOTHING, Place, SMALL_PIVOT, Variable};
+use crate::budget;
 
 /// Coefficients by which a coordinate is forced to zero.
 const FORCING: f64 = 1e-3;
@@ -69,6 +70,7 @@ impl Dictionary {
         let mut row = 0;
         while row < self.rows.len() {
             let used = self.columns.len();
+            budget::spend(used);
             let values = &self.table[row * self.width..row * self.width + used];
             let forces = self.nonnegative[self.rows[row]]
                 && values[0].abs() <= NOTHING

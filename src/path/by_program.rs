@@ -1,0 +1,241 @@
+//! Every increment found by its program alone: `method: "mpec"` where the certificate is skipped.
+//!
+//! How far an increment goes and which event ends it is decided as it always is (`stepping`), so that increments are as long
+//! as those of `auto`. Its end is then found anew, by the program from the point before and the direction there; the
+//! contact mode is read off, and Newton's method on the mode's equations with the arc-length equation takes the program's
+//! end to round-off. That point becomes the path's where rounding leaves no more of it than of the first. Where an event ends the increment, a contact is at the edge of two modes
+//! there and the program may name either; the event's own equation has placed the point, which has to be the same.
+//!
+//! `γ1` is adapted until the program ends near the arc length sought, and further where it ends in another mode: an event may
+//! lie just past the point. An increment whose end no search finds is counted as a fall-back: the point stands as the
+//! mode's equations gave it.
+
+use super::advance::{Reached, Start, Work};
+use super::contact_law;
+use super::corner::agree;
+use super::loading::Loading;
+use super::mode_system::ModeSystem;
+use super::newton::Place;
+use super::program::{Counts, End, IncrementProgram, Searched};
+use super::state::{Rate, State};
+use super::stepping::Accepted;
+use super::tracer::Path;
+use crate::contact::Mode;
+use std::sync::Arc;
+
+/// Searches of one increment, `γ1` adapted from one to the next.
+const MOST_SEARCHES: usize = 8;
+/// Arc lengths over the one sought from which the polish starts.
+const NEAR: [f64; 2] = [0.5, 2.0];
+/// An arc length over the one sought that is off by no more has been adapted to it.
+const SETTLED: f64 = 1e-2;
+/// Distance (dimensionless) of a polished point from the one that the step ended at within which they are the same.
+const SAME: f64 = 1e-9;
+/// Reactions over the force scale, and gaps over the arc length, that are zero at the edge of two modes.
+const EDGE: f64 = 1e-6;
+
+/// A point on the way to the end of an increment, in the user's units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProgramIterate {
+    /// Which of the increment's programs, from 1: `γ1` is adapted from one to the next.
+    pub program: u64,
+    /// The bound `ε` on the products; `None` in a branch, where one member of each pair is zero.
+    pub relaxation: Option<f64>,
+    /// The arc length of the iterate over that of the increment.
+    pub size: f64,
+    pub load_factor: f64,
+    /// Sum of the violations of the program's rows, dimensionless.
+    pub violation: f64,
+    /// Those in reach.
+    pub contacts: Vec<ContactIterate>,
+}
+
+/// A contact at an iterate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactIterate {
+    pub node: Arc<str>,
+    pub obstacle: Arc<str>,
+    /// Length.
+    pub gap: f64,
+    /// Force.
+    pub normal_reaction: f64,
+    /// `μ r_n - |r_t|`, a force.
+    pub within_cone: f64,
+    /// `|Δu_t|`, a length.
+    pub slip: f64,
+}
+
+/// What an increment's searches leave.
+#[derive(Default)]
+struct Left {
+    counts: Vec<Counts>,
+    work: Work,
+    iterates: Vec<ProgramIterate>,
+}
+
+impl Path<'_> {
+    /// Keeps the iterates of each increment's programs from now on, until the next increment.
+    pub fn keep_iterates(&mut self) {
+        self.iterates = Some(Vec::new());
+    }
+
+    /// Those of the last increment that a program was solved for; empty where they are not kept.
+    pub fn iterates(&self) -> &[ProgramIterate] {
+        self.iterates.as_deref().unwrap_or_default()
+    }
+
+    /// Finds the end of an increment that is about to be accepted by its program.
+    pub(super) fn found_by_program(&mut self, rate: &Rate, mut accepted: Accepted) -> Accepted {
+        let (found, Left { counts, work, iterates }) = self.search_end(rate, &accepted);
+        self.at.totals.work = work;
+        counts.into_iter().for_each(|counts| self.count(counts));
+        if let Some(kept) = &mut self.iterates {
+            *kept = iterates;
+        }
+        accepted.mode_named = Some(found.is_some());
+        let Some(found) = found else {
+            self.at.totals.work.mpec_fallbacks += 1;
+            return accepted;
+        };
+        let reached = &mut accepted.reached;
+        // Next to stiff elements rounding may leave more of equilibrium at the one than at the other.
+        let is_as_good = found.corrected.residual <= reached.corrected.residual.max(f64::EPSILON);
+        if is_as_good && reached.event.is_none() && accepted.crossing.is_none() && !accepted.returned {
+            let hardness = reached.corrected.iterations_to_small;
+            (reached.corrected, reached.rate) = (found.corrected, found.rate);
+            reached.corrected.iterations_to_small = hardness;
+        }
+        accepted
+    }
+
+    fn search_end(&self, rate: &Rate, accepted: &Accepted) -> (Option<Box<Reached>>, Left) {
+        let (here, reached) = (&self.at.here, &accepted.reached);
+        let mut left = Left { work: self.at.totals.work, ..Left::default() };
+        let (loading, base, step) = (self.loading(), &here.state, reached.step);
+        let modes = if accepted.joined > 0 { &reached.corrected.modes } else { &here.modes };
+        if step <= 0.0 {
+            return (Some(reached.clone()), left);
+        }
+        let ahead = base.advanced(rate, step);
+        let mut program = Self::increment_program(loading, self.at.totals.force_scale, (base, &ahead), rate, step);
+        program.stay_near();
+        let predicted = program.variables_at(rate);
+        let (mut start, mut relaxation) = (predicted.clone(), program.first_relaxation());
+        for _ in 0..MOST_SEARCHES {
+            let searched = program.search(&start, relaxation, modes, self.iterates.is_some(), &self.cancel);
+            self.note(&program, &searched, &mut left);
+            if self.cancel.is_cancelled() {
+                break;
+            }
+            let Some(end) = searched.end else {
+                let Some(tighter) = IncrementProgram::tighter(relaxation) else { break };
+                (start, relaxation) = (predicted.clone(), tighter);
+                continue;
+            };
+            let is_near = (NEAR[0]..=NEAR[1]).contains(&end.size);
+            if is_near && self.is_mode_at(loading, &end, modes, reached) {
+                let found = self.polished(&end, rate, modes, step, &mut left.work);
+                let is_same = |found: &Reached| {
+                    let state = &found.corrected.state;
+                    let forces = self.at.totals.force_scale.max(found.corrected.force_scale);
+                    state.distance(&reached.corrected.state) <= SAME * (1.0 + step)
+                        && contact_law::holds(loading, state, forces)
+                };
+                if let Some(found) = found.filter(|found| is_same(found)) {
+                    return (Some(found), left);
+                }
+            }
+            // Off the path: so large a relaxation led away from it.
+            let is_off = !is_near || (end.size - 1.0).abs() <= SETTLED;
+            match IncrementProgram::tighter(relaxation).filter(|_| is_off) {
+                Some(tighter) => (start, relaxation) = (predicted.clone(), tighter),
+                None => {
+                    program.adapt(end.size);
+                    start = end.variables;
+                }
+            }
+        }
+        (None, left)
+    }
+
+    fn note(&self, program: &IncrementProgram<'_>, searched: &Searched, left: &mut Left) {
+        left.counts.push(searched.counts);
+        let plan = self.scene.plan();
+        let (length, force) = (plan.displacement_scale, plan.force_scale);
+        let number = left.counts.len() as u64;
+        for iterate in &searched.iterates {
+            let (state, contacts) = program.contacts_at(&iterate.x);
+            let contacts = contacts.into_iter().filter_map(|at| {
+                let (node, obstacle) = self.names().nth(at.contact)?;
+                Some(ContactIterate {
+                    node: Arc::clone(node),
+                    obstacle: Arc::clone(obstacle),
+                    gap: at.gap * length,
+                    normal_reaction: at.normal * force,
+                    within_cone: at.within_cone * force,
+                    slip: at.slip * length,
+                })
+            });
+            left.iterates.push(ProgramIterate {
+                program: number,
+                relaxation: iterate.relaxation,
+                size: program.size(&iterate.x),
+                load_factor: self.scene.stages[self.at.stage].load_factor(state.load),
+                violation: iterate.violation,
+                contacts: contacts.collect(),
+            });
+        }
+    }
+
+    /// The end of a search taken to round-off in a mode, at the arc length sought.
+    fn polished(&self, end: &End, rate: &Rate, modes: &[Mode], step: f64, work: &mut Work) -> Option<Box<Reached>> {
+        let (here, force_scale) = (&self.at.here, self.at.totals.force_scale);
+        let start = Start { loading: self.loading(), state: &here.state, rate, modes, drift: None, force_scale };
+        let system = ModeSystem::new(self.loading(), modes, &here.state);
+        let place = Place::ArcLength { from: &here.state, step };
+        let polished = start.settle(system, end.state.clone(), place, work).ok()?;
+        // Once more: from so near the first time may stop where the tolerance is met.
+        let system = ModeSystem::new(self.loading(), modes, &here.state);
+        start.settle(system, polished.corrected.state, place, work).ok()
+    }
+
+    /// Whether the modes that a search ends in are these, but for contacts that are at the edge of both.
+    fn is_mode_at(&self, loading: Loading<'_>, end: &End, modes: &[Mode], reached: &Reached) -> bool {
+        if agree(loading, &end.modes, modes) {
+            return true;
+        }
+        let forces = self.at.totals.force_scale.max(reached.corrected.force_scale);
+        let state = &reached.corrected.state;
+        let either: Vec<Mode> = (0..modes.len())
+            .map(|contact| {
+                let (found, expected) = (end.modes[contact], modes[contact]);
+                if is_at_edge(loading, contact, (found, expected), state, reached.step, forces) {
+                    expected
+                } else {
+                    found
+                }
+            })
+            .collect();
+        agree(loading, &either, modes)
+    }
+}
+
+/// Whether a contact is in both modes at once.
+fn is_at_edge(
+    loading: Loading<'_>,
+    contact: usize,
+    (one, other): (Mode, Mode),
+    state: &State,
+    step: f64,
+    forces: f64,
+) -> bool {
+    let reaction = &state.reactions[contact];
+    if one.is_active() != other.is_active() {
+        return loading.gap(contact, state).abs() <= EDGE * step && reaction.size() <= EDGE * forces;
+    }
+    let cone = loading.contacts[contact].friction * reaction.normal - reaction.tangential_size();
+    match (one, other) {
+        (Mode::Slip { .. }, Mode::Slip { .. }) => reaction.tangential_size() <= EDGE * forces,
+        _ => cone.abs() <= EDGE * forces,
+    }
+}

@@ -1,0 +1,10 @@
+//! The dashboard in a real browser. Without chromedriver these tests say that they are skipped.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod jobs;
+mod large;
+mod pictures;
+mod states;
+mod views;

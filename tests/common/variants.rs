@@ -1,0 +1,96 @@
+//! The same request said in another way: in other units, about other axes, in another order.
+
+use arcslip::model::JobRequest;
+use arcslip::model::request::{Element, Obstacle};
+
+/// Rows of an orthogonal matrix.
+pub type Axes = [[f64; 3]; 3];
+
+/// The same request in other units of length and force.
+pub fn in_units(mut request: JobRequest, length: f64, force: f64) -> JobRequest {
+    let scale = |values: &mut Vec<f64>, by: f64| values.iter_mut().for_each(|value| *value *= by);
+    for coordinates in request.model.nodes.values_mut() {
+        scale(coordinates, length);
+    }
+    for element in &mut request.model.elements {
+        match element {
+            Element::Bar { axial_stiffness, rest_length, prestress, .. } => {
+                *axial_stiffness *= force;
+                *prestress *= force;
+                rest_length.iter_mut().for_each(|rest| *rest *= length);
+            }
+            Element::Spring { stiffness, .. } => stiffness.iter_mut().for_each(|row| scale(row, force / length)),
+        }
+    }
+    for obstacle in request.model.obstacles.values_mut() {
+        match obstacle {
+            Obstacle::Plane { point, normal } => {
+                scale(point, length);
+                scale(normal, 1.0 / length);
+            }
+            Obstacle::Ball { center, radius, .. } => {
+                scale(center, length);
+                *radius *= length;
+            }
+        }
+    }
+    for stage in &mut request.model.stages {
+        stage.forces.values_mut().for_each(|values| scale(values, force));
+        stage.displacements.values_mut().for_each(|values| scale(values, length));
+        stage.obstacle_motion.values_mut().for_each(|values| scale(values, length));
+        if let Some(until) = &mut stage.until
+            && let Some(bound) = &mut until.displacement
+        {
+            bound.above.iter_mut().for_each(|value| *value *= length);
+            bound.below.iter_mut().for_each(|value| *value *= length);
+        }
+    }
+    request.analysis.arc_length.displacement_scale.iter_mut().for_each(|scale| *scale *= length);
+    request
+}
+
+/// The same request in space about other axes, from another origin: `x` becomes `axes x + shift`. Every supported node has to
+/// be supported in all components.
+pub fn about_axes(mut request: JobRequest, axes: &Axes, shift: [f64; 3]) -> JobRequest {
+    let place = |point: &[f64]| turned(axes, point).iter().zip(shift).map(|(x, by)| x + by).collect::<Vec<f64>>();
+    request.model.nodes.values_mut().for_each(|point| *point = place(point));
+    for element in &mut request.model.elements {
+        if let Element::Spring { stiffness, .. } = element {
+            // Q K Qᵀ
+            let columns: Vec<Vec<f64>> = stiffness.iter().map(|row| turned(axes, row)).collect();
+            let entry = |i: usize, j: usize| (0..3).map(|k| axes[i][k] * columns[k][j]).sum::<f64>();
+            *stiffness = (0..3).map(|i| (0..3).map(|j| entry(i.min(j), i.max(j))).collect()).collect();
+        }
+    }
+    for obstacle in request.model.obstacles.values_mut() {
+        match obstacle {
+            Obstacle::Plane { point, normal } => {
+                *point = place(point);
+                *normal = turned(axes, normal);
+            }
+            Obstacle::Ball { center, .. } => *center = place(center),
+        }
+    }
+    for stage in &mut request.model.stages {
+        for pattern in [&mut stage.forces, &mut stage.displacements, &mut stage.obstacle_motion] {
+            pattern.values_mut().for_each(|vector| *vector = turned(axes, vector));
+        }
+    }
+    request
+}
+
+/// `axes v`
+pub fn turned(axes: &Axes, vector: &[f64]) -> Vec<f64> {
+    axes.iter().map(|row| row.iter().zip(vector).map(|(a, b)| a * b).sum()).collect()
+}
+
+/// The same request with its nodes, elements, obstacles and contacts the other way round.
+pub fn in_reverse(mut request: JobRequest) -> JobRequest {
+    let model = &mut request.model;
+    model.nodes.reverse();
+    model.supports.reverse();
+    model.elements.reverse();
+    model.obstacles.reverse();
+    model.contacts.reverse();
+    request
+}

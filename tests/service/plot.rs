@@ -1,0 +1,145 @@
+//! The picture that `arcslip solve --plot` draws.
+
+use roxmltree::Document;
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn solve(scene: &str, picture: &Path, more: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_arcslip"))
+        .args(["solve", scene, "--out", "/dev/null", "--plot"])
+        .arg(picture)
+        .args(more)
+        .output()
+        .expect("the program runs")
+}
+
+/// The picture of a scene as text.
+fn picture(scene: &str, more: &[&str]) -> String {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("picture.svg");
+    let output = solve(scene, &file, more);
+    assert!(matches!(output.status.code(), Some(0 | 1)), "{scene}: {output:?}");
+    std::fs::read_to_string(file).expect("a picture")
+}
+
+/// The texts of a picture, as a reader sees them.
+fn texts(svg: &str) -> Vec<String> {
+    let document = Document::parse(svg).expect("well-formed XML");
+    assert_eq!(document.root_element().tag_name().name(), "svg");
+    let texts = document.descendants().filter(|node| node.has_tag_name(("http://www.w3.org/2000/svg", "text")));
+    texts.filter_map(|node| node.text()).map(|text| text.trim().to_owned()).collect()
+}
+
+/// How many shapes of that name and fill there are.
+fn shapes(svg: &str, name: &str, fill: &str) -> usize {
+    let document = Document::parse(svg).expect("well-formed XML");
+    let fits = |node: &roxmltree::Node<'_, '_>| node.tag_name().name() == name && node.attribute("fill") == Some(fill);
+    document.descendants().filter(fits).count()
+}
+
+fn count(texts: &[String], wanted: &str) -> usize {
+    texts.iter().filter(|text| *text == wanted).count()
+}
+
+const SMOOTH_LIMIT: &str = "#BE1428";
+const NONSMOOTH_LIMIT: &str = "#78288C";
+const END: &str = "#222222";
+
+#[test]
+fn one_bar_truss_has_two_smooth_limits_and_an_end() {
+    let svg = picture("one-bar-truss", &[]);
+    let texts = texts(&svg);
+    for wanted in [
+        "one-bar truss, mu = 0.3",
+        "displacement tip.x",
+        "load factor",
+        "stage push",
+        "bifurcation points",
+        "smooth limit, load factor 0.273315",
+        "smooth limit, load factor -0.113982",
+        "end, load factor 0",
+    ] {
+        assert_eq!(count(&texts, wanted), 1, "{wanted} in {texts:?}");
+    }
+    // Each letter and each mark is at the curve and in the legend.
+    for letter in ["A", "B", "C"] {
+        assert_eq!(count(&texts, letter), 2, "{letter}");
+    }
+    assert_eq!(count(&texts, "D"), 0);
+    assert_eq!(shapes(&svg, "circle", SMOOTH_LIMIT), 4);
+    assert_eq!(shapes(&svg, "polygon", NONSMOOTH_LIMIT), 0);
+    assert_eq!(shapes(&svg, "polygon", END), 2);
+}
+
+#[test]
+fn klarbring_has_two_stages_and_two_corners() {
+    let svg = picture("klarbring", &["--against", "node.y"]);
+    let texts = texts(&svg);
+    for wanted in [
+        "displacement node.y",
+        "stage press",
+        "stage pull",
+        "end, load factor 1",
+        "nonsmooth limit, load factor 1.5",
+        "nonsmooth limit, load factor 1.25",
+        "node on floor: stick to slip",
+        "end, load factor 3",
+    ] {
+        assert_eq!(count(&texts, wanted), 1, "{wanted} in {texts:?}");
+    }
+    for letter in ["A", "B", "C", "D"] {
+        assert_eq!(count(&texts, letter), 2, "{letter}");
+    }
+    assert_eq!(shapes(&svg, "polygon", NONSMOOTH_LIMIT), 4);
+    assert_eq!(shapes(&svg, "polygon", END), 4);
+}
+
+#[test]
+fn the_committed_pictures_are_what_is_drawn() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/scenes/pictures");
+    for scene in ["one-bar-truss", "three-snapping-bars"] {
+        let committed = std::fs::read_to_string(folder.join(format!("{scene}.svg"))).expect("a committed picture");
+        let command = format!("solve {scene} --out /dev/null --plot src/scenes/pictures/{scene}.svg");
+        assert!(picture(scene, &[]) == committed, "draw it anew: cargo run --release -- {command}");
+    }
+}
+
+#[test]
+fn an_unknown_displacement_is_bad_input_and_the_nearest_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("picture.svg");
+    for (asked, nearest) in [("tpi.x", "tip.x"), ("tip.z", "tip.x"), ("tip", "tip.x"), ("Pin.y", "pin.y")] {
+        let output = solve("one-bar-truss", &file, &["--against", asked]);
+        assert_eq!(output.status.code(), Some(2), "{asked}");
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(message.contains(&format!("--against `{asked}`")), "{message}");
+        assert!(message.contains(&format!("did you mean `{nearest}`?")), "{message}");
+        assert!(!file.exists());
+    }
+    let without_plot = Command::new(env!("CARGO_BIN_EXE_arcslip"))
+        .args(["solve", "one-bar-truss", "--against", "tip.x"])
+        .output()
+        .expect("the program runs");
+    assert_eq!(without_plot.status.code(), Some(2));
+}
+
+#[test]
+fn names_and_magnitudes_do_not_spoil_the_picture() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (model, file) = (folder.path().join("model.json"), folder.path().join("picture.svg"));
+    let scene = arcslip::scenes::find("von-mises-truss").expect("a built-in scene").request;
+    let renamed = scene.replace("apex", r#"a<&>\"'.\ufffe b"#);
+    let mut request: serde_json::Value = serde_json::from_str(&renamed).expect("JSON");
+    for element in request["model"]["elements"].as_array_mut().expect("elements") {
+        let stiffness = element["axial_stiffness"].as_f64().expect("a stiffness");
+        element["axial_stiffness"] = (stiffness * 1e-30).into();
+    }
+    // Ends by displacement do not know the forces' unit.
+    request["model"]["stages"][0]["until"] = serde_json::json!({"limit_points": 2});
+    std::fs::write(&model, request.to_string()).expect("a model");
+    let output = solve(model.to_str().expect("a path"), &file, &["--against", "a<&>\"'.\u{fffe} b.y"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let texts = texts(&std::fs::read_to_string(file).expect("a picture"));
+    assert_eq!(count(&texts, "displacement a<&>\"'.\u{fffd} b.y"), 1, "{texts:?}");
+    assert!(texts.iter().any(|text| text.starts_with("load factor / 1e-")), "{texts:?}");
+}

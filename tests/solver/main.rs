@@ -1,0 +1,52 @@
+//! What the solver gives, beside exact solutions, published values and what has to hold for every model.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod bad_input;
+mod bad_studies;
+mod bounds;
+mod by_program;
+mod capstan;
+mod capstan_extremes;
+mod changes_at_once;
+mod checkpoint;
+mod coinciding;
+mod common_limits;
+mod corner_in_space;
+mod curved;
+mod cycle;
+mod endings;
+mod exact_scenes;
+mod folded_slip;
+mod held_beyond_slides;
+mod hidden_events;
+mod invariance;
+mod jammed_corners;
+mod judged;
+mod keep_all;
+mod mac_mpec;
+mod many_contacts;
+mod measure;
+mod methods_agree;
+mod motion;
+mod mpec_cones;
+mod mpec_contact_increment;
+mod mpec_endings;
+mod mpec_unattained;
+mod published;
+mod random_corners;
+mod random_scenes;
+mod record;
+mod rival;
+mod rows;
+mod scales;
+mod slider_chain;
+mod slips_at_once;
+mod smooth_bifurcations;
+mod spatial;
+mod stage_ends;
+mod straight_paths;
+mod studies;
+mod verify;
+mod wedge;
