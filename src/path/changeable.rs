@@ -9,7 +9,7 @@ use super::rates::{Choice, Entity, Signed, Touching};
 use super::standing::Standing;
 use super::state::{Rate, State};
 use super::turning::Touch;
-use crate::budget::Taken;
+use crate::budget::{self, Taken};
 use crate::contact::vector::{Vector, add, dot, scaled, size, unit};
 use crate::contact::{Frame, Mode, Reaction, Sliding};
 use nalgebra::DVector;
@@ -389,6 +389,7 @@ pub(super) struct Forms<'a> {
 impl Forms<'_> {
     /// A velocity or the load rate, of each weight.
     pub(super) fn motion(&mut self, of: impl Fn(&Rate) -> f64) -> usize {
+        budget::spend(self.columns.len());
         self.held.add::<f64>(self.columns.len());
         let row = DVector::from_iterator(self.columns.len(), self.columns.iter().map(of));
         self.rows.push(row);
@@ -410,6 +411,8 @@ impl Forms<'_> {
 
     /// Rate of the whole force on the node along a direction.
     pub(super) fn force_rate(&self, entry: &Changeable, direction: &Vector) -> DVector<f64> {
+        // Each column's reactions lie elsewhere in memory: of many columns and rows, that takes long.
+        budget::spend(self.columns.len());
         let contact = entry.contacts[0];
         let normal = (self.normals)(contact);
         let along = |rate: &Rate| {

@@ -55,17 +55,16 @@ impl<'a> Condensed<'a> {
         let mut forms = Forms { columns: &columns, normals: &normals, rows: Vec::new(), is_force: Vec::new(), held };
         let (entities, outcomes) = changeable.iter().map(|entry| entry.options(loading, state, &mut forms)).unzip();
         forms.held.add::<f64>(forms.rows.len() * columns.len());
-        budget::spend((forms.rows.len() + of_column) * columns.len());
         let freedoms = columns[0].displacement.len();
-        let motion = DMatrix::from_fn(freedoms + 1, columns.len(), |row, column| {
+        let motion = column_by_column(freedoms + 1, columns.len(), |row, column| {
             if row < freedoms { columns[column].displacement[row] } else { columns[column].load }
         });
-        let reactions = DMatrix::from_fn(4 * columns[0].reactions.len(), columns.len(), |row, column| {
+        let reactions = column_by_column(4 * columns[0].reactions.len(), columns.len(), |row, column| {
             let reaction = &columns[column].reactions[row / 4];
             if row % 4 == 0 { reaction.normal } else { reaction.tangential[row % 4 - 1] }
         });
         let problem = RateProblem {
-            forms: DMatrix::from_fn(forms.rows.len(), columns.len(), |row, column| forms.rows[row][column]),
+            forms: column_by_column(forms.rows.len(), columns.len(), |row, column| forms.rows[row][column]),
             is_force: forms.is_force,
             entities,
             motion,
@@ -372,4 +371,14 @@ pub(super) fn changeable(loading: Loading<'_>, state: &State, standings: &[Stand
         entries.push(entry);
     }
     entries
+}
+
+/// A matrix by its entries: each column is work of its own, so that a large one can be interrupted.
+fn column_by_column(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> DMatrix<f64> {
+    let mut matrix = DMatrix::zeros(rows, columns);
+    for (column, mut values) in matrix.column_iter_mut().enumerate() {
+        budget::spend(rows);
+        values.iter_mut().enumerate().for_each(|(row, value)| *value = entry(row, column));
+    }
+    matrix
 }
