@@ -40,9 +40,19 @@ pub enum ResumeError {
     Checkpoint(#[from] JudgedCheckpointError),
 }
 
+/// The request before, made ready; nothing at first.
+#[derive(Debug, Default)]
+pub struct Before(Option<Scene>);
+
 pub trait Solver: Send + Sync + 'static {
     /// Checks a request as a whole and says what it needs.
     fn plan(&self, request: &JobRequest) -> Result<Plan, InputErrors>;
+
+    /// As [`plan`](Self::plan), of a request that may differ from the one before in numbers alone.
+    fn plan_after(&self, before: &mut Before, request: &JobRequest) -> Result<Plan, InputErrors> {
+        let _ = before;
+        self.plan(request)
+    }
 
     /// Refuses a beginning from which there is no path; pointers are those of a [`crate::model::FollowRequest`].
     fn check_beginning(&self, request: &JobRequest, beginning: Beginning) -> Result<(), InputErrors>;
@@ -90,6 +100,11 @@ pub struct PathSolver;
 impl Solver for PathSolver {
     fn plan(&self, request: &JobRequest) -> Result<Plan, InputErrors> {
         Ok(Scene::new(request)?.plan().clone())
+    }
+
+    fn plan_after(&self, before: &mut Before, request: &JobRequest) -> Result<Plan, InputErrors> {
+        let scene = Scene::like(before.0.as_ref(), request)?;
+        Ok(before.0.insert(scene).plan().clone())
     }
 
     fn check_beginning(&self, request: &JobRequest, beginning: Beginning) -> Result<(), InputErrors> {

@@ -1,6 +1,7 @@
 //! Sweeps: many jobs that are queued together.
 
 use super::checks::{Check, Desk};
+use super::solver::Before;
 use super::submission::{not_text, wrong_input};
 use super::{Caller, Jobs, JobsError, Posted, queued};
 use crate::metrics::Write;
@@ -83,6 +84,8 @@ struct Begun {
     /// Of the requests and plans of the runs.
     bytes: usize,
     mistakes: RunMistakes,
+    /// Of the last run.
+    before: Before,
 }
 
 impl Check for Preparation {
@@ -110,14 +113,22 @@ impl Begun {
             let most = desk.limits.queued;
             return Err(refused(format!("these are {} runs; this service queues at most {most} jobs", sweep.runs())));
         }
-        Ok(Self { request, sweep, runs: Vec::new(), checked: 0, bytes: 0, mistakes: RunMistakes::default() })
+        Ok(Self {
+            request,
+            sweep,
+            runs: Vec::new(),
+            checked: 0,
+            bytes: 0,
+            mistakes: RunMistakes::default(),
+            before: Before::default(),
+        })
     }
 
     /// Checks the next run; answers whether there are others.
     fn go_on(&mut self, desk: &Desk<'_>) -> Result<bool, JobsError> {
         desk.go_on()?;
         let run = self.checked;
-        match prepare_run(desk, &self.sweep, run) {
+        match prepare_run(desk, &self.sweep, &mut self.before, run) {
             Ok(new) => {
                 self.bytes += new.request.len() + new.plan.len();
                 if self.bytes > MOST_BYTES {
@@ -146,12 +157,12 @@ fn refused(detail: String) -> JobsError {
     JobsError::Input(InputErrors(vec![InputError::new("/sweep/replace", detail)]))
 }
 
-fn prepare_run(desk: &Desk<'_>, sweep: &Sweep, run: u64) -> Result<NewRun, JobsError> {
+fn prepare_run(desk: &Desk<'_>, sweep: &Sweep, before: &mut Before, run: u64) -> Result<NewRun, JobsError> {
     let wrong = |errors| JobsError::Input(sweep.located(run, errors));
     let crate::model::sweep::Run { text, request } = sweep.run(run).map_err(JobsError::Input)?;
     let max_increments = request.analysis.max_increments;
     desk.limits.check(&request.model, max_increments).map_err(wrong)?;
-    let plan = serde_json::to_string(&desk.solver.plan(&request).map_err(wrong)?)?;
+    let plan = serde_json::to_string(&desk.solver.plan_after(before, &request).map_err(wrong)?)?;
     let values = serde_json::to_string(&sweep.variation.values(run))?;
     Ok(NewRun { name: request.model.name, request: text, plan, values, max_increments })
 }

@@ -15,6 +15,7 @@ pub mod request;
 pub mod run_mistakes;
 pub mod study;
 pub mod sweep;
+mod template;
 pub mod variation_summary;
 
 pub use error::{InputError, InputErrors};

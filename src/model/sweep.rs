@@ -3,6 +3,7 @@
 use super::error::{InputError, InputErrors};
 use super::limits::{MAX_NAME_BYTES, MAX_SWEEP_RUNS};
 use super::request::{Analysis, JobRequest, Model};
+use super::template::{Template, item};
 use super::{check, decode};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
@@ -96,8 +97,7 @@ pub struct Sweep {
     pub name: Option<String>,
     pub variation: Variation,
     runs: u64,
-    /// The posted document without what is varied.
-    base: Value,
+    template: Template,
 }
 
 /// One run of a sweep.
@@ -139,7 +139,10 @@ impl Sweep {
             }
         };
         if mistakes.is_empty() {
-            Ok(Self { name, variation: Variation { parameters, combine: form.combine }, runs, base })
+            let variation = Variation { parameters, combine: form.combine };
+            let pointers: Vec<&str> = variation.parameters.iter().map(|parameter| parameter.pointer.as_str()).collect();
+            let template = Template::new(base, &pointers, &variation.values(0));
+            Ok(Self { name, variation, runs, template })
         } else {
             Err(InputErrors(mistakes))
         }
@@ -155,12 +158,8 @@ impl Sweep {
     /// # Errors
     /// What is wrong with it, each with its place in the sweep.
     pub fn run(&self, run: u64) -> Result<Run, InputErrors> {
-        let mut document = self.base.clone();
-        for (parameter, value) in self.variation.parameters.iter().zip(self.variation.values(run)) {
-            put(&mut document, &parameter.pointer, value);
-        }
-        let text = document.to_string();
-        let request = decode::decode(text.as_bytes()).map_err(|errors| self.located(run, errors))?;
+        let (text, request) = self.template.fill(&self.variation.values(run));
+        let request = request.map_err(|errors| self.located(run, errors))?;
         check::check(&request).map_err(|errors| self.located(run, errors))?;
         if request.analysis.explore.is_some() {
             let detail = "a sweep follows no other directions; leave it out";
@@ -235,12 +234,6 @@ fn count(combine: Combine, parameters: &[Parameter]) -> Result<u64, InputError> 
     Ok(runs)
 }
 
-/// The place of an item as RFC 6901 writes it: digits, and no zero before others.
-fn item(name: &str) -> Option<usize> {
-    let is_plain = name.bytes().all(|byte| byte.is_ascii_digit()) && (name == "0" || !name.starts_with('0'));
-    if is_plain { name.parse().ok() } else { None }
-}
-
 /// Whether something can be put there: members of objects may be missing, items of arrays not.
 fn can_hold(document: &Value, pointer: &str) -> Result<(), String> {
     if !["/model/", "/analysis/"].iter().any(|root| pointer.starts_with(root)) {
@@ -266,26 +259,6 @@ fn can_hold(document: &Value, pointer: &str) -> Result<(), String> {
         walked.push_str(step);
     }
     Ok(())
-}
-
-/// Puts a value where [`can_hold`] said that it can be.
-fn put(document: &mut Value, pointer: &str, value: Value) {
-    let mut at = document;
-    for step in pointer.split('/').skip(1) {
-        let name = step.replace("~1", "/").replace("~0", "~");
-        if at.is_null() {
-            *at = Value::Object(serde_json::Map::new());
-        }
-        at = match at {
-            Value::Object(members) => members.entry(name).or_insert(Value::Null),
-            Value::Array(items) => match item(&name).and_then(|index| items.get_mut(index)) {
-                Some(item) => item,
-                None => return,
-            },
-            _ => return,
-        };
-    }
-    *at = value;
 }
 
 #[cfg(test)]

@@ -50,6 +50,12 @@ pub struct Structure {
 
 impl Structure {
     pub fn new(dimension: usize, supported: &[bool], elements: Vec<Element>) -> Self {
+        Self::like(None, dimension, supported, elements)
+    }
+
+    /// As [`new`](Self::new); the places of the tangent's entries are those of another structure with the same unknowns and
+    /// elements between the same nodes, if that is one.
+    pub fn like(other: Option<&Self>, dimension: usize, supported: &[bool], elements: Vec<Element>) -> Self {
         let mut unknown_of = vec![None; supported.len()];
         let mut freedom_of = Vec::new();
         for (freedom, held) in supported.iter().enumerate() {
@@ -70,8 +76,22 @@ impl Structure {
             }
         }
         let mut structure = Self { dimension, unknown_of, freedom_of, elements, elements_at, first_at, layout: None };
-        structure.set_sparse(structure.unknowns() > MOST_DENSE);
+        match other.filter(|other| other.layout.is_some() && other.has_places_of(&structure)) {
+            Some(other) => structure.layout.clone_from(&other.layout),
+            None => structure.set_sparse(structure.unknowns() > MOST_DENSE),
+        }
         structure
+    }
+
+    /// Whether the entries of both tangents are at the same places and come in the same order.
+    fn has_places_of(&self, other: &Self) -> bool {
+        let is_like = |(one, other): (&Element, &Element)| {
+            std::mem::discriminant(one) == std::mem::discriminant(other) && one.nodes().eq(other.nodes())
+        };
+        self.dimension == other.dimension
+            && self.unknown_of == other.unknown_of
+            && self.elements.len() == other.elements.len()
+            && self.elements.iter().zip(&other.elements).all(is_like)
     }
 
     /// Whether matrices are to be sparse; they stay dense where there is not the memory to find their layout.

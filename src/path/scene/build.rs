@@ -23,7 +23,14 @@ pub(super) fn norm(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum::<f64>().sqrt()
 }
 
-pub(super) fn build_structure(model: &Model, numbers: &HashMap<&str, usize>, length: f64, force: f64) -> Structure {
+/// `like`: a structure that may be the same but for its numbers.
+pub(super) fn build_structure(
+    model: &Model,
+    numbers: &HashMap<&str, usize>,
+    length: f64,
+    force: f64,
+    like: Option<&Structure>,
+) -> Structure {
     let dimension = model.dimension;
     let mut supported = vec![false; model.nodes.len() * dimension];
     for (name, components) in &model.supports {
@@ -66,7 +73,7 @@ pub(super) fn build_structure(model: &Model, numbers: &HashMap<&str, usize>, len
             }
         })
         .collect();
-    Structure::new(dimension, &supported, elements)
+    Structure::like(like, dimension, &supported, elements)
 }
 
 /// The contacts that are solved for, and those of the request.

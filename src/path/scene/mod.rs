@@ -151,7 +151,17 @@ impl Scene {
     /// # Errors
     /// What is wrong with the request, and a structure whose matrices are too large for that budget.
     pub fn new(request: &JobRequest) -> Result<Self, InputErrors> {
-        Budget::under_way(budget::cancel_flag()).during(|| Self::built(request)).unwrap_or_else(|breach| {
+        Self::like(None, request)
+    }
+
+    /// As [`new`](Self::new), beside the scene of a request that may differ in numbers alone: what does not hang on them is
+    /// not made twice.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new).
+    pub fn like(other: Option<&Self>, request: &JobRequest) -> Result<Self, InputErrors> {
+        let other = other.map(|other| &other.structure);
+        Budget::under_way(budget::cancel_flag()).during(|| Self::built(request, other)).unwrap_or_else(|breach| {
             let what = match breach {
                 Breach::Cancelled => budget::end(breach),
                 Breach::Memory { .. } => "the model is too large",
@@ -163,13 +173,14 @@ impl Scene {
         })
     }
 
-    fn built(request: &JobRequest) -> Result<Self, InputErrors> {
+    fn built(request: &JobRequest, like: Option<&Structure>) -> Result<Self, InputErrors> {
         crate::model::check::check(request)?;
         let model = &request.model;
         let numbers: HashMap<&str, usize> =
             model.nodes.keys().enumerate().map(|(number, name)| (name.as_str(), number)).collect();
-        let Scales { length, force, resistances, stretched } = scales(model, &request.analysis, &numbers);
-        let structure = build_structure(model, &numbers, length, force);
+        let scales = scales(model, &request.analysis, &numbers, like);
+        let Scales { length, force, resistances, stretched, structure } = scales;
+        let structure = build_structure(model, &numbers, length, force, structure.as_ref().or(like));
         let mut left_out = Vec::new();
         let Contacts { contacts, contact_names, reported, corners } =
             build_contacts(model, &numbers, length, &structure, &mut left_out);

@@ -3,6 +3,7 @@
 use super::build::{Contacts, Scaled, build_contacts, build_stage, build_structure, first_contacts, norm};
 use super::resistance::resisting;
 use crate::model::request::{self, Analysis, Model};
+use crate::structure::Structure;
 use std::collections::HashMap;
 
 /// Stiffnesses that differ by no more than this factor are alike: scales that differ so change the increments by no more.
@@ -23,6 +24,8 @@ pub(super) struct Scales {
     pub resistances: Vec<f64>,
     /// `ℓ` over what it would be if none were given.
     pub stretched: f64,
+    /// The structure by other scales, where it took one to find these.
+    pub structure: Option<Structure>,
 }
 
 /// Elements and loads of a request, as far as scales need them.
@@ -123,15 +126,21 @@ impl Sizes {
     }
 }
 
-/// The scales of a request that has been checked.
-pub(super) fn scales(model: &Model, analysis: &Analysis, numbers: &HashMap<&str, usize>) -> Scales {
+/// The scales of a request that has been checked; `like`: a structure that may be the same but for its numbers.
+pub(super) fn scales(
+    model: &Model,
+    analysis: &Analysis,
+    numbers: &HashMap<&str, usize>,
+    like: Option<&Structure>,
+) -> Scales {
     let sizes = Sizes::of(model);
     let first = if sizes.bars.is_empty() { most(&sizes.springs) } else { least(&sizes.bars) };
     let (length, force, own) = sizes.scaled_by(analysis, first);
     if sizes.are_alike() || (sizes.bars.is_empty() && sizes.springs.is_empty()) {
-        return Scales { length, force, resistances: vec![force; model.stages.len()], stretched: length / own };
+        let resistances = vec![force; model.stages.len()];
+        return Scales { length, force, resistances, stretched: length / own, structure: None };
     }
-    let structure = build_structure(model, numbers, length, force);
+    let structure = build_structure(model, numbers, length, force, like);
     let Contacts { contacts, reported, .. } = build_contacts(model, numbers, length, &structure, &mut Vec::new());
     let first_contacts = first_contacts(&reported, contacts.len());
     let first_contacts = &first_contacts[..];
@@ -158,5 +167,5 @@ pub(super) fn scales(model: &Model, analysis: &Analysis, numbers: &HashMap<&str,
     } else {
         by_stage.into_iter().map(|resistance| resistance.unwrap_or(force)).collect()
     };
-    Scales { length, force, resistances, stretched: length / own }
+    Scales { length, force, resistances, stretched: length / own, structure: Some(structure) }
 }
