@@ -4,7 +4,7 @@ use super::at_hand::AtHand;
 use super::branches;
 use super::carried::Carried;
 use super::common_limit;
-use super::confirm::later_load;
+use super::confirm::later_sign;
 use super::corner;
 use super::critical::Crossing;
 use super::decide::{self, Before, Choice};
@@ -280,8 +280,8 @@ impl Path<'_> {
         if let Some(choice) = decision.taken.map(|taken| &mut decision.options[taken])
             && choice.load_sign == 0.0
         {
-            let later = later_load(self.loading(), &self.at.here.state, &choice.rate, &choice.modes, force_scale);
-            choice.load_sign = decide::sign_of(later);
+            let (loading, state) = (self.loading(), &self.at.here.state);
+            choice.load_sign = later_sign(loading, state, &choice.rate, &choice.modes, force_scale);
         }
         let old_modes = self.at.here.modes.clone();
         let old_sign = self.at.here.load_sign;

@@ -20,7 +20,13 @@
 //! Every direction that is listed was tried with a small step.
 //!
 //! Other modes of contacts that can change have branches of their own here where their equations are singular, too:
-//! `in_other_modes`.
+//! `in_other_modes`; `each_mode` tells them at second order where first order leaves no way on.
+
+mod each_mode;
+#[cfg(test)]
+mod tests;
+
+pub use each_mode::{Told, in_each_mode};
 
 use super::at_hand::AtHand;
 use super::combinations::{combinations, count};
@@ -177,6 +183,8 @@ impl Point<'_> {
             load_sign,
             retrace,
             mechanism: false,
+            is_singular: false,
+            is_tried: true,
             at_hand: AtHand::default(),
         }
     }
@@ -484,6 +492,3 @@ impl Point<'_> {
         Some(chord)
     }
 }
-
-#[cfg(test)]
-mod tests;

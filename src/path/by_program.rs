@@ -190,7 +190,15 @@ impl Path<'_> {
     /// The end of a search taken to round-off in a mode, at the arc length sought.
     fn polished(&self, end: &End, rate: &Rate, modes: &[Mode], step: f64, work: &mut Work) -> Option<Box<Reached>> {
         let (here, force_scale) = (&self.at.here, self.at.totals.force_scale);
-        let start = Start { loading: self.loading(), state: &here.state, rate, modes, drift: None, force_scale };
+        let start = Start {
+            loading: self.loading(),
+            state: &here.state,
+            rate,
+            modes,
+            drift: None,
+            force_scale,
+            is_singular: here.is_singular,
+        };
         let system = ModeSystem::new(self.loading(), modes, &here.state);
         let place = Place::ArcLength { from: &here.state, step };
         let polished = start.settle(system, end.state.clone(), place, work).ok()?;

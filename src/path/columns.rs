@@ -241,6 +241,7 @@ mod tests {
                     modes: &arriving.modes,
                     drift: None,
                     force_scale: path.at.totals.force_scale,
+                    is_singular: false,
                 };
                 let mut serving = None;
                 let mut work = Work::default();

@@ -190,6 +190,8 @@ fn tried(here: Here<'_>, rate: Rate, modes: Vec<Mode>) -> Option<Choice> {
         modes,
         retrace: false,
         mechanism: false,
+        is_singular: false,
+        is_tried: true,
         at_hand: AtHand::default(),
     })
 }

@@ -204,8 +204,15 @@ mod tests {
             let step = path.at.step;
             let place = Place::ArcLength { from: &here.state, step };
             let forces = path.at.totals.force_scale;
-            let start =
-                Start { loading, state: &here.state, rate, modes: &here.modes, drift: None, force_scale: forces };
+            let start = Start {
+                loading,
+                state: &here.state,
+                rate,
+                modes: &here.modes,
+                drift: None,
+                force_scale: forces,
+                is_singular: false,
+            };
             let broken = |state: &State| start.broken(&here.modes, state, forces);
             let system = ModeSystem::new(loading, &here.modes, &here.state);
             let guess = here.state.advanced(rate, step);

@@ -32,6 +32,10 @@ const CLEAR_OF_ROUND_OFF: f64 = 5e-14;
 const CLEAR_OF_SPEED: f64 = 1e-13;
 /// Round-off of a velocity (of unit arc length).
 const STILL: f64 = 1e-14;
+/// Load rates (of unit arc length) up to this are rounding.
+const NO_LOAD_RATE: f64 = 1e-12;
+/// Load rates that differ by no more than this part of themselves are alike.
+const ALIKE: f64 = 0.5;
 /// How far a watched quantity may be negative after a trial step (second order in the step where it is real).
 const TRIAL_TOLERANCE: f64 = 1e-11;
 /// Combinations that are tried in turn.
@@ -95,10 +99,22 @@ pub(super) fn confirm_by(
     combinations.iter().find_map(|places| trial.judge(places).ok())
 }
 
-/// The load rate after the shortest step along a direction in its modes after which it has a sign; 0 where it has none.
-pub(super) fn later_load(loading: Loading<'_>, state: &State, rate: &Rate, modes: &[Mode], force_scale: f64) -> f64 {
-    let after = |step: &f64| stepped(loading, state, rate, modes, *step, force_scale).map(|(_, rate)| rate.load);
-    TRIAL_STEPS.iter().filter_map(after).find(|load| sign_of(*load) != 0.0).unwrap_or(0.0)
+/// The sign of the load rate after the shortest step along a direction in its modes after which it has one. Where it is too
+/// small to tell by itself, but the same all along (a structure close to critical friction, whose load falls or rises ever so
+/// slowly), its own; 0 where there is none.
+pub(super) fn later_sign(loading: Loading<'_>, state: &State, rate: &Rate, modes: &[Mode], force_scale: f64) -> f64 {
+    let mut is_steady = rate.load.abs() > NO_LOAD_RATE;
+    for step in TRIAL_STEPS {
+        let Some((_, after)) = stepped(loading, state, rate, modes, step, force_scale) else {
+            is_steady = false;
+            continue;
+        };
+        if sign_of(after.load) != 0.0 {
+            return sign_of(after.load);
+        }
+        is_steady &= (after.load - rate.load).abs() <= ALIKE * rate.load.abs();
+    }
+    if is_steady { rate.load.signum() } else { 0.0 }
 }
 
 /// The point a small step along a direction in these modes, with the direction there.

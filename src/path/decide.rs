@@ -11,6 +11,7 @@
 //! dissipation `D = -Σ r_t·u̇_t`: so `Π̇ = -D - ṡ f·u`, per unit arc length.
 
 use super::at_hand::AtHand;
+use super::branches::{Here, Told, in_each_mode};
 use super::confirm::confirm;
 use super::corner::whole_rates;
 use super::directions::{Found, difference_of_forces, directions, is_mechanism};
@@ -50,6 +51,12 @@ pub struct Choice {
     pub load_sign: f64,
     pub retrace: bool,
     pub mechanism: bool,
+    /// The equations of its mode have another null vector here: see `branches`.
+    #[serde(default)]
+    pub is_singular: bool,
+    /// A step along it, or second order, has told that it holds; else first order has.
+    #[serde(skip)]
+    pub is_tried: bool,
     /// For the step along it.
     #[serde(skip)]
     pub at_hand: AtHand,
@@ -120,6 +127,8 @@ pub fn list(
             load_sign,
             retrace: false,
             mechanism,
+            is_singular: false,
+            is_tried: candidate.weak,
             at_hand,
         });
     }
@@ -166,7 +175,8 @@ fn off_reverse(loading: Loading<'_>, state: &State, rate: &Rate, incoming: &Rate
     (forces <= BACK_FORCES).then(|| motion.max(forces))
 }
 
-/// Lists the directions and takes one.
+/// Lists the directions and takes one. Where first order leaves no way on, or one of which only
+/// rounding says that it holds, second order is asked.
 pub fn decide(
     loading: Loading<'_>,
     state: &State,
@@ -175,6 +185,32 @@ pub fn decide(
     rules: Rules<'_>,
 ) -> Decision {
     let (options, found) = list(loading, state, standings, before, rules);
+    let is_unfounded = match before {
+        Before::Incoming(incoming) => options.iter().any(|option| incoming.leaves_to_rounding(option)),
+        Before::StageStart => false,
+    };
+    let decision = taken_of(loading, options, &found, before, rules);
+    let ends = matches!(decision.stop, Some(StopReason::Degenerate | StopReason::NoDirection));
+    if !(ends || is_unfounded) || found.unexplored > 0 || rules.effort.cancel.is_cancelled() {
+        return decision;
+    }
+    let here = Here { loading, state, standings, force_scale: rules.force_scale };
+    let Some(Told { mut options, unclear }) = in_each_mode(here) else { return decision };
+    if let Before::Incoming(incoming) = before {
+        mark_retrace(loading, state, &mut options, incoming.rate);
+    }
+    let found = Found { degenerate: unclear, ..Found::default() };
+    taken_of(loading, options, &found, before, rules)
+}
+
+/// Takes one of the directions that were found.
+fn taken_of(
+    loading: Loading<'_>,
+    options: Vec<Choice>,
+    found: &Found,
+    before: Before<'_>,
+    rules: Rules<'_>,
+) -> Decision {
     let odd = options.len() % 2 == 1;
     let mut open: Vec<usize> = (0..options.len()).filter(|&index| !options[index].retrace).collect();
     let mut push = loading.pattern.forces.clone();
@@ -308,6 +344,8 @@ mod tests {
             load_sign,
             retrace: false,
             mechanism: false,
+            is_singular: false,
+            is_tried: false,
             at_hand: AtHand::default(),
         }
     }

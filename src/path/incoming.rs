@@ -14,12 +14,16 @@
 //! step need tell.
 
 use super::at_hand::AtHand;
+use super::decide::Choice;
 use super::directions::Candidate;
 use super::state::Rate;
 use crate::contact::Mode;
 
 /// One less the product of two directions that are one.
 const SAME_WAY: f64 = 1e-9;
+
+/// Directions (of unit arc length) no farther apart than this are one.
+const SAME_MOTION: f64 = 1e-9;
 
 /// How the path arrived.
 #[derive(Debug, Clone, Copy)]
@@ -38,6 +42,21 @@ impl<'a> Incoming<'a> {
     /// In a mode that goes on, or of whose end nothing more is known.
     pub fn along(rate: &'a Rate) -> Self {
         Self { rate, modes: None, stopped: None, nearby: None }
+    }
+
+    /// Whether a direction, ahead or back, is the incoming one in which a contact that slips now sticks, and first order
+    /// alone says so. The contact has come to rest, and what its force leaves of the cone is zero along it, too: of no other
+    /// force need there be a rate beside which that could be told from rounding.
+    pub(super) fn leaves_to_rounding(&self, choice: &Choice) -> bool {
+        let off = |sign: f64| {
+            let pairs = choice.rate.displacement.iter().zip(&self.rate.displacement);
+            let apart = |(one, other): (&f64, &f64)| (one - sign * other).powi(2);
+            (pairs.map(apart).sum::<f64>() + (choice.rate.load - sign * self.rate.load).powi(2)).sqrt()
+        };
+        let stops = |(mode, choice): (&Mode, &Mode)| matches!(mode, Mode::Slip { .. }) && *choice == Mode::Stick;
+        !choice.is_tried
+            && self.modes.is_some_and(|modes| modes.iter().zip(&choice.modes).any(stops))
+            && off(1.0).min(off(-1.0)) <= SAME_MOTION
     }
 
     /// Whether a direction that may be taken in two modes at first order is known to be taken in the first.

@@ -43,7 +43,15 @@ impl Path<'_> {
 
     fn start<'a>(&'a self, rate: &'a Rate, modes: &'a [Mode]) -> Start<'a> {
         let (here, force_scale) = (&self.at.here, self.at.totals.force_scale);
-        Start { loading: self.loading(), state: &here.state, rate, modes, drift: None, force_scale }
+        Start {
+            loading: self.loading(),
+            state: &here.state,
+            rate,
+            modes,
+            drift: None,
+            force_scale,
+            is_singular: here.is_singular,
+        }
     }
 
     /// What the point of a mode at an arc length shows of its increment's program.

@@ -66,6 +66,9 @@ pub(super) struct Here {
     /// The direction was found with a factorisation that serves the step along it (`at_hand`).
     #[serde(default)]
     pub is_factorised: bool,
+    /// The equations of `modes` had another null vector where the direction was taken.
+    #[serde(default)]
+    pub is_singular: bool,
 }
 
 /// A state that the path has passed.
@@ -151,6 +154,7 @@ impl Progress {
                 apart: None,
                 signature: None,
                 is_factorised: false,
+                is_singular: false,
             },
             step: scene.analysis.arc_length.initial,
             waiting: Waiting::default(),

@@ -142,7 +142,7 @@ impl<'a> Path<'a> {
     pub(super) fn go(&mut self, choice: &Choice) {
         self.at.here.modes.clone_from(&choice.modes);
         (self.at.here.signature, self.at.here.is_factorised) = (None, false);
-        self.at.here.before = None;
+        (self.at.here.before, self.at.here.is_singular) = (None, choice.is_singular);
         self.at.here.load_sign = choice.load_sign;
         self.at.here.rate = Some(choice.rate.clone());
         // A node that leaves a corner along one of its obstacles, or slides along an edge, takes the whole force there.
@@ -196,6 +196,7 @@ impl<'a> Path<'a> {
         let creeps = self.reason_of_creep(reached.step, at_event);
         let arrived = changes.then(|| self.at.here.state.reactions.clone());
         let mut arrival = if accepted.joined > 0 {
+            self.at.here.is_singular = false;
             let arrival = self.joined_changes(&modes, accepted.joined, reached.rate);
             modes.clone_from(&self.at.here.modes);
             arrival

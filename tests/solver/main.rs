@@ -42,6 +42,7 @@ mod rival;
 mod rows;
 mod scales;
 mod slider_chain;
+mod slip_ends_at_a_fold;
 mod slips_at_once;
 mod smooth_bifurcations;
 mod spatial;

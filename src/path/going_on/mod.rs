@@ -136,6 +136,8 @@ pub fn directions_going_on(
         load_sign: sign_of(rate.load),
         retrace: false,
         mechanism: is_mechanism(loading, state, &rate),
+        is_singular: false,
+        is_tried: false,
         rate,
         modes,
     };

@@ -1,0 +1,329 @@
+//! Directions told at second order, of each contact mode on its own.
+//!
+//! Where first order leaves no way on, that may be because it says too little. With a direction `q` of the equations
+//! `F(x) = 0` of a mode and the path `x = x₀ + q t + ½ q₂ t²`,
+//!
+//! ```text
+//! F_x q = 0,      F_x q₂ = -F''(q, q),      q·q₂ = 0.
+//! ```
+//!
+//! An inequality that `q` leaves at equality holds if `q₂` takes it to the right side, and not if it takes it to the wrong
+//! one. A step along the direction would say the same as long as it is short beside the bend: near a fold of what hangs on a
+//! slider the path bends sharply, and no step is.
+//!
+//! At the fold itself the equations of the mode in which the slider sticks have two null vectors. With the left one, `ψ`,
+//! directions are the roots of `ψ·F''(q, q) = 0` (see `branches`): two that cross, one (of which the other null vector has
+//! all the curvature), or none.
+//!
+//! Asked for where the path would end: it takes a few factorisations for every combination of modes.
+
+use super::super::combinations::{combinations, count};
+use super::super::confirm::confirm_by;
+use super::super::decide::Choice;
+use super::super::directions::{Candidate, RANK, is_mechanism};
+use super::super::mode_system::ModeSystem;
+use super::super::singular::scaled_rows;
+use super::super::standing::{Standing, ZERO};
+use super::super::state::Rate;
+use super::super::watch::{self, Watch};
+use super::{AtHand, Here, MOST_MODES, NO_CURVATURE, Null, Point, RADII, SAME};
+use crate::contact::Mode;
+use crate::contact::vector::scaled;
+use crate::linear_algebra::null_space_as_scaled;
+use nalgebra::{DMatrix, DVector, Matrix2};
+
+/// What is left of the directions at a point when each is told at second order.
+pub struct Told {
+    pub options: Vec<Choice>,
+    /// Some mode has a continuum of directions at second order, too, or of some neither second order nor a step tells.
+    pub unclear: bool,
+}
+
+/// Rates of first order up to this (of unit arc length; forces relative to the largest) are left to second order, as they
+/// are where steps tell.
+const IN_DOUBT: f64 = 1e-8;
+/// How far along the path (dimensionless) its events are certain: where it bends sharply, what is zero at an event is so at
+/// first order but for what it changes by over this way.
+const LOCATED: f64 = 1e-11;
+/// Changes of rates up to this part of the largest are zero: what differences of the tangent leave.
+const NO_CHANGE: f64 = 1e-6;
+
+/// A direction of a mode.
+struct Way {
+    null: Null,
+    /// `q₂`, where the direction is the only one of its mode.
+    bend: Option<Rate>,
+    /// The equations of the mode have more than one null vector.
+    is_singular: bool,
+}
+
+/// What is to be said of a direction.
+enum Verdict {
+    Holds,
+    Fails,
+    Unclear,
+}
+
+/// Every direction of every mode of the contacts that can change; `None` where these are too many or not of a kind for
+/// which second order is known (slip in a plane, corners, and motions that no element resists).
+pub fn in_each_mode(here: Here<'_>) -> Option<Told> {
+    let options = modes_of_each(here)?;
+    if count(&options) > MOST_MODES || !here.loading.structure.allows_dense() {
+        return None;
+    }
+    let mut told = Told { options: Vec::new(), unclear: false };
+    for modes in combinations(&options, MOST_MODES) {
+        let system = ModeSystem::new(here.loading, &modes, here.state);
+        if system.has_tracks() {
+            return None;
+        }
+        let point = Point { here, modes: &modes, system, eigenvalues: None };
+        for way in point.ways(&mut told.unclear)? {
+            if is_mechanism(here.loading, here.state, &way.null.rate) {
+                return None;
+            }
+            point.tell(way, &mut told);
+        }
+    }
+    Some(told)
+}
+
+/// What each contact may do.
+fn modes_of_each(here: Here<'_>) -> Option<Vec<Vec<Mode>>> {
+    let of_contact = |(contact, standing): (usize, &Standing)| {
+        let tangents = here.loading.contacts[contact].tangents();
+        match standing {
+            Standing::Settled(mode) => Some(vec![*mode]),
+            Standing::OnCone { direction } => Some(vec![Mode::Stick, Mode::Slip { direction: *direction }]),
+            Standing::Touching if tangents == 0 => Some(vec![Mode::Slip { direction: [0.0; 3] }, Mode::Free]),
+            Standing::Touching if tangents == 1 => {
+                let tangent = here.loading.frame(contact, here.state).tangents[0];
+                let [on, back] = [1.0, -1.0].map(|sense| Mode::Slip { direction: scaled(&tangent, sense) });
+                Some(vec![Mode::Stick, on, back, Mode::Free])
+            }
+            Standing::Touching | Standing::Cornered { .. } => None,
+        }
+    };
+    here.standings.iter().enumerate().map(of_contact).collect()
+}
+
+impl Point<'_> {
+    /// The directions of the mode, each in both senses; `None` where nothing moves along one or they are three and more.
+    fn ways(&self, unclear: &mut bool) -> Option<Vec<Way>> {
+        let (matrix, sizes) = scaled_rows(&self.system, self.here.loading, self.here.state);
+        let right = null_space_as_scaled(matrix.clone(), RANK)?;
+        let nulls = self.orthonormal(&right)?;
+        let roots = match &nulls[..] {
+            [only] => vec![only.clone()],
+            [first, second] => {
+                let left = null_space_as_scaled(matrix.transpose(), RANK)?;
+                if left.ncols() != 1 {
+                    return None;
+                }
+                let left = left.column(0).component_div(&sizes);
+                let Some(roots) = self.roots(&left, [first, second]) else {
+                    *unclear = true;
+                    return Some(Vec::new());
+                };
+                roots
+            }
+            _ => return None,
+        };
+        let is_singular = nulls.len() > 1;
+        let both = |null: Null| {
+            let bend = if is_singular { None } else { self.bend(&null) };
+            // The bend is the same in both senses.
+            [1.0, -1.0].map(|sense| Way {
+                null: self.combined(&[null.clone()], &[sense]),
+                bend: bend.clone(),
+                is_singular,
+            })
+        };
+        Some(roots.into_iter().flat_map(both).collect())
+    }
+
+    /// A basis of the null space, orthonormal in displacements and load.
+    fn orthonormal(&self, basis: &DMatrix<f64>) -> Option<Vec<Null>> {
+        let mut nulls: Vec<Null> = Vec::with_capacity(basis.ncols());
+        for column in basis.column_iter() {
+            let values = column.into_owned();
+            let mut null = Null { rate: self.system.rate_from(self.here.state, &values), values };
+            let whole = null.rate.size();
+            // Twice is enough.
+            for _ in 0..2 {
+                for known in &nulls {
+                    let share = null.rate.product(&known.rate);
+                    null = self.combined(&[null, known.clone()], &[1.0, -share]);
+                }
+            }
+            let size = null.rate.size();
+            if !(size.is_finite() && size > IN_DOUBT * whole && size > IN_DOUBT * null.rate.largest_reaction()) {
+                return None;
+            }
+            nulls.push(self.combined(&[null], &[1.0 / size]));
+        }
+        Some(nulls)
+    }
+
+    /// The roots of `ψ·F''(q, q) = 0` in a plane; `None` where all of it is one.
+    fn roots(&self, left: &DVector<f64>, [first, second]: [&Null; 2]) -> Option<Vec<Null>> {
+        let [along_first, along_second] = [first, second].map(|null| self.second_derivative(&null.rate));
+        let mixed = left.dot(&(&along_first * &second.values));
+        let form = Matrix2::new(
+            left.dot(&(&along_first * &first.values)),
+            mixed,
+            mixed,
+            left.dot(&(&along_second * &second.values)),
+        );
+        let size = left.amax() * along_first.amax().max(along_second.amax());
+        let eigen = form.symmetric_eigen();
+        let (steep, flat) = if eigen.eigenvalues[0].abs() >= eigen.eigenvalues[1].abs() { (0, 1) } else { (1, 0) };
+        let (most, least) = (eigen.eigenvalues[steep], eigen.eigenvalues[flat]);
+        if !most.is_finite() || most.abs() <= NO_CURVATURE * size {
+            return None;
+        }
+        let ratio = if least.abs() <= NO_CURVATURE * most.abs() { 0.0 } else { -least / most };
+        if ratio < 0.0 {
+            return Some(Vec::new());
+        }
+        let combined = |weights: [f64; 2]| {
+            let null = self.combined(&[first.clone(), second.clone()], &weights);
+            let size = null.rate.size();
+            self.combined(&[null], &[1.0 / size])
+        };
+        let part = ratio.sqrt();
+        let [flat, steep] = [flat, steep].map(|column| [0, 1].map(|row| eigen.eigenvectors[(row, column)]));
+        if part > 0.0 {
+            return Some([part, -part].map(|part| combined([0, 1].map(|row| flat[row] + part * steep[row]))).to_vec());
+        }
+        // Differences along the flat direction are exact, and those along others are not.
+        let (mut flat, steep) = (combined(flat), combined(steep));
+        let pure = left.dot(&(self.second_derivative(&steep.rate) * &steep.values));
+        for _ in 0..2 {
+            let mixed = left.dot(&(self.second_derivative(&flat.rate) * &steep.values));
+            let null = self.combined(&[flat, steep.clone()], &[1.0, -mixed / pure]);
+            let size = null.rate.size();
+            flat = self.combined(&[null], &[1.0 / size]);
+        }
+        Some(vec![flat])
+    }
+
+    /// `q₂`
+    fn bend(&self, null: &Null) -> Option<Rate> {
+        let system = &self.system;
+        let factorisation = system.bordered(&system.iterate(self.here.state.clone()), &null.rate)?;
+        let curved = self.second_derivative(&null.rate) * &null.values;
+        let mut values = -curved.insert_row(system.size() - 1, 0.0);
+        factorisation.solve(&mut values).then(|| system.rate_from(self.here.state, &values))
+    }
+
+    /// Adds a direction, if it holds and is not known.
+    fn tell(&self, way: Way, told: &mut Told) {
+        let Here { loading, state, force_scale, .. } = self.here;
+        let rate = &way.null.rate;
+        let forces = rate.largest_reaction().max(f64::MIN_POSITIVE);
+        let is_known = |known: &Choice| {
+            let mut pairs = known.rate.reactions.iter().zip(&rate.reactions);
+            known.rate.product(rate) > SAME && pairs.all(|(one, other)| one.difference(other) <= IN_DOUBT * forces)
+        };
+        let later = way.bend.as_ref().map_or(0.0, |bend| bend.load / bend.size().max(f64::MIN_POSITIVE));
+        match self.verdict(&way) {
+            Verdict::Fails => {}
+            _ if told.options.iter().any(is_known) => {}
+            Verdict::Holds => {
+                let choice = self.choice(rate.clone(), self.modes.to_vec(), Some(later), false);
+                told.options.push(Choice { is_singular: way.is_singular, ..choice });
+            }
+            Verdict::Unclear => {
+                let candidate = Candidate {
+                    rate: rate.clone(),
+                    forces: Vec::new(),
+                    modes: self.modes.to_vec(),
+                    alternatives: Vec::new(),
+                    weak: true,
+                    dissipation: 0.0,
+                    at_hand: AtHand::default(),
+                };
+                let tried = |radius: &f64| confirm_by(loading, state, &candidate, force_scale, &[*radius]);
+                match RADII.iter().find_map(tried) {
+                    Some((modes, later)) => {
+                        let choice = self.choice(rate.clone(), modes, Some(later), false);
+                        told.options.push(Choice { is_singular: way.is_singular, ..choice });
+                    }
+                    None => told.unclear = true,
+                }
+            }
+        }
+    }
+
+    /// Whether the inequalities of the mode hold along a direction.
+    fn verdict(&self, way: &Way) -> Verdict {
+        let Here { loading, state, force_scale, .. } = self.here;
+        let rate = &way.null.rate;
+        let bent = way.bend.as_ref().map(|bend| Bent::new(self, rate, bend));
+        let mut verdict = Verdict::Holds;
+        for watch in watch::of_mode(loading, self.modes, state, rate) {
+            let value = watch.value(loading, self.modes, state, rate);
+            let slope = watch.slope(loading, self.modes, state, rate);
+            if slope.is_some() && watch.is_above_zero(loading, state, value, ZERO, force_scale) {
+                continue;
+            }
+            let size = if watch.is_of_forces() { rate.largest_reaction().max(f64::MIN_POSITIVE) } else { 1.0 };
+            let first = slope.unwrap_or(value) / size;
+            let second = bent.as_ref().map(|bent| bent.change(self, watch) / size);
+            let doubt = IN_DOUBT + second.map_or(0.0, |second| LOCATED * second.abs());
+            let rising = if first.abs() > doubt { first } else { second.unwrap_or(0.0) };
+            if rising < 0.0 {
+                return Verdict::Fails;
+            }
+            if rising == 0.0 {
+                verdict = Verdict::Unclear;
+            }
+        }
+        verdict
+    }
+}
+
+/// The path a little way along a direction, to second order.
+struct Bent {
+    way: f64,
+    state: super::super::state::State,
+    rate: Rate,
+    before: Rate,
+    /// The largest change of a rate, of motion and of forces.
+    motion: f64,
+    force: f64,
+}
+
+impl Bent {
+    /// How far along the path what is of second order is looked at, over the radius of its bend.
+    const WAY: f64 = 1e-4;
+
+    fn new(point: &Point<'_>, rate: &Rate, bend: &Rate) -> Self {
+        let way = Self::WAY / bend.size().max(1.0);
+        let mut ahead = rate.clone();
+        ahead.add(bend, way);
+        let mut middle = rate.clone();
+        middle.add(bend, 0.5 * way);
+        Self {
+            way,
+            state: point.here.state.advanced(&middle, way),
+            rate: ahead,
+            before: rate.clone(),
+            motion: bend.size(),
+            force: bend.largest_reaction(),
+        }
+    }
+
+    /// The change of a quantity that is a rate, or of the rate of another, by arc length; 0 where it is rounding.
+    fn change(&self, point: &Point<'_>, watch: Watch) -> f64 {
+        let Here { loading, state, .. } = point.here;
+        let at = |state, rate| {
+            let slope = watch.slope(loading, point.modes, state, rate);
+            slope.unwrap_or_else(|| watch.value(loading, point.modes, state, rate))
+        };
+        let change = (at(&self.state, &self.rate) - at(state, &self.before)) / self.way;
+        let largest = if watch.is_of_forces() { self.force } else { self.motion };
+        if change.abs() <= NO_CHANGE * largest { 0.0 } else { change }
+    }
+}
