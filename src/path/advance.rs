@@ -29,6 +29,8 @@ pub struct Start<'a> {
     pub force_scale: f64,
     /// The equations have another null vector besides the direction: see [`Start::held_straight`].
     pub is_singular: bool,
+    /// How far the path is then off the direction: see `decide::Choice`.
+    pub beside: Option<&'a Rate>,
 }
 
 /// A point reached.
@@ -179,6 +181,7 @@ impl Start<'_> {
         if let Some(reached) = self.held_straight(&system, place) {
             return Ok(reached);
         }
+        let guess = self.guess_beside(place).unwrap_or(guess);
         let corrected = system
             .correct_from(system.iterate(guess), place, self.force_scale, serving, work)
             .map_err(Refused::Newton)?;
@@ -189,7 +192,7 @@ impl Start<'_> {
     /// sticks at a fold of what hangs on it keeps that at its fold, whatever the load on the slider: all along, a second
     /// null vector leaves Newton's method nothing to go by.
     fn held_straight(&self, system: &ModeSystem<'_>, place: Place<'_>) -> Option<Box<Reached>> {
-        if !self.is_singular || system.has_tracks() {
+        if !self.is_singular || self.beside.is_some() || system.has_tracks() {
             return None;
         }
         let step = match place {
@@ -206,6 +209,14 @@ impl Start<'_> {
         let corrected = system.judged(self.state.advanced(self.rate, step), self.force_scale);
         let error = corrected.residual;
         (error <= ACCEPTED_RESIDUAL).then(|| self.straight_on(corrected, error))
+    }
+
+    /// A guess off the direction, where the path bends at once.
+    fn guess_beside(&self, place: Place<'_>) -> Option<State> {
+        let (beside, Place::ArcLength { step, .. }) = (self.beside?, place) else { return None };
+        let mut guess = self.state.advanced(self.rate, step);
+        guess.advance(beside, step.sqrt());
+        Some(guess)
     }
 
     /// A converged point with the path's direction there.

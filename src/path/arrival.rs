@@ -257,7 +257,9 @@ impl Path<'_> {
         }
         let rules = self.rules();
         let modes = Some(&self.at.here.modes[..]);
-        let before = Before::Incoming(Incoming { rate: incoming, modes, stopped: *stopped, nearby: Some(nearby) });
+        let is_singular = self.at.here.is_singular;
+        let came = Incoming { rate: incoming, modes, stopped: *stopped, nearby: Some(nearby), is_singular };
+        let before = Before::Incoming(came);
         let mut decision = decide::decide(self.loading(), &self.at.here.state, &standings, before, rules);
         // Ways that share a node's force anew come last: they begin with a rest, not with the motion that led here.
         let keeps: Vec<bool> = decision.options.iter().map(|option| self.keeps_shares(option)).collect();

@@ -23,6 +23,7 @@
 //! `in_other_modes`; `each_mode` tells them at second order where first order leaves no way on.
 
 mod each_mode;
+mod fold;
 #[cfg(test)]
 mod tests;
 
@@ -184,6 +185,7 @@ impl Point<'_> {
             retrace,
             mechanism: false,
             is_singular: false,
+            beside: None,
             is_tried: true,
             at_hand: AtHand::default(),
         }

@@ -198,6 +198,7 @@ impl Path<'_> {
             drift: None,
             force_scale,
             is_singular: here.is_singular,
+            beside: here.beside.as_ref(),
         };
         let system = ModeSystem::new(self.loading(), modes, &here.state);
         let place = Place::ArcLength { from: &here.state, step };

@@ -242,6 +242,7 @@ mod tests {
                     drift: None,
                     force_scale: path.at.totals.force_scale,
                     is_singular: false,
+                    beside: None,
                 };
                 let mut serving = None;
                 let mut work = Work::default();
@@ -257,7 +258,7 @@ mod tests {
                     continue;
                 };
                 let incoming =
-                    Incoming { rate: &incoming, modes: Some(&arriving.modes), stopped: None, nearby: Some(&nearby) };
+                    Incoming { modes: Some(&arriving.modes), nearby: Some(&nearby), ..Incoming::along(&incoming) };
                 let held = held_modes(loading, &standings);
                 let system = ModeSystem::new(loading, &held, state);
                 let changeable = changeable(loading, state, &standings);

@@ -191,6 +191,7 @@ fn tried(here: Here<'_>, rate: Rate, modes: Vec<Mode>) -> Option<Choice> {
         retrace: false,
         mechanism: false,
         is_singular: false,
+        beside: None,
         is_tried: true,
         at_hand: AtHand::default(),
     })

@@ -212,6 +212,7 @@ mod tests {
                 drift: None,
                 force_scale: forces,
                 is_singular: false,
+                beside: None,
             };
             let broken = |state: &State| start.broken(&here.modes, state, forces);
             let system = ModeSystem::new(loading, &here.modes, &here.state);

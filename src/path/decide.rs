@@ -51,9 +51,12 @@ pub struct Choice {
     pub load_sign: f64,
     pub retrace: bool,
     pub mechanism: bool,
-    /// The equations of its mode have another null vector here: see `branches`.
+    /// The equations of its mode have another null vector here, or as good as that: see `branches`.
     #[serde(default)]
     pub is_singular: bool,
+    /// How far off the direction the path is then at a unit arc length; at others by the square root of that.
+    #[serde(default)]
+    pub beside: Option<Rate>,
     /// A step along it, or second order, has told that it holds; else first order has.
     #[serde(skip)]
     pub is_tried: bool,
@@ -128,6 +131,7 @@ pub fn list(
             retrace: false,
             mechanism,
             is_singular: false,
+            beside: None,
             is_tried: candidate.weak,
             at_hand,
         });
@@ -185,8 +189,14 @@ pub fn decide(
     rules: Rules<'_>,
 ) -> Decision {
     let (options, found) = list(loading, state, standings, before, rules);
+    // An odd count says that one is missing, or one too many.
+    let is_odd = options.len() % 2 == 1;
     let is_unfounded = match before {
-        Before::Incoming(incoming) => options.iter().any(|option| incoming.leaves_to_rounding(option)),
+        Before::Incoming(incoming) => {
+            let by_rounding = |option: &Choice| incoming.leaves_to_rounding(loading, option);
+            let stops = |option: &Choice| incoming.is_stopped_in(loading, option);
+            incoming.is_singular || options.iter().any(|option| by_rounding(option) || is_odd && stops(option))
+        }
         Before::StageStart => false,
     };
     let decision = taken_of(loading, options, &found, before, rules);
@@ -198,6 +208,11 @@ pub fn decide(
     let Some(Told { mut options, unclear }) = in_each_mode(here) else { return decision };
     if let Before::Incoming(incoming) = before {
         mark_retrace(loading, state, &mut options, incoming.rate);
+        // Of a load that turns, the way back falls as the way on does: it is no other way.
+        let backs = options.iter_mut().filter(|option| option.retrace && sign_of(option.rate.load) == 0.0);
+        backs.for_each(|option| option.load_sign = 0.0);
+        // Of two that differ in nothing else, that first which bends off the way the path came goes on.
+        options.sort_by_key(|option| option.beside.as_ref().is_some_and(|side| side.product(incoming.rate) < 0.0));
     }
     let found = Found { degenerate: unclear, ..Found::default() };
     taken_of(loading, options, &found, before, rules)
@@ -345,6 +360,7 @@ mod tests {
             retrace: false,
             mechanism: false,
             is_singular: false,
+            beside: None,
             is_tried: false,
             at_hand: AtHand::default(),
         }

@@ -16,14 +16,16 @@
 use super::at_hand::AtHand;
 use super::decide::Choice;
 use super::directions::Candidate;
+use super::loading::Loading;
 use super::state::Rate;
 use crate::contact::Mode;
+use crate::contact::vector::dot;
 
 /// One less the product of two directions that are one.
 const SAME_WAY: f64 = 1e-9;
 
-/// Directions (of unit arc length) no farther apart than this are one.
-const SAME_MOTION: f64 = 1e-9;
+/// Speeds (of unit arc length) up to this are what the location of a slip's end leaves.
+const AT_REST: f64 = 1e-12;
 
 /// How the path arrived.
 #[derive(Debug, Clone, Copy)]
@@ -36,27 +38,35 @@ pub struct Incoming<'a> {
     pub stopped: Option<usize>,
     /// A factorisation of the equations of those modes near the point, if there is one.
     pub nearby: Option<&'a AtHand>,
+    /// The equations of those modes have had another null vector all along.
+    pub is_singular: bool,
 }
 
 impl<'a> Incoming<'a> {
     /// In a mode that goes on, or of whose end nothing more is known.
     pub fn along(rate: &'a Rate) -> Self {
-        Self { rate, modes: None, stopped: None, nearby: None }
+        Self { rate, modes: None, stopped: None, nearby: None, is_singular: false }
     }
 
-    /// Whether a direction, ahead or back, is the incoming one in which a contact that slips now sticks, and first order
-    /// alone says so. The contact has come to rest, and what its force leaves of the cone is zero along it, too: of no other
-    /// force need there be a rate beside which that could be told from rounding.
-    pub(super) fn leaves_to_rounding(&self, choice: &Choice) -> bool {
-        let off = |sign: f64| {
-            let pairs = choice.rate.displacement.iter().zip(&self.rate.displacement);
-            let apart = |(one, other): (&f64, &f64)| (one - sign * other).powi(2);
-            (pairs.map(apart).sum::<f64>() + (choice.rate.load - sign * self.rate.load).powi(2)).sqrt()
+    /// Whether a direction in which contacts that have come to rest stick, all else as it was, was not tried. It is the
+    /// incoming one, ahead or back, and what their forces leave of the cones is zero along it: of no other force need there
+    /// be a rate beside which that could be told from rounding.
+    pub(super) fn leaves_to_rounding(&self, loading: Loading<'_>, choice: &Choice) -> bool {
+        !choice.is_tried && self.is_stopped_in(loading, choice)
+    }
+
+    /// Whether in a direction contacts that have come to rest stick, all else as it was.
+    pub(super) fn is_stopped_in(&self, loading: Loading<'_>, choice: &Choice) -> bool {
+        let Some(modes) = self.modes else { return false };
+        let mut stops = false;
+        let as_it_was = |(contact, (was, is)): (usize, (&Mode, &Mode))| match (was, is) {
+            (Mode::Slip { direction }, Mode::Stick) => {
+                stops = true;
+                dot(direction, &loading.relative_rate(contact, self.rate)).abs() <= AT_REST
+            }
+            _ => was.continues(*is),
         };
-        let stops = |(mode, choice): (&Mode, &Mode)| matches!(mode, Mode::Slip { .. }) && *choice == Mode::Stick;
-        !choice.is_tried
-            && self.modes.is_some_and(|modes| modes.iter().zip(&choice.modes).any(stops))
-            && off(1.0).min(off(-1.0)) <= SAME_MOTION
+        modes.iter().zip(&choice.modes).enumerate().all(as_it_was) && stops
     }
 
     /// Whether a direction that may be taken in two modes at first order is known to be taken in the first.

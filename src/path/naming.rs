@@ -51,6 +51,7 @@ impl Path<'_> {
             drift: None,
             force_scale,
             is_singular: here.is_singular,
+            beside: here.beside.as_ref(),
         }
     }
 

@@ -69,6 +69,9 @@ pub(super) struct Here {
     /// The equations of `modes` had another null vector where the direction was taken.
     #[serde(default)]
     pub is_singular: bool,
+    /// How far the path is off the direction: see `decide::Choice`.
+    #[serde(default)]
+    pub beside: Option<Rate>,
 }
 
 /// A state that the path has passed.
@@ -155,6 +158,7 @@ impl Progress {
                 signature: None,
                 is_factorised: false,
                 is_singular: false,
+                beside: None,
             },
             step: scene.analysis.arc_length.initial,
             waiting: Waiting::default(),

@@ -230,8 +230,8 @@ impl Signature {
         serving: &mut Option<SystemFactorisation>,
         work: &mut Work,
     ) -> Option<Self> {
-        if !start.loading.structure.allows_dense() {
-            // Bifurcation points are not looked for.
+        if !start.loading.structure.allows_dense() || start.is_singular {
+            // Bifurcation points are not looked for, or the path leaves one.
             return None;
         }
         Self::at(start.loading, start.modes, start.state, start.rate, serving, work).or_else(|| {

@@ -143,6 +143,7 @@ impl<'a> Path<'a> {
         self.at.here.modes.clone_from(&choice.modes);
         (self.at.here.signature, self.at.here.is_factorised) = (None, false);
         (self.at.here.before, self.at.here.is_singular) = (None, choice.is_singular);
+        self.at.here.beside.clone_from(&choice.beside);
         self.at.here.load_sign = choice.load_sign;
         self.at.here.rate = Some(choice.rate.clone());
         // A node that leaves a corner along one of its obstacles, or slides along an edge, takes the whole force there.
@@ -189,6 +190,10 @@ impl<'a> Path<'a> {
         (here.before, here.is_factorised) = (None, false);
         let mut modes = std::mem::replace(&mut here.modes, reached.corrected.modes);
         here.drift = reached.drift;
+        // Past its bend the path is like any other, and what is foreseen of it does not go back beyond.
+        let bends = here.beside.take().is_some();
+        here.is_singular &= !bends;
+        let begun = begun.filter(|_| !bends);
         here.signature = accepted.signature;
         let arriving = Arriving { modes: here.modes.clone(), load_sign: here.load_sign, counts: self.at.counts };
         let at_bound = self.at_bound(&reached.rate);

@@ -119,6 +119,7 @@ impl Path<'_> {
             drift: here.drift.as_ref(),
             force_scale: self.at.totals.force_scale,
             is_singular: here.is_singular,
+            beside: here.beside.as_ref(),
         };
         let ends = &self.scene.stages[self.at.stage].ends;
         let outcome = self.end_of_step(&start, step, sought, tries, work);

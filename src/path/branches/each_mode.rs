@@ -11,26 +11,23 @@
 //! one. A step along the direction would say the same as long as it is short beside the bend: near a fold of what hangs on a
 //! slider the path bends sharply, and no step is.
 //!
-//! At the fold itself the equations of the mode in which the slider sticks have two null vectors. With the left one, `ψ`,
-//! directions are the roots of `ψ·F''(q, q) = 0` (see `branches`): two that cross, one (of which the other null vector has
-//! all the curvature), or none.
+//! At the fold itself the equations of the mode in which the slider sticks have two null vectors, close to it as good as two:
+//! see `fold`.
 //!
 //! Asked for where the path would end: it takes a few factorisations for every combination of modes.
 
 use super::super::combinations::{combinations, count};
 use super::super::confirm::confirm_by;
 use super::super::decide::Choice;
-use super::super::directions::{Candidate, RANK, is_mechanism};
+use super::super::directions::{Candidate, is_mechanism};
 use super::super::mode_system::ModeSystem;
-use super::super::singular::scaled_rows;
 use super::super::standing::{Standing, ZERO};
-use super::super::state::Rate;
+use super::super::state::{Rate, State};
 use super::super::watch::{self, Watch};
-use super::{AtHand, Here, MOST_MODES, NO_CURVATURE, Null, Point, RADII, SAME};
+use super::fold::{Fold, Plane};
+use super::{AtHand, Here, MOST_MODES, Null, Point, RADII, SAME};
 use crate::contact::Mode;
 use crate::contact::vector::scaled;
-use crate::linear_algebra::null_space_as_scaled;
-use nalgebra::{DMatrix, DVector, Matrix2};
 
 /// What is left of the directions at a point when each is told at second order.
 pub struct Told {
@@ -48,13 +45,18 @@ const LOCATED: f64 = 1e-11;
 /// Changes of rates up to this part of the largest are zero: what differences of the tangent leave.
 const NO_CHANGE: f64 = 1e-6;
 
+/// Radius (dimensionless) of a bend below which no step follows it: the path is taken up where it leaves the bend.
+const SHARP: f64 = 1e-5;
+
 /// A direction of a mode.
 struct Way {
     null: Null,
     /// `q₂`, where the direction is the only one of its mode.
     bend: Option<Rate>,
-    /// The equations of the mode have more than one null vector.
+    /// The equations of the mode have more than one null vector, or as good as that.
     is_singular: bool,
+    /// See [`Choice`].
+    beside: Option<Rate>,
 }
 
 /// What is to be said of a direction.
@@ -110,102 +112,48 @@ fn modes_of_each(here: Here<'_>) -> Option<Vec<Vec<Mode>>> {
 impl Point<'_> {
     /// The directions of the mode, each in both senses; `None` where nothing moves along one or they are three and more.
     fn ways(&self, unclear: &mut bool) -> Option<Vec<Way>> {
-        let (matrix, sizes) = scaled_rows(&self.system, self.here.loading, self.here.state);
-        let right = null_space_as_scaled(matrix.clone(), RANK)?;
-        let nulls = self.orthonormal(&right)?;
-        let roots = match &nulls[..] {
-            [only] => vec![only.clone()],
-            [first, second] => {
-                let left = null_space_as_scaled(matrix.transpose(), RANK)?;
-                if left.ncols() != 1 {
-                    return None;
+        let nulls = self.nulls()?;
+        match &nulls[..] {
+            [only] => {
+                let bend = self.bend(only);
+                let is_sharp = bend.as_ref().is_some_and(|bend| bend.size() > 1.0 / SHARP);
+                let both = self.both(only, bend, false);
+                match if is_sharp { self.plane()? } else { Plane::Continuum } {
+                    Plane::Fold(fold) => Some(self.past_bend(&fold, both)),
+                    Plane::Continuum | Plane::Roots(_) => Some(both.into()),
                 }
-                let left = left.column(0).component_div(&sizes);
-                let Some(roots) = self.roots(&left, [first, second]) else {
+            }
+            [_, _] => Some(match self.plane()? {
+                Plane::Continuum => {
                     *unclear = true;
-                    return Some(Vec::new());
-                };
-                roots
-            }
-            _ => return None,
-        };
-        let is_singular = nulls.len() > 1;
-        let both = |null: Null| {
-            let bend = if is_singular { None } else { self.bend(&null) };
-            // The bend is the same in both senses.
-            [1.0, -1.0].map(|sense| Way {
-                null: self.combined(&[null.clone()], &[sense]),
-                bend: bend.clone(),
-                is_singular,
-            })
-        };
-        Some(roots.into_iter().flat_map(both).collect())
-    }
-
-    /// A basis of the null space, orthonormal in displacements and load.
-    fn orthonormal(&self, basis: &DMatrix<f64>) -> Option<Vec<Null>> {
-        let mut nulls: Vec<Null> = Vec::with_capacity(basis.ncols());
-        for column in basis.column_iter() {
-            let values = column.into_owned();
-            let mut null = Null { rate: self.system.rate_from(self.here.state, &values), values };
-            let whole = null.rate.size();
-            // Twice is enough.
-            for _ in 0..2 {
-                for known in &nulls {
-                    let share = null.rate.product(&known.rate);
-                    null = self.combined(&[null, known.clone()], &[1.0, -share]);
+                    Vec::new()
                 }
-            }
-            let size = null.rate.size();
-            if !(size.is_finite() && size > IN_DOUBT * whole && size > IN_DOUBT * null.rate.largest_reaction()) {
-                return None;
-            }
-            nulls.push(self.combined(&[null], &[1.0 / size]));
+                Plane::Roots(roots) => roots.iter().flat_map(|root| self.both(root, None, true)).collect(),
+                Plane::Fold(fold) if fold.is_straight() => self.both(&fold.flat, None, true).into(),
+                Plane::Fold(fold) => fold.arms().map(|arm| self.along_arm(&fold, arm)).into(),
+            }),
+            _ => None,
         }
-        Some(nulls)
     }
 
-    /// The roots of `ψ·F''(q, q) = 0` in a plane; `None` where all of it is one.
-    fn roots(&self, left: &DVector<f64>, [first, second]: [&Null; 2]) -> Option<Vec<Null>> {
-        let [along_first, along_second] = [first, second].map(|null| self.second_derivative(&null.rate));
-        let mixed = left.dot(&(&along_first * &second.values));
-        let form = Matrix2::new(
-            left.dot(&(&along_first * &first.values)),
-            mixed,
-            mixed,
-            left.dot(&(&along_second * &second.values)),
-        );
-        let size = left.amax() * along_first.amax().max(along_second.amax());
-        let eigen = form.symmetric_eigen();
-        let (steep, flat) = if eigen.eigenvalues[0].abs() >= eigen.eigenvalues[1].abs() { (0, 1) } else { (1, 0) };
-        let (most, least) = (eigen.eigenvalues[steep], eigen.eigenvalues[flat]);
-        if !most.is_finite() || most.abs() <= NO_CURVATURE * size {
-            return None;
-        }
-        let ratio = if least.abs() <= NO_CURVATURE * most.abs() { 0.0 } else { -least / most };
-        if ratio < 0.0 {
-            return Some(Vec::new());
-        }
-        let combined = |weights: [f64; 2]| {
-            let null = self.combined(&[first.clone(), second.clone()], &weights);
-            let size = null.rate.size();
-            self.combined(&[null], &[1.0 / size])
-        };
-        let part = ratio.sqrt();
-        let [flat, steep] = [flat, steep].map(|column| [0, 1].map(|row| eigen.eigenvectors[(row, column)]));
-        if part > 0.0 {
-            return Some([part, -part].map(|part| combined([0, 1].map(|row| flat[row] + part * steep[row]))).to_vec());
-        }
-        // Differences along the flat direction are exact, and those along others are not.
-        let (mut flat, steep) = (combined(flat), combined(steep));
-        let pure = left.dot(&(self.second_derivative(&steep.rate) * &steep.values));
-        for _ in 0..2 {
-            let mixed = left.dot(&(self.second_derivative(&flat.rate) * &steep.values));
-            let null = self.combined(&[flat, steep.clone()], &[1.0, -mixed / pure]);
-            let size = null.rate.size();
-            flat = self.combined(&[null], &[1.0 / size]);
-        }
-        Some(vec![flat])
+    fn both(&self, null: &Null, bend: Option<Rate>, is_singular: bool) -> [Way; 2] {
+        // The bend is the same in both senses.
+        [1.0, -1.0].map(|sense| Way {
+            null: self.combined(&[null.clone()], &[sense]),
+            bend: bend.clone(),
+            is_singular,
+            beside: None,
+        })
+    }
+
+    fn along_arm(&self, fold: &Fold, beside: Rate) -> Way {
+        Way { null: fold.ahead(self), bend: None, is_singular: true, beside: Some(beside) }
+    }
+
+    /// Of directions that bend at once, those that hold there, as they go on after it.
+    fn past_bend(&self, fold: &Fold, ways: [Way; 2]) -> Vec<Way> {
+        let holding = ways.into_iter().filter(|way| !matches!(self.verdict(way), Verdict::Fails));
+        holding.map(|way| self.along_arm(fold, fold.beside(&way.null.rate))).collect()
     }
 
     /// `q₂`
@@ -224,16 +172,15 @@ impl Point<'_> {
         let forces = rate.largest_reaction().max(f64::MIN_POSITIVE);
         let is_known = |known: &Choice| {
             let mut pairs = known.rate.reactions.iter().zip(&rate.reactions);
-            known.rate.product(rate) > SAME && pairs.all(|(one, other)| one.difference(other) <= IN_DOUBT * forces)
+            known.rate.product(rate) > SAME
+                && known.beside == way.beside
+                && pairs.all(|(one, other)| one.difference(other) <= IN_DOUBT * forces)
         };
         let later = way.bend.as_ref().map_or(0.0, |bend| bend.load / bend.size().max(f64::MIN_POSITIVE));
-        match self.verdict(&way) {
-            Verdict::Fails => {}
-            _ if told.options.iter().any(is_known) => {}
-            Verdict::Holds => {
-                let choice = self.choice(rate.clone(), self.modes.to_vec(), Some(later), false);
-                told.options.push(Choice { is_singular: way.is_singular, ..choice });
-            }
+        let confirmed = match self.verdict(&way) {
+            Verdict::Fails => return,
+            _ if told.options.iter().any(is_known) => return,
+            Verdict::Holds => Some((self.modes.to_vec(), later)),
             Verdict::Unclear => {
                 let candidate = Candidate {
                     rate: rate.clone(),
@@ -245,15 +192,15 @@ impl Point<'_> {
                     at_hand: AtHand::default(),
                 };
                 let tried = |radius: &f64| confirm_by(loading, state, &candidate, force_scale, &[*radius]);
-                match RADII.iter().find_map(tried) {
-                    Some((modes, later)) => {
-                        let choice = self.choice(rate.clone(), modes, Some(later), false);
-                        told.options.push(Choice { is_singular: way.is_singular, ..choice });
-                    }
-                    None => told.unclear = true,
-                }
+                RADII.iter().find_map(tried)
             }
-        }
+        };
+        let Some((modes, later)) = confirmed else {
+            told.unclear = true;
+            return;
+        };
+        let choice = self.choice(way.null.rate, modes, Some(later), false);
+        told.options.push(Choice { is_singular: way.is_singular, beside: way.beside, ..choice });
     }
 
     /// Whether the inequalities of the mode hold along a direction.
@@ -287,7 +234,7 @@ impl Point<'_> {
 /// The path a little way along a direction, to second order.
 struct Bent {
     way: f64,
-    state: super::super::state::State,
+    state: State,
     rate: Rate,
     before: Rate,
     /// The largest change of a rate, of motion and of forces.

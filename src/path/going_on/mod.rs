@@ -137,6 +137,7 @@ pub fn directions_going_on(
         retrace: false,
         mechanism: is_mechanism(loading, state, &rate),
         is_singular: false,
+        beside: None,
         is_tried: false,
         rate,
         modes,
