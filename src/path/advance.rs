@@ -7,7 +7,7 @@ use super::interpolation::Placed;
 use super::loading::Loading;
 use super::locate::Stretch;
 use super::mode_system::ModeSystem;
-use super::newton::{ACCEPTED_RESIDUAL, Corrected, Failure, Place};
+use super::newton::{Corrected, Failure, Place};
 use super::scene::End;
 use super::state::{Rate, State};
 use super::tangent::Tangent;
@@ -27,7 +27,7 @@ pub struct Start<'a> {
     /// Error of the path so far, where it has one.
     pub drift: Option<&'a Rate>,
     pub force_scale: f64,
-    /// The equations have another null vector besides the direction: see [`Start::held_straight`].
+    /// The equations have another null vector besides the direction: see `past_fold`.
     pub is_singular: bool,
     /// How far the path is then off the direction: see `decide::Choice`.
     pub beside: Option<&'a Rate>,
@@ -186,37 +186,6 @@ impl Start<'_> {
             .correct_from(system.iterate(guess), place, self.force_scale, serving, work)
             .map_err(Refused::Newton)?;
         self.directed(system, corrected, place, serving, work)
-    }
-
-    /// The point straight ahead, where the equations are singular at the start and hold along the direction. A slider that
-    /// sticks at a fold of what hangs on it keeps that at its fold, whatever the load on the slider: all along, a second
-    /// null vector leaves Newton's method nothing to go by.
-    fn held_straight(&self, system: &ModeSystem<'_>, place: Place<'_>) -> Option<Box<Reached>> {
-        if !self.is_singular || self.beside.is_some() || system.has_tracks() {
-            return None;
-        }
-        let step = match place {
-            Place::ArcLength { step, .. } => step,
-            Place::Load(value) => (value - self.state.load) / self.rate.load,
-            Place::Displacement { freedom, value } => {
-                (value - self.state.displacement[freedom]) / self.rate.displacement[freedom]
-            }
-            Place::Zero { .. } => return None,
-        };
-        if !(step.is_finite() && step > 0.0) {
-            return None;
-        }
-        let corrected = system.judged(self.state.advanced(self.rate, step), self.force_scale);
-        let error = corrected.residual;
-        (error <= ACCEPTED_RESIDUAL).then(|| self.straight_on(corrected, error))
-    }
-
-    /// A guess off the direction, where the path bends at once.
-    fn guess_beside(&self, place: Place<'_>) -> Option<State> {
-        let (beside, Place::ArcLength { step, .. }) = (self.beside?, place) else { return None };
-        let mut guess = self.state.advanced(self.rate, step);
-        guess.advance(beside, step.sqrt());
-        Some(guess)
     }
 
     /// A converged point with the path's direction there.

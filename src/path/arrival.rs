@@ -123,6 +123,9 @@ impl Path<'_> {
             }
         };
         let taken = options.iter().position(|option| option.rate.product(incoming) > 1.0 - 1e-9);
+        // A load rate too small to tell by itself keeps the sign that it has had.
+        let has_sign = taken.is_none_or(|taken| options[taken].load_sign != 0.0) || here.load_sign == 0.0;
+        let sign = sign.or_else(|| (!has_sign).then_some(here.load_sign));
         point.bifurcation = decide::is_bifurcation(&options, taken, sign);
         point.unexplored_modes = found.unexplored;
         point.degenerate = found.degenerate || options.len() % 2 == 1 || taken.is_none();
@@ -278,12 +281,17 @@ impl Path<'_> {
             _ => true,
         };
         // By the load rates here: of a load that turns, the way back falls as the way on does.
-        let bifurcation = decide::is_bifurcation(&decision.options, decision.taken, None);
-        if let Some(choice) = decision.taken.map(|taken| &mut decision.options[taken])
+        let mut bifurcation = decide::is_bifurcation(&decision.options, decision.taken, None);
+        if let Some(taken) = decision.taken
+            && let choice = &mut decision.options[taken]
             && choice.load_sign == 0.0
         {
             let (loading, state) = (self.loading(), &self.at.here.state);
-            choice.load_sign = later_sign(loading, state, &choice.rate, &choice.modes, force_scale);
+            let later = later_sign(loading, state, &choice.rate, &choice.modes, force_scale);
+            choice.load_sign = later.sign;
+            if later.is_steady {
+                bifurcation = decide::is_bifurcation(&decision.options, decision.taken, None);
+            }
         }
         let old_modes = self.at.here.modes.clone();
         let old_sign = self.at.here.load_sign;

@@ -99,10 +99,23 @@ pub(super) fn confirm_by(
     combinations.iter().find_map(|places| trial.judge(places).ok())
 }
 
-/// The sign of the load rate after the shortest step along a direction in its modes after which it has one. Where it is too
-/// small to tell by itself, but the same all along (a structure close to critical friction, whose load falls or rises ever so
-/// slowly), its own; 0 where there is none.
-pub(super) fn later_sign(loading: Loading<'_>, state: &State, rate: &Rate, modes: &[Mode], force_scale: f64) -> f64 {
+/// The sign of a load rate that is zero at first order, or as good as that.
+pub(super) struct LaterSign {
+    /// 0 where there is none.
+    pub sign: f64,
+    /// It is that of the load rate itself, which is small and the same all along: close to critical friction the load falls
+    /// or rises ever so slowly.
+    pub is_steady: bool,
+}
+
+/// The sign of the load rate after the shortest step along a direction in its modes after which it has one.
+pub(super) fn later_sign(
+    loading: Loading<'_>,
+    state: &State,
+    rate: &Rate,
+    modes: &[Mode],
+    force_scale: f64,
+) -> LaterSign {
     let mut is_steady = rate.load.abs() > NO_LOAD_RATE;
     for step in TRIAL_STEPS {
         let Some((_, after)) = stepped(loading, state, rate, modes, step, force_scale) else {
@@ -110,11 +123,11 @@ pub(super) fn later_sign(loading: Loading<'_>, state: &State, rate: &Rate, modes
             continue;
         };
         if sign_of(after.load) != 0.0 {
-            return sign_of(after.load);
+            return LaterSign { sign: sign_of(after.load), is_steady: false };
         }
         is_steady &= (after.load - rate.load).abs() <= ALIKE * rate.load.abs();
     }
-    if is_steady { rate.load.signum() } else { 0.0 }
+    LaterSign { sign: if is_steady { rate.load.signum() } else { 0.0 }, is_steady }
 }
 
 /// The point a small step along a direction in these modes, with the direction there.

@@ -11,7 +11,7 @@
 //! dissipation `D = -Σ r_t·u̇_t`: so `Π̇ = -D - ṡ f·u`, per unit arc length.
 
 use super::at_hand::AtHand;
-use super::branches::{Here, Told, in_each_mode};
+use super::branches::{Here, Told};
 use super::confirm::confirm;
 use super::corner::whole_rates;
 use super::directions::{Found, difference_of_forces, directions, is_mechanism};
@@ -19,6 +19,7 @@ use super::energy;
 use super::incoming::Incoming;
 use super::loading::Loading;
 use super::rates::Effort;
+use super::second_order;
 use super::standing::Standing;
 use super::state::{Rate, State, dot};
 use super::stop::StopReason;
@@ -179,8 +180,7 @@ fn off_reverse(loading: Loading<'_>, state: &State, rate: &Rate, incoming: &Rate
     (forces <= BACK_FORCES).then(|| motion.max(forces))
 }
 
-/// Lists the directions and takes one. Where first order leaves no way on, or one of which only
-/// rounding says that it holds, second order is asked.
+/// Lists the directions and takes one.
 pub fn decide(
     loading: Loading<'_>,
     state: &State,
@@ -189,33 +189,15 @@ pub fn decide(
     rules: Rules<'_>,
 ) -> Decision {
     let (options, found) = list(loading, state, standings, before, rules);
-    // An odd count says that one is missing, or one too many.
-    let is_odd = options.len() % 2 == 1;
-    let is_unfounded = match before {
-        Before::Incoming(incoming) => {
-            let by_rounding = |option: &Choice| incoming.leaves_to_rounding(loading, option);
-            let stops = |option: &Choice| incoming.is_stopped_in(loading, option);
-            incoming.is_singular || options.iter().any(|option| by_rounding(option) || is_odd && stops(option))
-        }
-        Before::StageStart => false,
-    };
+    let is_doubtful = second_order::is_asked(loading, &options, before);
     let decision = taken_of(loading, options, &found, before, rules);
     let ends = matches!(decision.stop, Some(StopReason::Degenerate | StopReason::NoDirection));
-    if !(ends || is_unfounded) || found.unexplored > 0 || rules.effort.cancel.is_cancelled() {
+    if !(ends || is_doubtful) || found.unexplored > 0 || rules.effort.cancel.is_cancelled() {
         return decision;
     }
     let here = Here { loading, state, standings, force_scale: rules.force_scale };
-    let Some(Told { mut options, unclear }) = in_each_mode(here) else { return decision };
-    if let Before::Incoming(incoming) = before {
-        mark_retrace(loading, state, &mut options, incoming.rate);
-        // Of a load that turns, the way back falls as the way on does: it is no other way.
-        let backs = options.iter_mut().filter(|option| option.retrace && sign_of(option.rate.load) == 0.0);
-        backs.for_each(|option| option.load_sign = 0.0);
-        // Of two that differ in nothing else, that first which bends off the way the path came goes on.
-        options.sort_by_key(|option| option.beside.as_ref().is_some_and(|side| side.product(incoming.rate) < 0.0));
-    }
-    let found = Found { degenerate: unclear, ..Found::default() };
-    taken_of(loading, options, &found, before, rules)
+    let Some(Told { options, unclear }) = second_order::directions(here, before) else { return decision };
+    taken_of(loading, options, &Found { degenerate: unclear, ..Found::default() }, before, rules)
 }
 
 /// Takes one of the directions that were found.

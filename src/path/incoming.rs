@@ -48,13 +48,6 @@ impl<'a> Incoming<'a> {
         Self { rate, modes: None, stopped: None, nearby: None, is_singular: false }
     }
 
-    /// Whether a direction in which contacts that have come to rest stick, all else as it was, was not tried. It is the
-    /// incoming one, ahead or back, and what their forces leave of the cones is zero along it: of no other force need there
-    /// be a rate beside which that could be told from rounding.
-    pub(super) fn leaves_to_rounding(&self, loading: Loading<'_>, choice: &Choice) -> bool {
-        !choice.is_tried && self.is_stopped_in(loading, choice)
-    }
-
     /// Whether in a direction contacts that have come to rest stick, all else as it was.
     pub(super) fn is_stopped_in(&self, loading: Loading<'_>, choice: &Choice) -> bool {
         let Some(modes) = self.modes else { return false };

@@ -24,7 +24,8 @@
 //! | `sole` | many contacts that can change: one direction for each sign of the load rate, without condensation |
 //! | `going_on` | the directions where the mode goes on, if a cheap test says that there are two |
 //! | `combinations` | one of each of several lists, in one order |
-//! | `confirm`, `decide` | those that hold beyond first order; which one is taken |
+//! | `confirm`, `second_order`, `decide` | those that hold beyond first order; which one is taken |
+//! | `past_fold` | steps from a fold of what hangs on a contact |
 //! | `rates`, `turning`, `together` | all rays of a rate problem, linear forms only; slip whose direction is unknown, of one node and of several at once |
 //! | `program`, `naming`, `by_program` | the MPEC of an increment; where it names the mode; increments found by it alone |
 //! | `name_event`, `displacements` | an event in words; displacements by node for a row |
@@ -77,6 +78,7 @@ mod name_event;
 mod naming;
 mod near;
 mod newton;
+mod past_fold;
 pub mod plan;
 mod pocket;
 mod program;
@@ -87,6 +89,7 @@ pub mod regularised;
 pub mod report;
 mod root;
 pub mod scene;
+mod second_order;
 mod singular;
 mod sole;
 mod stages;

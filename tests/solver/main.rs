@@ -25,6 +25,7 @@ mod invariance;
 mod jammed_corners;
 mod judged;
 mod keep_all;
+mod limits_near_critical_friction;
 mod mac_mpec;
 mod many_contacts;
 mod measure;
