@@ -5,7 +5,7 @@
 //! changes either, rounding makes it something. A short step tells where the path bends little (`confirm`), but not
 //! where what hangs on the contact is at its fold.
 
-use super::branches::{Here, Told, in_each_mode};
+use super::branches::{Here, SAME, Told, in_each_mode};
 use super::decide::{Before, Choice, mark_retrace, sign_of};
 use super::loading::Loading;
 
@@ -25,8 +25,9 @@ pub(super) fn directions(here: Here<'_>, before: Before<'_>) -> Option<Told> {
         let options = &mut told.options;
         mark_retrace(here.loading, here.state, options, incoming.rate);
         // Of a load that turns, the way back falls as the way on does: it is no other way.
-        let backs = options.iter_mut().filter(|option| option.retrace && sign_of(option.rate.load) == 0.0);
-        backs.for_each(|option| option.load_sign = 0.0);
+        let goes_back =
+            |option: &&mut Choice| option.rate.product(incoming.rate) < -SAME && sign_of(option.rate.load) == 0.0;
+        options.iter_mut().filter(goes_back).for_each(|option| option.load_sign = 0.0);
         // Of two that differ in nothing else that one goes first which bends off as the path came.
         options.sort_by_key(|option| option.beside.as_ref().is_some_and(|side| side.product(incoming.rate) < 0.0));
     }
