@@ -25,7 +25,7 @@ use crate::contact::vector::dot;
 const SAME_WAY: f64 = 1e-9;
 
 /// Speeds (of unit arc length) up to this are what the location of a slip's end leaves.
-const AT_REST: f64 = 1e-12;
+const AT_REST: f64 = 1e-9;
 
 /// How the path arrived.
 #[derive(Debug, Clone, Copy)]
