@@ -139,7 +139,7 @@ impl Point<'_> {
     fn both(&self, null: &Null, bend: Option<Rate>, is_singular: bool) -> [Way; 2] {
         // The bend is the same in both senses.
         [1.0, -1.0].map(|sense| Way {
-            null: self.combined(&[null.clone()], &[sense]),
+            null: self.combined(std::slice::from_ref(null), &[sense]),
             bend: bend.clone(),
             is_singular,
             beside: None,

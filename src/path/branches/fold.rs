@@ -60,7 +60,7 @@ impl Fold {
 
     /// The direction in which the arms leave.
     pub fn ahead(&self, point: &Point<'_>) -> Null {
-        point.combined(&[self.flat.clone()], &[self.sense])
+        point.combined(std::slice::from_ref(&self.flat), &[self.sense])
     }
 
     /// Across that, how far the arm towards a rate lies off it at a unit arc length.
@@ -143,7 +143,7 @@ impl Point<'_> {
     }
 
     fn unit(&self, null: &Null) -> Null {
-        self.combined(&[null.clone()], &[1.0 / null.rate.size()])
+        self.combined(std::slice::from_ref(null), &[1.0 / null.rate.size()])
     }
 
     fn fold(&self, left: &DVector<f64>, mut flat: Null, steep: Null) -> Fold {
