@@ -45,6 +45,9 @@ const REJECTED: f64 = 0.55;
 const MOST_GROWTH: f64 = 1.8;
 /// The curvature of the path over that of the step before, at the most, by which the next step's is foreseen.
 const MOST_BEND: f64 = 4.0;
+/// How far past a bend that no step follows the path is taken up, over the square of the width of its arms there: the chord
+/// is off the direction by a fifth then, a third of what a step may turn by.
+const PAST_BEND: f64 = 25.0;
 /// Arc length below which a step that no event ends creeps, over the longest that is asked for and no more than 1. From the
 /// shortest at which a path can be told from rounding a step grows beyond this within a few.
 const CREEPS: f64 = 2e-8;
@@ -167,6 +170,9 @@ impl Path<'_> {
     /// How long a step is to be, as far as is known before it is tried.
     fn sought_step(&mut self) -> Sought {
         let ordinary = self.at.step.min(self.scene.analysis.arc_length.max);
+        // Closer to a bend the path is still on its way round it.
+        let width = self.at.here.beside.as_ref().map_or(0.0, Rate::size);
+        let ordinary = ordinary.max(PAST_BEND * width * width);
         let may_join = self.at.waiting.is_over() && self.may_join_changes();
         // Changes nearer than an ordinary step may be several that are taken together.
         let ahead = self.next_event_ahead();
