@@ -272,7 +272,7 @@ fn beside_a_fold_the_path_goes_on_or_ends_for_want_of_a_direction() {
 fn random_sliders_with_toggles() {
     let mut numbers = Numbers(24);
     let mut tried = 0;
-    while tried < 60 {
+    while tried < 200 {
         let exponent = -(2.0 + numbers.between(0.0, 6.0)).floor();
         let push = match numbers.below(3) {
             0 => 0.0,
