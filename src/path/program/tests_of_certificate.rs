@@ -19,7 +19,16 @@ struct Begun {
 impl Begun {
     fn reach(&self, loading: Loading<'_>, step: f64) -> Option<Box<Reached>> {
         let Self { state, rate, modes, force } = self;
-        let start = Beginning { loading, state, rate, modes, drift: None, force_scale: *force };
+        let start = Beginning {
+            loading,
+            state,
+            rate,
+            modes,
+            drift: None,
+            force_scale: *force,
+            is_singular: false,
+            beside: None,
+        };
         start.reach(step, &mut Work::default()).ok()
     }
 
