@@ -15,7 +15,7 @@ use std::cell::{Cell, RefCell};
 use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 #[cfg(panic = "abort")]
 compile_error!("a cancelled solve unwinds: build with panic = \"unwind\"");
@@ -84,6 +84,8 @@ impl fmt::Display for Breach {
 struct Account {
     bounds: Bounds,
     held: AtomicU64,
+    /// A bifurcation point is being located.
+    is_locating: AtomicBool,
 }
 
 /// Of one solve; copies share the account.
@@ -102,7 +104,10 @@ thread_local! {
 
 impl Budget {
     pub fn new(cancel: CancelFlag, bounds: Bounds) -> Self {
-        Self { cancel, account: Arc::new(Account { bounds, held: AtomicU64::new(0) }) }
+        Self {
+            cancel,
+            account: Arc::new(Account { bounds, held: AtomicU64::new(0), is_locating: AtomicBool::new(false) }),
+        }
     }
 
     /// With the account of the solve under way on this thread, or one of its own where there is none.
@@ -111,6 +116,11 @@ impl Budget {
             Some(Self { account, .. }) => Self { cancel, account },
             None => Self::new(cancel, Bounds::default()),
         }
+    }
+
+    /// Whether the solve is just now locating a bifurcation point.
+    pub fn is_locating_bifurcation(&self) -> bool {
+        self.account.is_locating.load(Ordering::Relaxed)
     }
 
     /// Does a piece of work within these bounds.
@@ -182,6 +192,26 @@ pub fn largest_piece() -> u64 {
 /// Those of the solve under way.
 pub fn bounds() -> Bounds {
     current().map_or_else(Bounds::default, |budget| budget.account.bounds)
+}
+
+/// As long as this is held, the solve says that it is locating a bifurcation point.
+pub struct Locating(Option<(Arc<Account>, bool)>);
+
+impl Drop for Locating {
+    fn drop(&mut self) {
+        if let Some((account, before)) = self.0.take() {
+            account.is_locating.store(before, Ordering::Relaxed);
+        }
+    }
+}
+
+/// Says that the solve under way is locating a bifurcation point.
+pub fn locating_bifurcation() -> Locating {
+    let account = CURRENT.with_borrow(|budget| budget.as_ref().map(|budget| Arc::clone(&budget.account)));
+    Locating(account.map(|account| {
+        let before = account.is_locating.swap(true, Ordering::Relaxed);
+        (account, before)
+    }))
 }
 
 /// Refuses a factor that is too large, before anything of its size is taken.

@@ -4,7 +4,7 @@ use super::extract::{JobId, JsonText, Parameters, Taken, idempotency_key};
 use super::problem::Problem;
 use super::tasks::{SubmitParameters, accepted, page};
 use super::view::{Job, JobList, address};
-use super::{Service, document, tasks};
+use super::{Service, document, tag, tasks};
 use crate::jobs::Caller;
 use crate::model::JobRequest;
 use crate::path::Plan;
@@ -101,7 +101,15 @@ pub async fn get(
     JobId(id): JobId,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
-    tasks::shown::<Job>(&service, headers, service.jobs.find(&caller, Task::Path, id).await?).await
+    let record = service.jobs.find(&caller, Task::Path, id).await?;
+    let (bytes, is_finished) = (record.bytes(), record.status.is_ended());
+    let locating_bifurcation = service.jobs.is_locating_bifurcation(id);
+    let shown = move || {
+        let mut job = Job::try_from(record)?;
+        job.progress.locating_bifurcation = locating_bifurcation && !is_finished;
+        tag::json(&headers, is_finished, &job)
+    };
+    service.aside.make(bytes, shown).await
 }
 
 /// Stop a job within one iteration; what is stored is kept. An ended job stays as it is.

@@ -145,6 +145,10 @@ pub struct Progress {
     pub last_index: Option<u64>,
     /// What the request bounds them by.
     pub max_increments: u64,
+    /// A smooth bifurcation point is just now being located, or the directions there are, by a worker of the process that is
+    /// asked: until that is done no increment comes. Absent where it is not so.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub locating_bifurcation: bool,
 }
 
 /// Addresses of what belongs to a job.
@@ -168,6 +172,7 @@ impl TryFrom<JobRecord> for Job {
                 increments: record.last_index.map_or(0, |index| index + 1),
                 last_index: record.last_index,
                 max_increments: record.max_increments,
+                locating_bifurcation: false,
             },
             plan: RawValue::from_string(record.plan)?,
             stop_reason: record.stop_reason,

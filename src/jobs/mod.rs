@@ -104,6 +104,11 @@ impl Jobs {
         Self { store, solver, settings, running, metrics: Arc::default(), checks }
     }
 
+    /// Whether a worker of this process is just now locating a bifurcation point of the job.
+    pub fn is_locating_bifurcation(&self, id: Uuid) -> bool {
+        self.running.is_locating_bifurcation(id)
+    }
+
     pub fn store(&self) -> &dyn Store {
         self.store.as_ref()
     }

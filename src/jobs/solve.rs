@@ -88,6 +88,7 @@ pub fn start(jobs: &Jobs, claim: &Claim, stored: Vec<Line>, cancel: CancelFlag) 
         move || {
             let _entered = span.enter();
             let budget = Budget::new(cancel.clone(), jobs.settings.limits.bounds);
+            jobs.running.begun(&claim_of_thread.lease, &budget);
             let solve = || match claim_of_thread.task {
                 Task::Path => run(&jobs, &claim_of_thread, cancel, &sender),
                 // Nobody claims one: its runs are claimed.

@@ -1,10 +1,20 @@
-//! How many right-hand sides this thread has solved for: what a test asks that is to fail where the work grows. No number of
-//! a path depends on it.
+//! How many right-hand sides this thread has solved for, and how many systems it has factorised: what a test asks that is to
+//! fail where the work grows, and what diagnostics say of a search. No point of a path depends on it.
 
 use std::cell::Cell;
 
 thread_local! {
     static SOLVES: Cell<u64> = const { Cell::new(0) };
+    static FACTORISATIONS: Cell<u64> = const { Cell::new(0) };
+}
+
+/// Sparse systems factorised on this thread since it began, counts of eigenvalues included, whoever asked for them.
+pub fn factorisations() -> u64 {
+    FACTORISATIONS.get()
+}
+
+pub(super) fn count_factorisation() {
+    FACTORISATIONS.set(FACTORISATIONS.get() + 1);
 }
 
 /// Right-hand sides solved for on this thread since it began, refinements included, by dense and sparse factorisations.

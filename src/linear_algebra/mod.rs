@@ -8,7 +8,7 @@ mod large;
 pub mod sparse;
 
 use crate::budget;
-pub use counted::solves;
+pub use counted::{factorisations, solves};
 pub use dense::{Factorisation, Stiffener};
 pub use inertia::{Inertia, inertia};
 use nalgebra::{DMatrix, DVector};

@@ -132,7 +132,7 @@ impl Table {
 }
 
 /// The counts of work with their columns.
-fn counts(diagnostics: &Diagnostics) -> [(&'static str, u64); 7] {
+fn counts(diagnostics: &Diagnostics) -> [(&'static str, u64); 8] {
     [
         ("factorisations", diagnostics.factorisations),
         ("newton_iterations", diagnostics.newton_iterations),
@@ -141,6 +141,7 @@ fn counts(diagnostics: &Diagnostics) -> [(&'static str, u64); 7] {
         ("sqp_iterations", diagnostics.sqp_iterations),
         ("certificates", diagnostics.certificates),
         ("mpec_fallbacks", diagnostics.mpec_fallbacks),
+        ("bifurcation_factorisations", diagnostics.bifurcation_factorisations),
     ]
 }
 

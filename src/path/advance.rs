@@ -12,8 +12,9 @@ use super::scene::End;
 use super::state::{Rate, State};
 use super::tangent::Tangent;
 use super::watch::{self, Watch};
+use crate::budget;
 use crate::contact::Mode;
-use crate::linear_algebra::SystemFactorisation;
+use crate::linear_algebra::{SystemFactorisation, factorisations};
 use serde::{Deserialize, Serialize};
 
 /// Where a step starts.
@@ -93,6 +94,22 @@ pub struct Work {
     /// Increments whose end the program alone did not find.
     #[serde(default)]
     pub mpec_fallbacks: u64,
+    /// Factorisations that smooth bifurcation points took: to locate them and to list the directions there.
+    #[serde(default)]
+    pub bifurcation_factorisations: u64,
+}
+
+impl Work {
+    /// Counts what a piece of work at a smooth bifurcation point factorises, whether it counts for itself or not.
+    pub(super) fn at_bifurcation<T>(&mut self, piece: impl FnOnce(&mut Self) -> T) -> T {
+        let _locating = budget::locating_bifurcation();
+        let (begun, counted) = (factorisations(), self.factorisations);
+        let done = piece(self);
+        let all = factorisations() - begun;
+        self.factorisations = self.factorisations.max(counted + all);
+        self.bifurcation_factorisations += all;
+        done
+    }
 }
 
 /// Why a step has to be shorter.

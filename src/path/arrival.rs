@@ -63,7 +63,10 @@ impl Path<'_> {
         let incoming = &came.rate;
         match event {
             None | Some(Watch::End(_)) if let Some(crossing) = crossing => {
-                self.smooth_bifurcation(crossing, incoming, event.is_some())
+                let mut work = self.at.totals.work;
+                let arrival = work.at_bifurcation(|_| self.smooth_bifurcation(crossing, incoming, event.is_some()));
+                self.at.totals.work = work;
+                arrival
             }
             None | Some(Watch::End(_)) => {
                 let stage_ends = event.is_some();
@@ -146,7 +149,7 @@ impl Path<'_> {
         let at = branches::Here { loading, state, standings: &standings, force_scale: rules.force_scale };
         let most = rules.effort.most_modes;
         let found = common_limit::directions(at, &here.modes, incoming, came.motions, most)
-            .unwrap_or_else(|| branches::branches(at, &here.modes, incoming, came.motions - 1));
+            .unwrap_or_else(|| branches::branches(at, &here.modes, incoming, came.motions - 1, None));
         let branches::Branches { mut options, mut degenerate, mut unexplored } = found;
         if !standings.iter().all(|standing| matches!(standing, Standing::Settled(_))) {
             // Those along which the load changes at first order.
@@ -185,26 +188,30 @@ impl Path<'_> {
             standings: &standings,
             force_scale: rules.force_scale,
         };
+        let nulls = crossing.nulls.as_deref();
         let mut found = if crossing.grazing {
             let loose: Vec<Mode> = modes
                 .iter()
                 .zip(&standings)
                 .map(|(mode, standing)| if *standing == Standing::Touching { Mode::Free } else { *mode })
                 .collect();
-            let mut found = branches::branches(here, &loose, incoming, crossing.eigenvalues);
+            let mut found = branches::branches(here, &loose, incoming, crossing.eigenvalues, nulls);
             // The way on and the way back as they were.
             let own = found.options.iter_mut().filter(|option| option.rate.product(incoming).abs() > branches::SAME);
             own.for_each(|option| option.modes.clone_from(modes));
             found
         } else {
-            branches::branches(here, modes, incoming, crossing.eigenvalues)
+            branches::branches(here, modes, incoming, crossing.eigenvalues, nulls)
         };
         if !standings.iter().all(|standing| matches!(standing, Standing::Settled(_))) {
             // Other modes of the contacts that can change; in the current mode, singular here, the branches are it.
             let before = Before::Incoming(Incoming::along(incoming));
             let (others, listed) = decide::list(self.loading(), &self.at.here.state, &standings, before, rules);
-            if listed.degenerate && others.is_empty() {
-                branches::in_other_modes(here, modes, &mut found);
+            // Those of looser modes are over other unknowns.
+            let nulls = nulls.filter(|_| !crossing.grazing);
+            let is_singular = |nulls| branches::are_singular_in_all_modes(here, modes, nulls);
+            if (listed.degenerate && others.is_empty()) || nulls.is_some_and(is_singular) {
+                branches::in_other_modes(here, modes, nulls, &mut found);
             } else {
                 let known = |other: &Choice| {
                     other.modes == *modes

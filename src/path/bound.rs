@@ -49,7 +49,7 @@ pub fn beside_singular(
         change => critical::locate(start, before, change, &beyond, work),
     });
     if let Some(located) = located {
-        return at_crossing(start, located, &bounds, &left_to, &beyond);
+        return at_crossing(start, located, &bounds, &left_to, &beyond, work);
     }
     if here.is_some() {
         return None;
@@ -73,9 +73,10 @@ fn at_crossing(
     bounds: &[End],
     left_to: &impl Fn(&End, &State) -> f64,
     beyond: &Reached,
+    work: &mut Work,
 ) -> Option<Ended> {
-    let Located { mut point, crossing, between: interpolated } = located;
-    let [nearer, farther] = interpolated?;
+    let [nearer, farther] = located.between(start, beyond.step, work)?;
+    let Located { mut point, crossing, .. } = located;
     let width = farther.place - nearer.place;
     if let Some(bound) = bounds.iter().find(|bound| left_to(bound, &point.corrected.state).abs() <= AT_END) {
         // Both are within round-off of each other; the bound is met exactly.
@@ -84,12 +85,14 @@ fn at_crossing(
         let ahead = -left_to(bound, &point.corrected.state) / slope;
         let state = point.corrected.state.advanced(&point.rate, if ahead.abs() <= ALONG { ahead } else { 0.0 });
         let found = ended(start, state, &point.rate, *bound, width, beyond)?;
-        return Some((found, Some(crossing), Some(crossing.after)));
+        let after = crossing.after;
+        return Some((found, Some(crossing), Some(after)));
     }
     let (place, bound) = first_met(&nearer, &farther, bounds, left_to)?;
     if place > point.step {
         point.corrected.iterations_to_small = beyond.corrected.iterations_to_small;
-        return Some((point, Some(crossing), Some(crossing.after)));
+        let after = crossing.after;
+        return Some((point, Some(crossing), Some(after)));
     }
     let (state, rate) = between(&nearer, &farther, place);
     Some((ended(start, state, &rate, bound, width, beyond)?, None, None))

@@ -13,7 +13,8 @@
 //! itself. Several null vectors: points of the branches on a small sphere are sought by Newton's method from
 //! directions spread over their plane. Those found are branches; that they are all is not claimed. For three and more
 //! the list is marked `degenerate`, and so is a plane with more directions than the equations have isolated roots: a
-//! continuum of branches, of which the list holds samples.
+//! continuum of branches, of which the list holds samples. For many unknowns, where the null vectors come with the point,
+//! these points are not sought: the equations that are left in the null vectors are solved (`reduced`).
 //!
 //! Where a direction leaves a contact's inequalities at equality (on the cone: the load rate along a branch is zero at first
 //! order, and its sign at second order decides whether the contact slips on or sticks) a small step tells its mode.
@@ -30,9 +31,8 @@ mod tests;
 pub use each_mode::{Told, in_each_mode};
 
 use super::at_hand::AtHand;
-use super::combinations::{combinations, count};
 use super::confirm::confirm_by;
-use super::critical::SINGULAR;
+use super::critical::{NullVectors, SINGULAR};
 use super::decide::{Choice, potential_rate, sign_of};
 use super::directions::{Alternative, Candidate};
 use super::loading::Loading;
@@ -45,6 +45,14 @@ use crate::contact::vector::{add, dot};
 use crate::contact::{Mode, Reaction};
 use crate::linear_algebra::{nearest_null_space, null_space_as_scaled};
 use nalgebra::{DMatrix, DVector};
+use null::{Derivative, Null};
+use reduced::Reduced;
+
+mod null;
+mod other_modes;
+mod reduced;
+
+pub use other_modes::{are_singular_in_all_modes, in_other_modes};
 
 /// Branches at a point.
 pub struct Branches {
@@ -65,8 +73,6 @@ pub struct Here<'a> {
     pub force_scale: f64,
 }
 
-/// Difference step (dimensionless) for the second derivative.
-const DIFFERENCE: f64 = 1e-4;
 /// Second derivatives up to this, relative to the largest, are zero.
 const NO_CURVATURE: f64 = 1e-6;
 /// Radii of the spheres on which branches are tried.
@@ -84,25 +90,27 @@ const MOST_ISOLATED: usize = 8;
 /// Modes that are examined besides the path's own.
 const MOST_MODES: u64 = 64;
 
-/// A null vector in both forms.
-#[derive(Clone)]
-struct Null {
-    values: DVector<f64>,
-    rate: Rate,
-}
-
 struct Point<'a> {
     here: Here<'a>,
     modes: &'a [Mode],
     system: ModeSystem<'a>,
     /// Eigenvalues that are zero, where known.
     eigenvalues: Option<usize>,
+    /// The null vectors, where they are at hand.
+    nulls: Option<&'a NullVectors>,
 }
 
-/// Lists the directions in the current mode, in which so many eigenvalues are zero; `tangent` is the path's own.
-pub fn branches(here: Here<'_>, modes: &[Mode], tangent: &Rate, eigenvalues: usize) -> Branches {
+/// Lists the directions in the current mode, in which so many eigenvalues are zero; `tangent` is the path's own, and `nulls`
+/// are the null vectors, where they are at hand.
+pub fn branches(
+    here: Here<'_>,
+    modes: &[Mode],
+    tangent: &Rate,
+    eigenvalues: usize,
+    nulls: Option<&NullVectors>,
+) -> Branches {
     let system = ModeSystem::new(here.loading, modes, here.state);
-    let point = Point { here, modes, system, eigenvalues: Some(eigenvalues) };
+    let point = Point { here, modes, system, eigenvalues: Some(eigenvalues), nulls };
     let mut back = tangent.clone();
     back.scale(-1.0);
     let mut found = Branches { options: Vec::new(), degenerate: false, unexplored: 0 };
@@ -121,44 +129,6 @@ pub fn branches(here: Here<'_>, modes: &[Mode], tangent: &Rate, eigenvalues: usi
         point.add_if_tried(direction, &mut found);
     }
     found
-}
-
-/// Adds the directions in other modes of the contacts that can change, with those of `found` as the known ones.
-///
-/// For points at which the structure with these contacts held is singular, so that the rate problem cannot be condensed
-/// on them: every combination is taken by itself.
-pub fn in_other_modes(here: Here<'_>, modes: &[Mode], found: &mut Branches) {
-    let options: Vec<Vec<Mode>> = here
-        .standings
-        .iter()
-        .zip(here.loading.contacts)
-        .zip(modes)
-        .map(|((standing, contact), mode)| match standing {
-            Standing::OnCone { direction } => vec![Mode::Stick, Mode::Slip { direction: *direction }],
-            Standing::Touching if contact.tangents() > 0 => vec![Mode::Stick, Mode::Free],
-            Standing::Touching => vec![Mode::Slip { direction: [0.0; 3] }, Mode::Free],
-            Standing::Settled(_) | Standing::Cornered { .. } => vec![*mode],
-        })
-        .collect();
-    found.unexplored = found.unexplored.saturating_add(count(&options).saturating_sub(MOST_MODES));
-    // Of touches with friction only sticking is examined, and of corners nothing.
-    let partly = here.standings.iter().zip(here.loading.contacts).filter(|(standing, contact)| match standing {
-        Standing::Touching => contact.tangents() > 0,
-        Standing::Cornered { .. } => true,
-        Standing::OnCone { .. } | Standing::Settled(_) => false,
-    });
-    found.unexplored = found.unexplored.saturating_add(partly.count() as u64);
-    for chosen in combinations(&options, MOST_MODES) {
-        if chosen == modes {
-            continue;
-        }
-        let system = ModeSystem::new(here.loading, &chosen, here.state);
-        let point = Point { here, modes: &chosen, system, eigenvalues: None };
-        match point.all_directions(&mut found.degenerate) {
-            Some(directions) => directions.into_iter().for_each(|direction| point.add_if_tried(direction, found)),
-            None => found.degenerate = true,
-        }
-    }
 }
 
 impl Point<'_> {
@@ -270,6 +240,9 @@ impl Point<'_> {
 
     /// Left and right null vectors, the left ones for the equations as they are.
     fn null_vectors(&self) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
+        if let Some(NullVectors { left, right }) = self.nulls {
+            return Some((DMatrix::from_columns(left), DMatrix::from_columns(right)));
+        }
         let (matrix, sizes) = scaled_rows(&self.system, self.here.loading, self.here.state);
         let (mut left, right) = match self.eigenvalues {
             Some(count) => (nearest_null_space(matrix.transpose(), count)?, nearest_null_space(matrix, count + 1)?),
@@ -293,7 +266,10 @@ impl Point<'_> {
         }
         *degenerate |= others.len() > 2;
         let curved = self.is_curved(&left, &own, &others);
-        let found = self.sought(tangent, &own, &others, curved);
+        let found = match self.nulls {
+            Some(nulls) => self.solved_for(nulls, &own, &others, curved)?,
+            None => self.sought(tangent, &own, &others, curved),
+        };
         *degenerate |= found.is_empty() || found.len() % 2 == 1 || found.len() > MOST_ISOLATED;
         Some(found)
     }
@@ -324,9 +300,9 @@ impl Point<'_> {
                 let (along_own, along) = (self.second_derivative(&own.rate), self.second_derivative(&other.rate));
                 let size = left.amax() * along_own.amax().max(along.amax());
                 let flat = |value: f64| if value.abs() <= NO_CURVATURE * size { 0.0 } else { value };
-                let own_own = flat(left.dot(&(&along_own * &own.values)));
-                let mixed = flat(left.dot(&(&along * &own.values)));
-                let pure = flat(left.dot(&(&along * &other.values)));
+                let own_own = flat(left.dot(&along_own.times(&own.values)));
+                let mixed = flat(left.dot(&along.times(&own.values)));
+                let pure = flat(left.dot(&along.times(&other.values)));
                 if own_own == 0.0 && mixed == 0.0 && pure == 0.0 {
                     *degenerate = true;
                 }
@@ -392,18 +368,14 @@ impl Point<'_> {
         Null { rate: self.system.rate_from(self.here.state, &values), values }
     }
 
-    /// `F''(v, ·)` by central differences.
-    fn second_derivative(&self, along: &Rate) -> DMatrix<f64> {
-        let ahead = self.system.matrix(&self.here.state.advanced(along, DIFFERENCE));
-        let behind = self.system.matrix(&self.here.state.advanced(along, -DIFFERENCE));
-        let rows = self.system.size() - 1;
-        (ahead - behind).rows(0, rows) / (2.0 * DIFFERENCE)
+    fn second_derivative(&self, along: &Rate) -> Derivative {
+        Derivative::new(&self.system, self.here.state, along)
     }
 
     fn second_root(&self, left: &DVector<f64>, own: &Null, other: &Null, degenerate: &mut bool) -> Option<Vec<Rate>> {
         let derivative = self.second_derivative(&other.rate);
-        let mixed = left.dot(&(&derivative * &own.values));
-        let pure = left.dot(&(&derivative * &other.values));
+        let mixed = left.dot(&derivative.times(&own.values));
+        let pure = left.dot(&derivative.times(&other.values));
         let size = left.amax() * derivative.amax();
         let weights = if mixed.abs() > NO_CURVATURE * size {
             let ratio = -0.5 * pure / mixed;
@@ -425,13 +397,33 @@ impl Point<'_> {
     fn is_curved(&self, left: &DMatrix<f64>, own: &Null, others: &[Null]) -> bool {
         let (mut mixed, mut pure) = (0.0_f64, 0.0_f64);
         for other in others {
-            let derivative = left.transpose() * self.second_derivative(&other.rate);
-            mixed = mixed.max((&derivative * &own.values).amax());
+            let derivative = self.second_derivative(&other.rate);
+            mixed = mixed.max((left.transpose() * derivative.times(&own.values)).amax());
             for second in others {
-                pure = pure.max((&derivative * &second.values).amax());
+                pure = pure.max((left.transpose() * derivative.times(&second.values)).amax());
             }
         }
         pure > NO_CURVATURE * mixed
+    }
+
+    /// Branches by the equations that are left in the null vectors.
+    fn solved_for(&self, nulls: &NullVectors, own: &Null, others: &[Null], curved: bool) -> Option<Vec<Rate>> {
+        let reduced = Reduced::new(&self.system, self.here.state, nulls, own, others, curved)?;
+        let mut all = vec![own.clone()];
+        all.extend_from_slice(others);
+        let mut found: Vec<Rate> = Vec::new();
+        for start in reduced.starts() {
+            let Some(mut shares) = reduced.root(start) else { continue };
+            if !curved {
+                shares[0] = 0.0;
+            }
+            let Some(direction) = self.combined(&all, shares.as_slice()).rate.normalised() else { continue };
+            let is_known = |other: &Rate| direction.product(other) > SAME;
+            if direction.product(&own.rate).abs() < 0.999 * own.rate.size() && !found.iter().any(is_known) {
+                found.push(direction);
+            }
+        }
+        Some(found)
     }
 
     /// Branches on a small sphere, from directions around the plane of the null vectors.

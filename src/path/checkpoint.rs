@@ -16,7 +16,7 @@ use crate::contact::Mode;
 use serde::{Deserialize, Serialize};
 
 /// Changes when a checkpoint of before would be read as something else.
-const VERSION: u32 = 8;
+const VERSION: u32 = 9;
 
 /// A path at one of its points.
 #[derive(Debug, Clone, Serialize, Deserialize)]

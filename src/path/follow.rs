@@ -73,6 +73,10 @@ impl<'a> Path<'a> {
             && let Some(choice) = listed.options.get(direction)
         {
             path.turn(choice);
+            if listed.point.kind == PointKind::SmoothBifurcation {
+                // A branch bends from where it begins, whatever the path before did.
+                path.at.step = path.at.step.min(scene.analysis.arc_length.initial);
+            }
         }
         path.at.counts = counts;
         path.at.begun = path.at.here.rate.clone().map(|rate| (path.at.here.state.clone(), rate));

@@ -153,6 +153,9 @@ pub struct Diagnostics {
     /// Estimated error of this point (dimensionless displacement).
     pub error_estimate: f64,
     pub factorisations: u64,
+    /// Of the factorisations those that smooth bifurcation points took: to locate them and to list the directions there.
+    #[serde(default)]
+    pub bifurcation_factorisations: u64,
     pub newton_iterations: u64,
     pub qp_solves: u64,
     /// Programs of increments that were solved; a certificate is not one.

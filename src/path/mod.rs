@@ -15,6 +15,7 @@
 //! | `at_once`, `complementary`, `glance` | contact changes of one step that are taken together; which of them, by equations linearised once; one iteration of a mode, to see what it breaks |
 //! | `foresight`, `straight` | the next contact change that rates foresee, solved for at once; stretches without bend |
 //! | `singular`, `critical`, `branches` | whether a step passes a smooth bifurcation; where; which directions leave it |
+//! | `bordering` | the equations at such a point made regular by borders, for many unknowns |
 //! | `common_limit` | limit points that uncoupled parts have in common |
 //! | `bound` | a bound of the stage at or beside a smooth bifurcation |
 //! | `folded` | points of slip in a plane at which the direction is not determined |
@@ -40,6 +41,7 @@ mod advance;
 mod arrival;
 mod at_hand;
 mod at_once;
+mod bordering;
 mod bound;
 mod branches;
 mod by_program;

@@ -91,6 +91,7 @@ pub(super) fn increment(scene: &Scene, totals: &Totals, row: &Row<'_>) -> Increm
             energy_error: totals.energy_error(),
             error_estimate: row.error_estimate,
             factorisations: totals.work.factorisations,
+            bifurcation_factorisations: totals.work.bifurcation_factorisations,
             newton_iterations: totals.work.newton_iterations,
             qp_solves: totals.work.qp_solves,
             mpec_solves: totals.work.mpec_solves,

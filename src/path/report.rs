@@ -16,6 +16,9 @@ pub struct Report {
     pub largest_complementarity: f64,
     pub largest_energy_error: f64,
     pub factorisations: u64,
+    /// Of the factorisations those that smooth bifurcation points took: to locate them and to list the directions there.
+    #[serde(default)]
+    pub bifurcation_factorisations: u64,
     pub newton_iterations: u64,
     pub qp_solves: u64,
     /// Programs of increments that were solved; a certificate is not one.
@@ -44,6 +47,7 @@ impl Report {
             largest_complementarity: 0.0,
             largest_energy_error: 0.0,
             factorisations: 0,
+            bifurcation_factorisations: 0,
             newton_iterations: 0,
             qp_solves: 0,
             mpec_solves: 0,

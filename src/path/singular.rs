@@ -16,7 +16,8 @@
 //!
 //! In a mode with frictional slip the eigenvalues are those of the structure with the slipping contacts held: two that
 //! cross at once are seen where their motions do not move these contacts. Others are not. Nor are, in any mode,
-//! eigenvalues that cross one step to and fro, nor those within the first ten-thousandth of a step from a singular start. Under slip
+//! eigenvalues that cross one step to and fro, nor those within the first ten-thousandth of a step from a singular start
+//! (with sparse matrices the first hundredth). Under slip
 //! in a plane the determinant changes its sign also where the direction is not determined (`folded`).
 
 use super::advance::{Reached, Start, Work};
@@ -62,6 +63,9 @@ const ZERO_PIVOT: f64 = 1e-13;
 
 /// Parts of a step after which the signs of a singular start are looked for.
 const FURTHER_ON: [f64; 3] = [1e-4, 1e-3, 1e-2];
+/// The same with sparse matrices, whose pivots do not tell how nearly singular they are: along a branch that leaves without
+/// a load rate the eigenvalue grows with the square of the way, and where it is rounding so is the branch.
+const FURTHER_ON_SPARSE: [f64; 1] = [1e-2];
 
 /// Whether some contact slips with friction.
 fn slips(loading: Loading<'_>, modes: &[Mode]) -> bool {
@@ -235,7 +239,9 @@ impl Signature {
             return None;
         }
         Self::at(start.loading, start.modes, start.state, start.rate, serving, work).or_else(|| {
-            FURTHER_ON.iter().find_map(|part| {
+            let is_sparse = start.loading.structure.layout().is_some();
+            let parts: &[f64] = if is_sparse { &FURTHER_ON_SPARSE } else { &FURTHER_ON };
+            parts.iter().find_map(|part| {
                 let near = start.reach(part * step, work).ok()?;
                 let sign = near.determinant?;
                 Self::with_determinant(start.loading, start.modes, start.state, &near.corrected.state, sign, work)

@@ -101,6 +101,7 @@ impl Totals {
         self.report.sentence = reason.sentence().to_owned();
         self.report.elapsed_s = elapsed_s;
         self.report.factorisations = self.work.factorisations;
+        self.report.bifurcation_factorisations = self.work.bifurcation_factorisations;
         self.report.newton_iterations = self.work.newton_iterations;
         self.report.qp_solves = self.work.qp_solves;
         self.report.mpec_solves = self.work.mpec_solves;

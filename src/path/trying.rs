@@ -295,7 +295,8 @@ fn crossing_in_mode(
     match critical::locate(start, before, change, &reached, work) {
         Some(Located { mut point, crossing, .. }) if point.step < reached.step || crossing.eigenvalues == 0 => {
             point.corrected.iterations_to_small = reached.corrected.iterations_to_small;
-            Ok((point, Some(crossing), Some(crossing.after)))
+            let after = crossing.after;
+            Ok((point, Some(crossing), Some(after)))
         }
         Some(_) => Ok((reached, None, Some(before))),
         None if may_refuse => Err(Refused::Unresolved),

@@ -15,6 +15,9 @@ use std::time::Duration;
 /// Models of this name panic at their third increment.
 pub const PANICS: &str = "panics";
 
+/// Models of this name are locating a bifurcation point whenever they wait.
+pub const LOCATES: &str = "locates";
+
 /// Models of this name end the process.
 pub const ABORTS: &str = "aborts";
 
@@ -81,7 +84,10 @@ impl Solver for MadeUp {
         let mut stop_reason = StopReason::MaxIncrements;
         let mut increments = 0;
         for index in 0..request.analysis.max_increments {
+            let locates = request.model.name.as_deref() == Some(LOCATES);
+            let locating = locates.then(arcslip::budget::locating_bifurcation);
             self.wait(index, &cancel);
+            drop(locating);
             if cancel.is_cancelled() {
                 stop_reason = StopReason::Cancelled;
                 break;
@@ -103,6 +109,7 @@ impl Solver for MadeUp {
             largest_complementarity: 0.0,
             largest_energy_error: 0.0,
             factorisations: increments,
+            bifurcation_factorisations: 0,
             newton_iterations: increments,
             qp_solves: 0,
             mpec_solves: 0,

@@ -2,7 +2,7 @@
 
 use crate::common::server::TestServer;
 use crate::common::service::{indices, request};
-use crate::common::solver::{MadeUp, PANICS};
+use crate::common::solver::{LOCATES, MadeUp, PANICS};
 use reqwest::{Method, StatusCode};
 use serde_json::{Value, json};
 use std::time::Duration;
@@ -41,6 +41,25 @@ async fn a_job_is_queued_with_its_plan_and_runs_to_its_end() {
     }
     assert_eq!(after, Some(1233));
     assert_eq!(seen, (0..1234).collect::<Vec<_>>());
+}
+
+#[tokio::test]
+async fn progress_says_that_a_bifurcation_point_is_being_located() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let solver = MadeUp::holding_at(2);
+    let server = TestServer::start(&folder.path().join("jobs.db"), solver.clone()).await;
+    let answer = server.post("/v1/jobs", &request(LOCATES, 5)).await;
+    let queued: Value = answer.json().await.expect("a job");
+    assert_eq!(queued["progress"].get("locating_bifurcation"), None);
+    let id = queued["id"].as_str().expect("an id");
+    let is_locating = |job: &Value| job["progress"].get("locating_bifurcation") == Some(&json!(true));
+    // It waits there, and says so as often as it is asked.
+    while !is_locating(&server.get_json(&format!("/v1/jobs/{id}")).await) {
+        tokio::time::sleep(Duration::from_millis(2)).await;
+    }
+    solver.let_go();
+    let job = server.ended(id).await;
+    assert_eq!(job["progress"], json!({"increments": 5, "last_index": 4, "max_increments": 5}));
 }
 
 #[tokio::test]

@@ -46,6 +46,7 @@ mod slider_chain;
 mod slip_ends_at_a_fold;
 mod slips_at_once;
 mod smooth_bifurcations;
+mod sparse_bifurcations;
 mod spatial;
 mod stage_ends;
 mod straight_paths;

@@ -46,6 +46,88 @@ impl Bordered {
         self.values[place] += value;
     }
 
+    /// With so many rows and columns more, zero.
+    #[must_use]
+    pub fn widened(mut self, borders: usize) -> Self {
+        let count = self.lower.len() + borders;
+        self.right.resize(count, Entries::new());
+        self.lower.resize(count, Entries::new());
+        self
+    }
+
+    /// The transposed matrix.
+    #[must_use]
+    pub fn transposed(&self) -> Self {
+        let n = self.pattern.size();
+        let mut transposed = Self::new(self.pattern.clone(), self.lower.len());
+        transposed
+            .values
+            .iter_mut()
+            .zip(&self.pattern.mirrors)
+            .for_each(|(value, mirror)| *value = self.values[*mirror]);
+        transposed.touched = self.touched.iter().map(|(row, column)| (*column, *row)).collect();
+        transposed.is_outside = self.is_outside;
+        transposed.lower.clone_from(&self.right);
+        for (border, entries) in self.lower.iter().enumerate() {
+            for (column, value) in entries {
+                match column.checked_sub(n) {
+                    None => transposed.right[border].push((*column, *value)),
+                    Some(column) => transposed.lower[column].push((n + border, *value)),
+                }
+            }
+        }
+        transposed
+    }
+
+    /// `(A - B) f`, `B` another matrix of the same equations.
+    #[must_use]
+    pub fn minus(&self, other: &Self, factor: f64) -> Self {
+        let mut change = self.clone();
+        change.values.iter_mut().zip(&other.values).for_each(|(value, other)| *value = (*value - other) * factor);
+        let lists = |own: &mut [Entries], others: &[Entries]| {
+            for (own, other) in own.iter_mut().zip(others) {
+                own.extend(other.iter().map(|(place, value)| (*place, -value)));
+                own.sort_by_key(|(place, _)| *place);
+                let sums = own.chunk_by(|a, b| a.0 == b.0).map(|same| {
+                    let sum: f64 = same.iter().map(|(_, value)| value).sum();
+                    (same[0].0, sum * factor)
+                });
+                *own = sums.collect();
+            }
+        };
+        lists(&mut change.right, &other.right);
+        lists(&mut change.lower, &other.lower);
+        change.touched.extend_from_slice(&other.touched);
+        change.is_outside |= other.is_outside;
+        change
+    }
+
+    /// `A f`
+    #[must_use]
+    pub fn scaled(mut self, factor: f64) -> Self {
+        self.values.iter_mut().for_each(|value| *value *= factor);
+        self.right.iter_mut().chain(&mut self.lower).flatten().for_each(|(_, value)| *value *= factor);
+        self
+    }
+
+    /// `A x`
+    pub fn times(&self, x: &DVector<f64>) -> DVector<f64> {
+        let (mut product, mut sizes) = (DVector::zeros(self.size()), vec![0.0; self.size()]);
+        self.multiply(x.as_slice(), product.as_mut_slice(), &mut sizes);
+        product
+    }
+
+    /// The largest entry, those at one place counted one by one.
+    pub fn largest(&self) -> f64 {
+        let borders = self.right.iter().chain(&self.lower).flatten().map(|(_, value)| *value);
+        self.values.iter().copied().chain(borders).fold(0.0, |most, value| value.abs().max(most))
+    }
+
+    /// The largest entry of `K`.
+    pub fn largest_within(&self) -> f64 {
+        self.values.iter().fold(0.0, |most, value| value.abs().max(most))
+    }
+
     /// Column of `B`; repeated places are to be added.
     pub fn right_column(&self, border: usize) -> &[(usize, f64)] {
         &self.right[border]

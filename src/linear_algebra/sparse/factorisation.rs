@@ -12,6 +12,7 @@ use super::bordered::Bordered;
 use super::held::{Elimination, Friction, Holdings};
 use super::lu::WholeLu;
 use super::symmetric::SymmetricFactor;
+use crate::linear_algebra::counted::count_factorisation;
 use crate::linear_algebra::{Inertia, Sink};
 use nalgebra::DVector;
 use smallvec::smallvec;
@@ -49,6 +50,7 @@ impl SparseFactorisation {
         if matrix.is_outside || !matrix.is_finite() {
             return None;
         }
+        count_factorisation();
         // A complement that is nothing but rounding says nothing.
         let blocks =
             Blocks::new(&matrix, holdings, friction).filter(|blocks| blocks.reduced.pivot_ratio() > f64::EPSILON);
@@ -249,6 +251,7 @@ pub fn held_inertia(matrix: &Bordered, holdings: &Holdings, tolerance: f64) -> O
     if matrix.is_outside || symmetrised(matrix).lower.len() != matrix.lower.len() {
         return None;
     }
+    count_factorisation();
     let (elimination, values) = Elimination::new(matrix, holdings, Friction::Bordered);
     if elimination.nodes().len() != holdings.iter().len() {
         return None;

@@ -51,7 +51,7 @@ fn followed(scene: &Scene) -> Vec<Vec<Increment>> {
         let (loading, force_scale) = (path.loading(), path.rules().force_scale);
         let here = super::Here { loading, state, standings: &standings, force_scale };
         let eigenvalues = if point.point.event.as_deref() == Some("one eigenvalue crosses zero") { 1 } else { 2 };
-        let found = super::branches(here, &path.at.here.modes, &tangent, eigenvalues);
+        let found = super::branches(here, &path.at.here.modes, &tangent, eigenvalues, None);
         assert_eq!(found.options.len(), point.directions.unwrap().len());
         if all.len() == found.options.len() {
             return all;

@@ -190,14 +190,25 @@ impl ModeSystem<'_> {
         of_freedom: impl Fn(usize) -> f64,
         of_load: f64,
     ) {
+        self.border_row(self.size - 1, matrix, of_freedom, of_load);
+    }
+
+    /// The same in any row.
+    pub(in crate::path) fn border_row(
+        &self,
+        row: usize,
+        matrix: &mut (impl Sink + ?Sized),
+        of_freedom: impl Fn(usize) -> f64,
+        of_load: f64,
+    ) {
         let structure = self.loading.structure;
-        let (last, load) = (self.size - 1, structure.unknowns());
+        let load = structure.unknowns();
         for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
-            matrix.add(last, unknown, of_freedom(*freedom));
+            matrix.add(row, unknown, of_freedom(*freedom));
         }
         // Supports that move with the load are part of the arc.
         let supports = self.loading.pattern.supports.iter().enumerate();
         let supports: f64 = supports.map(|(freedom, motion)| motion * of_freedom(freedom)).sum();
-        matrix.add(last, load, of_load + supports);
+        matrix.add(row, load, of_load + supports);
     }
 }

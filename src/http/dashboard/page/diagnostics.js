@@ -14,6 +14,7 @@ const WORK = [
   ["factorisations", "factorisations"], ["newton_iterations", "Newton iterations"], ["qp_solves", "quadratic programs"],
   ["sqp_iterations", "SQP iterations"], ["mpec_solves", "MPECs solved"], ["certificates", "certificates"],
   ["mpec_fallbacks", "increments that the MPEC did not find"],
+  ["bifurcation_factorisations", "factorisations for bifurcations"],
 ];
 const RELAXATION = "last_relaxation";
 const of = (name) => `/diagnostics/${name}`;

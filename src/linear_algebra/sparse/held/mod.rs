@@ -54,6 +54,17 @@ impl Holdings {
         Self { list: Arc::new(list) }
     }
 
+    /// Those of the transposed matrix.
+    #[must_use]
+    pub fn transposed(&self) -> Self {
+        let turned = |holding: &Holding| Holding {
+            unknowns: holding.unknowns.clone(),
+            rows: holding.columns.clone(),
+            columns: holding.rows.clone(),
+        };
+        Self::new(self.list.iter().map(turned).collect())
+    }
+
     pub fn iter(&self) -> std::slice::Iter<'_, Holding> {
         self.list.iter()
     }

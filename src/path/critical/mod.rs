@@ -4,6 +4,11 @@
 //! point is found on cubic Hermite interpolants of the path between regular points on both sides: first between the
 //! ends of the step, then between points a fiftieth of the step away, and closer. The interpolation's error falls
 //! with the fourth power of their distance; the residual of the point found is judged like any other's.
+//!
+//! So it is done with dense matrices. For many unknowns the equations are bordered, so that they are regular at the point
+//! (`sparse`); where that leads to none, as where a crossing is not transversal, the dense way is taken.
+
+mod sparse;
 
 use super::advance::{Reached, Start, Work};
 use super::folded;
@@ -14,9 +19,11 @@ use super::root::find_root;
 use super::singular::{Change, Signature, bordered_determinant, counted_tangent, scaled_rows};
 use super::state::{Rate, State};
 use crate::linear_algebra::null_space_as_scaled;
+use nalgebra::DVector;
+use std::sync::Arc;
 
 /// A smooth bifurcation point at the end of a step.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Crossing {
     /// Eigenvalues that are zero there; 0 where it is no bifurcation, but the direction is not determined (`folded`).
     pub eigenvalues: usize,
@@ -24,6 +31,17 @@ pub struct Crossing {
     pub grazing: bool,
     /// Signature just past it.
     pub after: Signature,
+    /// Its null vectors, where they came with it.
+    pub nulls: Option<Arc<NullVectors>>,
+}
+
+/// Null vectors of the equations of a mode.
+#[derive(Debug)]
+pub struct NullVectors {
+    /// Over the unknowns, one more than there are left ones.
+    pub right: Vec<DVector<f64>>,
+    /// Over the equations but the last.
+    pub left: Vec<DVector<f64>>,
 }
 
 /// Distances of the regular points, over the step.
@@ -38,14 +56,36 @@ pub(super) const SINGULAR: f64 = 1e-8;
 /// than that the branches of one cannot be told from those of the other.
 const TOGETHER: f64 = 1e-10;
 
+/// A crossing no farther from the start of the step (dimensionless) is that start itself.
+const AT_START: f64 = 2e-9;
+
 /// What a step ends at: a point, whether it is a smooth bifurcation, and the signs just past it where they are known.
 pub(super) type Ended = (Box<Reached>, Option<Crossing>, Option<Signature>);
 
-/// A crossing with the regular points between which it was found.
+/// A crossing with the regular points between which it was found, where it was found so.
 pub(super) struct Located {
     pub point: Box<Reached>,
     pub crossing: Crossing,
     pub between: Option<[Placed; 2]>,
+}
+
+impl Located {
+    /// Regular points on both sides of it, the step being so long.
+    pub fn between(&self, start: &Start<'_>, length: f64, work: &mut Work) -> Option<[Placed; 2]> {
+        if let Some(between) = &self.between {
+            return Some(between.clone());
+        }
+        let Reached { corrected, rate, step, .. } = &*self.point;
+        let width = WIDTHS[1] * length;
+        let mut at = |ahead: f64| {
+            if step + ahead <= 0.0 {
+                return Some(Placed { place: 0.0, state: start.state.clone(), rate: start.rate.clone() });
+            }
+            let guess = corrected.state.advanced(rate, ahead);
+            start.reach_near(guess, step + ahead, work).map(|near| placed(start, &near)).ok()
+        };
+        Some([at(-width)?, at(width)?])
+    }
 }
 
 /// Finds the first crossing of a step, whose start has the signature `before`. `None` where none can be made out.
@@ -56,12 +96,22 @@ pub fn locate(
     reached: &Reached,
     work: &mut Work,
 ) -> Option<Located> {
+    work.at_bifurcation(|work| find(start, before, change, reached, work))
+}
+
+fn find(start: &Start<'_>, before: Signature, change: Change, reached: &Reached, work: &mut Work) -> Option<Located> {
     let system = ModeSystem::new(start.loading, start.modes, start.state);
     if system.has_tracks()
         && let Some(point) = folded::locate(start, reached)
     {
-        let crossing = Crossing { eigenvalues: 0, grazing: false, after: before };
+        let crossing = Crossing { eigenvalues: 0, grazing: false, after: before, nulls: None };
         return Some(Located { point, crossing, between: None });
+    }
+    if start.loading.structure.layout().is_some() && !system.has_tracks() {
+        let located = sparse::locate(start, before, change, reached);
+        if located.is_some() {
+            return located;
+        }
     }
     let origin = Placed { place: 0.0, state: start.state.clone(), rate: start.rate.clone() };
     let end = placed(start, reached);
@@ -117,7 +167,8 @@ pub fn locate(
             }
             Change::None | Change::Odd => null.ncols() - 1,
         };
-        let crossing = Crossing { eigenvalues, grazing: false, after: before.past(change, eigenvalues)? };
+        let after = before.past(change, eigenvalues)?;
+        let crossing = Crossing { eigenvalues, grazing: false, after, nulls: None };
         let step = corrected.state.distance(start.state);
         let mut point = Reached::new(corrected, rate, step, error);
         point.drift = start.drift.cloned();
@@ -127,7 +178,9 @@ pub fn locate(
         }
     }
     let (residual, located) = best?;
-    (residual <= ACCEPTED_RESIDUAL).then_some(located)
+    // With sparse matrices a start that is singular itself may look regular.
+    let is_start = start.loading.structure.layout().is_some() && located.point.step <= AT_START;
+    (residual <= ACCEPTED_RESIDUAL && !is_start).then_some(located)
 }
 
 /// Eigenvalues of the reduced tangent, the smallest first.
