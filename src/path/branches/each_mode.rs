@@ -79,7 +79,7 @@ pub fn in_each_mode(here: Here<'_>) -> Option<Told> {
         if system.has_tracks() {
             return None;
         }
-        let point = Point { here, modes: &modes, system, eigenvalues: None };
+        let point = Point { here, modes: &modes, system, eigenvalues: None, nulls: None };
         for way in point.ways(&mut told.unclear)? {
             if is_mechanism(here.loading, here.state, &way.null.rate) {
                 return None;
@@ -112,7 +112,7 @@ fn modes_of_each(here: Here<'_>) -> Option<Vec<Vec<Mode>>> {
 impl Point<'_> {
     /// The directions of the mode, each in both senses; `None` where nothing moves along one or they are three and more.
     fn ways(&self, unclear: &mut bool) -> Option<Vec<Way>> {
-        let nulls = self.nulls()?;
+        let nulls = self.orthonormal_nulls()?;
         match &nulls[..] {
             [only] => {
                 let bend = self.bend(only);
@@ -160,7 +160,7 @@ impl Point<'_> {
     fn bend(&self, null: &Null) -> Option<Rate> {
         let system = &self.system;
         let factorisation = system.bordered(&system.iterate(self.here.state.clone()), &null.rate)?;
-        let curved = self.second_derivative(&null.rate) * &null.values;
+        let curved = self.second_derivative(&null.rate).times(&null.values);
         let mut values = -curved.insert_row(system.size() - 1, 0.0);
         factorisation.solve(&mut values).then(|| system.rate_from(self.here.state, &values))
     }

@@ -81,7 +81,7 @@ impl Fold {
 
 impl Point<'_> {
     /// The null vectors of the mode, orthonormal in displacements and load.
-    pub(super) fn nulls(&self) -> Option<Vec<Null>> {
+    pub(super) fn orthonormal_nulls(&self) -> Option<Vec<Null>> {
         let (matrix, _) = scaled_rows(&self.system, self.here.loading, self.here.state);
         self.orthonormal(&null_space_as_scaled(matrix, RANK)?)
     }
@@ -115,12 +115,12 @@ impl Point<'_> {
         let nulls = self.orthonormal(&nearest_null_space(matrix, 2)?)?;
         let [first, second] = &nulls[..] else { return None };
         let [along_first, along_second] = [first, second].map(|null| self.second_derivative(&null.rate));
-        let mixed = left.dot(&(&along_first * &second.values));
+        let mixed = left.dot(&along_first.times(&second.values));
         let form = Matrix2::new(
-            left.dot(&(&along_first * &first.values)),
+            left.dot(&along_first.times(&first.values)),
             mixed,
             mixed,
-            left.dot(&(&along_second * &second.values)),
+            left.dot(&along_second.times(&second.values)),
         );
         let size = left.amax() * along_first.amax().max(along_second.amax());
         let eigen = form.symmetric_eigen();
@@ -147,10 +147,10 @@ impl Point<'_> {
     }
 
     fn fold(&self, left: &DVector<f64>, mut flat: Null, steep: Null) -> Fold {
-        let curvature = left.dot(&(self.second_derivative(&steep.rate) * &steep.values));
+        let curvature = left.dot(&self.second_derivative(&steep.rate).times(&steep.values));
         // Differences along the root itself are exact where it is a straight line, and those along others are not.
         for _ in 0..2 {
-            let mixed = left.dot(&(self.second_derivative(&flat.rate) * &steep.values));
+            let mixed = left.dot(&self.second_derivative(&flat.rate).times(&steep.values));
             flat = self.unit(&self.combined(&[flat, steep.clone()], &[1.0, -mixed / curvature]));
         }
         let matrix = self.system.matrix(self.here.state);
