@@ -1,7 +1,7 @@
 //! Bodies as they are read: each takes room for the bytes that have come, and none for those that it announces.
 
 use super::problem::{Kind, Problem};
-use axum::body::Body;
+use axum::body::{Body, HttpBody};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
@@ -50,6 +50,11 @@ impl Bodies {
     /// It is larger, breaks off, or does not come in time; waiting for room counts, so that who is slow takes it from nobody
     /// for longer than that.
     pub async fn read(&self, body: Body, most: usize) -> Result<Read, Problem> {
+        let too_large = || Problem::new(Kind::BodyTooLarge, format!("at most {most} bytes are taken"));
+        // What is announced as too large need not be sent.
+        if body.size_hint().lower() > most as u64 {
+            return Err(too_large());
+        }
         let end = Instant::now() + WHOLE;
         let (mut stream, mut read) = (body.into_data_stream(), Read::default());
         loop {
@@ -58,7 +63,7 @@ impl Bodies {
             let chunk = chunk.map_err(|_| Problem::new(Kind::RequestFailed, "the body broke off before its end"))?;
             let bytes = read.text.len().saturating_add(chunk.len());
             if bytes > most {
-                return Err(Problem::new(Kind::BodyTooLarge, format!("at most {most} bytes are taken")));
+                return Err(too_large());
             }
             timeout_at(end, self.make_room(&mut read.taken, bytes)).await.map_err(|_| late())??;
             read.text.extend_from_slice(&chunk);

@@ -43,7 +43,8 @@ impl RunMistakes {
         let Self { checked, mut told } = self;
         told.truncate(MAX_LISTED_MISTAKES);
         let located = told.into_iter().map(|Told { error, first, runs }| {
-            if runs == checked || error.pointer.starts_with("/sweep/") {
+            // Of a value of its own, or of all runs.
+            if runs == sweep.runs_at(&error.pointer, checked).unwrap_or(checked) {
                 return error;
             }
             let values = sweep.variation.parameters.iter().zip(sweep.variation.values(first));
@@ -77,6 +78,19 @@ mod tests {
         let told = mistakes.result(&sweep).unwrap_err().0;
         assert_eq!(told.len(), 1);
         assert_eq!(told[0].detail, "wrong (so it is in 2 of 3 runs; the first has /analysis/max_modes = 6)");
+        // Of a value that is wrong by itself, and of one that is wrong beside some others.
+        document["sweep"] = json!({"replace": {"/analysis/max_modes": [5, 0], "/analysis/arc_length/max": [1, 0.01]}});
+        let grid = Sweep::read(document.to_string().as_bytes()).unwrap();
+        let at = "/sweep/replace/~1analysis~1max_modes/1";
+        let told = |wrong: &[u64]| {
+            let mut mistakes = RunMistakes::default();
+            (0..4).for_each(|run| mistakes.note(run, mistake(at).filter(|_| wrong.contains(&run))));
+            mistakes.result(&grid).unwrap_err().0.remove(0).detail
+        };
+        assert_eq!(told(&[2, 3]), "wrong");
+        let expected =
+            "wrong (so it is in 1 of 4 runs; the first has /analysis/max_modes = 0, /analysis/arc_length/max = 0.01)";
+        assert_eq!(told(&[3]), expected);
         let mut all = RunMistakes::default();
         (0..3).for_each(|run| all.note(run, mistake("/model/nodes")));
         assert_eq!(all.result(&sweep).unwrap_err().0[0].detail, "wrong");

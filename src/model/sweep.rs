@@ -168,6 +168,15 @@ impl Sweep {
         Ok(Run { text, request })
     }
 
+    /// In how many of so many runs, from the first, the value at that place of the sweep is put; `None` where none is.
+    pub fn runs_at(&self, pointer: &str, runs: u64) -> Option<u64> {
+        let (parameter, choice) = pointer.rsplit_once('/')?;
+        let choice: usize = choice.parse().ok()?;
+        let place = self.variation.parameters.iter().position(|one| place_of(&one.pointer) == parameter)?;
+        let has_it = |run: &u64| self.variation.choices(*run).get(place) == Some(&choice);
+        Some((0..runs).filter(has_it).count() as u64)
+    }
+
     /// Mistakes in a run as mistakes in the sweep: those at or about a value that was put there are that value's.
     pub fn located(&self, run: u64, errors: InputErrors) -> InputErrors {
         let (parameters, choices) = (&self.variation.parameters, self.variation.choices(run));

@@ -1,7 +1,7 @@
 //! One row of CSV (RFC 4180), cell by cell.
 
-/// What formulas begin with. Spreadsheets skip a tab or a carriage return before one.
-const FORMULAS: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
+/// What formulas begin with. Spreadsheets may skip white space before one.
+const FORMULAS: [char; 4] = ['=', '+', '-', '@'];
 
 /// A row being written.
 #[derive(Default)]
@@ -17,7 +17,7 @@ impl CsvRow {
     /// Text, in quotes where it needs them. What a spreadsheet would take for a formula has an apostrophe before it, by which
     /// it is text there too; numbers are written by [`number`](Self::number) and have none.
     pub fn text(&mut self, cell: &str) {
-        let apostrophe = if cell.starts_with(FORMULAS) { "'" } else { "" };
+        let apostrophe = if cell.trim_start().starts_with(FORMULAS) { "'" } else { "" };
         if cell.contains(['"', ',', '\n', '\r']) {
             self.raw(&format!("\"{apostrophe}{}\"", cell.replace('"', "\"\"")));
         } else {

@@ -164,17 +164,24 @@ macro_rules! process {
     };
 }
 
-/// A loss that counts, as 1; otherwise 0.
-macro_rules! counts {
+/// Whether another job is lost, or is at work in the same process.
+macro_rules! has_company {
     () => {
         concat!(
-            "CASE WHEN losses > 0 OR (accompanied = 0 AND NOT EXISTS (SELECT 1 FROM jobs AS other \
+            "EXISTS (SELECT 1 FROM jobs AS other \
              WHERE other.status = 'running' AND other.id <> jobs.id AND (other.lease_until < {clock} OR ",
             process!("other.worker"),
             " = ",
             process!("jobs.worker"),
-            "))) THEN 1 ELSE 0 END"
+            "))"
         )
+    };
+}
+
+/// A loss that counts, as 1; otherwise 0.
+macro_rules! counts {
+    () => {
+        concat!("CASE WHEN losses > 0 OR (accompanied = 0 AND NOT ", has_company!(), ") THEN 1 ELSE 0 END")
     };
 }
 
@@ -186,7 +193,7 @@ const RECLAIM: &str = concat!(
     " < max_attempts THEN 'queued' ELSE 'failed' END, stop_reason = CASE WHEN cancel_requested <> 0 THEN 'cancelled' END, \
      error = CASE WHEN cancel_requested = 0 AND counted_losses + ",
     counts!(),
-    " >= max_attempts THEN 'the worker was lost ' || (losses + 1) || ' times in a row, nothing stored between: the process that \
+    " >= max_attempts THEN 'the worker was lost ' || (losses + 1) || ' times in a row, ' || max_attempts || ' of them with no other job, nothing stored between: the process that \
 works on the job ends, or does not answer in time' END, \
      ended_at = CASE WHEN cancel_requested <> 0 OR counted_losses + ",
     counts!(),
@@ -205,6 +212,12 @@ pub(super) async fn reclaim_expired<E: Engine>(engine: &E) -> Result<u64> {
         " FROM jobs WHERE status = 'running' AND lease_until < {clock})"
     );
     Of::<E>::run(&mut connection, tell, values![]).await?;
+    // Those that are lost together are told so before any of them is taken back: SQLite looks at one row after the other.
+    let together = concat!(
+        "UPDATE jobs SET accompanied = 1 WHERE status = 'running' AND lease_until < {clock} AND accompanied = 0 AND ",
+        has_company!()
+    );
+    Of::<E>::run(&mut connection, together, values![]).await?;
     let touched = Of::<E>::rows(&mut connection, RECLAIM, values![]).await?;
     for row in &touched {
         engine.signals().job_changed(rows::id(row, "id")?);

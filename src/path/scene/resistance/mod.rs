@@ -71,7 +71,7 @@ pub(super) fn resisting(structure: &Structure, contacts: &[Contact], pattern: &L
     stiffest
 }
 
-/// The largest diagonal entry of the tangent at each node.
+/// The mean diagonal entry of the tangent at each node, which does not hang on the axes.
 fn stiffness_at(structure: &Structure, still: &[f64]) -> Vec<f64> {
     let mut diagonal = vec![0.0_f64; structure.freedoms()];
     structure.each_stiffness(still, &mut |row, column, value| {
@@ -79,20 +79,25 @@ fn stiffness_at(structure: &Structure, still: &[f64]) -> Vec<f64> {
             diagonal[row] += value;
         }
     });
-    let largest = |node: &[f64]| node.iter().fold(0.0_f64, |most, value| value.abs().max(most));
-    diagonal.chunks(structure.dimension.max(1)).map(largest).collect()
+    let mean = |node: &[f64]| (node.iter().sum::<f64>() / node.len() as f64).abs();
+    diagonal.chunks(structure.dimension.max(1)).map(mean).collect()
 }
 
-/// The stiffness of which as many bars are stiffer as softer, or one more; of springs where there are only these.
+/// The stiffness of which as many bars are stiffer as softer, or one more; of springs where there are only these. An element's
+/// is the sum of its diagonal entries at a node, a bar's own whatever the axes.
 fn usual_stiffness(structure: &Structure, still: &[f64]) -> f64 {
-    let largest = |element: &Element| {
-        let mut largest = 0.0_f64;
-        element.add_stiffness(structure, still, &mut |_, _, value| largest = largest.max(value.abs()));
-        largest
+    let of_element = |element: &Element| {
+        let mut sum = 0.0_f64;
+        element.add_stiffness(structure, still, &mut |row, column, value| {
+            if row == column {
+                sum += value;
+            }
+        });
+        sum.abs() / element.nodes().count() as f64
     };
     let has_bars = structure.elements.iter().any(|element| matches!(element, Element::Bar(_)));
     let counts = |element: &&Element| !has_bars || matches!(element, Element::Bar(_));
-    let mut all: Vec<f64> = structure.elements.iter().filter(counts).map(largest).collect();
+    let mut all: Vec<f64> = structure.elements.iter().filter(counts).map(of_element).collect();
     all.sort_by(f64::total_cmp);
     all.get(all.len().saturating_sub(1) / 2).copied().unwrap_or(0.0)
 }
@@ -193,7 +198,9 @@ impl Response<'_> {
             return None;
         }
         let mut motion = self.motion(values.as_slice());
-        let largest = motion.displacement.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        let of_nodes = motion.displacement.chunks(self.structure.dimension.max(1));
+        let largest =
+            of_nodes.map(|node| node.iter().map(|value| value * value).sum::<f64>().sqrt()).fold(0.0_f64, f64::max);
         if largest <= 0.0 || !largest.is_finite() {
             return None;
         }
