@@ -2,7 +2,9 @@
 //! with them, changes neither the number of increments by much nor the path.
 
 use crate::common::paths::{Traced, close, judged, request};
-use arcslip::path::{Increment, StopReason};
+use crate::common::random::Numbers;
+use crate::common::variants::about_axes;
+use arcslip::path::{Increment, Scene, StopReason};
 use serde_json::{Value, json};
 
 /// A path whose every increment keeps to its equations, and why it ends. What is stored against elements that are softer or
@@ -224,4 +226,48 @@ fn the_arch_keeps_its_scale() {
     };
     assert_alike("arch with a stiff bar", &STIFF[..6], |odd| arch(1, odd, 1e-3));
     assert_alike("arch with a tether", &SOFT, |odd| arch(1, 1.0, odd));
+}
+
+/// Two nodes in space, each on a spring and a bar of its own and both on a third, touching a plane with friction each.
+fn pair_in_space(seed: u64) -> Value {
+    let mut numbers = Numbers(seed);
+    let mut model =
+        json!({"dimension": 3, "nodes": {}, "supports": {}, "elements": [], "obstacles": {}, "contacts": []});
+    let mut forces = json!({});
+    for index in 0..2 {
+        let [free, pin, plane] = ["f", "p", "o"].map(|name| format!("{name}{index}"));
+        let mut place = numbers.vector(3, 0.3);
+        place[0] += 2.5 * f64::from(index);
+        let mut normal = numbers.vector(3, 1.0);
+        normal[2] += 2.0;
+        model["nodes"][&pin] = json!([place[0] - 0.8, place[1] + 0.5, place[2] + numbers.between(0.5, 1.0)]);
+        model["supports"][&pin] = json!(["x", "y", "z"]);
+        model["obstacles"][&plane] = json!({"kind": "plane", "point": place, "normal": normal});
+        let stiffness = numbers.positive_definite(0.1, 2.0);
+        let elements = model["elements"].as_array_mut().expect("elements");
+        elements.push(json!({"kind": "spring", "nodes": [free], "stiffness": stiffness}));
+        elements.push(json!({"kind": "bar", "nodes": [pin, free], "axial_stiffness": numbers.between(0.2, 9.0)}));
+        let contacts = model["contacts"].as_array_mut().expect("contacts");
+        contacts.push(json!({"node": free, "obstacle": plane, "friction": numbers.friction()}));
+        forces[&free] = json!(numbers.vector(3, 0.5));
+        model["nodes"][&free] = json!(place);
+    }
+    let both = json!({"kind": "bar", "nodes": ["f0", "f1"], "axial_stiffness": numbers.between(0.2, 9.0)});
+    model["elements"].as_array_mut().expect("elements").push(both);
+    model["stages"] = json!([{"name": "push", "forces": forces, "until": {"load_above": 1}}]);
+    json!({"model": model})
+}
+
+#[test]
+fn axes_do_not_decide() {
+    let axes = [[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]];
+    for seed in 0..200 {
+        let posted = request(&pair_in_space(seed).to_string());
+        let turned = about_axes(posted.clone(), &axes, [3.0, -1.7, 0.9]);
+        let [one, other] = [&posted, &turned].map(|request| Scene::new(request).expect("a scene").plan().clone());
+        let what = format!("seed {seed}");
+        close(one.displacement_scale, other.displacement_scale, 1e-9, &what);
+        close(one.force_scale, other.force_scale, 1e-9, &what);
+        close(one.load_scales[0], other.load_scales[0], 1e-6 * one.load_scales[0], &what);
+    }
 }
