@@ -8,9 +8,8 @@ use arcslip::path::{Increment, Report};
 
 /// Largest difference of loads and displacements from those of `auto`.
 const SAME: f64 = 1e-8;
-/// Largest error of the state: past it an increment would be said to be off the measure. (The chain of the capstan has nodes
-/// whose forces are some 1e-7 of the largest; 6e-10 of theirs are left where its program alone leads there.)
-const STATE: f64 = 1e-9;
+/// Largest error of the state: past it an increment would be said to be off the measure.
+const STATE: f64 = 1e-10;
 /// Random scenes of a default run, and of the whole one: `random_scene`, then `random_space`.
 const SOME: [u64; 2] = [16, 4];
 const ALL: [u64; 2] = [140, 60];

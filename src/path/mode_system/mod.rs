@@ -205,6 +205,11 @@ impl<'a> ModeSystem<'a> {
                 holding.for_each(|other| state.reactions[other] = Reaction::default());
             }
         }
+        for (contact, role) in self.roles.iter().enumerate() {
+            if let Role::Stick = role {
+                self.hold_in_frame(contact, &mut state);
+            }
+        }
         let directions = if self.has_tracks() {
             let of = |(index, role): (usize, &Role)| match role {
                 Role::Plane { track } => {
@@ -217,6 +222,21 @@ impl<'a> ModeSystem<'a> {
             Vec::new()
         };
         Iterate { state, directions }
+    }
+
+    /// A sticking node that a guess has elsewhere on a curved obstacle goes back to its place, where the normal is another:
+    /// its force is taken apart along that one. Corrections of its traction are across it. So what the guess leaves of the
+    /// traction along it would stay, in equilibrium, but neither as pressure nor as friction.
+    fn hold_in_frame(&self, contact: usize, state: &mut State) {
+        let held = self.loading.frame(contact, self.anchor);
+        if held.curvature == 0.0 {
+            return;
+        }
+        let guessed = self.loading.frame(contact, state).normal;
+        if guessed != held.normal {
+            let Reaction { normal, tangential } = state.reactions[contact];
+            state.reactions[contact] = Reaction::of(&add(&tangential, normal, &guessed), &held.normal);
+        }
     }
 
     /// A converged point.
@@ -296,5 +316,47 @@ impl<'a> ModeSystem<'a> {
             Role::Plane { .. } => scaled(&frame.normal, -dot(&frame.normal_change(motion), direction)),
             Role::Free | Role::Frictionless | Role::Stick | Role::Held | Role::HeldBy => [0.0; 3],
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::path::newton::Place;
+    use crate::path::scene::Scene;
+
+    /// A node on a spring that sticks to the top of a ball. A guess has it slid off, with its force along and across the
+    /// normal there.
+    #[test]
+    fn a_stuck_node_keeps_its_force_across_its_own_normal() {
+        let request = crate::model::decode::decode(
+            br#"{"model": {"dimension": 2, "nodes": {"node": [0, 0]},
+                "elements": [{"kind": "spring", "nodes": ["node"], "stiffness": [[1, 0], [0, 1]]}],
+                "obstacles": {"ball": {"kind": "ball", "center": [0, -1], "radius": 1}},
+                "contacts": [{"node": "node", "obstacle": "ball", "friction": 0.5}],
+                "stages": [{"name": "press", "forces": {"node": [0.25, -1]}}]}}"#,
+        )
+        .expect("a request");
+        let scene = Scene::new(&request).expect("a scene");
+        let held = scene.stages[0].pattern.zeroed();
+        let loading = Loading {
+            structure: &scene.structure,
+            contacts: &scene.contacts,
+            corners: &scene.corners,
+            pattern: &scene.stages[0].pattern,
+            held: &held,
+        };
+        let anchor = State::at_rest(&scene.structure, 1);
+        let system = ModeSystem::new(loading, &[Mode::Stick], &anchor);
+        let mut guess = anchor.clone();
+        (guess.load, guess.displacement[0]) = (1.0, 1e-3);
+        let force = scaled(&[loading.pattern.forces[0], loading.pattern.forces[1], 0.0], -1.0);
+        guess.reactions[0] = Reaction::of(&force, &loading.frame(0, &guess).normal);
+        let found = system.correct(guess, Place::Load(1.0), 1.0).expect("a point").state;
+        let normal = loading.frame(0, &found).normal;
+        let whole = add(&found.reactions[0].tangential, found.reactions[0].normal, &normal);
+        assert_eq!(found.displacement, anchor.displacement);
+        assert!(crate::contact::vector::size(&add(&whole, -1.0, &force)) <= 1e-15, "{whole:?} for {force:?}");
+        assert!(dot(&found.reactions[0].tangential, &normal).abs() <= 1e-16, "{:?}", found.reactions[0]);
     }
 }
