@@ -33,7 +33,7 @@ pub(super) struct Progress {
     pub step: f64,
     /// When contact changes are to be taken together again.
     pub waiting: Waiting,
-    /// Steps without event, one after another up to here, that are too short to get anywhere.
+    /// Steps at which no contact changes, one after another up to here, that are too short to get anywhere.
     pub creeping: u64,
     pub totals: Totals,
     pub counts: StageCounts,

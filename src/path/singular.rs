@@ -317,6 +317,22 @@ pub fn bordered_determinant(
     determinant(matrix)
 }
 
+/// Sign of the bordered determinant at the end of a step, where it is certain. Next to stiff elements the pivots of a
+/// factorisation that adds them up leave it open; rows over their own sizes tell it as at a start. Else each step would begin
+/// with signs and end without, as if it passed a singular point, and be taken shorter than the one before.
+pub fn sign_at_end(start: &Start<'_>, reached: &Reached, work: &mut Work) -> Option<f64> {
+    reached.determinant.or_else(|| {
+        let (loading, state) = (start.loading, &reached.corrected.state);
+        if loading.structure.layout().is_some() {
+            return None;
+        }
+        work.factorisations += 1;
+        let system = ModeSystem::new(loading, &reached.corrected.modes, state);
+        let determinant = bordered_determinant(&system, loading, state, &reached.rate)?;
+        (determinant.pivot_ratio > UNCERTAIN).then_some(determinant.sign)
+    })
+}
+
 /// The signature at the end of a step, and how it changed.
 pub fn compare(
     start: &Start<'_>,
@@ -324,7 +340,7 @@ pub fn compare(
     reached: &Reached,
     work: &mut Work,
 ) -> (Option<Signature>, Change) {
-    let Some(sign) = reached.determinant else { return (None, Change::None) };
+    let Some(sign) = sign_at_end(start, reached, work) else { return (None, Change::None) };
     let state = &reached.corrected.state;
     let Some(mut after) = Signature::with_determinant(start.loading, start.modes, start.state, state, sign, work)
     else {

@@ -48,9 +48,11 @@ const MOST_BEND: f64 = 4.0;
 /// How far past a bend that no step follows the path is taken up, over the square of the width of its arms there: the chord
 /// is off the direction by a fifth then, a third of what a step may turn by.
 const PAST_BEND: f64 = 25.0;
-/// Arc length below which a step that no event ends creeps, over the longest that is asked for and no more than 1. From the
-/// shortest at which a path can be told from rounding a step grows beyond this within a few.
+/// Arc length (dimensionless) below which a step creeps at which no contact changes. From the shortest at which a path can be
+/// told from rounding a step grows beyond this within a few.
 const CREEPS: f64 = 2e-8;
+/// The same over the longest step that is asked for, where short ones are.
+const CREEPS_AT_MOST: f64 = 1e-3;
 /// Steps that creep one after another, at the most: the sharpest bend, there and back, takes fewer at the turn that a step
 /// aims at, and what takes more turns to and fro.
 const MOST_CREEPING: u64 = 48;
@@ -225,11 +227,15 @@ impl Path<'_> {
         Ok(accepted)
     }
 
-    /// Why a path that has come to a point by a step of this length, ended by an event or not, gets nowhere, if it does not.
-    pub(super) fn reason_of_creep(&mut self, step: f64, at_event: bool) -> Option<StopReason> {
+    /// Why a path that has come to a point by a step of this length gets nowhere, if it does not. A step at the end of which
+    /// the contacts' modes change, or the stage ends, is progress, however short. One to a limit or bifurcation point, or to
+    /// where a contact keeps its mode, is none: a smooth path has few of them within so short a way; where signs are rounding
+    /// they have no end.
+    pub(super) fn reason_of_creep(&mut self, step: f64, changes: bool) -> Option<StopReason> {
         // Scales that are larger than the scene's own make every step as much shorter.
         let enlarged = self.scene.stages[self.at.stage].enlarged;
-        let creeps = !at_event && step < CREEPS * self.scene.analysis.arc_length.max.min(1.0 / enlarged);
+        let bar = (CREEPS / enlarged).min(CREEPS_AT_MOST * self.scene.analysis.arc_length.max);
+        let creeps = !changes && step < bar;
         self.at.creeping = if creeps { self.at.creeping + 1 } else { 0 };
         (self.at.creeping >= MOST_CREEPING).then(|| self.reason_of_underflow())
     }
@@ -409,7 +415,7 @@ mod tests {
     }
 
     #[test]
-    fn an_event_is_progress() {
+    fn a_contact_change_is_progress() {
         let scene = scene(|_| {});
         let mut path = Path::new(&scene, CancelFlag::default());
         for step in 1..=1000 {

@@ -29,7 +29,7 @@ use super::stop::{Outcome, StopReason};
 use super::watch::Watch;
 use crate::budget::{self, Breach, Budget};
 use crate::cancel::CancelFlag;
-use crate::contact::{Mode, Reaction};
+use crate::contact::{Mode, Reaction, all_continue};
 use std::borrow::Cow;
 use std::time::Instant;
 
@@ -197,8 +197,7 @@ impl<'a> Path<'a> {
         here.signature = accepted.signature;
         let arriving = Arriving { modes: here.modes.clone(), load_sign: here.load_sign, counts: self.at.counts };
         let at_bound = self.at_bound(&reached.rate);
-        let at_event = reached.event.is_some() || accepted.crossing.is_some() || accepted.joined > 0 || at_bound;
-        let creeps = self.reason_of_creep(reached.step, at_event);
+        let (step, joins) = (reached.step, accepted.joined > 0);
         let arrived = changes.then(|| self.at.here.state.reactions.clone());
         let mut arrival = if accepted.joined > 0 {
             self.at.here.is_singular = false;
@@ -218,7 +217,8 @@ impl<'a> Path<'a> {
         if accepted.returned {
             arrival.stop = Some(StopReason::Cycle);
         }
-        arrival.stop = arrival.stop.or(creeps);
+        let changed = joins || !all_continue(&self.at.here.modes, &modes);
+        arrival.stop = arrival.stop.or(self.reason_of_creep(step, changed || at_bound || arrival.stage_ends));
         // A change may have moved reactions.
         if changes && !contact_law::holds(self.loading(), &self.at.here.state, self.at.totals.force_scale) {
             self.at.totals.index -= 1;

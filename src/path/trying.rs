@@ -280,7 +280,8 @@ fn crossing_in_mode(
     let Some(before) = before else {
         // The start is singular: signs are known from the end on.
         let state = &reached.corrected.state;
-        let regular = reached.determinant.filter(|_| !matches!(reached.event, Some(Watch::LoadRate { .. })));
+        let is_limit = matches!(reached.event, Some(Watch::LoadRate { .. }));
+        let regular = if is_limit { None } else { singular::sign_at_end(start, &reached, work) };
         let after = regular
             .and_then(|sign| Signature::with_determinant(start.loading, start.modes, start.state, state, sign, work));
         return Ok((reached, None, after));

@@ -14,6 +14,7 @@ mod checkpoint;
 mod coinciding;
 mod common_limits;
 mod corner_in_space;
+mod creep;
 mod curved;
 mod cycle;
 mod endings;
