@@ -13,11 +13,13 @@ use super::directions::Candidate;
 use super::loading::Loading;
 use super::mode_system::ModeSystem;
 use super::newton::{Corrected, Place};
+use super::singular::scaled_rows;
 use super::state::{Rate, State};
 use super::watch::{self, Watch};
 use crate::budget::{self, Taken};
 use crate::contact::Mode;
 use crate::contact::vector::size as size_of;
+use nalgebra::DVector;
 use std::collections::BTreeSet;
 
 /// Arc lengths of the steps by which a direction of first order is tried, one after another until it is clear.
@@ -32,8 +34,10 @@ const CLEAR_OF_ROUND_OFF: f64 = 5e-14;
 const CLEAR_OF_SPEED: f64 = 1e-13;
 /// Round-off of a velocity (of unit arc length).
 const STILL: f64 = 1e-14;
-/// Load rates (of unit arc length) up to this are rounding.
+/// Load rates (of unit arc length) up to this are rounding where nothing else is known of it.
 const NO_LOAD_RATE: f64 = 1e-12;
+/// Roundings in each entry of the equations, and of their solution, for one number.
+const ROUNDINGS: f64 = 8.0;
 /// Load rates that differ by no more than this part of themselves are alike.
 const ALIKE: f64 = 0.5;
 /// How far a watched quantity may be negative after a trial step (second order in the step where it is real).
@@ -116,7 +120,11 @@ pub(super) fn later_sign(
     modes: &[Mode],
     force_scale: f64,
 ) -> LaterSign {
-    let mut is_steady = rate.load.abs() > NO_LOAD_RATE;
+    let is_more_than_rounding = || {
+        let rounding = rounding_of_load_rate(loading, state, rate, modes).unwrap_or(f64::INFINITY);
+        rate.load.abs() > rounding.min(NO_LOAD_RATE)
+    };
+    let mut is_steady = rate.load.abs() > NO_LOAD_RATE || rate.load != 0.0 && is_more_than_rounding();
     for step in TRIAL_STEPS {
         let Some((_, after)) = stepped(loading, state, rate, modes, step, force_scale) else {
             is_steady = false;
@@ -128,6 +136,25 @@ pub(super) fn later_sign(
         is_steady &= (after.load - rate.load).abs() <= ALIKE * rate.load.abs();
     }
     LaterSign { sign: if is_steady { rate.load.signum() } else { 0.0 }, is_steady }
+}
+
+/// What rounding may do to the load rate of a direction, where the equations are few: entries off by `δA` put `-wᵀ δA x` into
+/// it, with `A x` the last unit vector and `Aᵀ w` that of the load (N. J. Higham, *Accuracy and Stability of Numerical
+/// Algorithms*, SIAM 2002, section 7.2). `A` has its rows over their sizes, so that `|δA|` is unit round-off at the most.
+fn rounding_of_load_rate(loading: Loading<'_>, state: &State, rate: &Rate, modes: &[Mode]) -> Option<f64> {
+    if loading.structure.layout().is_some() {
+        return None;
+    }
+    let system = ModeSystem::new(loading, modes, state);
+    let (rows, _) = scaled_rows(&system, loading, state);
+    let mut matrix = rows.insert_row(system.size() - 1, 0.0);
+    system.border(&mut matrix, rate);
+    let (size, load) = (matrix.nrows(), loading.structure.unknowns());
+    let unit = |place: usize| DVector::from_fn(size, |row, _| f64::from(u8::from(row == place)));
+    let along = matrix.clone().lu().solve(&unit(size - 1))?;
+    let weights = matrix.transpose().lu().solve(&unit(load))?;
+    let rounding = ROUNDINGS * f64::EPSILON * weights.lp_norm(1) * along.lp_norm(1);
+    rounding.is_finite().then_some(rounding)
 }
 
 /// The point a small step along a direction in these modes, with the direction there.

@@ -30,7 +30,7 @@ fn events(friction: f64, unit: f64) -> Vec<(PointKind, f64, bool)> {
 #[test]
 fn a_load_that_turns_ever_so_slowly_has_limit_points() {
     for unit in [1.0, 1e9] {
-        for exponent in 2..=11 {
+        for exponent in 2..=13 {
             let little = 10.0_f64.powi(-exponent);
             for (friction, turns) in [(CRITICAL * (1.0 + little), true), (CRITICAL * (1.0 - little), false)] {
                 let found = events(friction, unit);
