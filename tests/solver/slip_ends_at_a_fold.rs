@@ -343,7 +343,7 @@ fn the_slider_slides_back_as_the_load_goes_on_falling() {
                     |one: &&&Increment| one.contacts[0].status == Status::Stick && one.index > pulled[0].index + 20;
                 let at_rest = pulled.iter().find(rests).expect("a slider at rest").index;
                 let slides = |one: &&&Increment| one.index > at_rest && one.contacts[0].status == Status::Slip;
-                let after = pulled.iter().position(|one| slides(&&one)).expect("a slider that slides back");
+                let after = pulled.iter().position(|one| slides(&one)).expect("a slider that slides back");
                 let [x, _, load] = toggle.read(pulled[after - 1]);
                 close(x, fold, 1e-6 * toggle.height, "the toggle at rest");
                 close(load, toggle.force(fold) - toggle.drag(), 1e-8, "load at which it slides back");
