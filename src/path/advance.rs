@@ -198,6 +198,9 @@ impl Start<'_> {
         if let Some(reached) = self.held_straight(&system, place) {
             return Ok(reached);
         }
+        if let Some(reached) = self.held_across(&guess, place, work) {
+            return Ok(reached);
+        }
         let guess = self.guess_beside(place).unwrap_or(guess);
         let corrected = system
             .correct_from(system.iterate(guess), place, self.force_scale, serving, work)

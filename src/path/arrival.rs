@@ -14,6 +14,7 @@ use super::history;
 use super::incoming::Incoming;
 use super::increment::{Point, PointKind};
 use super::name_event::describe_change;
+use super::second_order;
 use super::standing::{Standing, ZERO};
 use super::state::Rate;
 use super::stop::StopReason;
@@ -117,13 +118,22 @@ impl Path<'_> {
         }
         let rules = self.rules();
         let (loading, here) = (self.loading(), &self.at.here);
-        let at_once = directions_going_on(loading, &here.state, &standings, &here.modes, incoming, rules);
-        let (options, found) = match at_once {
-            Some(options) => (options, Found::default()),
-            None => {
-                let before = Before::Incoming(Incoming::along(incoming));
-                decide::list(loading, &here.state, &standings, before, rules)
-            }
+        let before = Before::Incoming(Incoming::along(incoming));
+        let told = if here.is_singular {
+            // First order says nothing of what stays at its fold.
+            let (state, force_scale) = (&here.state, rules.force_scale);
+            let at = branches::Here { loading, state, standings: &standings, force_scale };
+            second_order::directions(at, before)
+        } else {
+            None
+        };
+        let at_once = || directions_going_on(loading, &here.state, &standings, &here.modes, incoming, rules);
+        let (options, found) = if let Some(branches::Told { options, unclear }) = told {
+            (options, Found { degenerate: unclear, ..Found::default() })
+        } else if let Some(options) = at_once() {
+            (options, Found::default())
+        } else {
+            decide::list(loading, &here.state, &standings, before, rules)
         };
         let taken = options.iter().position(|option| option.rate.product(incoming) > 1.0 - 1e-9);
         // A load rate too small to tell by itself keeps the sign that it has had.

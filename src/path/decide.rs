@@ -84,8 +84,10 @@ const BACK: f64 = 4e-5;
 const BACK_FORCES: f64 = 1e-4;
 /// Displacement rates along the incoming one that differ by less than this part of their sizes tie.
 const TIE_OF_MOTIONS: f64 = 1e-9;
-/// Displacement rates below this part of a direction are no motion.
-const STILL: f64 = 1e-12;
+/// Displacement rates below this part of a direction are no motion: so much is left where nothing moves by the location of the
+/// event that led there, and by the differences of the tangent that tell a direction at a fold. Which way such a motion
+/// goes hangs on units, axes and steps.
+const STILL: f64 = 1e-9;
 
 /// Settings and scales of a decision.
 #[derive(Debug, Clone, Copy)]

@@ -44,6 +44,7 @@ mod rival;
 mod rows;
 mod scales;
 mod slider_chain;
+mod sliders_at_their_folds;
 mod slip_ends_at_a_fold;
 mod slips_at_once;
 mod smooth_bifurcations;

@@ -32,6 +32,10 @@ struct SliderToggle {
     units: [f64; 2],
     /// Quarter turns of the whole.
     turns: usize,
+    /// An angle by which it is turned besides; if it is not zero the toggle is guided by nothing but its own symmetry.
+    slant: f64,
+    /// The first arc length.
+    step: f64,
 }
 
 const PLAIN: SliderToggle = SliderToggle {
@@ -45,6 +49,8 @@ const PLAIN: SliderToggle = SliderToggle {
     push: 0.0,
     units: [1.0; 2],
     turns: 0,
+    slant: 0.0,
+    step: 0.025,
 };
 
 impl SliderToggle {
@@ -80,7 +86,12 @@ impl SliderToggle {
     /// A vector in the document, of this unit.
     fn turned(&self, vector: [f64; 2], unit: f64) -> [f64; 2] {
         let [x, y] = vector.map(|part| part * unit);
-        [[x, y], [-y, x], [-x, -y], [y, -x]][self.turns]
+        let [x, y] = [[x, y], [-y, x], [-x, -y], [y, -x]][self.turns];
+        if self.slant == 0.0 {
+            return [x, y];
+        }
+        let (sine, cosine) = self.slant.sin_cos();
+        [cosine * x - sine * y, sine * x + cosine * y]
     }
 
     fn request(&self) -> JobRequest {
@@ -96,13 +107,18 @@ impl SliderToggle {
         if self.push != 0.0 {
             pull["toggle"] = json!(by(self.push, 0.0));
         }
+        let mut supports = json!({"a": ["x", "y"], "b": ["x", "y"]});
+        if self.slant == 0.0 {
+            supports["toggle"] = json!([across]);
+        }
+        let far = sign * self.far() * self.slant.cos() * length;
         let stiffness = self.stiffness * force;
         let document: Value = json!({
             "model": {
                 "dimension": 2,
                 "nodes": {"a": at(0.0, self.height), "b": at(0.0, -self.height), "toggle": at(-self.rise, 0.0),
                     "slider": at(slider, 0.0)},
-                "supports": {"a": ["x", "y"], "b": ["x", "y"], "toggle": [across]},
+                "supports": supports,
                 "elements": [
                     {"kind": "bar", "nodes": ["a", "toggle"], "axial_stiffness": stiffness},
                     {"kind": "bar", "nodes": ["b", "toggle"], "axial_stiffness": stiffness},
@@ -113,10 +129,10 @@ impl SliderToggle {
                 "stages": [
                     {"name": "press", "forces": {"slider": by(0.0, -self.weight)}, "until": {"load_above": 1.0}},
                     {"name": "pull", "forces": pull,
-                        "until": {"displacement": {"node": "slider", "component": along, bound: sign * self.far() * length}}},
+                        "until": {"displacement": {"node": "slider", "component": along, bound: far}}},
                 ],
             },
-            "analysis": {"max_increments": 5000, "arc_length": {"initial": 0.025, "max": 0.05}},
+            "analysis": {"max_increments": 5000, "arc_length": {"initial": self.step, "max": 2.0 * self.step}},
         });
         request(&document.to_string())
     }
@@ -125,7 +141,7 @@ impl SliderToggle {
     fn read(&self, increment: &Increment) -> [f64; 3] {
         let along = |node: &str| {
             let moved = &increment.displacements[node];
-            let back = SliderToggle { turns: (4 - self.turns) % 4, ..*self };
+            let back = SliderToggle { turns: (4 - self.turns) % 4, slant: -self.slant, ..*self };
             back.turned([moved[0], moved[1]], 1.0 / self.units[0])[0]
         };
         [along("toggle") - self.rise, along("slider") - self.rise + self.length, increment.load_factor]
@@ -291,6 +307,7 @@ fn random_sliders_with_toggles() {
             push,
             units: [unit(&mut numbers), unit(&mut numbers)],
             turns: numbers.below(4),
+            ..PLAIN
         };
         // Soft enough for the slider to come to rest, and well so.
         if toggle.tangent(0.0) > -1.5 * toggle.soft {
@@ -298,6 +315,44 @@ fn random_sliders_with_toggles() {
         }
         tried += 1;
         if push == 0.0 { rests_at_the_fold(&toggle) } else { leaves_its_fold(&toggle) }
+    }
+}
+
+/// Where it slides back both ways dissipate as good as nothing, and along neither does anything move as it did: while the slider
+/// stuck nothing moved but by rounding. It is the load that goes on falling as it did, in whatever units, axes and steps.
+#[test]
+fn the_slider_slides_back_as_the_load_goes_on_falling() {
+    let shallow = SliderToggle {
+        height: 5.0,
+        rise: 0.99,
+        stiffness: 4.55,
+        soft: 0.0035,
+        length: 2.777,
+        friction: 0.46,
+        weight: 9.743e-4,
+        ..PLAIN
+    };
+    for slant in [0.0, 0.3, 0.7, 1.1] {
+        for step in [0.01, 0.02, 0.025, 0.04] {
+            for units in [[1.0, 1.0], [1e3, 1e-6], [1e-2, 1e2]] {
+                let toggle = SliderToggle { slant, step, units, ..shallow };
+                let (increments, _) = trace(&toggle.request());
+                let pulled = pulled(&increments);
+                let fold = toggle.place_of(-toggle.soft);
+                let rests =
+                    |one: &&&Increment| one.contacts[0].status == Status::Stick && one.index > pulled[0].index + 20;
+                let at_rest = pulled.iter().find(rests).expect("a slider at rest").index;
+                let slides = |one: &&&Increment| one.index > at_rest && one.contacts[0].status == Status::Slip;
+                let after = pulled.iter().position(|one| slides(&one)).expect("a slider that slides back");
+                let [x, _, load] = toggle.read(pulled[after - 1]);
+                close(x, fold, 1e-6 * toggle.height, "the toggle at rest");
+                close(load, toggle.force(fold) - toggle.drag(), 1e-8, "load at which it slides back");
+                let listed = directions(pulled[after - 1]);
+                let slips: Vec<&Direction> = listed.iter().filter(|one| one.contacts[0] == Status::Slip).collect();
+                assert_eq!(slips.len(), 2, "{toggle:?}: {listed:?}");
+                assert!(slips.iter().all(|one| one.taken == (one.load_rate < 0.0)), "{toggle:?}: {listed:?}");
+            }
+        }
     }
 }
 

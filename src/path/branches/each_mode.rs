@@ -11,8 +11,8 @@
 //! one. A step along the direction would say the same as long as it is short beside the bend: near a fold of what hangs on a
 //! slider the path bends sharply, and no step is.
 //!
-//! At the fold itself the equations of the mode in which the slider sticks have two null vectors, close to it as good as two:
-//! see `fold`.
+//! At the fold itself the equations of the mode in which the slider sticks have two null vectors, close to it as good as two;
+//! where several parts that nothing joins are at their folds they have more: see `fold`.
 //!
 //! Asked for where the path would end: it takes a few factorisations for every combination of modes.
 
@@ -110,7 +110,8 @@ fn modes_of_each(here: Here<'_>) -> Option<Vec<Vec<Mode>>> {
 }
 
 impl Point<'_> {
-    /// The directions of the mode, each in both senses; `None` where nothing moves along one or they are three and more.
+    /// The directions of the mode, each in both senses; `None` where nothing moves along one, and where they are three and
+    /// more that are not those of parts that nothing joins.
     fn ways(&self, unclear: &mut bool) -> Option<Vec<Way>> {
         let nulls = self.orthonormal_nulls()?;
         match &nulls[..] {
@@ -129,11 +130,20 @@ impl Point<'_> {
                     Vec::new()
                 }
                 Plane::Roots(roots) => roots.iter().flat_map(|root| self.both(root, None, true)).collect(),
-                Plane::Fold(fold) if fold.is_straight() => self.both(&fold.flat, None, true).into(),
-                Plane::Fold(fold) => fold.arms().map(|arm| self.along_arm(&fold, arm)).into(),
+                Plane::Fold(fold) => self.leaving(&fold),
             }),
-            _ => None,
+            [] => None,
+            several => self.fold_of_parts(several.len()).map(|fold| self.leaving(&fold)),
         }
+    }
+
+    /// The directions that leave a fold.
+    fn leaving(&self, fold: &Fold) -> Vec<Way> {
+        if fold.is_straight() {
+            return self.both(&fold.flat, self.bend_at_fold(&fold.flat), true).into();
+        }
+        let Some(ahead) = fold.ahead(self) else { return Vec::new() };
+        fold.arms().into_iter().map(|arm| Self::along_arm(&ahead, arm)).collect()
     }
 
     fn both(&self, null: &Null, bend: Option<Rate>, is_singular: bool) -> [Way; 2] {
@@ -146,19 +156,34 @@ impl Point<'_> {
         })
     }
 
-    fn along_arm(&self, fold: &Fold, beside: Rate) -> Way {
-        Way { null: fold.ahead(self), bend: None, is_singular: true, beside: Some(beside) }
+    fn along_arm(ahead: &Null, beside: Rate) -> Way {
+        Way { null: ahead.clone(), bend: None, is_singular: true, beside: Some(beside) }
     }
 
     /// Of directions that bend at once, those that hold there, as they go on after it.
     fn past_bend(&self, fold: &Fold, ways: [Way; 2]) -> Vec<Way> {
+        if fold.is_straight() {
+            return self.leaving(fold);
+        }
         let holding = ways.into_iter().filter(|way| !matches!(self.verdict(way), Verdict::Fails));
-        holding.map(|way| self.along_arm(fold, fold.beside(&way.null.rate))).collect()
+        let past = |way: Way| Some(Self::along_arm(&fold.ahead(self)?, fold.beside(&way.null.rate)?));
+        holding.filter_map(past).collect()
     }
 
     /// `q₂`
     fn bend(&self, null: &Null) -> Option<Rate> {
-        let system = &self.system;
+        self.bend_by(&self.system, null)
+    }
+
+    /// The same of the line along a fold, where what is at its fold stays there and the rest of the structure bends the path.
+    fn bend_at_fold(&self, flat: &Null) -> Option<Rate> {
+        let Here { loading, state, .. } = self.here;
+        let mut system = ModeSystem::new(loading, self.modes, state);
+        let bend = if system.hold_still(state, &flat.rate) { self.bend_by(&system, flat) } else { None };
+        bend.filter(|bend| bend.size() > NO_CHANGE)
+    }
+
+    fn bend_by(&self, system: &ModeSystem<'_>, null: &Null) -> Option<Rate> {
         let factorisation = system.bordered(&system.iterate(self.here.state.clone()), &null.rate)?;
         let curved = self.second_derivative(&null.rate).times(&null.values);
         let mut values = -curved.insert_row(system.size() - 1, 0.0);

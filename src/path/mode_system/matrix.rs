@@ -45,6 +45,7 @@ impl ModeSystem<'_> {
             Stretch::Apart => structure.each_stiffness_across(&state.displacement, &mut add),
         }
         self.add_loads_and_contacts(iterate, kind, &mut matrix);
+        self.add_still(&mut matrix);
         matrix
     }
 
@@ -65,10 +66,10 @@ impl ModeSystem<'_> {
         }
     }
 
-    /// All rows but the last, sparse; `None` for a structure whose matrices are dense.
+    /// All rows but the last, sparse; `None` for a structure whose matrices are dense, and where motions are held.
     pub(in crate::path) fn assemble_sparse(&self, iterate: &Iterate, kind: Kind) -> Option<Bordered> {
         let structure = self.loading.structure;
-        let layout = structure.layout()?;
+        let layout = structure.layout().filter(|_| !self.holds_still())?;
         let unknowns = structure.unknowns();
         let mut matrix = Bordered::new(layout.pattern.clone(), self.size - unknowns);
         let mut places = layout.places();

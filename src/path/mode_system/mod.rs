@@ -17,6 +17,7 @@ mod factorise;
 mod matrix;
 mod rates;
 mod residual;
+mod still;
 mod turns;
 
 use super::corner::{self, total_force};
@@ -110,6 +111,8 @@ pub struct ModeSystem<'a> {
     pub(super) size: usize,
     /// What is asked for is a step that can as well be shorter.
     pub(super) may_be_shorter: bool,
+    /// Motions that are held: see `still`.
+    still: Vec<still::Still>,
     /// Made when first needed.
     holdings: OnceCell<Holdings>,
     /// See [`Self::held_directions`]; made when first needed.
@@ -168,6 +171,7 @@ impl<'a> ModeSystem<'a> {
             first_of,
             size: next,
             may_be_shorter: false,
+            still: Vec::new(),
             holdings: OnceCell::new(),
             held: OnceCell::new(),
         }
