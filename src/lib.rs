@@ -5,15 +5,27 @@
 //! mathematical programming with complementarity constraints*, J. Optim. Theory Appl. 131 (2006),
 //! doi:10.1007/s10957-006-9137-4.
 //!
-//! The data flow one way, and so do the dependencies:
+//! The data flow one way, and so do the dependencies; each room imports only rooms above it:
 //!
-//! ```text
-//! model (JSON, checked) -> structure -> contact -> mpec -> path -> judged -> jobs -> store -> http
-//! ```
+//! | room | what it holds |
+//! |---|---|
+//! | [`resources`] | memory and work within a budget, cancelling |
+//! | [`algebra`] | dense and sparse matrices, their factorisations, roots |
+//! | [`complementarity`] | mathematical programs with complementarity constraints, rate problems |
+//! | [`mechanics`] | structure, contact, loads, the equations of one contact mode |
+//! | [`result`] | what a path gives, as plain data |
+//! | [`step`] | one step along a contact mode: corrector, events, the program of an increment |
+//! | [`branching`] | the directions at a point, bifurcations, the choice among directions |
+//! | [`model`] | the JSON contract, checked |
+//! | [`continuation`] | path following: from a request to a sequence of increments |
+//! | [`check`] | the measure of error, paths that are judged by it, built-in scenes |
+//! | [`output`] | tables and pictures |
+//! | [`studies`] | error against run time, limit loads against what is varied |
+//! | `service` | queue, storage, HTTP |
+//! | `command` | the command line |
 //!
-//! `metrics` counts and times what `jobs` and `http` do, and knows neither. `linear_algebra` stands below all of them, [`measure`] beside the solver that it judges ([`judged`] brings both
-//! together), [`scenes`] holds the built-in models with their exact solutions, [`studies`] sets the errors of paths against
-//! their times, [`sweeps`] limit loads against what is varied. Everything up to [`judged`], and these, builds without the `server` feature and knows neither HTTP nor SQL.
+//! Everything up to [`check`], and the tables, builds without the `server` feature and knows neither HTTP nor SQL. The test
+//! `structure` reads the imports and holds these rooms to it.
 //!
 //! ## Notation
 //!
@@ -29,32 +41,19 @@
 //! | `ε` | `relaxation` | bound on the products of complementary quantities |
 //! | `·̇` | `rate` | derivative by arc length |
 
-pub mod budget;
-pub mod cancel;
-pub mod contact;
-pub mod judged;
-pub mod linear_algebra;
-pub mod measure;
-pub mod model;
-pub mod mpec;
-pub mod output;
-pub mod panics;
-pub mod path;
-pub mod scenes;
-pub mod structure;
-pub mod studies;
-pub mod sweeps;
-pub mod verify;
-
+pub mod algebra;
+pub mod branching;
+pub mod check;
 #[cfg(feature = "server")]
 pub mod command;
+pub mod complementarity;
+pub mod continuation;
+pub mod mechanics;
+pub mod model;
+pub mod output;
+pub mod resources;
+pub mod result;
 #[cfg(feature = "server")]
-pub mod http;
-#[cfg(feature = "server")]
-pub mod jobs;
-#[cfg(feature = "server")]
-pub mod metrics;
-#[cfg(feature = "server")]
-pub mod picture;
-#[cfg(feature = "server")]
-pub mod store;
+pub mod service;
+pub mod step;
+pub mod studies;

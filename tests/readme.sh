@@ -61,7 +61,7 @@ test -s one-bar-truss-study.svg && test -s capstan-study.svg && test -s study.cs
 while read -r command; do
   bash -c "$command" > "$work/out" 2> "$work/err" || { cat "$work/out" "$work/err"; echo "failed: $command"; exit 1; }
 done < <(tail -n +2 "$(block 'sweep arch-type-truss')")
-cmp arch-type-truss-sweep.svg src/scenes/pictures/arch-type-truss-sweep.svg
+cmp arch-type-truss-sweep.svg src/check/scenes/pictures/arch-type-truss-sweep.svg
 test "$(wc -l < sweep.csv)" = 7
 
 # The model in the README is one.
@@ -73,7 +73,7 @@ target=${CARGO_TARGET_DIR:-target}
 # The pictures are what the program draws.
 for scene in one-bar-truss three-snapping-bars; do
   "$target/release/arcslip" solve "$scene" --out /dev/null --plot "$work/$scene.svg" 2> /dev/null || test $? = 1
-  cmp "$work/$scene.svg" "src/scenes/pictures/$scene.svg"
+  cmp "$work/$scene.svg" "src/check/scenes/pictures/$scene.svg"
 done
 # A server and two workers on PostgreSQL: one of a folder of its own takes the place of the one that the commands mean.
 binaries=$(ls -d /usr/lib/postgresql/*/bin 2> /dev/null | sort -V | tail -1)

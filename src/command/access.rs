@@ -1,11 +1,11 @@
 //! Who may call a service, as arguments of `serve`.
 
-use super::Failure;
-use crate::http::access::origins::Origins;
-use crate::http::access::rates::Rates;
-use crate::http::access::tokens::Tokens;
-use crate::http::access::{Access, Door};
-use crate::http::listen::Connections;
+use crate::command::outcome::Failure;
+use crate::service::http::access::origins::Origins;
+use crate::service::http::access::rates::Rates;
+use crate::service::http::access::tokens::Tokens;
+use crate::service::http::access::{Access, Door};
+use crate::service::http::listen::Connections;
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use std::net::SocketAddr;
 use std::num::NonZeroU32;

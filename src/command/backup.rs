@@ -1,7 +1,7 @@
 //! `arcslip backup`: a copy of the database, while the service runs or not.
 
-use super::{Failure, Outcome, say};
-use crate::store::{self, Location};
+use crate::command::outcome::{Failure, Outcome, say};
+use crate::service::store::{self, Location};
 use std::path::PathBuf;
 use std::process::ExitCode;
 

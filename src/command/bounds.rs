@@ -1,9 +1,9 @@
 //! What one solve may take, as arguments of all commands that solve or check.
 
-use super::limits::bytes;
-use super::{Failure, Outcome};
-use crate::budget::{Bounds, Budget};
-use crate::cancel::CancelFlag;
+use crate::command::outcome::{Failure, Outcome};
+use crate::command::size::bytes;
+use crate::resources::budget::{Bounds, Budget};
+use crate::resources::cancel::CancelFlag;
 
 #[derive(Debug, Clone, Copy, clap::Args)]
 #[command(next_help_heading = "Limits")]

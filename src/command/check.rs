@@ -1,7 +1,8 @@
 //! `arcslip check`: is this model all right, and what would be done?
 
-use super::{Failure, Outcome, bounds, input, say};
-use crate::path::Scene;
+use crate::command::outcome::{Failure, Outcome, say};
+use crate::command::{bounds, input};
+use crate::continuation::scene::Scene;
 use std::process::ExitCode;
 
 /// Check a model and print its plan.

@@ -1,8 +1,8 @@
 //! What `study` and `sweep` have found, written down as asked, and how far they have come.
 
-use super::Failure;
-use super::written::{one_on_standard_output, write};
-use crate::picture::findings::Findings;
+use crate::command::outcome::Failure;
+use crate::command::written::{one_on_standard_output, write};
+use crate::output::picture::findings::Findings;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};

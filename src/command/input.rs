@@ -1,8 +1,8 @@
 //! Where a command's model comes from.
 
-use super::Failure;
+use crate::check::scenes;
+use crate::command::outcome::Failure;
 use crate::model::{InputErrors, JobRequest, decode};
-use crate::scenes;
 use std::io::{ErrorKind, Read};
 
 /// A model on the command line.

@@ -1,9 +1,10 @@
 //! What a service takes and keeps, as arguments of `serve` and `work`.
 
-use super::{bounds, duration};
-use crate::jobs::Limits;
-use crate::model::limits::{MAX_CONTACTS, MAX_ELEMENTS, MAX_INCREMENTS, MAX_NODES, MAX_TEXT_BYTES};
-use crate::store::Keep;
+use crate::command::size::bytes;
+use crate::command::{bounds, duration};
+use crate::model::input::limits::{MAX_CONTACTS, MAX_ELEMENTS, MAX_INCREMENTS, MAX_NODES, MAX_TEXT_BYTES};
+use crate::service::jobs::Limits;
+use crate::service::store::Keep;
 use std::time::Duration;
 
 #[derive(Debug, Clone, Copy, clap::Args)]
@@ -90,21 +91,6 @@ fn body(text: &str) -> Result<usize, String> {
         .ok_or_else(|| "at most 16MiB would do".to_owned())
 }
 
-/// `1048576`, `1024KiB`, `1MiB`, `1GiB`.
-pub(super) fn bytes(text: &str) -> Result<u64, String> {
-    let digits = text.trim_end_matches(|letter: char| !letter.is_ascii_digit());
-    let unit = match text[digits.len()..].trim() {
-        "" | "B" => 1,
-        "KiB" => 1_u64 << 10,
-        "MiB" => 1 << 20,
-        "GiB" => 1 << 30,
-        "TiB" => 1 << 40,
-        other => return Err(format!("{other:?} is no unit; B, KiB, MiB, GiB and TiB are")),
-    };
-    let found = digits.parse::<u64>().ok().and_then(|number| number.checked_mul(unit)).filter(|found| *found > 0);
-    found.ok_or_else(|| format!("{text:?} is no size; one is written like 1048576, 512MiB or 8GiB"))
-}
-
 fn keep(text: &str) -> Result<Keep, String> {
     match text.parse() {
         Ok(count) => Ok(Keep::Newest(count)),
@@ -117,13 +103,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sizes_and_what_is_kept_are_read() {
-        for (text, size) in [("1", 1), ("10B", 10), ("2KiB", 2048), ("512 MiB", 512 << 20), ("8GiB", 8 << 30)] {
-            assert_eq!(bytes(text), Ok(size), "{text}");
-        }
-        for refused in ["", "0", "-1", "1MB", "GiB", "1.5GiB", "99999999999TiB"] {
-            assert!(bytes(refused).is_err(), "{refused}");
-        }
+    fn bodies_and_what_is_kept_are_read() {
         assert!(body("16MiB").is_ok() && body("17MiB").is_err());
         assert_eq!(keep("0"), Ok(Keep::Newest(0)));
         assert_eq!(keep("1d"), Ok(Keep::For(Duration::from_secs(86_400))));

@@ -12,24 +12,24 @@ mod health;
 mod input;
 mod limits;
 mod openapi;
+pub(crate) mod outcome;
 mod scenes;
 mod serve;
 mod service;
 mod settings;
+mod size;
 mod solve;
 mod study;
 mod sweep;
 mod token;
 mod verify;
+pub(crate) mod verify_picture;
 mod work;
 mod written;
 
+use crate::command::outcome::{BAD_INPUT, FAILED, Failure, Outcome};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
-use std::io::Write;
 use std::process::ExitCode;
-
-const FAILED: u8 = 1;
-const BAD_INPUT: u8 = 2;
 
 /// Equilibrium paths of structures with unilateral contact and Coulomb friction.
 #[derive(Debug, Parser)]
@@ -54,28 +54,6 @@ enum Command {
     Backup(backup::Arguments),
     #[command(hide = true)]
     Openapi(openapi::Arguments),
-}
-
-/// How a command ended, when not well.
-#[derive(Debug)]
-pub enum Failure {
-    /// The input is at fault: one line each.
-    Input(Vec<String>),
-    /// Something else is.
-    Other(String),
-}
-
-impl Failure {
-    fn other(error: impl std::fmt::Display) -> Self {
-        Self::Other(error.to_string())
-    }
-}
-
-type Outcome = Result<ExitCode, Failure>;
-
-/// Writes to standard output, whose reader may have gone.
-fn say(text: impl std::fmt::Display) -> Result<(), Failure> {
-    write!(std::io::stdout(), "{text}").map_err(|error| Failure::Other(format!("standard output: {error}")))
 }
 
 fn run_command() -> Outcome {

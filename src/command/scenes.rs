@@ -1,8 +1,8 @@
 //! `arcslip scenes`: what is built in.
 
-use super::{Failure, Outcome, say};
-use crate::model::names::suggestion_of_all;
-use crate::scenes;
+use crate::check::scenes;
+use crate::command::outcome::{Failure, Outcome, say};
+use crate::model::input::names::suggestion_of_all;
 use std::process::ExitCode;
 
 /// List the built-in scenes, or print one, ready to change and solve.

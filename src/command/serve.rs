@@ -1,10 +1,11 @@
 //! `arcslip serve`: the HTTP service and its workers.
 
-use super::settings::Setting;
-use super::{Failure, Outcome, access, say, service};
-use crate::http::access::Access;
-use crate::http::server::{Front, Server};
-use crate::jobs::{PathSolver, Settings, demonstration};
+use crate::command::outcome::{Failure, Outcome, say};
+use crate::command::settings::Setting;
+use crate::command::{access, service};
+use crate::service::http::access::Access;
+use crate::service::http::server::{Front, Server};
+use crate::service::jobs::{PathSolver, Settings, demonstration};
 use std::net::SocketAddr;
 use std::process::ExitCode;
 use std::sync::Arc;

@@ -1,9 +1,11 @@
 //! What `serve` and `work` share: where the jobs are, how workers behave, the log, and the signals that end a service.
 
-use super::settings::Setting;
-use super::{Failure, duration, limits};
-use crate::jobs::Settings;
-use crate::store::{self, Location, Store};
+use crate::command::outcome::Failure;
+use crate::command::settings::Setting;
+use crate::command::{duration, limits};
+use crate::service::jobs::Settings;
+use crate::service::store::contract::interface::Store;
+use crate::service::store::{self, Location};
 use std::io::IsTerminal;
 use std::num::NonZero;
 use std::path::PathBuf;

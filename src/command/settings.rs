@@ -3,9 +3,9 @@
 //! The file is TOML; its keys are the names of the flags. What it holds takes the place of the defaults, so that there is
 //! one reader for every value wherever it comes from. One file serves both commands: each takes what is its own.
 
-use super::Failure;
-use crate::model::names::{quoted, suggestion_of_all};
-use crate::store::Location;
+use crate::command::outcome::Failure;
+use crate::model::input::names::{quoted, suggestion_of_all};
+use crate::service::store::Location;
 use clap::parser::ValueSource;
 use clap::{ArgAction, ArgMatches, Command};
 use std::path::{Path, PathBuf};

@@ -1,14 +1,16 @@
 //! `arcslip solve`: a model's path, one line an increment, as it converges.
 
-use super::written::{is_standard_output, one_on_standard_output, write};
-use super::{Failure, Outcome, bounds, input};
-use crate::cancel::CancelFlag;
-use crate::jobs::{PathSolver, Solver};
-use crate::judged::JudgedIncrement;
+use crate::check::judged::JudgedIncrement;
+use crate::command::outcome::{Failure, Outcome};
+use crate::command::written::{is_standard_output, one_on_standard_output, write};
+use crate::command::{bounds, input};
 use crate::model::{JobRequest, Model};
+use crate::output::picture::path::{Against, svg};
 use crate::output::{Table, json_line};
-use crate::path::{self, Increment};
-use crate::picture::path::{Against, svg};
+use crate::resources::cancel::CancelFlag;
+use crate::result::increment::Increment;
+use crate::result::stop_reason;
+use crate::service::jobs::{PathSolver, Solver};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::fs::File;
 use std::io::{IsTerminal, Write};
@@ -91,8 +93,10 @@ pub fn run(arguments: &Arguments) -> Outcome {
     }
     eprintln!("{} {}", report.report.sentence, serde_json::to_string(&report).map_err(Failure::other)?);
     Ok(match report.report.stop_reason.outcome() {
-        path::Outcome::Completed => ExitCode::SUCCESS,
-        path::Outcome::Stopped | path::Outcome::Cancelled => ExitCode::from(super::FAILED),
+        stop_reason::Outcome::Completed => ExitCode::SUCCESS,
+        stop_reason::Outcome::Stopped | stop_reason::Outcome::Cancelled => {
+            ExitCode::from(crate::command::outcome::FAILED)
+        }
     })
 }
 

@@ -1,11 +1,11 @@
 //! `arcslip study`: a scene over a ladder of settings and over methods, error against run time.
 
-use super::{Failure, Outcome, bounds, findings, input};
-use crate::cancel::CancelFlag;
-use crate::model::StudyRequest;
-use crate::model::decode;
+use crate::command::outcome::{Failure, Outcome};
+use crate::command::{bounds, findings, input};
 use crate::model::request::Method;
-use crate::studies::{self, Run};
+use crate::model::{StudyRequest, decode};
+use crate::resources::cancel::CancelFlag;
+use crate::studies::error_against_time::{self, Run};
 use std::ops::ControlFlow;
 use std::process::ExitCode;
 
@@ -57,14 +57,15 @@ impl From<MethodName> for Method {
 pub fn run(arguments: &Arguments) -> Outcome {
     arguments.written.check()?;
     let request = arguments.request()?;
-    let plan = studies::plan(&request).map_err(input::refused)?;
+    let plan = error_against_time::plan(&request).map_err(input::refused)?;
     let progress = findings::progress_bar(plan.runs);
     progress.tick();
     let accept = &mut |run: &Run| {
         progress.set_position(run.index + 1);
         ControlFlow::Continue(())
     };
-    let report = studies::run(&request, Vec::new(), &CancelFlag::default(), accept).map_err(input::refused)?;
+    let report =
+        error_against_time::run(&request, Vec::new(), &CancelFlag::default(), accept).map_err(input::refused)?;
     progress.finish_and_clear();
     let Some(report) = report else {
         return Err(Failure::Other("the reference's path ended without a report".to_owned()));

@@ -1,10 +1,11 @@
 //! `arcslip sweep`: one model with other values in its places, on all cores.
 
-use super::{Failure, Outcome, bounds, findings, input};
-use crate::judged::JudgedIncrement;
+use crate::check::judged::JudgedIncrement;
+use crate::command::outcome::{Failure, Outcome};
+use crate::command::{bounds, findings, input};
 use crate::model::{Sweep, decode};
 use crate::output::json_line;
-use crate::sweeps::{self, Found, Row};
+use crate::studies::sweeps::{self, Found, Row};
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -82,7 +83,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let any_failed = rows.iter().any(|row| row.error.is_some());
     let found = Found { name: sweep.name, variation: sweep.variation, rows };
     arguments.written.write(&found)?;
-    Ok(if any_failed { ExitCode::from(super::FAILED) } else { ExitCode::SUCCESS })
+    Ok(if any_failed { ExitCode::from(crate::command::outcome::FAILED) } else { ExitCode::SUCCESS })
 }
 
 impl Arguments {

@@ -1,7 +1,7 @@
 //! `arcslip token`: a new token and the line that makes a service take it.
 
-use super::{Failure, Outcome, say};
-use crate::http::access::tokens::{self, Scopes};
+use crate::command::outcome::{Failure, Outcome, say};
+use crate::service::http::access::tokens::{self, Scopes};
 use std::io::Write;
 use std::process::ExitCode;
 

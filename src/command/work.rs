@@ -1,9 +1,10 @@
 //! `arcslip work`: workers alone, for a database that others serve.
 
-use super::settings::Setting;
-use super::{Outcome, say, service};
-use crate::jobs::crew::wound_up;
-use crate::jobs::{Crew, Jobs, PathSolver};
+use crate::command::outcome::{Outcome, say};
+use crate::command::service;
+use crate::command::settings::Setting;
+use crate::service::jobs::crew::wound_up;
+use crate::service::jobs::{Crew, Jobs, PathSolver};
 use std::process::ExitCode;
 use std::sync::Arc;
 use tokio_util::sync::CancellationToken;

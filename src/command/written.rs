@@ -1,6 +1,6 @@
 //! Where a command's results go.
 
-use super::{Failure, say};
+use crate::command::outcome::{Failure, say};
 use std::path::Path;
 
 /// `-` is standard output.

@@ -1,29 +1,24 @@
 //! What a user posts, decoded from JSON and checked.
 //!
 //! [`request`], [`study`] and [`sweep`] hold the types of the contract, [`mod@decode`] reads them from JSON text and says where each mistake is,
-//! [`mod@check`] looks at what can only be judged on the whole (unknown names, zero lengths, penetration). Nothing here
+//! [`runs`] makes the runs of a sweep, [`mod@check`] looks at what can only be judged on the whole (unknown names, zero lengths, penetration). Nothing here
 //! knows how a path is traced. [`read`] does both.
 
 pub mod check;
 pub mod decode;
-pub mod error;
-pub mod json;
-pub mod limits;
-mod mistakes;
-pub(crate) mod names;
+pub mod input;
 pub mod request;
 pub mod run_mistakes;
-pub mod study;
-pub mod sweep;
+pub mod runs;
 mod template;
-pub mod variation_summary;
 
-pub use error::{InputError, InputErrors};
+pub use input::error::{InputError, InputErrors};
+pub use request::study::StudyRequest;
+pub use request::sweep::SweepRequest;
+pub use request::variation_summary::VariationSummary;
 pub use request::{Analysis, FollowRequest, JobRequest, Model};
 pub use run_mistakes::RunMistakes;
-pub use study::StudyRequest;
-pub use sweep::{Sweep, SweepRequest};
-pub use variation_summary::VariationSummary;
+pub use runs::Sweep;
 
 /// Reads a job request from JSON text and checks it: what every edge (HTTP, command line) does with what comes in.
 ///

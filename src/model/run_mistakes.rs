@@ -1,7 +1,7 @@
 //! What is wrong with the runs of a sweep: what several share is told once. Used wherever a sweep is taken.
 
-use super::limits::MAX_LISTED_MISTAKES;
-use super::{InputError, InputErrors, Sweep};
+use crate::model::input::limits::MAX_LISTED_MISTAKES;
+use crate::model::{InputError, InputErrors, Sweep};
 
 /// Mistakes in runs that were checked, as mistakes in the sweep.
 #[derive(Debug, Default)]
@@ -62,7 +62,7 @@ impl RunMistakes {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenes;
+    use crate::check::scenes;
     use serde_json::{Value, json};
 
     #[test]

@@ -1,8 +1,8 @@
 //! Requests that differ in a few places, of which the rest is read and written once.
 
-use super::decode;
-use super::error::InputErrors;
-use super::request::{JobRequest, Model};
+use crate::model::decode;
+use crate::model::input::error::InputErrors;
+use crate::model::request::{JobRequest, Model};
 use serde_json::{Map, Value};
 
 /// A document by the members of its model and the others of its root.
@@ -187,7 +187,7 @@ fn put(document: &mut Value, pointer: &str, value: Value) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenes;
+    use crate::check::scenes;
     use serde_json::json;
 
     /// The document as it is with each value put in it by itself.

@@ -1,6 +1,6 @@
 //! An increment as one line of JSON.
 
-use crate::judged::JudgedIncrement;
+use crate::check::judged::JudgedIncrement;
 
 /// Without the line's end. Numbers read back to the same bits.
 pub fn json_line(increment: &JudgedIncrement) -> serde_json::Result<String> {

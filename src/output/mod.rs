@@ -7,6 +7,8 @@
 pub mod columns;
 pub mod csv;
 pub mod line;
+#[cfg(feature = "server")]
+pub mod picture;
 pub mod table;
 
 pub use line::json_line;

@@ -4,12 +4,11 @@
 //! for every contact that may have a row, so `tip.x`, `tip.y`, `tip/floor.status`, `tip/floor.gap`. Rows find their values
 //! by name; what they lack is an empty cell.
 
-use super::csv::CsvRow;
-use crate::measure::Errors;
+use crate::check::measure::Errors;
 use crate::model::JobRequest;
 use crate::model::request::{Contact, Record};
-use crate::path::Increment;
-use crate::path::increment::{Diagnostics, PointKind, Status};
+use crate::output::csv::CsvRow;
+use crate::result::increment::{Diagnostics, Increment, PointKind, Status};
 use std::collections::HashSet;
 
 const AXES: [&str; 3] = ["x", "y", "z"];

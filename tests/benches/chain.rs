@@ -7,12 +7,13 @@
 mod processor_time;
 mod resident;
 
-use arcslip::cancel::CancelFlag;
+use arcslip::check::scenes::of_any_size::slider_chain;
+use arcslip::continuation::path::iterator::Path;
+use arcslip::continuation::scene::Scene;
 use arcslip::model::JobRequest;
 use arcslip::model::request::{Record, RecordedContacts};
-use arcslip::path::increment::PointKind;
-use arcslip::path::{Increment, Path, Scene};
-use arcslip::scenes::of_any_size::slider_chain;
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::increment::{Increment, PointKind};
 use processor_time::Stopwatch;
 
 /// As in the program.

@@ -3,11 +3,13 @@
 //!
 //! `cargo bench --bench increments`
 
-use arcslip::cancel::CancelFlag;
-use arcslip::measure::Judge;
+use arcslip::check::measure::Judge;
+use arcslip::continuation::path::iterator::Path;
+use arcslip::continuation::scene::Scene;
 use arcslip::model::JobRequest;
 use arcslip::model::request::{Certificate, Method, Mpec};
-use arcslip::path::{Increment, Path, Scene};
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::increment::Increment;
 use std::time::Instant;
 
 /// Whole paths traced; the median is printed.
@@ -25,7 +27,7 @@ fn main() {
         "scene", "method", "increments", "median us", "least us", "largest us", "LU/inc", "QP/inc", "judge us", "share"
     );
     for name in ["one-bar-truss", "one-bar-truss-rough", "klarbring", "arch-type-truss", "three-snapping-bars"] {
-        let Some(built_in) = arcslip::scenes::find(name) else { continue };
+        let Some(built_in) = arcslip::check::scenes::find(name) else { continue };
         let mut medians = Vec::new();
         for (way, method, certificate) in WAYS {
             let mut request = match arcslip::model::decode::decode(built_in.request.as_bytes()) {

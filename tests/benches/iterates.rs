@@ -2,9 +2,11 @@
 //!
 //! `cargo bench --bench iterates -- SCENE INCREMENT [INCREMENT ...]`
 
-use arcslip::cancel::CancelFlag;
+use arcslip::continuation::path::iterator::Path;
+use arcslip::continuation::scene::Scene;
 use arcslip::model::request::{Certificate, Method, Mpec};
-use arcslip::path::{Path, ProgramIterate, Scene};
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::program_iterate::ProgramIterate;
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
@@ -13,7 +15,7 @@ fn main() {
     if asked.is_empty() {
         asked.push(2);
     }
-    let built_in = arcslip::scenes::find(scene).unwrap_or_else(|| panic!("there is no scene {scene}"));
+    let built_in = arcslip::check::scenes::find(scene).unwrap_or_else(|| panic!("there is no scene {scene}"));
     let mut request =
         arcslip::model::decode::decode(built_in.request.as_bytes()).unwrap_or_else(|errors| panic!("{errors}"));
     request.analysis.method = Method::Mpec;

@@ -5,10 +5,11 @@
 //!
 //! `cargo bench --bench lattice` (about 1,000 and 10,000 unknowns), `cargo bench --bench lattice -- 100000 increments=100`
 
-use arcslip::cancel::CancelFlag;
-use arcslip::path::increment::PointKind;
-use arcslip::path::{Path, Scene};
-use arcslip::scenes::lattice::LatticeArch;
+use arcslip::check::scenes::lattice::LatticeArch;
+use arcslip::continuation::path::iterator::Path;
+use arcslip::continuation::scene::Scene;
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::increment::PointKind;
 use std::time::{Duration, Instant};
 
 /// As in the program.

@@ -143,7 +143,7 @@ async fn run(jobs: usize, clients: usize, streams: usize) {
 
 /// A job whose solver takes about as long for an increment as the service does: its streams have something to wait for.
 fn long() -> Value {
-    let mut request = arcslip::scenes::of_any_size::row_of_bars(6);
+    let mut request = arcslip::check::scenes::of_any_size::row_of_bars(6);
     request["analysis"] = json!({
         "max_increments": 2000, "arc_length": {"initial": 1e-3, "min": 1e-6, "max": 1e-3},
         "record": {"nodes": ["tip0"], "contacts": [], "directions": false}

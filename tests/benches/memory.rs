@@ -11,9 +11,9 @@ mod paths;
 mod resident;
 
 use allocation_counter::measure;
-use arcslip::cancel::CancelFlag;
-use arcslip::judged::JudgedPath;
-use arcslip::path::Scene;
+use arcslip::check::judged::JudgedPath;
+use arcslip::continuation::scene::Scene;
+use arcslip::resources::cancel::CancelFlag;
 use long_paths::one_bar_in_short_steps;
 use std::io::Write;
 use std::time::Instant;

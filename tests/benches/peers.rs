@@ -7,12 +7,13 @@
 //! Each row is the median of whole paths taken in turn, first one program, then the other, so that what else the machine
 //! does meets both; their ratio is of each pair. Reading the model, building the program and importing are not timed.
 
-use arcslip::cancel::CancelFlag;
+use arcslip::check::scenes::of_any_size::row_of_bars;
+use arcslip::continuation::path::iterator::Path;
+use arcslip::continuation::scene::Scene;
 use arcslip::model::JobRequest;
 use arcslip::model::request::{Certificate, Method, Mpec};
-use arcslip::path::increment::PointKind;
-use arcslip::path::{Path, Scene};
-use arcslip::scenes::of_any_size::row_of_bars;
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::increment::PointKind;
 use serde::Deserialize;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};

@@ -2,10 +2,14 @@
 //!
 //! `cargo bench --bench rivals`
 
-use arcslip::cancel::CancelFlag;
+use arcslip::continuation::scene::Scene;
+use arcslip::continuation::traced::TracedPath;
 use arcslip::model::JobRequest;
 use arcslip::model::request::{Method, Regularised};
-use arcslip::path::{Increment, Report, Scene, StopReason, TracedPath};
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::increment::Increment;
+use arcslip::result::report::Report;
+use arcslip::result::stop_reason::StopReason;
 use std::time::Instant;
 
 /// Whole paths traced by each; the median is printed.
@@ -34,7 +38,7 @@ fn main() {
     println!("| scene | method | increments | LU | time | load error | turns | their error | last point |");
     println!("|---|---|--:|--:|--:|--:|--:|--:|---|");
     for (name, friction) in SCENES {
-        let Some(built_in) = arcslip::scenes::find(name) else { continue };
+        let Some(built_in) = arcslip::check::scenes::find(name) else { continue };
         let request = match arcslip::model::decode::decode(built_in.request.as_bytes()) {
             Ok(request) => request,
             Err(errors) => panic!("{errors}"),

@@ -5,12 +5,12 @@
 //! `cargo bench --bench savings`
 
 use allocation_counter::measure;
-use arcslip::cancel::CancelFlag;
-use arcslip::judged::JudgedPath;
+use arcslip::check::judged::JudgedPath;
+use arcslip::continuation::scene::Scene;
 use arcslip::model::JobRequest;
-use arcslip::model::limits::MAX_OBSTACLES;
+use arcslip::model::input::limits::MAX_OBSTACLES;
 use arcslip::model::request::{Contact, Obstacle, Record, RecordedContacts, Side};
-use arcslip::path::Scene;
+use arcslip::resources::cancel::CancelFlag;
 use serde_json::json;
 use std::time::Instant;
 
@@ -55,7 +55,7 @@ fn main() {
 }
 
 fn scene(name: &str) -> JobRequest {
-    let built_in = arcslip::scenes::find(name).unwrap_or_else(|| panic!("there is no scene {name}"));
+    let built_in = arcslip::check::scenes::find(name).unwrap_or_else(|| panic!("there is no scene {name}"));
     arcslip::model::decode::decode(built_in.request.as_bytes()).unwrap_or_else(|errors| panic!("{errors}"))
 }
 

@@ -3,11 +3,12 @@
 //! `cargo bench --no-default-features --bench trace -- row 100`; the README's table of where the time goes has the commands
 //! for callgrind. `-- row 1 2000` takes the path 2000 times and says the median and the least time.
 
-use arcslip::cancel::CancelFlag;
+use arcslip::check::scenes::lattice::LatticeArch;
+use arcslip::check::scenes::of_any_size::row_of_bars;
+use arcslip::continuation::path::iterator::Path;
+use arcslip::continuation::scene::Scene;
 use arcslip::model::JobRequest;
-use arcslip::path::{Path, Scene};
-use arcslip::scenes::lattice::LatticeArch;
-use arcslip::scenes::of_any_size::row_of_bars;
+use arcslip::resources::cancel::CancelFlag;
 use std::time::Instant;
 
 /// As in the program.

@@ -19,7 +19,7 @@ mod reader;
 #[path = "../common/service.rs"]
 mod service;
 
-use arcslip::store::{self, Batch, Ending, Line, Location, NewJob, Status, Task};
+use arcslip::service::store::{self, Batch, Ending, Line, Location, NewJob, Status, Task};
 use load::{are_whole, listed, queue, worked_off};
 use postgres::Postgres;
 use process::{Process, client, has_ended, solved, submit, until};

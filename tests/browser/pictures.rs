@@ -8,7 +8,7 @@ use crate::common::service::scene;
 use serde_json::json;
 use std::path::Path;
 
-const FOLDER: &str = "src/http/dashboard/pictures";
+const FOLDER: &str = "src/service/http/dashboard/pictures";
 /// Bytes that a picture may have.
 const LARGEST: usize = 160_000;
 

@@ -8,7 +8,7 @@ use crate::common::process::{self, Process, Served};
 use crate::common::server::TestServer;
 use crate::common::service::{occupation, request, scene};
 use crate::common::solver::MadeUp;
-use arcslip::http::access::tokens;
+use arcslip::service::http::access::tokens;
 use serde_json::{Value, json};
 use std::process::Command;
 

@@ -2,7 +2,8 @@
 
 use super::postgres;
 use super::service::request;
-use arcslip::store::{self, Batch, JobRecord, Line, Location, NewJob, Store, Submitted, Task};
+use arcslip::service::store::contract::interface::Store;
+use arcslip::service::store::{self, Batch, JobRecord, Line, Location, NewJob, Submitted, Task};
 use sqlx::ConnectOptions;
 use sqlx::postgres::PgConnectOptions;
 use sqlx::sqlite::SqliteConnectOptions;

@@ -1,8 +1,10 @@
 //! A store whose writes can be made to fail; everything else is the real one.
 
-use arcslip::store::{
+use arcslip::service::store::contract::error::Result;
+use arcslip::service::store::contract::interface::Store;
+use arcslip::service::store::{
     Batch, Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Listed, NewFollower, NewJob,
-    NewSweep, Origin, Page, Result, Retried, Standing, Status, Store, StoreError, Submitted,
+    NewSweep, Origin, Page, Retried, Standing, Status, StoreError, Submitted,
 };
 use async_trait::async_trait;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};

@@ -3,7 +3,9 @@
 use arcslip::model::JobRequest;
 // Each test binary uses its own part of these.
 #[allow(unused_imports)]
-pub use arcslip::scenes::of_any_size::{row_of_bars, slider_chain};
+pub use arcslip::check::scenes::of_any_size::row_of_bars;
+#[allow(unused_imports)]
+pub use arcslip::check::scenes::of_any_size::slider_chain;
 use serde_json::{Map, Value, json};
 
 use super::paths::typed;

@@ -1,14 +1,18 @@
 //! Requests and their traced paths, every increment judged.
 
-use arcslip::cancel::CancelFlag;
-use arcslip::measure::{Errors, Judge};
+use arcslip::check::measure::{Errors, Judge};
+use arcslip::continuation::path::iterator::Path;
+use arcslip::continuation::scene::Scene;
 use arcslip::model::JobRequest;
-use arcslip::path::{Increment, Path, Plan, Report, Scene};
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::increment::Increment;
+use arcslip::result::plan::Plan;
+use arcslip::result::report::Report;
 use serde_json::Value;
 
 /// A built-in scene's request.
 pub fn scene(name: &str) -> JobRequest {
-    request(arcslip::scenes::find(name).expect("built-in scene").request)
+    request(arcslip::check::scenes::find(name).expect("built-in scene").request)
 }
 
 /// A request from JSON text.
@@ -23,7 +27,7 @@ pub fn typed(value: Value) -> JobRequest {
 
 /// The request of a scene's file, by its types alone.
 pub fn scene_file(name: &str) -> JobRequest {
-    let file = format!("{}/src/scenes/{name}.json", env!("CARGO_MANIFEST_DIR"));
+    let file = format!("{}/src/check/scenes/{name}.json", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&file).unwrap_or_else(|error| panic!("{file}: {error}"));
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{file}: {error}"))
 }

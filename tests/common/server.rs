@@ -1,10 +1,11 @@
 //! The real application in this process: a port of its own, a database of the test's.
 
-use arcslip::http::access::Access;
-use arcslip::http::listen::Connections;
-use arcslip::http::server::{Front, Server};
-use arcslip::jobs::{Settings, Solver};
-use arcslip::store::{self, Store};
+use arcslip::service::http::access::Access;
+use arcslip::service::http::listen::Connections;
+use arcslip::service::http::server::{Front, Server};
+use arcslip::service::jobs::{Settings, Solver};
+use arcslip::service::store;
+use arcslip::service::store::contract::interface::Store;
 use reqwest::{Client, Method, RequestBuilder, Response, StatusCode};
 use serde_json::Value;
 use std::net::SocketAddr;

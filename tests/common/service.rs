@@ -21,7 +21,7 @@ pub fn request(name: &str, max_increments: u64) -> Value {
 
 /// A built-in scene, as it is posted.
 pub fn scene(name: &str) -> Value {
-    serde_json::from_str(arcslip::scenes::find(name).expect("a scene").request).expect("JSON")
+    serde_json::from_str(arcslip::check::scenes::find(name).expect("a scene").request).expect("JSON")
 }
 
 /// A scene in steps so short that it has about so many increments for each unit of arc length, and no more than these.

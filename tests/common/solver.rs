@@ -1,13 +1,15 @@
 //! A solver that makes increments up: as many as `max_increments` says, the same in every run but for `elapsed_s`.
 
-use arcslip::cancel::CancelFlag;
-use arcslip::jobs::Solver;
-use arcslip::jobs::solver::{Accept, Beginning, Place, ResumeError};
-use arcslip::judged::{JudgedCheckpoint, JudgedIncrement, JudgedReport, MeasureReport, Step};
-use arcslip::measure::{Errors, Maxima};
+use arcslip::check::judged::{JudgedCheckpoint, JudgedIncrement, JudgedReport, MeasureReport, Step};
+use arcslip::check::measure::{Errors, Maxima};
 use arcslip::model::{InputErrors, JobRequest};
-use arcslip::path::increment::{ContactState, Diagnostics, Energy, Point, PointKind, Status};
-use arcslip::path::{Increment, Plan, Report, StopReason};
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::increment::{ContactState, Diagnostics, Energy, Increment, Point, PointKind, Status};
+use arcslip::result::plan::Plan;
+use arcslip::result::report::Report;
+use arcslip::result::stop_reason::StopReason;
+use arcslip::service::jobs::Solver;
+use arcslip::service::jobs::solver::{Accept, Beginning, Place, ResumeError};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
@@ -85,7 +87,7 @@ impl Solver for MadeUp {
         let mut increments = 0;
         for index in 0..request.analysis.max_increments {
             let locates = request.model.name.as_deref() == Some(LOCATES);
-            let locating = locates.then(arcslip::budget::locating_bifurcation);
+            let locating = locates.then(arcslip::resources::budget::locating_bifurcation);
             self.wait(index, &cancel);
             drop(locating);
             if cancel.is_cancelled() {

@@ -1,11 +1,11 @@
 //! The real solver, watched: what is computed and from where, and held at an increment.
 
-use arcslip::cancel::CancelFlag;
-use arcslip::jobs::solver::{Accept, Beginning, Place, ResumeError};
-use arcslip::jobs::{PathSolver, Solver};
-use arcslip::judged::{JudgedCheckpoint, JudgedReport, Step};
+use arcslip::check::judged::{JudgedCheckpoint, JudgedReport, Step};
 use arcslip::model::{InputErrors, JobRequest};
-use arcslip::path::Plan;
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::plan::Plan;
+use arcslip::service::jobs::solver::{Accept, Beginning, Place, ResumeError};
+use arcslip::service::jobs::{PathSolver, Solver};
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;

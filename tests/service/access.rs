@@ -3,11 +3,11 @@
 use crate::common::server::{EventStream, TestServer, settings};
 use crate::common::service::request;
 use crate::common::solver::MadeUp;
-use arcslip::http::access::origins::Origins;
-use arcslip::http::access::rates::Rates;
-use arcslip::http::access::tokens::{self, Tokens};
-use arcslip::http::access::{Access, Door};
-use arcslip::store;
+use arcslip::service::http::access::origins::Origins;
+use arcslip::service::http::access::rates::Rates;
+use arcslip::service::http::access::tokens::{self, Tokens};
+use arcslip::service::http::access::{Access, Door};
+use arcslip::service::store;
 use reqwest::{Method, Response};
 use serde_json::{Value, json};
 use std::num::NonZeroU32;
@@ -73,7 +73,8 @@ async fn problem(answer: Response, status: u16, kind: &str) -> Value {
 
 /// Every call that the service describes.
 fn calls() -> Vec<(Method, String)> {
-    let document: Value = serde_json::from_str(&arcslip::http::openapi_json().expect("a document")).expect("JSON");
+    let document: Value =
+        serde_json::from_str(&arcslip::service::http::openapi_json().expect("a document")).expect("JSON");
     let paths = document["paths"].as_object().expect("paths");
     let calls = paths.iter().flat_map(|(path, item)| {
         let path = path.replace("{id}", "01890000-0000-7000-8000-000000000000").replace("{name}", "klarbring");

@@ -3,12 +3,12 @@
 use crate::common::server::{TestServer, settings};
 use crate::common::service::{request, scene};
 use crate::common::solver::MadeUp;
-use arcslip::cancel::CancelFlag;
-use arcslip::jobs::solver::{Accept, Beginning, ResumeError};
-use arcslip::jobs::{Limits, Settings, Solver};
-use arcslip::judged::{JudgedCheckpoint, JudgedReport};
+use arcslip::check::judged::{JudgedCheckpoint, JudgedReport};
 use arcslip::model::{InputErrors, JobRequest};
-use arcslip::path::Plan;
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::plan::Plan;
+use arcslip::service::jobs::solver::{Accept, Beginning, ResumeError};
+use arcslip::service::jobs::{Limits, Settings, Solver};
 use serde_json::{Value, json};
 use std::io::Write;
 use std::net::TcpStream;

@@ -2,7 +2,7 @@
 
 use crate::common::server::TestServer;
 use crate::common::service::scene;
-use arcslip::jobs::PathSolver;
+use arcslip::service::jobs::PathSolver;
 use reqwest::{Method, StatusCode};
 use serde_json::Value;
 

@@ -3,7 +3,7 @@
 use crate::common::process::{PATIENCE, Process, client, get, has_ended, lines, solved, submit, until};
 use crate::common::server::TestServer;
 use crate::common::service::{in_short_steps, scene, without_elapsed};
-use arcslip::jobs::PathSolver;
+use arcslip::service::jobs::PathSolver;
 use reqwest::StatusCode;
 use serde_json::{Value, json};
 use std::path::PathBuf;

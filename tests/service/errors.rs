@@ -4,7 +4,7 @@ use crate::common::bad_documents::bad_documents;
 use crate::common::server::TestServer;
 use crate::common::service::request;
 use crate::common::solver::MadeUp;
-use arcslip::jobs::PathSolver;
+use arcslip::service::jobs::PathSolver;
 use reqwest::{Method, RequestBuilder};
 use serde_json::{Value, json};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};

@@ -4,7 +4,7 @@ use crate::common::faulty_store::FaultyStore;
 use crate::common::server::{TestServer, settings, short_leases};
 use crate::common::service::request;
 use crate::common::solver::MadeUp;
-use arcslip::store;
+use arcslip::service::store;
 use serde_json::Value;
 use std::path::Path;
 use std::sync::Arc;

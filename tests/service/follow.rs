@@ -2,8 +2,8 @@
 
 use crate::common::server::{TestServer, settings};
 use crate::common::service::{scene, without_elapsed};
-use arcslip::jobs::{PathSolver, Settings};
-use arcslip::store::{self, LeaseAnswer, Line, Page};
+use arcslip::service::jobs::{PathSolver, Settings};
+use arcslip::service::store::{self, LeaseAnswer, Line, Page};
 use reqwest::{Method, StatusCode};
 use serde_json::{Value, json};
 use std::path::Path;

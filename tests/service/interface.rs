@@ -3,8 +3,8 @@
 use crate::common::server::TestServer;
 use crate::common::service::{indices, request, without_elapsed};
 use crate::common::solver::MadeUp;
-use arcslip::jobs::PathSolver;
-use arcslip::model::limits;
+use arcslip::model::input::limits;
+use arcslip::service::jobs::PathSolver;
 use reqwest::{Method, StatusCode};
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Write};
@@ -35,7 +35,8 @@ async fn the_committed_description_is_the_one_that_is_served() {
 /// The bounds that stand with the fields are those that requests are held to.
 #[test]
 fn the_description_s_bounds_are_the_model_s_limits() {
-    let document: Value = serde_json::from_str(&arcslip::http::openapi_json().expect("a document")).expect("JSON");
+    let document: Value =
+        serde_json::from_str(&arcslip::service::http::openapi_json().expect("a document")).expect("JSON");
     for (schema, field, bound, limit) in [
         ("Analysis", "max_increments", "maximum", limits::MAX_INCREMENTS),
         ("FollowRequest", "max_increments", "maximum", limits::MAX_INCREMENTS),

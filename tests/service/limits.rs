@@ -5,8 +5,8 @@ use crate::common::process::PATIENCE;
 use crate::common::server::{TestServer, settings};
 use crate::common::service::{in_short_steps, indices, request, scene, without_elapsed};
 use crate::common::solver::MadeUp;
-use arcslip::jobs::{Limits, PathSolver, Settings};
-use arcslip::store::{self, Batch, Keep};
+use arcslip::service::jobs::{Limits, PathSolver, Settings};
+use arcslip::service::store::{self, Batch, Keep};
 use reqwest::{Method, Response};
 use serde_json::{Value, json};
 use sqlx::sqlite::{SqliteConnectOptions, SqlitePool};
@@ -293,7 +293,7 @@ async fn what_an_exploration_has_still_to_look_at_is_kept() {
     let id = server.submit(&request).await;
     server.until(&id, |job| job["status"] == "queued").await;
     let claim = store.claim("worker", Duration::from_secs(60)).await.expect("a claim").expect("a job");
-    let ended = arcslip::store::Ending::failed("ended");
+    let ended = arcslip::service::store::Ending::failed("ended");
     store.finish(&claim.lease, &Batch::default(), &ended).await.expect("ended");
     // Whichever comes first, the sweep or this: only a family that has been looked at goes.
     store.explore().await.expect("looked at");

@@ -3,11 +3,11 @@
 use crate::common::server::{TestServer, any_port, settings};
 use crate::common::service::{request, scene};
 use crate::common::solver::MadeUp;
-use arcslip::http::access::Access;
-use arcslip::http::listen::Connections;
-use arcslip::http::server::{Front, Server};
-use arcslip::jobs::{PathSolver, Settings};
-use arcslip::store;
+use arcslip::service::http::access::Access;
+use arcslip::service::http::listen::Connections;
+use arcslip::service::http::server::{Front, Server};
+use arcslip::service::jobs::{PathSolver, Settings};
+use arcslip::service::store;
 use serde_json::{Value, json};
 use std::net::TcpStream;
 use std::sync::Arc;

@@ -5,9 +5,10 @@ use crate::common::engines::{Database, batch, job, line, queued};
 use crate::common::server::{TestServer, settings};
 use crate::common::service::scene;
 use crate::on_both_engines;
-use arcslip::jobs::{PathSolver, Settings};
-use arcslip::store::{
-    Batch, Ending, JobRecord, ListFilter, Listed, NewJob, NewRun, NewSweep, Page, Status, Store, Task,
+use arcslip::service::jobs::{PathSolver, Settings};
+use arcslip::service::store::contract::interface::Store;
+use arcslip::service::store::{
+    Batch, Ending, JobRecord, ListFilter, Listed, NewJob, NewRun, NewSweep, Page, Status, Task,
 };
 use serde_json::{Value, json};
 use std::time::Duration;

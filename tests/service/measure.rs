@@ -1,14 +1,14 @@
 //! What the service stores and serves carries the measure; jobs that follow another go on with that one's history.
 
 use crate::common::server::TestServer;
-use arcslip::jobs::PathSolver;
-use arcslip::judged::JudgedIncrement;
-use arcslip::measure::Errors;
+use arcslip::check::judged::JudgedIncrement;
+use arcslip::check::measure::Errors;
+use arcslip::service::jobs::PathSolver;
 use serde_json::{Value, json};
 use std::path::Path;
 
 fn scene(name: &str) -> Value {
-    serde_json::from_str(arcslip::scenes::find(name).expect("a scene").request).expect("JSON")
+    serde_json::from_str(arcslip::check::scenes::find(name).expect("a scene").request).expect("JSON")
 }
 
 async fn increments(server: &TestServer, id: &str) -> Vec<JudgedIncrement> {

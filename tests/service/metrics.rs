@@ -5,8 +5,8 @@ use crate::common::process::PATIENCE;
 use crate::common::server::{TestServer, settings};
 use crate::common::service::{in_short_steps, request, scene};
 use crate::common::solver::MadeUp;
-use arcslip::jobs::{PathSolver, Settings};
-use arcslip::store;
+use arcslip::service::jobs::{PathSolver, Settings};
+use arcslip::service::store;
 use reqwest::{Method, StatusCode};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -82,7 +82,7 @@ impl Samples {
     }
 }
 
-async fn start(folder: &Path, solver: impl arcslip::jobs::Solver, settings: Settings) -> TestServer {
+async fn start(folder: &Path, solver: impl arcslip::service::jobs::Solver, settings: Settings) -> TestServer {
     TestServer::start_with(&folder.join("jobs.db"), solver, settings).await
 }
 

@@ -96,10 +96,10 @@ fn klarbring_has_two_stages_and_two_corners() {
 
 #[test]
 fn the_committed_pictures_are_what_is_drawn() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/scenes/pictures");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/check/scenes/pictures");
     for scene in ["one-bar-truss", "three-snapping-bars"] {
         let committed = std::fs::read_to_string(folder.join(format!("{scene}.svg"))).expect("a committed picture");
-        let command = format!("solve {scene} --out /dev/null --plot src/scenes/pictures/{scene}.svg");
+        let command = format!("solve {scene} --out /dev/null --plot src/check/scenes/pictures/{scene}.svg");
         assert!(picture(scene, &[]) == committed, "draw it anew: cargo run --release -- {command}");
     }
 }
@@ -127,7 +127,7 @@ fn an_unknown_displacement_is_bad_input_and_the_nearest_is_named() {
 fn names_and_magnitudes_do_not_spoil_the_picture() {
     let folder = tempfile::tempdir().expect("a folder");
     let (model, file) = (folder.path().join("model.json"), folder.path().join("picture.svg"));
-    let scene = arcslip::scenes::find("von-mises-truss").expect("a built-in scene").request;
+    let scene = arcslip::check::scenes::find("von-mises-truss").expect("a built-in scene").request;
     let renamed = scene.replace("apex", r#"a<&>\"'.\ufffe b"#);
     let mut request: serde_json::Value = serde_json::from_str(&renamed).expect("JSON");
     for element in request["model"]["elements"].as_array_mut().expect("elements") {

@@ -4,7 +4,7 @@ use crate::common::engines::{batch, job, line, queued};
 use crate::common::server::{TestServer, short_leases};
 use crate::common::service::{indices, request, without_elapsed};
 use crate::common::solver::MadeUp;
-use arcslip::store::{self, Batch, Ending, LeaseAnswer, Page};
+use arcslip::service::store::{self, Batch, Ending, LeaseAnswer, Page};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 

@@ -3,7 +3,7 @@
 use crate::common::process::{Process, client, has_ended, lines, solved, submit, until};
 use crate::common::reader::{Format, Reader, Said};
 use crate::common::service::{in_short_steps, indices, without_elapsed};
-use arcslip::scenes::lattice::LatticeArch;
+use arcslip::check::scenes::lattice::LatticeArch;
 use std::time::Duration;
 
 /// The indices of a stream up to where it stops.

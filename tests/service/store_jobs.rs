@@ -4,9 +4,10 @@
 use crate::common::engines::{Database, batch, found, job, line, queued};
 use crate::on_both_engines;
 use arcslip::model::request::Explore;
-use arcslip::store::{
+use arcslip::service::store::contract::interface::Store;
+use arcslip::service::store::{
     Batch, Branch, Ending, Keep, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, NewRun, NewSweep, Page, Parent,
-    Status, Store, Submitted, Task,
+    Status, Submitted, Task,
 };
 use std::time::Duration;
 use uuid::Uuid;
@@ -309,12 +310,12 @@ async fn a_deleted_job_takes_all_its_rows_along(database: Database) {
     let mut stored = Batch::from(vec![branching(0, Some("a"), &[1])]);
     let body = "at 0".to_owned();
     let trail = Some("a".to_owned());
-    stored.checkpoints = vec![arcslip::store::Checkpoint { index: 0, body, trail, begins_trail: true }];
+    stored.checkpoints = vec![arcslip::service::store::Checkpoint { index: 0, body, trail, begins_trail: true }];
     store.append(&claim.lease, &stored, MINUTE).await.expect("stored");
     assert!(store.delete(id).await.expect("an answer"));
     assert!(!store.delete(id).await.expect("an answer"), "once");
     let late = store.append(&claim.lease, &batch(&[line(1, "{}")]), MINUTE).await.expect("an answer");
-    assert_eq!(late, arcslip::store::LeaseAnswer::Lost);
+    assert_eq!(late, arcslip::service::store::LeaseAnswer::Lost);
     assert!(store.job(id).await.expect("an answer").is_none());
     assert!(store.increments(id, None, ALL).await.expect("an answer").is_empty());
     assert!(store.branch(id, 5).await.expect("an answer").is_none());

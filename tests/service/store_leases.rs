@@ -2,7 +2,8 @@
 
 use crate::common::engines::{Database, batch, found, job, line, queued};
 use crate::on_both_engines;
-use arcslip::store::{Batch, Checkpoint, Ending, LeaseAnswer, Line, Page, Status, Store, StoreError};
+use arcslip::service::store::contract::interface::Store;
+use arcslip::service::store::{Batch, Checkpoint, Ending, LeaseAnswer, Line, Page, Status, StoreError};
 use std::time::Duration;
 
 const ALL: Page = Page { rows: 10_000, bytes: usize::MAX };

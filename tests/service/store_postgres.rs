@@ -4,7 +4,7 @@
 use crate::common::cut::Proxy;
 use crate::common::engines::{Database, batch, job, line, queued};
 use crate::common::postgres::shared;
-use arcslip::store::{self, Location, StoreError};
+use arcslip::service::store::{self, Location, StoreError};
 use sqlx::postgres::{PgConnectOptions, PgConnection};
 use sqlx::{AssertSqlSafe, ConnectOptions, Connection};
 use std::process::Command;

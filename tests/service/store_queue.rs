@@ -3,7 +3,8 @@
 
 use crate::common::engines::{Database, batch, found, job, line, queued};
 use crate::on_both_engines;
-use arcslip::store::{Batch, Ending, LeaseAnswer, Location, Status, Store, Submitted, Task};
+use arcslip::service::store::contract::interface::Store;
+use arcslip::service::store::{Batch, Ending, LeaseAnswer, Location, Status, Submitted, Task};
 use std::collections::BTreeSet;
 use std::time::Duration;
 

@@ -2,7 +2,8 @@
 
 use crate::common::engines::{Database, batch, found, job, line, queued};
 use crate::on_both_engines;
-use arcslip::store::{Batch, Ending, NewJob, NewRun, NewSweep, Retried, Status, Store, Submitted, Task};
+use arcslip::service::store::contract::interface::Store;
+use arcslip::service::store::{Batch, Ending, NewJob, NewRun, NewSweep, Retried, Status, Submitted, Task};
 use std::time::Duration;
 use uuid::Uuid;
 

@@ -3,7 +3,7 @@
 use crate::common::server::{TestServer, settings, short_leases};
 use crate::common::service::{indices, request};
 use crate::common::solver::MadeUp;
-use arcslip::jobs::Settings;
+use arcslip::service::jobs::Settings;
 use reqwest::Method;
 use serde_json::Value;
 use std::time::Duration;

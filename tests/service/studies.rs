@@ -2,10 +2,10 @@
 
 use crate::common::process::PATIENCE;
 use crate::common::server::{EventStream, TestServer, settings};
-use arcslip::cancel::CancelFlag;
-use arcslip::jobs::{PathSolver, Settings};
 use arcslip::model::decode;
-use arcslip::studies;
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::service::jobs::{PathSolver, Settings};
+use arcslip::studies::error_against_time;
 use reqwest::{Method, StatusCode};
 use roxmltree::Document;
 use serde_json::{Value, json};
@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 fn study(scene: &str, varied: Value) -> Value {
     let mut request: Value =
-        serde_json::from_str(arcslip::scenes::find(scene).expect("a scene").request).expect("JSON");
+        serde_json::from_str(arcslip::check::scenes::find(scene).expect("a scene").request).expect("JSON");
     request["study"] = varied;
     request
 }
@@ -65,7 +65,8 @@ fn timeless(rows: &Value) -> Vec<Value> {
 /// The rows of the same study, run here.
 fn rows_of(request: &Value) -> Value {
     let request = decode::study(request.to_string().as_bytes()).expect("a study");
-    let report = studies::run(&request, Vec::new(), &CancelFlag::default(), &mut |_| ControlFlow::Continue(()));
+    let report =
+        error_against_time::run(&request, Vec::new(), &CancelFlag::default(), &mut |_| ControlFlow::Continue(()));
     serde_json::to_value(report.expect("a study").expect("a report").rows).expect("JSON")
 }
 

@@ -111,7 +111,7 @@ fn bad_studies_are_bad_input() {
 /// Times differ from run to run; title, reference, methods, rungs, orders and what is resolved do not.
 #[test]
 fn the_committed_pictures_show_what_is_found() {
-    let pictures = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/scenes/pictures");
+    let pictures = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/check/scenes/pictures");
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("picture.svg");
     for (scene, arc_lengths) in [
@@ -132,7 +132,7 @@ fn the_committed_pictures_show_what_is_found() {
             texts
         };
         let command = format!(
-            "study {scene} --arc-lengths {arc_lengths} --repeats 21 --plot src/scenes/pictures/{scene}-study.svg"
+            "study {scene} --arc-lengths {arc_lengths} --repeats 21 --plot src/check/scenes/pictures/{scene}-study.svg"
         );
         let committed = lasting(&pictures.join(format!("{scene}-study.svg")));
         assert_eq!(committed, lasting(&file), "draw it anew: cargo run --release -- {command}");

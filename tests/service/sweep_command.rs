@@ -30,7 +30,7 @@ fn written(folder: &tempfile::TempDir, name: &str, text: &str) -> PathBuf {
 }
 
 fn scene() -> String {
-    arcslip::scenes::find("one-bar-truss").expect("a scene").request.to_owned()
+    arcslip::check::scenes::find("one-bar-truss").expect("a scene").request.to_owned()
 }
 
 #[test]

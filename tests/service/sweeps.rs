@@ -3,7 +3,7 @@
 use crate::common::server::{TestServer, settings};
 use crate::common::service::scene;
 use crate::common::solver::MadeUp;
-use arcslip::jobs::{Limits, PathSolver, Settings};
+use arcslip::service::jobs::{Limits, PathSolver, Settings};
 use reqwest::Method;
 use serde_json::{Value, json};
 use std::time::Duration;

@@ -3,7 +3,7 @@
 use crate::common::server::TestServer;
 use crate::common::service::{request, scene};
 use crate::common::solver::MadeUp;
-use arcslip::jobs::PathSolver;
+use arcslip::service::jobs::PathSolver;
 use reqwest::{Method, Response};
 use serde_json::{Value, json};
 

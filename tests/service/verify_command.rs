@@ -43,7 +43,7 @@ fn every_scene_that_there_is_is_named() {
     let output = verify(&["--scene", "nosuch"]);
     assert_eq!(output.status.code(), Some(2));
     let said = String::from_utf8(output.stderr).expect("text");
-    for case in arcslip::verify::cases() {
+    for case in arcslip::check::cases::cases() {
         assert!(said.contains(&format!("`{}`", case.family)), "{} in {said}", case.family);
     }
 }

@@ -1,8 +1,8 @@
 //! Bad input is refused with its place, what was found and what would do; never a panic, a hang or a silent pass.
 
 use crate::common::bad_documents::{bad_documents, full_request, good_request};
+use arcslip::check::scenes;
 use arcslip::model::{InputError, InputErrors, JobRequest, read};
-use arcslip::scenes;
 use proptest::prelude::*;
 use serde_json::{Value, json};
 

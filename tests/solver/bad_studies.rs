@@ -1,18 +1,18 @@
 //! Studies that must be refused, each with its place.
 
 use arcslip::model::{InputErrors, decode};
-use arcslip::studies;
+use arcslip::studies::error_against_time;
 use serde_json::{Value, json};
 
 fn request(study: Value) -> Value {
     let mut request: Value =
-        serde_json::from_str(arcslip::scenes::find("arch-type-truss").expect("a scene").request).expect("JSON");
+        serde_json::from_str(arcslip::check::scenes::find("arch-type-truss").expect("a scene").request).expect("JSON");
     request["study"] = study;
     request
 }
 
-fn read(request: &Value) -> Result<studies::Plan, InputErrors> {
-    studies::plan(&decode::study(request.to_string().as_bytes())?)
+fn read(request: &Value) -> Result<error_against_time::Plan, InputErrors> {
+    error_against_time::plan(&decode::study(request.to_string().as_bytes())?)
 }
 
 #[test]

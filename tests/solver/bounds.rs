@@ -1,10 +1,13 @@
 //! Solves that are cancelled, or that would take too much: they end where they are, and what they gave stands.
 
-use arcslip::budget::{self, Bounds, Breach, Budget};
-use arcslip::cancel::CancelFlag;
-use arcslip::linear_algebra::solves;
+use arcslip::algebra::solves;
+use arcslip::continuation::path::iterator::Path;
+use arcslip::continuation::scene::Scene;
+use arcslip::continuation::traced::TracedPath;
 use arcslip::model::{JobRequest, decode};
-use arcslip::path::{Path, Scene, StopReason, TracedPath};
+use arcslip::resources::budget::{self, Bounds, Breach, Budget};
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::stop_reason::StopReason;
 use serde_json::{Value, json};
 
 fn request(document: &Value) -> JobRequest {

@@ -4,7 +4,8 @@ use crate::common::paths::{judged, request, scene};
 use crate::common::random::{random_scene, random_space};
 use arcslip::model::JobRequest;
 use arcslip::model::request::{Certificate, Method, Mpec};
-use arcslip::path::{Increment, Report};
+use arcslip::result::increment::Increment;
+use arcslip::result::report::Report;
 
 /// Largest difference of loads and displacements from those of `auto`.
 const SAME: f64 = 1e-8;
@@ -115,7 +116,7 @@ const LONG: &str = "capstan";
 
 fn compare_built_in(most_increments: u64, with_long: bool) {
     let (mut faulty, mut not_found, mut all) = (Vec::new(), 0, 0);
-    for built_in in arcslip::scenes::ALL {
+    for built_in in arcslip::check::scenes::ALL {
         let mut request = scene(built_in.name);
         request.analysis.max_increments = request.analysis.max_increments.min(most_increments);
         if request.model.contacts.is_empty() || built_in.name == LONG && !with_long {
@@ -158,7 +159,8 @@ fn many_random_scenes_by_their_programs_alone() {
 /// A certificate is no program solved, the plan names the saving, and `keep_all` does without.
 #[test]
 fn certificates_are_a_saving_with_a_name() {
-    let names_it = |plan: &arcslip::path::Plan| plan.left_out.iter().any(|one| one.what.contains("certificate shows"));
+    let names_it =
+        |plan: &arcslip::result::plan::Plan| plan.left_out.iter().any(|one| one.what.contains("certificate shows"));
     let request = scene("one-bar-truss");
     let used = judged(&using(&request));
     assert!(names_it(&used.plan));
@@ -194,8 +196,9 @@ fn the_setting_is_of_the_method_alone() {
         serde_json::json!({"method": "mpec", "mpec": {"certificate": "never"}}),
     ];
     for analysis in errors {
-        let outcome = arcslip::model::decode::decode(&with(analysis))
-            .map(|request| arcslip::path::Scene::new(&request).map(drop).map_err(|errors| errors.to_string()));
+        let outcome = arcslip::model::decode::decode(&with(analysis)).map(|request| {
+            arcslip::continuation::scene::Scene::new(&request).map(drop).map_err(|errors| errors.to_string())
+        });
         assert!(!matches!(outcome, Ok(Ok(()))));
     }
 }

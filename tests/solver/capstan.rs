@@ -14,8 +14,8 @@
 use crate::common::generators::capstan;
 use crate::common::paths::{close, place, trace};
 use arcslip::model::JobRequest;
-use arcslip::path::increment::Status;
-use arcslip::path::{Increment, StopReason};
+use arcslip::result::increment::{Increment, Status};
+use arcslip::result::stop_reason::StopReason;
 
 const STIFFNESS: f64 = 1e4;
 

@@ -2,7 +2,7 @@
 
 use crate::common::generators::capstan;
 use crate::common::paths::{close, trace};
-use arcslip::path::StopReason;
+use arcslip::result::stop_reason::StopReason;
 
 const STIFFNESS: f64 = 1e4;
 

@@ -2,13 +2,15 @@
 
 use crate::common::generators::row_of_bars;
 use crate::common::paths::{close, trace, typed};
-use arcslip::cancel::CancelFlag;
-use arcslip::measure::Judge;
+use arcslip::check::measure::Judge;
+use arcslip::check::scenes::lattice::LatticeArch;
+use arcslip::continuation::path::checkpoint::Checkpoint;
+use arcslip::continuation::path::iterator::Path;
+use arcslip::continuation::scene::Scene;
 use arcslip::model::JobRequest;
 use arcslip::model::request::Events;
-use arcslip::path::increment::{PointKind, Status};
-use arcslip::path::{Checkpoint, Increment, Path, Scene};
-use arcslip::scenes::lattice::LatticeArch;
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::increment::{Increment, PointKind, Status};
 use serde_json::json;
 
 /// Every so many of a row of trusses stands over a floor: the others go on when these have landed.

@@ -1,12 +1,15 @@
 //! A path that is put down and taken up again is the same path; a direction that is followed carries everything over.
 
 use crate::common::paths::{judge, scene, trace};
-use arcslip::cancel::CancelFlag;
+use arcslip::check::scenes::of_any_size::slider_chain;
+use arcslip::continuation::path::checkpoint::{Checkpoint, CheckpointError};
+use arcslip::continuation::path::iterator::Path;
+use arcslip::continuation::scene::Scene;
 use arcslip::model::JobRequest;
 use arcslip::model::request::{Method, Until};
-use arcslip::path::increment::{Diagnostics, PointKind, Status};
-use arcslip::path::{Checkpoint, CheckpointError, Increment, Path, Scene, StopReason};
-use arcslip::scenes::of_any_size::slider_chain;
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::increment::{Diagnostics, Increment, PointKind, Status};
+use arcslip::result::stop_reason::StopReason;
 use serde_json::json;
 
 /// A checkpoint as it comes back from where it was stored.

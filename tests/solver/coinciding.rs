@@ -2,10 +2,12 @@
 //! own, however close the two lie.
 
 use crate::common::paths::{close, request, scene, trace};
-use arcslip::cancel::CancelFlag;
+use arcslip::continuation::path::iterator::Path;
+use arcslip::continuation::scene::Scene;
 use arcslip::model::request::Method;
-use arcslip::path::increment::PointKind;
-use arcslip::path::{Increment, Path, Scene, StopReason};
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::increment::{Increment, PointKind};
+use arcslip::result::stop_reason::StopReason;
 use serde_json::{Value, json};
 
 /// Two structures side by side under one load: a post that buckles sideways, and a block that is dragged over the floor

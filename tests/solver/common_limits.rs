@@ -2,8 +2,8 @@
 
 use crate::common::generators::row_of_bars;
 use crate::common::paths::{close, request, trace};
-use arcslip::path::increment::{Direction, PointKind, Status};
-use arcslip::path::{Increment, StopReason};
+use arcslip::result::increment::{Direction, Increment, PointKind, Status};
+use arcslip::result::stop_reason::StopReason;
 use serde_json::{Value, json};
 
 /// Load and place of the tip of a one-bar truss with μ = 0.3 at its limit points.

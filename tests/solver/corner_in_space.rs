@@ -3,8 +3,8 @@
 use crate::common::paths::{close, trace, typed};
 use arcslip::model::JobRequest;
 use arcslip::model::request::Method;
-use arcslip::path::increment::Status;
-use arcslip::path::{Increment, StopReason};
+use arcslip::result::increment::{Increment, Status};
+use arcslip::result::stop_reason::StopReason;
 use serde_json::{Map, Value, json};
 
 const METHODS: [Method; 2] = [Method::Auto, Method::Mpec];

@@ -2,7 +2,8 @@
 
 use crate::common::paths::{judged, typed};
 use arcslip::model::JobRequest;
-use arcslip::path::{Increment, StopReason};
+use arcslip::result::increment::Increment;
+use arcslip::result::stop_reason::StopReason;
 use serde_json::{Value, json};
 
 /// Increments within which a path that creeps ends by name.

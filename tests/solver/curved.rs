@@ -1,12 +1,12 @@
 //! Round obstacles, outside and inside.
 
 use crate::common::paths::{close, place, scene_file, trace, typed};
+use arcslip::check::scenes::exact::bowl::bowl_load;
+use arcslip::check::scenes::exact::hump::Hump;
 use arcslip::model::JobRequest;
 use arcslip::model::request::Method;
-use arcslip::path::StopReason;
-use arcslip::path::increment::{PointKind, Status};
-use arcslip::scenes::exact::bowl::bowl_load;
-use arcslip::scenes::exact::hump::Hump;
+use arcslip::result::increment::{PointKind, Status};
+use arcslip::result::stop_reason::StopReason;
 use serde_json::json;
 
 const METHODS: [Method; 2] = [Method::Auto, Method::Mpec];

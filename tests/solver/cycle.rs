@@ -11,8 +11,8 @@
 //! top, x = 0, and comes back to it; no bar dissipates and the load's work around the curve is nothing.
 
 use crate::common::paths::{close, place, scene_file, trace};
-use arcslip::path::increment::PointKind;
-use arcslip::path::{Increment, StopReason};
+use arcslip::result::increment::{Increment, PointKind};
+use arcslip::result::stop_reason::StopReason;
 
 #[test]
 fn a_closed_path_ends_where_it_began() {

@@ -2,9 +2,11 @@
 
 use crate::common::generators::row_of_bars as row;
 use crate::common::paths::{request, scene, trace};
-use arcslip::cancel::CancelFlag;
-use arcslip::path::increment::PointKind;
-use arcslip::path::{Increment, Path, Scene, StopReason};
+use arcslip::continuation::path::iterator::Path;
+use arcslip::continuation::scene::Scene;
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::increment::{Increment, PointKind};
+use arcslip::result::stop_reason::StopReason;
 use serde_json::json;
 
 /// One bar snaps alone and the path truly ends: exhaustive enumeration finds no direction at s = 0.104818.

@@ -4,8 +4,8 @@
 use crate::common::paths::{close, scene, trace};
 use arcslip::model::JobRequest;
 use arcslip::model::request::Method;
-use arcslip::path::increment::{PointKind, Status};
-use arcslip::path::{Increment, StopReason};
+use arcslip::result::increment::{Increment, PointKind, Status};
+use arcslip::result::stop_reason::StopReason;
 
 const METHODS: [Method; 2] = [Method::Auto, Method::Mpec];
 

@@ -6,8 +6,8 @@
 //! which `q` and `M` vanish together.
 
 use crate::common::paths::{request, trace};
-use arcslip::path::StopReason;
-use arcslip::path::increment::PointKind;
+use arcslip::result::increment::PointKind;
+use arcslip::result::stop_reason::StopReason;
 use serde_json::{Value, json};
 
 const FRICTION: f64 = 0.5;

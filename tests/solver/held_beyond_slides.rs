@@ -5,8 +5,8 @@ use crate::common::paths::{close, trace, typed};
 use crate::common::sum_of_cones::distance;
 use crate::common::variants::in_reverse;
 use arcslip::model::JobRequest;
-use arcslip::path::increment::{PointKind, Status};
-use arcslip::path::{Increment, StopReason};
+use arcslip::result::increment::{Increment, PointKind, Status};
+use arcslip::result::stop_reason::StopReason;
 use serde_json::{Value, json};
 
 /// Friction of the floor and of the wall, which leans over the floor at the angle between their normals.

@@ -1,8 +1,9 @@
 //! Events that show at neither end of a step: what goes to and fro between them is found all the same, in small structures
 //! and in large ones, where many unknowns have nothing to do with it.
 
-use arcslip::cancel::CancelFlag;
-use arcslip::path::{Path, Scene};
+use arcslip::continuation::path::iterator::Path;
+use arcslip::continuation::scene::Scene;
+use arcslip::resources::cancel::CancelFlag;
 use serde_json::{Value, json};
 
 /// Unknowns that are on their own: bars that are pushed by nothing.

@@ -4,7 +4,7 @@ use crate::common::paths::{scene, trace};
 use crate::common::variants::in_units;
 use arcslip::model::JobRequest;
 use arcslip::model::request::{Element, Obstacle};
-use arcslip::path::Increment;
+use arcslip::result::increment::Increment;
 
 /// Everything but the clock, as text.
 fn bits(increments: &[Increment]) -> String {
@@ -15,7 +15,7 @@ fn bits(increments: &[Increment]) -> String {
 
 #[test]
 fn the_same_model_gives_the_same_bits() {
-    for built_in in arcslip::scenes::ALL {
+    for built_in in arcslip::check::scenes::ALL {
         let request = scene(built_in.name);
         let first = bits(&trace(&request).0);
         let handles: Vec<_> = (0..4)
@@ -33,7 +33,7 @@ fn the_same_model_gives_the_same_bits() {
 #[test]
 fn units_change_nothing_but_round_off() {
     // The capstan is symmetric: at its start two mirror images of each other tie, and round-off chooses.
-    for built_in in arcslip::scenes::ALL.iter().filter(|scene| scene.name != "capstan") {
+    for built_in in arcslip::check::scenes::ALL.iter().filter(|scene| scene.name != "capstan") {
         let (plain, _) = trace(&scene(built_in.name));
         for (length, force) in [(1e3, 1e-6), (1e9, 1.0), (1e-9, 1.0), (1.0, 1e9), (1.0, 1e-9), (3.0, 7.0)] {
             let (other, _) = trace(&in_units(scene(built_in.name), length, force));

@@ -3,7 +3,7 @@
 use crate::common::paths::{Traced, judged, request};
 use crate::common::variants::{in_reverse, in_units};
 use arcslip::model::JobRequest;
-use arcslip::path::StopReason;
+use arcslip::result::stop_reason::StopReason;
 
 const MODELS: [(&str, &str); 3] = [
     ("one node", include_str!("models/node-jammed-between-two-planes.json")),

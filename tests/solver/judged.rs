@@ -1,12 +1,12 @@
 //! Every increment carries what the measure says of it; the report its maxima; nothing is lost where a path is put down.
 
 use crate::common::paths::{judge, scene, scene_file};
-use arcslip::cancel::CancelFlag;
-use arcslip::judged::{JudgedCheckpoint, JudgedCheckpointError, JudgedIncrement, JudgedPath, JudgedReport};
-use arcslip::measure::{Errors, HistoryError};
+use arcslip::check::judged::{JudgedCheckpoint, JudgedCheckpointError, JudgedIncrement, JudgedPath, JudgedReport};
+use arcslip::check::measure::{Errors, HistoryError};
+use arcslip::continuation::scene::Scene;
 use arcslip::model::JobRequest;
 use arcslip::model::request::{Method, Record, Regularised};
-use arcslip::path::Scene;
+use arcslip::resources::cancel::CancelFlag;
 
 /// A whole judged path.
 fn whole(request: &JobRequest) -> (Vec<JudgedIncrement>, JudgedReport) {
@@ -34,7 +34,7 @@ fn assert_maxima(increments: &[JudgedIncrement], report: &JudgedReport, place: &
 
 #[test]
 fn every_increment_of_every_scene_carries_it_and_holds_the_bars() {
-    for built_in in arcslip::scenes::ALL {
+    for built_in in arcslip::check::scenes::ALL {
         let request = scene(built_in.name);
         let (increments, report) = whole(&request);
         assert!(increments.len() > 2, "{}", built_in.name);

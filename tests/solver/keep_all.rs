@@ -3,8 +3,7 @@
 use crate::common::paths::{Traced, judged, scene};
 use arcslip::model::JobRequest;
 use arcslip::model::request::{Contact, ContactRange, Obstacle, Record, RecordedContact, RecordedContacts, Side};
-use arcslip::path::Increment;
-use arcslip::path::increment::Status;
+use arcslip::result::increment::{Increment, Status};
 
 const SAME: f64 = 1e-10;
 
@@ -65,7 +64,7 @@ fn kept(mut request: JobRequest) -> JobRequest {
 #[test]
 fn every_scene_has_one_path_with_and_without_savings() {
     let mut left_out = 0;
-    for built_in in arcslip::scenes::ALL {
+    for built_in in arcslip::check::scenes::ALL {
         let mut request = scene(built_in.name);
         request.analysis.arc_length.jump = false;
         let (saving, keeping) = (judged(&request), judged(&kept(request)));
@@ -110,7 +109,7 @@ fn linear_structures_jump_from_event_to_event() {
 
 #[test]
 fn far_contacts_change_nothing() {
-    for built_in in arcslip::scenes::ALL {
+    for built_in in arcslip::check::scenes::ALL {
         let alone = judged(&scene(built_in.name));
         let Traced { increments, errors, plan, .. } = judged(&with_far_contacts(scene(built_in.name), 12));
         assert_same(&alone.increments, &increments, built_in.name);

@@ -5,7 +5,7 @@
 //! slips, however slowly: it turns where the slip begins, and again where the node leaves.
 
 use crate::common::paths::{close, request, trace};
-use arcslip::path::increment::PointKind;
+use arcslip::result::increment::PointKind;
 use serde_json::json;
 
 const CRITICAL: f64 = 1.25;

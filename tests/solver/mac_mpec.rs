@@ -3,8 +3,8 @@
 //! Statements rewritten from the public models, optima confirmed by enumeration of all branches. Each test holds the
 //! solver to the listed objective, feasibility, complementarity, and the kind of stationarity it reports.
 
-use arcslip::cancel::CancelFlag;
-use arcslip::mpec::{self, Problem, Settings, Solution, SparseRows, StationarityKind, Status};
+use arcslip::complementarity::mpec::{self, Problem, Settings, Solution, SparseRows, StationarityKind, Status};
+use arcslip::resources::cancel::CancelFlag;
 use nalgebra::DVector;
 
 const INF: f64 = f64::INFINITY;

@@ -3,8 +3,8 @@
 use crate::common::generators::{row_of_bars, slider_chain};
 use crate::common::paths::{trace, typed};
 use arcslip::model::JobRequest;
-use arcslip::path::increment::PointKind;
-use arcslip::path::{Increment, StopReason};
+use arcslip::result::increment::{Increment, PointKind};
+use arcslip::result::stop_reason::StopReason;
 use serde_json::{Value, json};
 
 /// A document with room for every event.

@@ -2,12 +2,11 @@
 //! hand from exact solutions: no solver is asked.
 
 use crate::common::paths::{scene_file, typed};
-use arcslip::measure::{Errors, Judge};
+use arcslip::check::measure::{Errors, Judge};
+use arcslip::check::scenes::exact::hump::Hump;
+use arcslip::check::scenes::exact::tractrix::Tractrix;
 use arcslip::model::JobRequest;
-use arcslip::path::Increment;
-use arcslip::path::increment::Status;
-use arcslip::scenes::exact::hump::Hump;
-use arcslip::scenes::exact::tractrix::Tractrix;
+use arcslip::result::increment::{Increment, Status};
 use serde_json::{Map, Value, json};
 
 /// A contact's row: status, gap, normal reaction, tangential reaction, slip.

@@ -2,12 +2,12 @@
 
 use crate::common::paths::{request, scene, trace};
 use arcslip::model::request::Method;
-use arcslip::path::Increment;
+use arcslip::result::increment::Increment;
 use serde_json::json;
 
 #[test]
 fn auto_and_mpec_agree_on_every_scene() {
-    for built_in in arcslip::scenes::ALL {
+    for built_in in arcslip::check::scenes::ALL {
         let mut request = scene(built_in.name);
         let (by_auto, auto_report) = trace(&request);
         request.analysis.method = Method::Mpec;

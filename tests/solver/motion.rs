@@ -1,8 +1,8 @@
 //! Obstacles and supports that move with the load factor.
 
 use crate::common::paths::{close, place, scene_file, trace, typed};
-use arcslip::path::increment::{PointKind, Status};
-use arcslip::path::{Increment, StopReason};
+use arcslip::result::increment::{Increment, PointKind, Status};
+use arcslip::result::stop_reason::StopReason;
 use serde_json::json;
 
 fn last_of<'a>(increments: &'a [Increment], stage: &str) -> &'a Increment {

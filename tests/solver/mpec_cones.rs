@@ -1,10 +1,11 @@
 //! Programs with complementary pairs in second-order cones: a mass on a rough plane held by springs in space, a load to be
 //! chosen, the nearest complementary pair; each with an answer by hand.
 
-use arcslip::cancel::CancelFlag;
-use arcslip::mpec::{
-    self, ConeActivity, Problem, Settings, Solution, SparseRows, StationarityKind, Status, cone, semismooth,
+use arcslip::complementarity::mpec::program::cone;
+use arcslip::complementarity::mpec::{
+    self, ConeActivity, Problem, Settings, Solution, SparseRows, StationarityKind, Status, semismooth,
 };
+use arcslip::resources::cancel::CancelFlag;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 /// A point mass on the plane `z = 0`, springs `stiffness` to the ground, pressed by 1 and pushed by a tangential force

@@ -4,8 +4,8 @@
 //! Pin at (0, 1), tip at (x, y) on the floor `y >= 0`, EA = 1, unstressed at (-1.5, 0), force `s (1, 0)` on the tip.
 //! Slipping towards +x: `s = P (μ - x)/L`, `r_n = P/L`, `P = 1 - L/L0`.
 
-use arcslip::cancel::CancelFlag;
-use arcslip::mpec::{self, Finish, PairActivity, Problem, Settings, SparseRows, Status};
+use arcslip::complementarity::mpec::{self, Finish, PairActivity, Problem, Settings, SparseRows, Status};
+use arcslip::resources::cancel::CancelFlag;
 use nalgebra::DVector;
 
 const START: f64 = -1.5;

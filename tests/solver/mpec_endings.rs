@@ -3,11 +3,11 @@
 
 use std::cell::Cell;
 
-use arcslip::cancel::CancelFlag;
-use arcslip::mpec::quadratic::{QuadraticProgram, solve_interior};
-use arcslip::mpec::{
+use arcslip::complementarity::mpec::quadratic_program::interior_point::{QuadraticProgram, solve_interior};
+use arcslip::complementarity::mpec::{
     self, InputError, PairActivity, Problem, Quantity, Settings, SparseRows, StationarityKind, Status,
 };
+use arcslip::resources::cancel::CancelFlag;
 use nalgebra::{DMatrix, DVector};
 
 /// `min ½ xᵀQx + c·x` s.t. `A x + a0 ⊥ B x + b0`, `E x + e = 0`; optionally raises a flag or returns NaN on the way.

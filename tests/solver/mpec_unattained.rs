@@ -1,7 +1,7 @@
 //! Programs whose infimum is not attained: the iterates go to infinity, and nothing there is a solution.
 
-use arcslip::cancel::CancelFlag;
-use arcslip::mpec::{self, Problem, Settings, Solution, SparseRows, Status};
+use arcslip::complementarity::mpec::{self, Problem, Settings, Solution, SparseRows, Status};
+use arcslip::resources::cancel::CancelFlag;
 use nalgebra::DVector;
 
 /// Dempe's bilevel program (MacMPEC: dempe) in other units: `x`, `z` and `w` are these multiples of the variables, the

@@ -1,12 +1,13 @@
 //! Published problems without contact, in two and three dimensions.
 
 use crate::common::paths::{request, trace};
-use arcslip::cancel::CancelFlag;
+use arcslip::check::cases::cases;
+use arcslip::continuation::scene::Scene;
+use arcslip::continuation::traced::TracedPath;
 use arcslip::model::JobRequest;
 use arcslip::model::request::{Analysis, ArcLength, Element, Method, Regularised, Strain, Until};
-use arcslip::path::increment::PointKind;
-use arcslip::path::{Increment, Scene, TracedPath};
-use arcslip::verify::cases;
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::increment::{Increment, PointKind};
 use serde_json::{Value, json};
 
 /// The request of a case of `verify`.

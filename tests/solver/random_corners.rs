@@ -4,8 +4,8 @@ use crate::common::paths::{Traced, judged};
 use crate::common::random_corners::random_corner;
 use crate::common::variants::{Axes, about_axes, in_reverse, in_units, turned};
 use arcslip::model::JobRequest;
-use arcslip::path::StopReason;
-use arcslip::path::increment::PointKind;
+use arcslip::result::increment::PointKind;
+use arcslip::result::stop_reason::StopReason;
 
 const SEEDS: u64 = 400;
 /// Threads that share the scenes: each path is the same whatever runs beside it.

@@ -2,10 +2,11 @@
 
 use crate::common::paths::{Traced, judged};
 use crate::common::random::{random_scene, random_space};
+use arcslip::continuation::scene::Scene;
 use arcslip::model::JobRequest;
 use arcslip::model::request::Method;
-use arcslip::path::increment::PointKind;
-use arcslip::path::{Increment, Scene, StopReason};
+use arcslip::result::increment::{Increment, PointKind};
+use arcslip::result::stop_reason::StopReason;
 
 const SCENES: u64 = 200;
 const SCENES_IN_SPACE: u64 = 60;

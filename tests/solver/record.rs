@@ -1,12 +1,12 @@
 //! `analysis.record`: what is not asked for is left out after every increment was judged; nothing else changes.
 
 use crate::common::paths::scene;
-use arcslip::cancel::CancelFlag;
-use arcslip::judged::{JudgedIncrement, JudgedPath, JudgedReport};
+use arcslip::check::judged::{JudgedIncrement, JudgedPath, JudgedReport};
+use arcslip::continuation::scene::Scene;
 use arcslip::model::JobRequest;
 use arcslip::model::request::{Record, RecordedContact, RecordedContacts};
-use arcslip::path::increment::PointKind;
-use arcslip::path::{Increment, Scene};
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::increment::{Increment, PointKind};
 
 struct Whole {
     increments: Vec<JudgedIncrement>,
@@ -49,7 +49,7 @@ fn is_event(increment: &Increment) -> bool {
 
 #[test]
 fn thinned_rows_are_those_of_the_whole_path() {
-    for built_in in arcslip::scenes::ALL {
+    for built_in in arcslip::check::scenes::ALL {
         let all = whole(&scene(built_in.name));
         let thinned = whole(&recorded(built_in.name, Record { every: 7, ..Record::default() }));
         let last = all.increments.last().expect("an increment").increment.index;

@@ -1,11 +1,14 @@
 //! The regularised method: right in the limit of stiff penalties and short steps, and no nearer than that.
 
 use crate::common::paths::{judge, request, scene, scene_file};
-use arcslip::cancel::CancelFlag;
+use arcslip::continuation::scene::Scene;
+use arcslip::continuation::traced::TracedPath;
 use arcslip::model::JobRequest;
 use arcslip::model::request::{LoadSign, Method, Regularised};
-use arcslip::path::increment::{PointKind, Status};
-use arcslip::path::{Increment, Report, Scene, StopReason, TracedPath};
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::increment::{Increment, PointKind, Status};
+use arcslip::result::report::Report;
+use arcslip::result::stop_reason::StopReason;
 use serde_json::json;
 
 fn trace(request: &JobRequest) -> (Vec<Increment>, Report) {
@@ -89,11 +92,11 @@ fn on_the_one_bar_truss_the_error_exceeds_that_of_auto_by_orders() {
 /// says, shown as it is.
 #[test]
 fn equilibrium_and_the_cone_hold_at_every_point_of_every_scene() {
-    let files = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/src/scenes")).expect("the scenes");
+    let files = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/src/check/scenes")).expect("the scenes");
     let mut names: Vec<String> =
         files.filter_map(|file| Some(file.ok()?.file_name().to_str()?.strip_suffix(".json")?.to_owned())).collect();
     names.sort();
-    assert!(names.len() >= arcslip::scenes::ALL.len());
+    assert!(names.len() >= arcslip::check::scenes::ALL.len());
     for name in &names {
         for sign in [LoadSign::Determinant, LoadSign::PreviousIncrement] {
             for load_weight in [0.0, 1.0] {
@@ -170,7 +173,8 @@ fn stages_end_by_counts() {
         (json!({"increments": 7}), PointKind::End),
     ] {
         let mut model: serde_json::Value =
-            serde_json::from_str(arcslip::scenes::find("one-bar-truss").expect("a scene").request).expect("JSON");
+            serde_json::from_str(arcslip::check::scenes::find("one-bar-truss").expect("a scene").request)
+                .expect("JSON");
         model["model"]["stages"][0]["until"] = until;
         let (increments, report) = trace(&regularised(request(&model.to_string()), 1e4, 0.05));
         assert_eq!(report.stop_reason, StopReason::StagesCompleted);
@@ -184,7 +188,7 @@ fn stages_end_by_counts() {
 fn units_do_not_matter() {
     let (reference, _) = trace(&regularised(scene("one-bar-truss"), 1e4, 0.05));
     let mut model: serde_json::Value =
-        serde_json::from_str(arcslip::scenes::find("one-bar-truss").expect("a scene").request).expect("JSON");
+        serde_json::from_str(arcslip::check::scenes::find("one-bar-truss").expect("a scene").request).expect("JSON");
     model["model"]["nodes"] = json!({"pin": [0, 1000], "tip": [-1500, 0]});
     model["model"]["elements"][0]["axial_stiffness"] = json!(1e6);
     model["model"]["stages"][0]["forces"]["tip"] = json!([1e6, 0]);

@@ -3,8 +3,8 @@
 use crate::common::generators::row_of_bars;
 use crate::common::paths::{close, scene_file, trace, typed};
 use arcslip::model::request::Method;
-use arcslip::path::StopReason;
-use arcslip::path::increment::PointKind;
+use arcslip::result::increment::PointKind;
+use arcslip::result::stop_reason::StopReason;
 
 #[test]
 fn built_in_rows_are_the_generator_s() {

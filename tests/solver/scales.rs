@@ -4,7 +4,9 @@
 use crate::common::paths::{Traced, close, judged, request};
 use crate::common::random::Numbers;
 use crate::common::variants::about_axes;
-use arcslip::path::{Increment, Scene, StopReason};
+use arcslip::continuation::scene::Scene;
+use arcslip::result::increment::Increment;
+use arcslip::result::stop_reason::StopReason;
 use serde_json::{Value, json};
 
 /// A path whose every increment keeps to its equations, and why it ends. What is stored against elements that are softer or
@@ -215,7 +217,8 @@ fn an_odd_spring_does_not_set_the_scale() {
 fn the_arch_keeps_its_scale() {
     let arch = |bar: usize, odd: f64, tether: f64| {
         let mut model: Value =
-            serde_json::from_str(arcslip::scenes::find("arch-type-truss").expect("a scene").request).expect("JSON");
+            serde_json::from_str(arcslip::check::scenes::find("arch-type-truss").expect("a scene").request)
+                .expect("JSON");
         model["model"]["elements"][bar]["axial_stiffness"] = json!(odd);
         model["model"]["nodes"]["far"] = json!([-0.1, 3]);
         model["model"]["supports"]["far"] = json!(["x", "y"]);

@@ -2,8 +2,8 @@
 //! m+1's rest position; when the last one slips nothing resists any more.
 
 use crate::common::paths::{close, scene_file, trace};
-use arcslip::path::increment::{PointKind, Status};
-use arcslip::path::{Increment, StopReason};
+use arcslip::result::increment::{Increment, PointKind, Status};
+use arcslip::result::stop_reason::StopReason;
 
 fn check(increments: &[Increment], n: usize, friction: f64, weight: f64, stiffness: f64) {
     let force = friction * weight;

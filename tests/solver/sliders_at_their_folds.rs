@@ -11,8 +11,9 @@
 //! others slide back while it stays at its fold; at `q F° - μ w` it slides back, too.
 
 use crate::common::paths::{close, request, trace};
-use arcslip::path::increment::{Direction, Status};
-use arcslip::path::{Increment, Report, StopReason};
+use arcslip::result::increment::{Direction, Increment, Status};
+use arcslip::result::report::Report;
+use arcslip::result::stop_reason::StopReason;
 use serde_json::{Value, json};
 
 /// Bars of the toggle and the soft bar.

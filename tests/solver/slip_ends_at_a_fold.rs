@@ -12,8 +12,8 @@
 use crate::common::paths::{close, request, trace};
 use crate::common::random::Numbers;
 use arcslip::model::JobRequest;
-use arcslip::path::increment::{Direction, PointKind, Status};
-use arcslip::path::{Increment, StopReason};
+use arcslip::result::increment::{Direction, Increment, PointKind, Status};
+use arcslip::result::stop_reason::StopReason;
 use serde_json::{Value, json};
 
 /// A slider with a toggle on it.

@@ -1,9 +1,10 @@
 //! Smooth bifurcations: found where closed forms put them, and nowhere else.
 
 use crate::common::paths::{request, trace};
-use arcslip::cancel::CancelFlag;
-use arcslip::path::increment::{Increment, PointKind, Status};
-use arcslip::path::{Path, Scene};
+use arcslip::continuation::path::iterator::Path;
+use arcslip::continuation::scene::Scene;
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::increment::{Increment, PointKind, Status};
 use serde_json::{Map, Value, json};
 
 /// Half width and height of the tall two-bar truss.
@@ -176,7 +177,7 @@ fn a_double_point_in_closed_form() {
 /// Existing scenes: no smooth bifurcation where there is none.
 #[test]
 fn built_in_scenes_have_none() {
-    for built_in in arcslip::scenes::ALL {
+    for built_in in arcslip::check::scenes::ALL {
         let (increments, _) = trace(&request(built_in.request));
         assert!(bifurcations(&increments).is_empty(), "{}", built_in.name);
     }

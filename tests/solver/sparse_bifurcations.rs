@@ -1,10 +1,11 @@
 //! Smooth bifurcations of models whose matrices are sparse: where closed forms put them, and at bounded work.
 
 use crate::common::paths::{trace, typed};
-use arcslip::cancel::CancelFlag;
-use arcslip::linear_algebra::factorisations;
-use arcslip::path::increment::{Increment, PointKind, Status};
-use arcslip::path::{Path, Scene};
+use arcslip::algebra::factorisations;
+use arcslip::continuation::path::iterator::Path;
+use arcslip::continuation::scene::Scene;
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::increment::{Increment, PointKind, Status};
 use serde_json::{Map, Value, json};
 
 /// Factorisations that an increment may take that ends at a bifurcation point, its directions included.
@@ -268,7 +269,7 @@ fn branches_begin_as_their_modes_do() {
 /// A search is broken off at whatever look at the flag it is.
 #[test]
 fn a_search_looks_at_the_cancel_flag() {
-    use arcslip::budget::{cancel_at_look, looks};
+    use arcslip::resources::budget::{cancel_at_look, looks};
     let request = typed(Column { bars: 40, springs: vec![0.2], block: false }.request(0.0502));
     let scene = Scene::new(&request).expect("a scene");
     let mut path = Path::new(&scene, CancelFlag::default());
@@ -277,7 +278,8 @@ fn a_search_looks_at_the_cancel_flag() {
     while let Some(increment) = path.next() {
         if increment.point.kind == PointKind::SmoothBifurcation {
             let took = looks() - begun;
-            let (index, from): (u64, arcslip::path::Checkpoint) = before.expect("an increment before");
+            let (index, from): (u64, arcslip::continuation::path::checkpoint::Checkpoint) =
+                before.expect("an increment before");
             assert_eq!(index + 1, increment.index);
             for part in 1..8 {
                 let again = Path::resume(&scene, from.clone(), CancelFlag::default()).expect("a path");

@@ -1,11 +1,11 @@
 //! Friction in space: slip that turns, at second order in the step, and slip that runs straight, exact.
 
 use crate::common::paths::{Traced, close, judged, place, scene, scene_file, trace, typed};
+use arcslip::check::scenes::exact::tractrix::Tractrix;
+use arcslip::check::scenes::exact::turning_drag::turning_drag;
 use arcslip::model::request::Method;
-use arcslip::path::StopReason;
-use arcslip::path::increment::{PointKind, Status};
-use arcslip::scenes::exact::tractrix::Tractrix;
-use arcslip::scenes::exact::turning_drag::turning_drag;
+use arcslip::result::increment::{PointKind, Status};
+use arcslip::result::stop_reason::StopReason;
 use serde_json::json;
 
 const LADDER: [f64; 4] = [0.02, 0.01, 0.005, 0.0025];
@@ -148,7 +148,7 @@ fn a_truss_in_a_turned_vertical_plane_is_that_of_two_dimensions() {
         });
         let (increments, report) = trace(&typed(turned));
         assert_eq!(report.stop_reason, flat_report.stop_reason, "turned by {angle}");
-        let loads = |increments: &[arcslip::path::Increment]| -> Vec<(PointKind, f64)> {
+        let loads = |increments: &[arcslip::result::increment::Increment]| -> Vec<(PointKind, f64)> {
             let limits = increments.iter().filter(|i| i.point.kind == PointKind::SmoothLimit);
             limits.map(|i| (i.point.kind, i.load_factor)).collect()
         };

@@ -2,11 +2,14 @@
 
 use crate::common::generators::slider_chain;
 use crate::common::paths::{request, scene, trace};
-use arcslip::cancel::CancelFlag;
+use arcslip::continuation::path::iterator::Path;
+use arcslip::continuation::scene::Scene;
+use arcslip::continuation::traced::TracedPath;
 use arcslip::model::JobRequest;
 use arcslip::model::request::{Component, DisplacementBound, Method, Until};
-use arcslip::path::increment::PointKind;
-use arcslip::path::{Increment, Path, Scene, StopReason, TracedPath};
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::increment::{Increment, PointKind};
+use arcslip::result::stop_reason::StopReason;
 use serde_json::{Value, json};
 
 /// Steps that end exactly at the bound: the first step, and many equal ones.

@@ -1,8 +1,9 @@
 //! Where every element is linear one increment goes from event to event: the events are those that steps of ordinary length
 //! come to, and a path that is nothing but rounding ends by name.
 
-use arcslip::cancel::CancelFlag;
-use arcslip::path::{Path, Scene};
+use arcslip::continuation::path::iterator::Path;
+use arcslip::continuation::scene::Scene;
+use arcslip::resources::cancel::CancelFlag;
 use serde_json::{Map, Value, json};
 
 /// A sequence of numbers in [-1, 1), the same for a seed on every machine (D. H. Lehmer's generator).

@@ -1,11 +1,11 @@
 //! Studies of whole scenes: error against the exact solution or a self-converged path, orders, events, text.
 
 use crate::common::paths::scene;
-use arcslip::cancel::CancelFlag;
 use arcslip::model::request::Method;
-use arcslip::model::study::{ReferenceChoice, Study, StudyRequest};
-use arcslip::path::StopReason;
-use arcslip::studies::{self, ReferenceKind, Report, Row, Run};
+use arcslip::model::request::study::{ReferenceChoice, Study, StudyRequest};
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::stop_reason::StopReason;
+use arcslip::studies::error_against_time::{self, ReferenceKind, Report, Row, Run};
 use std::ops::ControlFlow;
 
 fn request(name: &str, study: Study) -> StudyRequest {
@@ -18,7 +18,8 @@ fn over(arc_lengths: &[f64], methods: &[Method]) -> Study {
 }
 
 fn run(request: &StudyRequest) -> Report {
-    let report = studies::run(request, Vec::new(), &CancelFlag::default(), &mut |_| ControlFlow::Continue(()));
+    let report =
+        error_against_time::run(request, Vec::new(), &CancelFlag::default(), &mut |_| ControlFlow::Continue(()));
     let report = report.unwrap_or_else(|errors| panic!("{errors}")).expect("a report");
     println!("{}", report.text().expect("text"));
     report
@@ -127,7 +128,7 @@ fn a_study_that_was_broken_off_goes_on_to_the_same_rows() {
     let mut runs: Vec<Run> = Vec::new();
     let until = |bound: usize, runs: &mut Vec<Run>| {
         let done = runs.clone();
-        studies::run(&request, done, &CancelFlag::default(), &mut |run| {
+        error_against_time::run(&request, done, &CancelFlag::default(), &mut |run| {
             runs.push(run.clone());
             if runs.len() == bound { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })
@@ -149,7 +150,7 @@ fn a_study_that_was_broken_off_goes_on_to_the_same_rows() {
 fn a_cancelled_study_reports_what_it_has() {
     let request = request("klarbring", Study { repeats: 2, ..over(&[0.2, 0.1], &[Method::Auto]) });
     let cancel = CancelFlag::default();
-    let report = studies::run(&request, Vec::new(), &cancel, &mut |_| {
+    let report = error_against_time::run(&request, Vec::new(), &cancel, &mut |_| {
         cancel.cancel();
         ControlFlow::Continue(())
     });

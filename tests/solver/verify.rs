@@ -1,6 +1,6 @@
 //! Every case with a known answer passes.
 
-use arcslip::verify::cases;
+use arcslip::check::cases::cases;
 
 #[test]
 fn every_case_passes() {

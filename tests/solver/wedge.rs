@@ -3,8 +3,8 @@
 use crate::common::paths::{close, place, scene_file, trace, typed};
 use arcslip::model::JobRequest;
 use arcslip::model::request::Method;
-use arcslip::path::StopReason;
-use arcslip::path::increment::Status;
+use arcslip::result::increment::Status;
+use arcslip::result::stop_reason::StopReason;
 use serde_json::json;
 
 const METHODS: [Method; 2] = [Method::Auto, Method::Mpec];

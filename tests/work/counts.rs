@@ -4,12 +4,13 @@
 
 use crate::common::paths::scene_file;
 use allocation_counter::measure;
-use arcslip::cancel::CancelFlag;
-use arcslip::linear_algebra::solves;
+use arcslip::algebra::solves;
+use arcslip::check::scenes::lattice::LatticeArch;
+use arcslip::continuation::path::iterator::Path;
+use arcslip::continuation::scene::Scene;
 use arcslip::model::JobRequest;
 use arcslip::model::request::Method;
-use arcslip::path::{Path, Scene};
-use arcslip::scenes::lattice::LatticeArch;
+use arcslip::resources::cancel::CancelFlag;
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/work.txt");
 const RENEW: &str = "ARCSLIP_RENEW_WORK=1 cargo test --no-default-features --test work";

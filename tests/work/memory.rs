@@ -3,9 +3,10 @@
 
 use crate::common::long_paths::one_bar_in_short_steps;
 use allocation_counter::measure;
-use arcslip::cancel::CancelFlag;
-use arcslip::judged::JudgedPath;
-use arcslip::path::{Scene, StopReason};
+use arcslip::check::judged::JudgedPath;
+use arcslip::continuation::scene::Scene;
+use arcslip::resources::cancel::CancelFlag;
+use arcslip::result::stop_reason::StopReason;
 
 /// Most bytes at once of a judged path of so many increments, none of which is held.
 fn most_bytes(increments: u64) -> u64 {

@@ -2,13 +2,13 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::Scope;
-use super::numbers::{self, dot};
-use super::obstacles::{Facing, facing};
-use crate::budget;
-use crate::model::mistakes::{Mistakes, Place};
-use crate::model::names::quoted;
+use crate::model::check::numbers::{self, dot};
+use crate::model::check::obstacles::{Facing, facing};
+use crate::model::check::scope::Scope;
+use crate::model::input::mistakes::{Mistakes, Place};
+use crate::model::input::names::quoted;
 use crate::model::request::{Contact, Obstacle, Side};
+use crate::resources::budget;
 
 /// Unit normals whose product is this near -1 are opposed.
 const OPPOSED: f64 = 1e-12;

@@ -1,10 +1,10 @@
 //! What a stage multiplies by its load factor: forces, displacements of supports, motions of obstacles.
 
-use super::Scope;
-use super::numbers::{self, dot, largest, norm};
-use super::structure::COMPONENT_NAMES;
-use crate::model::mistakes::{Mistakes, Place};
-use crate::model::names::quoted;
+use crate::model::check::numbers::{self, dot, largest, norm};
+use crate::model::check::scope::Scope;
+use crate::model::check::structure::COMPONENT_NAMES;
+use crate::model::input::mistakes::{Mistakes, Place};
+use crate::model::input::names::quoted;
 use crate::model::request::{Element, Obstacle, Stage};
 
 /// A motion whose part along a normal is this small, in units of its length, runs along the plane.

@@ -3,9 +3,9 @@
 //! A part that is connected to a support, to the ground by a spring, or to an obstacle by a contact may still be a
 //! mechanism; that takes numbers and is not judged here.
 
-use super::Scope;
-use crate::model::mistakes::Mistakes;
-use crate::model::names::quoted;
+use crate::model::check::scope::Scope;
+use crate::model::input::mistakes::Mistakes;
+use crate::model::input::names::quoted;
 use crate::model::request::Element;
 
 pub(super) fn mechanism(scope: &Scope, mistakes: &mut Mistakes) {

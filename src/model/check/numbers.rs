@@ -1,7 +1,7 @@
 //! Numbers and vectors by themselves: finite, within the magnitudes taken, of the right length.
 
-use crate::model::limits::{MAX_MAGNITUDE, MIN_MAGNITUDE};
-use crate::model::mistakes::{Mistakes, Place};
+use crate::model::input::limits::{MAX_MAGNITUDE, MIN_MAGNITUDE};
+use crate::model::input::mistakes::{Mistakes, Place};
 
 fn is_sane(value: f64) -> bool {
     value == 0.0 || (MIN_MAGNITUDE..=MAX_MAGNITUDE).contains(&value.abs())

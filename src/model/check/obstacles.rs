@@ -1,8 +1,8 @@
 //! Obstacles: their form, and how a node lies to one at the start.
 
-use super::numbers::{self, difference, dot, largest, norm};
-use super::{Scope, proper_name};
-use crate::model::mistakes::Mistakes;
+use crate::model::check::numbers::{self, difference, dot, largest, norm};
+use crate::model::check::scope::{Scope, proper_name};
+use crate::model::input::mistakes::Mistakes;
 use crate::model::request::{Obstacle, Side};
 
 pub(super) fn obstacles(scope: &Scope, mistakes: &mut Mistakes) {

@@ -2,11 +2,12 @@
 
 use std::collections::HashSet;
 
-use super::loads::{Surroundings, loads};
-use super::structure::{component, component_name};
-use super::{Scope, numbers, proper_name};
-use crate::model::mistakes::{Mistakes, Place};
-use crate::model::names::quoted;
+use crate::model::check::loads::{Surroundings, loads};
+use crate::model::check::numbers;
+use crate::model::check::scope::{Scope, proper_name};
+use crate::model::check::structure::{component, component_name};
+use crate::model::input::mistakes::{Mistakes, Place};
+use crate::model::input::names::quoted;
 use crate::model::request::{DisplacementBound, Stage, Until};
 
 pub(super) fn stages(scope: &Scope, mistakes: &mut Mistakes) {

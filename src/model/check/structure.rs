@@ -1,10 +1,10 @@
 //! Nodes, supports and elements.
 
-use super::numbers::{self, difference, largest, norm};
-use super::{Scope, proper_name};
-use crate::model::limits::{COINCIDENCE_TOLERANCE, SYMMETRY_TOLERANCE};
-use crate::model::mistakes::{Mistakes, Place};
-use crate::model::names::quoted;
+use crate::model::check::numbers::{self, difference, largest, norm};
+use crate::model::check::scope::{Scope, proper_name};
+use crate::model::input::limits::{COINCIDENCE_TOLERANCE, SYMMETRY_TOLERANCE};
+use crate::model::input::mistakes::{Mistakes, Place};
+use crate::model::input::names::quoted;
 use crate::model::request::{Component, Element};
 
 pub(super) fn nodes(scope: &Scope, mistakes: &mut Mistakes) {

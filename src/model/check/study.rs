@@ -1,20 +1,20 @@
 //! What a study varies, and how much it takes.
 
-use super::numbers;
 use crate::model::InputErrors;
-use crate::model::limits::{
+use crate::model::check::numbers;
+use crate::model::input::limits::{
     MAX_INCREMENTS, MAX_STUDY_REFINEMENT, MAX_STUDY_REPEATS, MAX_STUDY_RUNGS, MAX_STUDY_VALUES,
 };
-use crate::model::mistakes::{Mistakes, Place};
-use crate::model::names::listed;
+use crate::model::input::mistakes::{Mistakes, Place};
+use crate::model::input::names::listed;
 use crate::model::request::Method;
-use crate::model::study::{Parameter, Study, StudyRequest};
+use crate::model::request::study::{Parameter, Study, StudyRequest};
 
 /// Refuses what `study` says wrongly, alone or against `analysis`; the jobs that it leads to are checked by
-/// [`check`](super::check) each.
+/// [`check`](crate::model::check::check) each.
 ///
 /// # Errors
-/// As for [`check`](super::check).
+/// As for [`check`](crate::model::check::check).
 pub fn study(request: &StudyRequest) -> Result<(), InputErrors> {
     let mut mistakes = Mistakes::default();
     let at = Place::ROOT.member("study");
@@ -31,9 +31,13 @@ pub fn study(request: &StudyRequest) -> Result<(), InputErrors> {
     }
     let analysis = Place::ROOT.member("analysis");
     // Also what gives way to the study's values has to be such.
-    super::analysis::arc_lengths(&request.analysis.arc_length, &analysis.member("arc_length"), &mut mistakes);
+    crate::model::check::analysis::arc_lengths(
+        &request.analysis.arc_length,
+        &analysis.member("arc_length"),
+        &mut mistakes,
+    );
     if let Some(regularised) = &request.analysis.regularised {
-        super::analysis::regularised(regularised, &analysis.member("regularised"), &mut mistakes);
+        crate::model::check::analysis::regularised(regularised, &analysis.member("regularised"), &mut mistakes);
     }
     if request.analysis.explore.is_some() {
         mistakes.add(&analysis.member("explore"), || "a study follows no other directions; leave it out");

@@ -1,9 +1,10 @@
 //! The checks on requests that JSON text cannot express, and what must pass.
 
-use super::check;
+use crate::check::scenes;
+use crate::model::JobRequest;
+use crate::model::check::check;
+use crate::model::decode::decode;
 use crate::model::request::{Component, Contact, DisplacementBound, Element, Obstacle, Side, Until};
-use crate::model::{JobRequest, decode::decode};
-use crate::scenes;
 
 fn one_bar() -> JobRequest {
     decode(scenes::find("one-bar-truss").unwrap().request.as_bytes()).unwrap()

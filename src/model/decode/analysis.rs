@@ -1,7 +1,7 @@
 //! Reads how the path is to be traced.
 
-use super::reader::{Choices, Fields, Input, boolean, count, number, text};
-use crate::model::mistakes::Mistakes;
+use crate::model::decode::reader::{Choices, Fields, Input, boolean, count, number, text};
+use crate::model::input::mistakes::Mistakes;
 use crate::model::request::{
     Analysis, ArcLength, Certificate, ContactRange, Events, Explore, LoadSign, Method, Mpec, Record, RecordedContact,
     RecordedContacts, Regularised, Selection,

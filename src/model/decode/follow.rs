@@ -1,8 +1,8 @@
 //! Reads which direction of another job is to be followed.
 
-use super::reader::{Fields, Input, count};
-use crate::model::limits::MAX_INCREMENTS;
-use crate::model::mistakes::Mistakes;
+use crate::model::decode::reader::{Fields, Input, count};
+use crate::model::input::limits::MAX_INCREMENTS;
+use crate::model::input::mistakes::Mistakes;
 use crate::model::request::FollowRequest;
 
 pub(super) const FOLLOW: Fields = Fields {

@@ -1,6 +1,6 @@
 //! JSON text to a job request, with all mistakes of form.
 //!
-//! The types and their names are those of [`super::request`]; a test holds the two equal. They are not read by serde's
+//! The types and their names are those of [`crate::model::request`]; a test holds the two equal. They are not read by serde's
 //! derived code because that stops at the first mistake and does not say where it is.
 
 mod analysis;
@@ -9,27 +9,29 @@ mod model;
 mod reader;
 mod study;
 mod sweep;
+#[cfg(test)]
+mod tests;
 
-use super::json::Json;
-use super::mistakes::Mistakes;
-use super::{FollowRequest, InputError, InputErrors, JobRequest, StudyRequest};
+use crate::model::input::json::Json;
+use crate::model::input::mistakes::Mistakes;
+use crate::model::{FollowRequest, InputError, InputErrors, JobRequest, StudyRequest};
 use reader::{Fields, Input};
 
 const JOB_REQUEST: Fields = Fields { what: "a job request", known: &["model", "analysis"], later: &[] };
 const SWEEP_REQUEST: Fields = Fields { what: "a sweep", known: &["model", "analysis", "sweep"], later: &[] };
 const STUDY_REQUEST: Fields = Fields { what: "a study", known: &["model", "analysis", "study"], later: &[] };
 
-/// Reads a job request from JSON text and checks nothing but form; [`super::check::check`] looks at the rest.
+/// Reads a job request from JSON text and checks nothing but form; [`crate::model::check::check`] looks at the rest.
 ///
 /// # Errors
 /// Text that cannot be read as JSON is one error. Otherwise every mistake is listed (up to
-/// [`MAX_LISTED_MISTAKES`](super::limits::MAX_LISTED_MISTAKES)): missing, unknown and duplicate members, wrong types,
+/// [`MAX_LISTED_MISTAKES`](crate::model::input::limits::MAX_LISTED_MISTAKES)): missing, unknown and duplicate members, wrong types,
 /// unknown values, and what this version does not have.
 pub fn decode(text: &[u8]) -> Result<JobRequest, InputErrors> {
     read(text, JOB_REQUEST.what, job_request)
 }
 
-/// Reads a study from JSON text and checks nothing but form; [`super::check::study`] looks at the rest.
+/// Reads a study from JSON text and checks nothing but form; [`crate::model::check::study`] looks at the rest.
 ///
 /// # Errors
 /// As for [`decode`].
@@ -91,6 +93,3 @@ fn study_request(input: &Input, mistakes: &mut Mistakes) -> Option<StudyRequest>
     let study = object.with_default("study", Default::default(), mistakes, study::study);
     Some(StudyRequest { model: model?, analysis: analysis?, study: study? })
 }
-
-#[cfg(test)]
-mod tests;

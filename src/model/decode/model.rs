@@ -2,8 +2,8 @@
 
 use indexmap::IndexMap;
 
-use super::reader::{Choices, Fields, Input, count, number, numbers, text};
-use crate::model::mistakes::Mistakes;
+use crate::model::decode::reader::{Choices, Fields, Input, count, number, numbers, text};
+use crate::model::input::mistakes::Mistakes;
 use crate::model::request::{
     Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Strain, Until,
 };

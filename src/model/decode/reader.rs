@@ -4,10 +4,10 @@
 
 use indexmap::IndexMap;
 
-use crate::model::json::Json;
-use crate::model::limits::MAX_NAME_BYTES;
-use crate::model::mistakes::{Mistakes, Place};
-use crate::model::names::{listed, quoted, suggestion};
+use crate::model::input::json::Json;
+use crate::model::input::limits::MAX_NAME_BYTES;
+use crate::model::input::mistakes::{Mistakes, Place};
+use crate::model::input::names::{listed, quoted, suggestion};
 
 /// A value and where it stands.
 #[derive(Debug, Clone, Copy)]

@@ -1,9 +1,9 @@
 //! Reads what a study varies.
 
-use super::analysis::METHOD;
-use super::reader::{Choices, Fields, Input, count, numbers};
-use crate::model::mistakes::Mistakes;
-use crate::model::study::{ReferenceChoice, Study};
+use crate::model::decode::analysis::METHOD;
+use crate::model::decode::reader::{Choices, Fields, Input, count, numbers};
+use crate::model::input::mistakes::Mistakes;
+use crate::model::request::study::{ReferenceChoice, Study};
 
 const STUDY: Fields = Fields {
     what: "what a study varies",

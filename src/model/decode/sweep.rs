@@ -1,8 +1,8 @@
 //! Reads the form of what a sweep replaces; the values are taken from the text as they stand.
 
-use super::reader::{Choices, Fields, Input};
-use crate::model::mistakes::Mistakes;
-use crate::model::sweep::Combine;
+use crate::model::decode::reader::{Choices, Fields, Input};
+use crate::model::input::mistakes::Mistakes;
+use crate::model::request::sweep::Combine;
 
 const SWEEP: Fields = Fields { what: "what a sweep replaces", known: &["replace", "combine"], later: &[] };
 

@@ -6,7 +6,7 @@ use proptest::option::of;
 use proptest::prelude::*;
 use proptest::strategy::Union;
 
-use super::decode;
+use crate::model::decode::decode;
 use crate::model::request::*;
 use crate::model::{InputErrors, JobRequest};
 
@@ -236,6 +236,6 @@ fn every_mistake_is_listed_with_its_place() {
 #[test]
 fn a_flood_of_mistakes_is_bounded() {
     let errors = errors(&format!("{{\"model\": {{\"elements\": [{}0]}}}}", "0,".repeat(100_000))).0;
-    assert_eq!(errors.len(), crate::model::limits::MAX_LISTED_MISTAKES + 1);
+    assert_eq!(errors.len(), crate::model::input::limits::MAX_LISTED_MISTAKES + 1);
     assert!(errors.last().unwrap().detail.contains("more mistakes are not listed"));
 }

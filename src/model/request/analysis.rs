@@ -1,6 +1,7 @@
 //! How a path is traced.
 
-use super::record::Record;
+pub use crate::branching::directions::choice::Selection;
+use crate::model::request::record::Record;
 use serde::{Deserialize, Serialize};
 
 /// How the path is traced.
@@ -177,19 +178,6 @@ pub enum LoadSign {
     /// The side to which the previous increment's displacements went (Feng, Perić and Owen 1996).
     #[default]
     PreviousIncrement,
-}
-
-/// Which direction is taken where there are several. `max_dissipation`: that of largest dissipation per arc length;
-/// `min_potential_energy`: that along which the potential energy of structure and loads falls fastest per arc length; ties of
-/// both go to the straightest; `straightest`: that whose displacement rate makes the smallest angle with the incoming one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum Selection {
-    #[default]
-    MaxDissipation,
-    MinPotentialEnergy,
-    Straightest,
 }
 
 /// Which contact changes become points of the path. Contacts without friction that touch or lift off within one step are

@@ -4,17 +4,22 @@
 //! kept as written: it fixes the numbering of unknowns and with it every bit of the result.
 //!
 //! [`structure`] is what is modelled, [`analysis`] how it is traced, [`record`] what is kept of it. Bounds that a schema can
-//! express stand with the fields, for the interface's description; [`check`](super::check) holds to them and to the others.
+//! express stand with the fields, for the interface's description; [`check`](crate::model::check) holds to them and to the others.
 
 mod analysis;
 mod record;
 mod structure;
+pub mod study;
+pub mod sweep;
+pub mod variation_summary;
 
 use serde::{Deserialize, Serialize};
 
-pub use analysis::{Analysis, ArcLength, Certificate, Events, Explore, LoadSign, Method, Mpec, Regularised, Selection};
+pub use crate::branching::directions::choice::Selection;
+pub use crate::mechanics::structure::elements::bar::Strain;
+pub use analysis::{Analysis, ArcLength, Certificate, Events, Explore, LoadSign, Method, Mpec, Regularised};
 pub use record::{ContactRange, Record, RecordedContact, RecordedContacts};
-pub use structure::{Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Strain, Until};
+pub use structure::{Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Until};
 
 /// A model and how to trace it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -1,5 +1,6 @@
 //! A structure, its obstacles, and the stages of its load.
 
+pub use crate::mechanics::structure::elements::bar::Strain;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
@@ -79,20 +80,6 @@ pub enum Element {
         #[cfg_attr(feature = "server", schema(min_items = 2, max_items = 3))]
         stiffness: Vec<Vec<f64>>,
     },
-}
-
-/// How a bar's strain is measured; `λ = L/L0`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum Strain {
-    /// `λ - 1`
-    #[default]
-    Engineering,
-    /// `(λ² - 1)/2`
-    Green,
-    /// `ln λ`
-    Log,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -1,0 +1,189 @@
+//! Factorisations that say when they cannot be trusted: dense, and sparse with thin borders. May be called by everything
+//! above; calls nothing.
+
+pub mod dense;
+pub mod sparse;
+
+use crate::resources::budget;
+pub use dense::counted::{factorisations, solves};
+pub use dense::factorisation::{Factorisation, Stiffener};
+pub use dense::inertia::{Inertia, inertia};
+pub use dense::sink::Sink;
+use nalgebra::{DMatrix, DVector};
+use std::sync::Arc;
+
+/// A factorisation of a system, as it was assembled.
+pub enum SystemFactorisation {
+    Dense(Factorisation),
+    Sparse(Arc<sparse::SparseFactorisation>),
+}
+
+impl SystemFactorisation {
+    /// Sign of the determinant: 1 or -1.
+    pub fn determinant_sign(&self) -> f64 {
+        match self {
+            Self::Dense(dense) => dense.determinant_sign(),
+            Self::Sparse(sparse) => sparse.determinant_sign(),
+        }
+    }
+
+    /// Smallest pivot over the largest one.
+    pub fn pivot_ratio(&self) -> f64 {
+        match self {
+            Self::Dense(dense) => dense.pivot_ratio(),
+            Self::Sparse(sparse) => sparse.pivot_ratio(),
+        }
+    }
+
+    /// Solves for one right-hand side, overwritten by the solution; `false` when there is no result.
+    pub fn solve(&self, right_hand_side: &mut DVector<f64>) -> bool {
+        match self {
+            Self::Dense(dense) => dense.solve(right_hand_side),
+            Self::Sparse(sparse) => sparse.solve(right_hand_side),
+        }
+    }
+
+    /// The same without looking at what the solution leaves over, for whoever does so himself.
+    pub fn solve_once(&self, right_hand_side: &mut DVector<f64>) -> bool {
+        match self {
+            Self::Dense(dense) => dense.solve(right_hand_side),
+            Self::Sparse(sparse) => sparse.solve_once(right_hand_side) || sparse.solve(right_hand_side),
+        }
+    }
+}
+
+/// A determinant as its sign and its size's natural logarithm.
+#[derive(Debug, Clone, Copy)]
+pub struct Determinant {
+    /// 0 where a pivot is.
+    pub sign: f64,
+    pub logarithm: f64,
+    /// Smallest pivot over the largest one.
+    pub pivot_ratio: f64,
+}
+
+/// The determinant of any square matrix, its rows as they are. `None` when a number is not finite.
+pub fn determinant(matrix: DMatrix<f64>) -> Option<Determinant> {
+    if !matrix.iter().all(|value| value.is_finite()) {
+        return None;
+    }
+    let size = matrix.nrows();
+    let (pivots, mut sign): (DVector<f64>, f64) = if size > dense::factorisation::MOST_AT_ONCE {
+        let lu = dense::large::LargeLu::new(matrix, DVector::zeros(0));
+        (DVector::from_iterator(size, lu.pivots()), lu.exchange_sign())
+    } else {
+        let lu = matrix.lu();
+        (lu.lu_internal().diagonal(), lu.p().determinant())
+    };
+    let mut logarithm = 0.0;
+    let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+    for pivot in pivots.iter() {
+        sign *= if *pivot == 0.0 { 0.0 } else { pivot.signum() };
+        logarithm += pivot.abs().ln();
+        least = least.min(pivot.abs());
+        most = most.max(pivot.abs());
+    }
+    let pivot_ratio = if most > 0.0 { least / most } else { 0.0 };
+    Some(Determinant { sign, logarithm, pivot_ratio })
+}
+
+/// A basis of the null space, one vector a column, by elimination with complete pivoting.
+///
+/// Rows are brought to unit size first; a pivot below `tolerance` of the first one ends the elimination, so that the
+/// rank is decided once for the whole matrix. `None` when a number is not finite.
+pub fn null_space(matrix: &DMatrix<f64>, tolerance: f64) -> Option<DMatrix<f64>> {
+    let mut work = matrix.clone();
+    for mut row in work.row_iter_mut() {
+        let size = row.amax();
+        if !size.is_finite() {
+            return None;
+        }
+        if size > 0.0 {
+            row /= size;
+        }
+    }
+    null_space_as_scaled(work, tolerance)
+}
+
+/// The same without a change of the rows' sizes: a row that is nothing but round-off counts as zero.
+pub fn null_space_as_scaled(work: DMatrix<f64>, tolerance: f64) -> Option<DMatrix<f64>> {
+    let most = work.ncols();
+    eliminated(work, tolerance, most)
+}
+
+/// So many vectors that come nearest to a null space: the elimination ends at the rank that leaves them.
+pub fn nearest_null_space(work: DMatrix<f64>, dimension: usize) -> Option<DMatrix<f64>> {
+    let most = work.ncols().checked_sub(dimension)?;
+    eliminated(work, 0.0, most)
+}
+
+/// Complete pivoting until the pivots are small or the rank is reached; a basis of the null space of what was eliminated.
+fn eliminated(mut work: DMatrix<f64>, tolerance: f64, most: usize) -> Option<DMatrix<f64>> {
+    let (rows, columns) = work.shape();
+    if !work.iter().all(|value| value.is_finite()) {
+        return None;
+    }
+    let mut order: Vec<usize> = (0..columns).collect();
+    let mut rank = 0;
+    let mut first_pivot = 0.0_f64;
+    while rank < rows.min(columns).min(most) {
+        budget::spend((rows - rank) * (columns - rank));
+        let (mut best, mut place) = (0.0_f64, (rank, rank));
+        for column in rank..columns {
+            for (row, value) in work.column(column).iter().enumerate().skip(rank) {
+                if value.abs() > best {
+                    best = value.abs();
+                    place = (row, column);
+                }
+            }
+        }
+        if rank == 0 {
+            first_pivot = best;
+        }
+        if best <= tolerance * first_pivot {
+            break;
+        }
+        work.swap_rows(rank, place.0);
+        work.swap_columns(rank, place.1);
+        order.swap(rank, place.1);
+        // Column by column, as they lie in memory; what is below the pivot holds the factors.
+        let pivot = work[(rank, rank)];
+        work.column_mut(rank).iter_mut().skip(rank + 1).for_each(|value| *value /= pivot);
+        let (before, after) = work.as_mut_slice().split_at_mut((rank + 1) * rows);
+        let factors = &before[rank * rows + rank + 1..];
+        for column in after.chunks_exact_mut(rows) {
+            let (head, rest) = column[rank..].split_at_mut(1);
+            if head[0] != 0.0 {
+                rest.iter_mut().zip(factors).for_each(|(value, factor)| *value -= factor * head[0]);
+            }
+        }
+        rank += 1;
+    }
+    let mut basis = DMatrix::zeros(columns, columns - rank);
+    for (vector, free) in (rank..columns).enumerate() {
+        budget::spend(rank * rank / 2);
+        basis[(order[free], vector)] = 1.0;
+        for row in (0..rank).rev() {
+            let mut value = work[(row, free)];
+            for column in row + 1..rank {
+                value += work[(row, column)] * basis[(order[column], vector)];
+            }
+            basis[(order[row], vector)] = -value / work[(row, row)];
+        }
+        let size = basis.column(vector).norm();
+        basis.column_mut(vector).unscale_mut(size);
+    }
+    Some(basis)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_null_space_has_the_right_dimension() {
+        let basis = null_space(&DMatrix::from_row_slice(1, 3, &[1.0, 1.0, 0.0]), 1e-12).unwrap();
+        assert_eq!(basis.ncols(), 2);
+        assert!(basis.column_iter().all(|column| (column[0] + column[1]).abs() < 1e-14));
+    }
+}

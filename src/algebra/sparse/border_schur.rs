@@ -1,0 +1,231 @@
+//! Block elimination of what is left of the borders.
+
+use crate::algebra::sparse::factors::entries::Entries;
+use crate::algebra::sparse::factors::ldl::SymmetricFactor;
+use crate::algebra::sparse::factors::static_pivot_lu::UnsymmetricFactor;
+use nalgebra::{DMatrix, Dyn, LU};
+use smallvec::smallvec;
+
+/// Factors of `K` with some diagonal entries raised.
+pub(super) enum Factor {
+    Symmetric(SymmetricFactor),
+    Unsymmetric(UnsymmetricFactor),
+}
+
+impl Factor {
+    fn solve(&self, right_hand_sides: &mut [f64], count: usize) -> bool {
+        match self {
+            Self::Symmetric(factor) => factor.solve(right_hand_sides, count),
+            Self::Unsymmetric(factor) => factor.solve(right_hand_sides, count),
+        }
+    }
+
+    fn raised(&self) -> &[(usize, f64)] {
+        match self {
+            Self::Symmetric(factor) => factor.raised(),
+            Self::Unsymmetric(factor) => factor.raised(),
+        }
+    }
+
+    /// Smallest pivot over the largest one; those of the symmetric factors are between [`crate::algebra::sparse::factors::ldl::SMALL`] and 1.
+    pub fn pivot_ratio(&self) -> f64 {
+        match self {
+            Self::Symmetric(_) => 1.0,
+            Self::Unsymmetric(factor) => factor.pivot_ratio(),
+        }
+    }
+
+    /// Sign of the determinant of the raised matrix.
+    fn determinant_sign(&self) -> f64 {
+        match self {
+            Self::Symmetric(factor) if factor.negative_pivots() % 2 == 1 => -1.0,
+            Self::Symmetric(_) => 1.0,
+            Self::Unsymmetric(factor) => factor.determinant_sign(),
+        }
+    }
+}
+
+/// `[[K, B], [C, D]]` with `K` factorised, and the raises of its pivots as borders more.
+pub(super) struct Reduced {
+    pub factor: Factor,
+    size: usize,
+    columns: Vec<Entries>,
+    rows: Vec<Entries>,
+    /// `D`, without what raises add.
+    corner: DMatrix<f64>,
+    complement: Complement,
+    /// `K⁻¹ B`, where it is small enough to be kept.
+    responses: Option<Vec<f64>>,
+    given: usize,
+}
+
+/// `D - C K⁻¹ B`, each row divided by the size of its terms, and factorised.
+struct Complement {
+    scales: Vec<f64>,
+    factors: LU<f64, Dyn, Dyn>,
+    sign: f64,
+    /// Smallest pivot, the terms being about 1.
+    pivot_ratio: f64,
+}
+
+/// The same as its terms are added up.
+struct Terms {
+    sums: DMatrix<f64>,
+    sizes: DMatrix<f64>,
+}
+
+impl Terms {
+    fn new(corner: &DMatrix<f64>, raises: usize) -> Self {
+        let given = corner.nrows();
+        let count = given + raises;
+        let mut sums = corner.clone().resize(count, count, 0.0);
+        (given..count).for_each(|raise| sums[(raise, raise)] = -1.0);
+        Self { sizes: sums.abs(), sums }
+    }
+
+    /// Takes `C` times a column of `K⁻¹ B` from a column.
+    fn take(&mut self, rows: &[Entries], column: usize, response: &[f64]) {
+        for (row, entries) in rows.iter().enumerate() {
+            for (unknown, value) in entries {
+                self.sums[(row, column)] -= value * response[*unknown];
+                self.sizes[(row, column)] += (value * response[*unknown]).abs();
+            }
+        }
+    }
+
+    fn factorised(mut self) -> Option<Complement> {
+        let scales: Vec<f64> = self.sizes.row_iter().map(|row| row.amax()).collect();
+        if !scales.iter().all(|scale| scale.is_finite() && *scale > 0.0) {
+            return None;
+        }
+        for (mut row, scale) in self.sums.row_iter_mut().zip(&scales) {
+            row /= *scale;
+        }
+        let factors = self.sums.lu();
+        let pivots = factors.lu_internal().diagonal();
+        let exchanges: f64 = factors.p().determinant();
+        let sign = pivots.iter().fold(exchanges, |sign, pivot| sign * pivot.signum());
+        let pivot_ratio = pivots.iter().fold(1.0, |least: f64, pivot| least.min(pivot.abs()));
+        pivot_ratio.is_finite().then_some(Complement { scales, factors, sign, pivot_ratio })
+    }
+}
+
+/// Right-hand sides that are solved for together.
+const TOGETHER: usize = 32;
+/// Rows that are looked at together: so many of some columns stay at hand.
+const ROWS_TOGETHER: usize = 512;
+/// Numbers of `K⁻¹ B` that are kept.
+const KEPT: usize = 4_000_000;
+
+impl Reduced {
+    /// `None` where memory does not suffice or a number is not finite.
+    pub fn new(
+        factor: Factor,
+        size: usize,
+        mut columns: Vec<Entries>,
+        mut rows: Vec<Entries>,
+        corner: DMatrix<f64>,
+    ) -> Option<Self> {
+        let given = columns.len();
+        for (unknown, raise) in factor.raised() {
+            columns.push(smallvec![(*unknown, -raise)]);
+            rows.push(smallvec![(*unknown, 1.0)]);
+        }
+        let count = columns.len();
+        let mut terms = Terms::new(&corner, factor.raised().len());
+        let mut responses = (size * count <= KEPT).then(|| Vec::with_capacity(size * count));
+        for (first, chunk) in columns.chunks(TOGETHER).enumerate() {
+            let mut block = vec![0.0; size * chunk.len()];
+            for (index, entries) in chunk.iter().enumerate() {
+                entries.iter().for_each(|(row, value)| block[index * size + row] += value);
+            }
+            if !factor.solve(&mut block, chunk.len()) {
+                return None;
+            }
+            for (index, response) in block.chunks_exact(size.max(1)).enumerate() {
+                terms.take(&rows, first * TOGETHER + index, response);
+            }
+            if let Some(responses) = &mut responses {
+                responses.extend_from_slice(&block);
+            }
+        }
+        let complement = terms.factorised()?;
+        Some(Self { factor, size, columns, rows, corner, complement, responses, given })
+    }
+
+    /// The same with another row of `[C, D]`; `None` where `K⁻¹ B` is not kept.
+    pub fn with_row(mut self, row: usize, entries: Entries, corner: &[f64]) -> Option<Self> {
+        *self.rows.get_mut(row)? = entries;
+        corner.iter().enumerate().for_each(|(column, value)| self.corner[(row, column)] = *value);
+        let mut terms = Terms::new(&self.corner, self.factor.raised().len());
+        for (column, response) in self.responses.as_ref()?.chunks_exact(self.size.max(1)).enumerate() {
+            terms.take(&self.rows, column, response);
+        }
+        self.complement = terms.factorised()?;
+        Some(self)
+    }
+
+    /// Sign of the determinant.
+    pub fn sign(&self) -> f64 {
+        let raises = if self.factor.raised().len() % 2 == 1 { -1.0 } else { 1.0 };
+        raises * self.factor.determinant_sign() * self.complement.sign
+    }
+
+    /// Smallest pivot of the complement of the borders, its terms being about 1.
+    pub fn pivot_ratio(&self) -> f64 {
+        self.complement.pivot_ratio
+    }
+
+    /// Solves for so many right-hand sides one after the other, overwriting both parts of them.
+    pub fn solve(&self, upper: &mut [f64], lower: &mut [f64], count: usize) -> bool {
+        let mut right = self.responses.is_none().then(|| upper.to_vec());
+        if !self.factor.solve(upper, count) {
+            return false;
+        }
+        let borders = self.columns.len();
+        let mut weights = DMatrix::zeros(borders, count);
+        for (number, mut weights) in weights.column_iter_mut().enumerate() {
+            let upper = &upper[number * self.size..][..self.size];
+            let lower = &mut lower[number * self.given..][..self.given];
+            weights.rows_mut(0, self.given).copy_from_slice(lower);
+            for (row, entries) in self.rows.iter().enumerate() {
+                weights[row] -= entries.iter().map(|(unknown, value)| value * upper[*unknown]).sum::<f64>();
+                weights[row] /= self.complement.scales[row];
+            }
+            // Without borders there is nothing to solve for.
+            if borders > 0 && !self.complement.factors.solve_mut(&mut weights) {
+                return false;
+            }
+            lower.copy_from_slice(&weights.as_slice()[..self.given]);
+        }
+        match (&self.responses, &mut right) {
+            (Some(responses), _) => self.take_responses(responses, &weights, upper),
+            (None, Some(right)) => {
+                for (right, weights) in right.chunks_exact_mut(self.size.max(1)).zip(weights.column_iter()) {
+                    for (entries, weight) in self.columns.iter().zip(weights.iter()) {
+                        entries.iter().for_each(|(row, value)| right[*row] -= weight * value);
+                    }
+                }
+            }
+            (None, None) => return false,
+        }
+        let Some(right) = right else { return true };
+        upper.copy_from_slice(&right);
+        self.factor.solve(upper, count)
+    }
+
+    /// Takes `K⁻¹ B` times its weights from each solution. Some rows at a time: what is read of `K⁻¹ B` serves them all.
+    fn take_responses(&self, responses: &[f64], weights: &DMatrix<f64>, upper: &mut [f64]) {
+        let size = self.size.max(1);
+        for first in (0..self.size).step_by(ROWS_TOGETHER) {
+            let rows = first..self.size.min(first + ROWS_TOGETHER);
+            for (upper, weights) in upper.chunks_exact_mut(size).zip(weights.column_iter()) {
+                let upper = &mut upper[rows.clone()];
+                for (response, weight) in responses.chunks_exact(size).zip(weights.iter()) {
+                    let response = &response[rows.clone()];
+                    upper.iter_mut().zip(response).for_each(|(value, response)| *value -= weight * response);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,228 @@
+//! A factorisation of the whole bordered system that says when it cannot be trusted.
+//!
+//! Block elimination with a symmetric matrix that may be near singular loses digits in it; here its small pivots are
+//! raised and the raises are borders, so that it does not, and iterative refinement on the whole mends the rest (after W.
+//! Govaerts, J. D. Pryce, IMA J. Numer. Anal. 13 (1993) 161, doi:10.1093/imanum/13.2.161: mixed block elimination). A
+//! solution is accepted by its backward error (W. Oettli, W. Prager, Numer. Math. 6 (1964) 405, doi:10.1007/BF01386090);
+//! where that fails, a sparse LU factorisation of the whole takes over.
+
+use crate::algebra::Inertia;
+use crate::algebra::dense::counted::count_factorisation;
+use crate::algebra::dense::sink::Sink;
+use crate::algebra::sparse::block_elimination::Blocks;
+use crate::algebra::sparse::factors::bordered::Bordered;
+use crate::algebra::sparse::factors::entries::Entries;
+use crate::algebra::sparse::factors::ldl::SymmetricFactor;
+use crate::algebra::sparse::nodal_elimination::{Elimination, Friction, Holdings};
+use crate::algebra::sparse::whole_lu::WholeLu;
+use nalgebra::DVector;
+use std::sync::{Arc, OnceLock};
+
+/// See the module.
+pub struct SparseFactorisation {
+    matrix: Bordered,
+    blocks: Option<Blocks>,
+    /// Made when first needed.
+    whole: OnceLock<Option<WholeLu>>,
+    sign: f64,
+    pivot_ratio: f64,
+}
+
+/// Backward error at which a solution is as good as rounding allows.
+const GOOD: f64 = 1e-15;
+/// Backward error up to which a solution is accepted.
+const ACCEPTED: f64 = 1e-11;
+/// Pivots of the complement above this speak for a regular matrix.
+const CERTAIN: f64 = 1e-6;
+/// Error of a solution of size 1 that is known, from which a matrix counts as singular.
+const SINGULAR: f64 = 1e-3;
+/// Refinements of one solution.
+const MOST_REFINEMENTS: usize = 6;
+
+impl SparseFactorisation {
+    /// Factorises; `None` when the matrix is singular to working precision or holds a number that is not finite.
+    pub fn new(matrix: Bordered, holdings: &Holdings) -> Option<Self> {
+        let friction = friction_of(&matrix, holdings);
+        Self::with(matrix, holdings, friction)
+    }
+
+    pub(super) fn with(matrix: Bordered, holdings: &Holdings, friction: Friction) -> Option<Self> {
+        if matrix.is_outside || !matrix.is_finite() {
+            return None;
+        }
+        count_factorisation();
+        // A complement that is nothing but rounding says nothing.
+        let blocks =
+            Blocks::new(&matrix, holdings, friction).filter(|blocks| blocks.reduced.pivot_ratio() > f64::EPSILON);
+        let (sign, pivot_ratio) =
+            blocks.as_ref().map_or((1.0, 0.0), |blocks| (blocks.determinant_sign(), blocks.reduced.pivot_ratio()));
+        let factorisation = Self { matrix, blocks, whole: OnceLock::new(), sign, pivot_ratio };
+        (pivot_ratio > CERTAIN || factorisation.finds_what_is_known()).then_some(factorisation)
+    }
+
+    /// The factorisation of the matrix with another last row, which `put_last` adds up, to the last bit: what does not
+    /// depend on that row serves on. `None` where a matrix as that is has to be factorised anew to be trusted.
+    pub fn with_last_row(mut self, put_last: impl FnOnce(&mut dyn Sink)) -> Option<Self> {
+        let last = self.matrix.lower.len().checked_sub(1)?;
+        self.matrix.lower[last].clear();
+        put_last(&mut self.matrix);
+        let row = &self.matrix.lower[last];
+        if self.matrix.is_outside || !row.iter().all(|(_, value)| value.is_finite()) {
+            return None;
+        }
+        let blocks = self.blocks.take()?.with_row(last, row)?;
+        (self.sign, self.pivot_ratio) = (blocks.determinant_sign(), blocks.reduced.pivot_ratio());
+        (self.blocks, self.whole) = (Some(blocks), OnceLock::new());
+        (self.pivot_ratio > CERTAIN).then_some(self)
+    }
+
+    /// Whether solutions that are known come out: near a singular matrix they do not, however small the residual.
+    fn finds_what_is_known(&self) -> bool {
+        let first = |row: usize| 1.0 + (row % 7) as f64 / 8.0;
+        let second = |row: usize| if row % 3 == 1 { -1.0 } else { 1.0 - (row % 11) as f64 / 16.0 };
+        let comes_out = |entry: &dyn Fn(usize) -> f64| {
+            let known = DVector::from_fn(self.matrix.size(), |row, _| entry(row));
+            let (mut values, mut sizes) = (DVector::zeros(known.len()), vec![0.0; known.len()]);
+            self.matrix.multiply(known.as_slice(), values.as_mut_slice(), &mut sizes);
+            self.solve(&mut values) && (values - known).amax() <= SINGULAR
+        };
+        comes_out(&first) && comes_out(&second)
+    }
+
+    /// Rows of the matrix.
+    pub fn size(&self) -> usize {
+        self.matrix.size()
+    }
+
+    /// Sign of the determinant: 1 or -1; certain only where [`Self::pivot_ratio`] is not 0.
+    pub fn determinant_sign(&self) -> f64 {
+        self.sign
+    }
+
+    /// Smallest pivot of the complement of the borders over the size of its terms; 0 where that was not formed.
+    pub fn pivot_ratio(&self) -> f64 {
+        self.pivot_ratio
+    }
+
+    /// How far pivots are from each other at the most, those of the complement with them: where this is small, stiff and
+    /// soft parts may have been added up.
+    pub fn spread(&self) -> f64 {
+        self.blocks.as_ref().map_or(0.0, |blocks| blocks.reduced.pivot_ratio().min(blocks.reduced.factor.pivot_ratio()))
+    }
+
+    /// Solves for one right-hand side, overwritten by the solution; `false` when no accurate solution was found.
+    pub fn solve(&self, right_hand_side: &mut DVector<f64>) -> bool {
+        let blocks = self.blocks.as_ref();
+        if let Some(solution) =
+            blocks.and_then(|blocks| self.refined(right_hand_side, |values| blocks.solve(values, 1)))
+        {
+            right_hand_side.copy_from(&solution);
+            return true;
+        }
+        let Some(whole) = self.whole.get_or_init(|| WholeLu::new(&self.matrix)) else { return false };
+        match self.refined(right_hand_side, |values| whole.solve(values)) {
+            Some(solution) => {
+                right_hand_side.copy_from(&solution);
+                true
+            }
+            None => false,
+        }
+    }
+
+    /// Solves without refinement; `false` where block elimination gives no result.
+    pub fn solve_once(&self, values: &mut DVector<f64>) -> bool {
+        self.solve_all_once(values.as_mut_slice(), 1)
+    }
+
+    /// The same for so many right-hand sides one after the other.
+    pub fn solve_all_once(&self, values: &mut [f64], count: usize) -> bool {
+        self.blocks.as_ref().is_some_and(|blocks| blocks.solve(values, count))
+    }
+
+    /// Whether another matrix has the same unknowns and as many borders.
+    pub(super) fn is_like(&self, matrix: &Bordered) -> bool {
+        Arc::ptr_eq(&self.matrix.pattern, &matrix.pattern) && self.matrix.lower.len() == matrix.lower.len()
+    }
+
+    pub(super) fn last_row(&self) -> Option<&Entries> {
+        self.matrix.lower.last()
+    }
+
+    fn refined(&self, right: &DVector<f64>, solve: impl Fn(&mut [f64]) -> bool) -> Option<DVector<f64>> {
+        let mut solution = right.clone();
+        if !solve(solution.as_mut_slice()) {
+            return None;
+        }
+        let mut best: Option<(f64, DVector<f64>)> = None;
+        let (mut product, mut sizes) = (DVector::zeros(right.len()), vec![0.0; right.len()]);
+        for _ in 0..MOST_REFINEMENTS {
+            self.matrix.multiply(solution.as_slice(), product.as_mut_slice(), &mut sizes);
+            let mut rest = right - &product;
+            let error = backward_error(rest.as_slice(), right.as_slice(), &sizes);
+            let halved = best.as_ref().is_none_or(|(least, _)| error < 0.5 * least);
+            if best.as_ref().is_none_or(|(least, _)| error < *least) {
+                best = Some((error, solution.clone()));
+            }
+            if error <= GOOD || !halved || !solve(rest.as_mut_slice()) {
+                break;
+            }
+            solution += rest;
+        }
+        best.filter(|(error, _)| *error <= ACCEPTED).map(|(_, solution)| solution)
+    }
+}
+
+/// The largest residual over the sizes of its terms.
+pub(super) fn backward_error(rest: &[f64], right: &[f64], sizes: &[f64]) -> f64 {
+    let largest = sizes.iter().fold(0.0_f64, |largest, size| largest.max(*size));
+    let mut error = 0.0_f64;
+    for ((rest, right), size) in rest.iter().zip(right).zip(sizes) {
+        if !rest.is_finite() {
+            return f64::INFINITY;
+        }
+        // A row whose terms are all but nothing is judged by the others.
+        let terms = (size + right.abs()).max(f64::EPSILON * largest);
+        if terms > 0.0 {
+            error = error.max(rest.abs() / terms);
+        }
+    }
+    error
+}
+
+/// Multiplications that a factorisation without symmetry may take where nothing speaks against it.
+const LITTLE: u64 = 1_000_000;
+/// A multiplication in it takes so many times one of the symmetric factorisation and its solves, which go by blocks.
+const SLOWER: u64 = 4;
+
+/// What is cheaper: borders for what is not symmetric, a solve each, or a factorisation without symmetry.
+fn friction_of(matrix: &Bordered, holdings: &Holdings) -> Friction {
+    let pattern = &matrix.pattern;
+    let entries = pattern.factor_entries() as u64;
+    let rubs = |(row, column): &(&usize, &usize)| {
+        let row = &matrix.lower[**row];
+        matrix.right[**column].iter().any(|(unknown, value)| !row.contains(&(*unknown, -value)))
+    };
+    let pairs = holdings.iter().flat_map(|holding| holding.rows.iter().zip(&holding.columns));
+    let solves = pairs.filter(rubs).count() as u64;
+    // The work is at least the entries squared over the unknowns: it need not be counted where that is already too much.
+    let least = entries.saturating_mul(entries) / (pattern.size() as u64).max(1);
+    let most = LITTLE.max(entries.saturating_mul(2 * solves) / SLOWER);
+    if least <= most && pattern.fill().work <= most { Friction::Folded } else { Friction::Bordered }
+}
+
+/// Numbers of eigenvalues by sign of `Zᵀ K Z`, `Z` the motions that the holdings allow. `None` where the count is not
+/// possible: `K` is not symmetric, or a holding could not be eliminated.
+pub fn held_inertia(matrix: &Bordered, holdings: &Holdings, tolerance: f64) -> Option<Inertia> {
+    if matrix.is_outside || matrix.symmetrised().lower.len() != matrix.lower.len() {
+        return None;
+    }
+    count_factorisation();
+    let (elimination, values) = Elimination::new(matrix, holdings, Friction::Bordered);
+    if elimination.nodes().len() != holdings.iter().len() {
+        return None;
+    }
+    let held: usize = elimination.nodes().iter().map(|node| node.held().len()).sum();
+    let mut inertia = SymmetricFactor::new(matrix.pattern.clone(), &values).ok()?.inertia(tolerance)?;
+    inertia.positive = inertia.positive.checked_sub(held)?;
+    Some(inertia)
+}

@@ -1,0 +1,200 @@
+//! Sparse symmetric matrices that are positive definite, by their Cholesky factorisation.
+
+use crate::algebra::dense::counted::count_solves;
+use crate::algebra::sparse::factors::panels;
+use crate::algebra::sparse::factors::symbolic::Symbolic;
+use crate::resources::budget::{self, Taken};
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::sparse::linalg::cholesky::{LdltRef, LltRef};
+use faer::sparse::{SparseColMat, Triplet};
+use faer::{Conj, MatMut, Par, Side};
+
+/// Multiplications for each entry of the factor from which it goes by dense blocks.
+const BY_BLOCKS: f64 = 40.0;
+
+/// Entries of the lower triangle, diagonal included; several at one place are added up.
+pub type Triangle = Vec<(usize, usize, f64)>;
+
+/// A factorisation of a matrix that is positive definite.
+pub struct Definite {
+    symbolic: Symbolic,
+    /// Of `L Lᵀ`; done in pieces, of `L D Lᵀ`.
+    values: Vec<f64>,
+    /// What rows and columns were multiplied by.
+    scales: Vec<f64>,
+    _held: Taken,
+}
+
+impl Definite {
+    /// Factorises the matrix with `shift` of each diagonal entry added (less than 0: with a margin, so that rounding cannot
+    /// have made it definite); `None` where it is not positive definite then, or where a diagonal entry is not above
+    /// `|shift|` times the sizes of what adds up to its row.
+    pub fn new(size: usize, lower: &Triangle, shift: f64) -> Option<Self> {
+        let (mut diagonal, mut sizes) = (vec![0.0; size], vec![0.0_f64; size]);
+        for &(row, column, value) in lower {
+            sizes[row] += value.abs();
+            if row == column {
+                diagonal[row] += value;
+            } else {
+                sizes[column] += value.abs();
+            }
+        }
+        let is_clear =
+            |(value, size): (&f64, &f64)| value.is_finite() && size.is_finite() && *value > shift.abs() * size;
+        if !diagonal.iter().zip(&sizes).all(is_clear) {
+            return None;
+        }
+        // A congruence: the diagonal becomes 1 and definiteness stays.
+        let scales: Vec<f64> = diagonal.iter().map(|value| 1.0 / value.sqrt()).collect();
+        let scaled =
+            lower.iter().map(|&(row, column, value)| Triplet::new(row, column, value * scales[row] * scales[column]));
+        let shifts = (0..size).map(|place| Triplet::new(place, place, shift));
+        let triplets: Vec<Triplet<usize, usize, f64>> = scaled.chain(shifts).collect();
+        let _triplets = budget::take::<Triplet<usize, usize, f64>>(2 * triplets.len());
+        budget::spend(triplets.len());
+        let matrix = SparseColMat::try_new_from_triplets(size, size, &triplets).ok()?;
+        let (starts, rows) = (matrix.symbolic().col_ptr(), matrix.symbolic().row_idx());
+        let whole = both_triangles(starts, rows);
+        let symbolic = Symbolic::new((starts, rows), (&whole.0, &whole.1), BY_BLOCKS)?;
+        let held = budget::take::<f64>(symbolic.cholesky.len_val() + symbolic.indices());
+        let values = vec![0.0; symbolic.cholesky.len_val()];
+        let mut definite = Self { symbolic, values, scales, _held: held };
+        definite.factorise(&matrix, &whole).then_some(definite)
+    }
+
+    /// Whether the scaled matrix, whose lower triangle is given, is positive definite.
+    fn factorise(&mut self, matrix: &SparseColMat<usize, f64>, whole: &(Vec<usize>, Vec<usize>)) -> bool {
+        if let Some((blocks, (order, place_of))) = self.symbolic.in_pieces() {
+            let each_below = |place: usize, each: &mut dyn FnMut(usize, f64)| {
+                let unknown = order[place];
+                for row in whole.1[whole.0[unknown]..whole.0[unknown + 1]].iter().filter(|row| place_of[**row] >= place)
+                {
+                    let value = matrix.get((*row).max(unknown), (*row).min(unknown));
+                    value.into_iter().for_each(|value| each(place_of[*row], *value));
+                }
+            };
+            panels::factorise(blocks, &mut self.values, &each_below, 0.0);
+            let pivots = (0..blocks.n_supernodes()).flat_map(|block| {
+                let columns = blocks.supernode_end()[block] - blocks.supernode_begin()[block];
+                let rows = columns + blocks.supernode(block).pattern().len();
+                (0..columns).map(move |column| blocks.col_ptr_for_val()[block] + column * (rows + 1))
+            });
+            return pivots.into_iter().all(|place| self.values[place] > 0.0);
+        }
+        let symbolic = &self.symbolic.cholesky;
+        budget::spend(usize::try_from(self.symbolic.fill.multiplications).unwrap_or(usize::MAX));
+        let request = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
+        let Ok(mut memory) = MemBuffer::try_new(request) else { return false };
+        let done = symbolic.factorize_numeric_llt(
+            &mut self.values,
+            matrix.as_ref(),
+            Side::Lower,
+            LltRegularization::default(),
+            Par::Seq,
+            MemStack::new(&mut memory),
+            Default::default(),
+        );
+        done.is_ok()
+    }
+
+    /// Solves for one right-hand side, overwritten by the solution.
+    pub fn solve(&self, values: &mut [f64]) {
+        count_solves(1);
+        values.iter_mut().zip(&self.scales).for_each(|(value, scale)| *value *= scale);
+        let size = values.len();
+        budget::spend(2 * self.values.len());
+        let symbolic = &self.symbolic.cholesky;
+        // A few numbers for each unknown.
+        let mut memory = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
+        let (right, stack) = (MatMut::from_column_major_slice_mut(values, size, 1), MemStack::new(&mut memory));
+        match self.symbolic.in_pieces() {
+            Some(_) => {
+                LdltRef::new(symbolic, &self.values).solve_in_place_with_conj(Conj::No, right, Par::Seq, stack);
+            }
+            None => LltRef::new(symbolic, &self.values).solve_in_place_with_conj(Conj::No, right, Par::Seq, stack),
+        }
+        values.iter_mut().zip(&self.scales).for_each(|(value, scale)| *value *= scale);
+    }
+
+    /// A vector in the direction that the matrix resists least, of largest entry 1 where rows and columns are scaled to a
+    /// diagonal of 1.
+    pub fn softest(&self) -> Vec<f64> {
+        const ROUNDS: usize = 4;
+        let mut vector: Vec<f64> = (0..self.scales.len()).map(|place| 1.0 + (place % 7) as f64 / 8.0).collect();
+        for _ in 0..ROUNDS {
+            let scaled = |(value, scale): (&f64, &f64)| (value / scale).abs();
+            let largest = vector.iter().zip(&self.scales).map(scaled).fold(f64::MIN_POSITIVE, f64::max);
+            // The right-hand side of the scaled matrix is the scaled vector.
+            vector.iter_mut().zip(&self.scales).for_each(|(value, scale)| *value /= largest * scale * scale);
+            self.solve(&mut vector);
+        }
+        let scaled = |(value, scale): (&f64, &f64)| (value / scale).abs();
+        let largest = vector.iter().zip(&self.scales).map(scaled).fold(f64::MIN_POSITIVE, f64::max);
+        vector.iter_mut().for_each(|value| *value /= largest);
+        vector
+    }
+}
+
+/// The pattern of a lower triangle, by columns, with its mirror image.
+fn both_triangles(starts: &[usize], rows: &[usize]) -> (Vec<usize>, Vec<usize>) {
+    let size = starts.len().saturating_sub(1);
+    let each =
+        || (0..size).flat_map(|column| rows[starts[column]..starts[column + 1]].iter().map(move |row| (*row, column)));
+    let mut whole = vec![0; size + 1];
+    for (row, column) in each() {
+        whole[column + 1] += 1;
+        whole[row + 1] += usize::from(row != column);
+    }
+    (0..size).for_each(|column| whole[column + 1] += whole[column]);
+    let (mut next, mut all) = (whole.clone(), vec![0; whole[size]]);
+    let mut put = |row: usize, column: usize| {
+        all[next[column]] = row;
+        next[column] += 1;
+    };
+    for (row, column) in each() {
+        put(row, column);
+        if row != column {
+            put(column, row);
+        }
+    }
+    (whole, all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Definite, Triangle};
+
+    fn is_positive_definite(size: usize, lower: &Triangle, margin: f64) -> bool {
+        Definite::new(size, lower, -margin).is_some()
+    }
+
+    /// A chain of springs 1, held at one end by a spring of its own.
+    fn chain(size: usize, held: f64) -> Vec<(usize, usize, f64)> {
+        let mut lower = vec![(0, 0, held)];
+        for place in 1..size {
+            lower.extend([(place - 1, place - 1, 1.0), (place, place, 1.0), (place, place - 1, -1.0)]);
+        }
+        lower
+    }
+
+    #[test]
+    fn a_long_chain_is_definite_while_something_holds_it() {
+        assert!(is_positive_definite(10_000, &chain(10_000, 1.0), 1e-12));
+        assert!(!is_positive_definite(10_000, &chain(10_000, 0.0), 1e-12));
+        assert!(!is_positive_definite(50, &chain(50, -1e-3), 1e-12));
+        assert!(!is_positive_definite(2, &vec![(0, 0, 1.0), (1, 1, f64::NAN)], 1e-12));
+        assert!(is_positive_definite(0, &Vec::new(), 1e-12));
+    }
+
+    #[test]
+    fn a_chain_that_nothing_holds_moves_as_one() {
+        let free = Definite::new(50, &chain(50, 0.0), 1e-12).expect("definite with the shift");
+        let motion = free.softest();
+        assert!(motion.iter().all(|value| (value / motion[0] - 1.0).abs() < 1e-9), "{motion:?}");
+        let held = Definite::new(3, &chain(3, 2.0), 0.0).expect("definite");
+        let mut values = vec![0.0, 0.0, 1.0];
+        held.solve(&mut values);
+        assert!(values.iter().zip([0.5, 1.5, 2.5]).all(|(value, exact)| (value - exact).abs() < 1e-14), "{values:?}");
+    }
+}

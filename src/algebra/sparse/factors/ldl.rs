@@ -1,0 +1,274 @@
+//! `K = L D Lᵀ` of a symmetric sparse matrix, without exchanges.
+//!
+//! Rows and columns are brought to entries of about 1 first (by powers of two, so that nothing is rounded). A pivot that
+//! is lost in cancellation, as at a limit point or where only a contact holds a node, is raised by 1: what is factorised is
+//! `K + Σ θ e eᵀ`, and the caller takes the raises back by borders `[[K + θ e eᵀ, -θ e], [eᵀ, -1]]`. So the factors are
+//! never near singular, however many eigenvalues of `K` are zero.
+
+use crate::algebra::dense::inertia::{Inertia, inertia};
+use crate::algebra::sparse::factors::panels;
+use crate::algebra::sparse::factors::pattern::Pattern;
+use crate::resources::budget::{self, Taken};
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::ldlt::factor::{LdltError, LdltRegularization};
+use faer::sparse::linalg::cholesky::{LdltRef, SymbolicCholeskyRaw};
+use faer::{Conj, MatMut, Par, Side};
+use nalgebra::{DMatrix, DVector};
+use std::sync::Arc;
+
+/// Why a matrix was not factorised.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Failure {
+    /// A number is not finite, or became so.
+    NotFinite,
+    /// More pivots had to be raised than is worth it.
+    TooManySmallPivots,
+    OutOfMemory,
+}
+
+/// A factorisation of `K` with some diagonal entries raised.
+pub struct SymmetricFactor {
+    pattern: Arc<Pattern>,
+    values: Vec<f64>,
+    /// What rows and columns were multiplied by: powers of two.
+    scales: Vec<f64>,
+    /// Unknown and raise `θ`, in the units of the matrix.
+    raised: Vec<(usize, f64)>,
+    _held: Taken,
+}
+
+/// Pivots below this are raised, entries of the row being about 1.
+pub(crate) const SMALL: f64 = 1e-4;
+/// Pivots below this are taken as this on the way, so that the rest can be seen.
+const ZERO: f64 = 1e-15;
+/// Raises beyond which there is something else wrong.
+const MOST_RAISED: usize = 256;
+
+impl SymmetricFactor {
+    /// Factorises; `values` as the pattern has them. Only one triangle is read.
+    pub fn new(pattern: Arc<Pattern>, values: &[f64]) -> Result<Self, Failure> {
+        let size = pattern.size();
+        if !values.iter().all(|value| value.is_finite()) {
+            return Err(Failure::NotFinite);
+        }
+        let scales = scales(&pattern, values);
+        let mut scaled = vec![0.0; values.len()];
+        for column in 0..size {
+            for place in pattern.column(column) {
+                scaled[place] = values[place] * scales[pattern.rows[place]] * scales[column];
+            }
+        }
+        let held = budget::take::<f64>(pattern.factor_entries() + values.len() + size);
+        let mut factor =
+            Self { values: vec![0.0; pattern.factor_entries()], pattern, scales, raised: Vec::new(), _held: held };
+        factor.raise(factor.last(), &mut scaled);
+        loop {
+            factor.factorise(&scaled)?;
+            let mut small = Vec::new();
+            factor.each_pivot(&mut |unknown, pivot| {
+                if pivot.abs() < SMALL || !pivot.is_finite() {
+                    small.push((unknown, pivot));
+                }
+            });
+            if small.iter().any(|(_, pivot)| !pivot.is_finite()) {
+                return Err(Failure::NotFinite);
+            }
+            if small.is_empty() {
+                return Ok(factor);
+            }
+            if factor.raised.len() + small.len() > MOST_RAISED {
+                return Err(Failure::TooManySmallPivots);
+            }
+            small.into_iter().for_each(|(unknown, _)| factor.raise(Some(unknown), &mut scaled));
+        }
+    }
+
+    /// The unknown that is eliminated last. What is lost is nearly always lost there: it is raised at once, which costs one
+    /// solve more and spares a second factorisation.
+    fn last(&self) -> Option<usize> {
+        let last = self.pattern.size().checked_sub(1)?;
+        Some(self.pattern.symbolic.cholesky.perm().map_or(last, |perm| perm.arrays().0[last]))
+    }
+
+    fn raise(&mut self, unknown: Option<usize>, scaled: &mut [f64]) {
+        let Some(unknown) = unknown else { return };
+        let scale = self.scales[unknown];
+        self.raised.push((unknown, 1.0 / (scale * scale)));
+        if let Some(place) = self.pattern.place(unknown, unknown) {
+            scaled[place] += 1.0;
+        }
+    }
+
+    fn factorise(&mut self, scaled: &[f64]) -> Result<(), Failure> {
+        let symbolic = &self.pattern.symbolic;
+        if let Some((blocks, (order, place_of))) = symbolic.in_pieces() {
+            let pattern = &self.pattern;
+            let each_below = |place: usize, each: &mut dyn FnMut(usize, f64)| {
+                for entry in pattern.column(order[place]) {
+                    let row = place_of[pattern.rows[entry]];
+                    if row >= place {
+                        each(row, scaled[entry]);
+                    }
+                }
+            };
+            panels::factorise(blocks, &mut self.values, &each_below, ZERO);
+            return Ok(());
+        }
+        budget::spend(usize::try_from(symbolic.fill.multiplications).unwrap_or(usize::MAX));
+        let symbolic = &symbolic.cholesky;
+        let request = symbolic.factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Default::default());
+        let mut memory = MemBuffer::try_new(request).map_err(|_| Failure::OutOfMemory)?;
+        let regularization = LdltRegularization {
+            dynamic_regularization_signs: None,
+            dynamic_regularization_delta: ZERO,
+            dynamic_regularization_epsilon: ZERO,
+        };
+        let done = symbolic.factorize_numeric_ldlt(
+            &mut self.values,
+            self.pattern.view(scaled),
+            Side::Lower,
+            regularization,
+            Par::Seq,
+            MemStack::new(&mut memory),
+            Default::default(),
+        );
+        match done {
+            Ok(_) => Ok(()),
+            Err(LdltError::ZeroPivot { .. }) => Err(Failure::NotFinite),
+        }
+    }
+
+    /// Calls with each unknown and its pivot in `D`, of the scaled matrix.
+    fn each_pivot(&self, each: &mut dyn FnMut(usize, f64)) {
+        let order = self.pattern.symbolic.cholesky.perm().map(|perm| perm.arrays().0);
+        let unknown = |place: usize| order.map_or(place, |order| order[place]);
+        match self.pattern.symbolic.cholesky.raw() {
+            SymbolicCholeskyRaw::Simplicial(symbolic) => {
+                for (place, start) in symbolic.col_ptr().iter().take(self.pattern.size()).enumerate() {
+                    each(unknown(place), self.values[*start]);
+                }
+            }
+            SymbolicCholeskyRaw::Supernodal(symbolic) => {
+                for node in 0..symbolic.n_supernodes() {
+                    let (begin, end) = (symbolic.supernode_begin()[node], symbolic.supernode_end()[node]);
+                    let rows = end - begin + symbolic.supernode(node).pattern().len();
+                    let first = symbolic.col_ptr_for_val()[node];
+                    for column in 0..end - begin {
+                        each(unknown(begin + column), self.values[first + column * rows + column]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Unknowns whose diagonal entry was raised, and by how much.
+    pub fn raised(&self) -> &[(usize, f64)] {
+        &self.raised
+    }
+
+    /// Negative pivots: eigenvalues below zero of the raised matrix (Sylvester's law).
+    pub fn negative_pivots(&self) -> usize {
+        let mut negative = 0;
+        self.each_pivot(&mut |_, pivot| negative += usize::from(pivot < 0.0));
+        negative
+    }
+
+    /// Numbers of eigenvalues of `K` itself by sign.
+    ///
+    /// `[[K + EΘEᵀ, E], [Eᵀ, 1/Θ]]` has the inertia of `K` and as many positive eigenvalues more as there are raises, and
+    /// that of the raised matrix with that of `1/Θ - Eᵀ (K + EΘEᵀ)⁻¹ E` (E. V. Haynsworth, Linear Algebra Appl. 1 (1968)
+    /// 73, doi:10.1016/0024-3795(68)90050-5). Eigenvalues of the latter up to `tolerance` relative count as zero.
+    pub fn inertia(&self, tolerance: f64) -> Option<Inertia> {
+        let (size, count) = (self.pattern.size(), self.raised.len());
+        let negative = self.negative_pivots();
+        let mut whole = Inertia { negative, zero: 0, positive: size - negative };
+        if count > 0 {
+            let own = inertia(self.complement()?, tolerance)?;
+            whole.negative += own.negative;
+            whole.zero += own.zero;
+            whole.positive = (whole.positive + own.positive).checked_sub(count)?;
+        }
+        Some(whole)
+    }
+
+    /// `1 - √Θ Eᵀ (K + EΘEᵀ)⁻¹ E √Θ`
+    fn complement(&self) -> Option<DMatrix<f64>> {
+        let mut complement = DMatrix::identity(self.raised.len(), self.raised.len());
+        for (column, (unknown, raise)) in self.raised.iter().enumerate() {
+            let mut response = vec![0.0; self.pattern.size()];
+            response[*unknown] = raise.sqrt();
+            if !self.solve(&mut response, 1) {
+                return None;
+            }
+            for (row, (other, raise)) in self.raised.iter().enumerate() {
+                complement[(row, column)] -= response[*other] * raise.sqrt();
+            }
+        }
+        Some(complement)
+    }
+
+    /// Vectors that `K` turns to nothing, each of unit size: `(K + EΘEᵀ)⁻¹ E √Θ w` for every `w` that the complement turns
+    /// to nothing within `tolerance`.
+    pub fn null_vectors(&self, tolerance: f64) -> Option<Vec<DVector<f64>>> {
+        let complement = self.complement()?;
+        let (size, count) = (self.pattern.size(), self.raised.len());
+        let eigen = complement.symmetric_eigen();
+        let mut vectors = Vec::new();
+        for index in (0..count).filter(|index| eigen.eigenvalues[*index].abs() <= tolerance) {
+            let mut vector = DVector::zeros(size);
+            for ((unknown, raise), weight) in self.raised.iter().zip(eigen.eigenvectors.column(index).iter()) {
+                vector[*unknown] += raise.sqrt() * weight;
+            }
+            if !self.solve(vector.as_mut_slice(), 1) {
+                return None;
+            }
+            vectors.extend(vector.try_normalize(0.0));
+        }
+        Some(vectors)
+    }
+
+    /// Solves with the raised matrix for right-hand sides one after the other, overwritten; `false` when memory does not
+    /// suffice or a result is not finite.
+    pub fn solve(&self, right_hand_sides: &mut [f64], count: usize) -> bool {
+        let size = self.pattern.size();
+        if size == 0 || count == 0 {
+            return true;
+        }
+        let scale = |values: &mut [f64]| {
+            for column in values.chunks_exact_mut(size) {
+                column.iter_mut().zip(&self.scales).for_each(|(value, scale)| *value *= scale);
+            }
+        };
+        scale(right_hand_sides);
+        budget::spend(2 * self.values.len() * count);
+        let symbolic = &self.pattern.symbolic.cholesky;
+        let Ok(mut memory) = MemBuffer::try_new(symbolic.solve_in_place_scratch::<f64>(count, Par::Seq)) else {
+            return false;
+        };
+        LdltRef::<'_, usize, f64>::new(symbolic, &self.values).solve_in_place_with_conj(
+            Conj::No,
+            MatMut::from_column_major_slice_mut(right_hand_sides, size, count),
+            Par::Seq,
+            MemStack::new(&mut memory),
+        );
+        scale(right_hand_sides);
+        right_hand_sides.iter().all(|value| value.is_finite())
+    }
+}
+
+/// Powers of two near `1/√(largest entry of the row)`; a row without entries is taken as the stiffest.
+pub(crate) fn scales(pattern: &Pattern, values: &[f64]) -> Vec<f64> {
+    let mut largest = vec![0.0_f64; pattern.size()];
+    for (row, value) in pattern.rows.iter().zip(values) {
+        largest[*row] = largest[*row].max(value.abs());
+    }
+    let most = largest.iter().fold(0.0_f64, |most, value| most.max(*value));
+    let usual = if most > 0.0 { most } else { 1.0 };
+    // Half the binary exponent, taken off the number itself.
+    let exponent = |value: f64| ((value.to_bits() >> 52) & 0x7ff) as i64 - 1023;
+    let power = |value: &f64| {
+        let value = if *value > 0.0 { *value } else { usual };
+        f64::from_bits(((1023 - exponent(value).div_euclid(2)) as u64) << 52)
+    };
+    largest.iter().map(power).collect()
+}

@@ -1,0 +1,102 @@
+//! Where a symmetric sparse matrix may have entries, and the order in which it is eliminated.
+
+use crate::algebra::sparse::factors::lu_pattern::LuPattern;
+use crate::algebra::sparse::factors::symbolic::Symbolic;
+use crate::algebra::sparse::nodal::last_nodes::LastNodes;
+use crate::resources::budget::{self, Taken};
+use faer::sparse::SymbolicSparseColMatRef;
+use std::sync::OnceLock;
+
+/// Work of a factorisation by entry of the factor from which it goes by dense blocks: those of a plane lattice of 10,000
+/// unknowns take two thirds of the time so.
+const BY_BLOCKS: f64 = 10.0;
+
+/// The entries of a symmetric matrix, both triangles, column by column; with the symbolic factorisation.
+#[derive(Debug)]
+pub struct Pattern {
+    size: usize,
+    /// First entry of each column, and the number of entries.
+    pub(crate) starts: Vec<usize>,
+    pub(crate) rows: Vec<usize>,
+    /// Place of the transposed entry.
+    pub(crate) mirrors: Vec<usize>,
+    pub(crate) symbolic: Symbolic,
+    /// Made when first needed.
+    fill: OnceLock<LuPattern>,
+    pub(crate) last_nodes: LastNodes,
+    _held: Taken,
+}
+
+impl Pattern {
+    /// A pattern with entries on the diagonal and at the given `(row, column)` and their transposes, in any order, repeated
+    /// or not. `None` where a place is outside or the system has no memory. Where the factors would be too large, the
+    /// budget of the solve under way ends it.
+    pub fn new(size: usize, entries: impl IntoIterator<Item = (usize, usize)>) -> Option<Self> {
+        let mut places: Vec<(usize, usize)> = (0..size).map(|index| (index, index)).collect();
+        for (row, column) in entries {
+            if row >= size || column >= size {
+                return None;
+            }
+            places.push((column, row));
+            places.push((row, column));
+        }
+        let sorting = budget::take::<(usize, usize)>(places.capacity());
+        budget::spend(places.len());
+        places.sort_unstable();
+        places.dedup();
+        let mut starts = vec![0; size + 1];
+        places.iter().for_each(|(column, _)| starts[column + 1] += 1);
+        (0..size).for_each(|column| starts[column + 1] += starts[column]);
+        let rows: Vec<usize> = places.iter().map(|(_, row)| *row).collect();
+        // The entries are sorted by column, then row: taken so, the transposed ones come in order in each column.
+        let mut next = starts.clone();
+        let mirrors = rows
+            .iter()
+            .map(|row| {
+                next[*row] += 1;
+                next[*row] - 1
+            })
+            .collect();
+        drop((places, sorting));
+        let symbolic = Symbolic::new((&starts, &rows), (&starts, &rows), BY_BLOCKS)?;
+        let held = budget::take::<usize>(size + 2 * rows.len() + symbolic.indices());
+        let (fill, last_nodes) = (OnceLock::new(), LastNodes::default());
+        Some(Self { size, starts, rows, mirrors, symbolic, fill, last_nodes, _held: held })
+    }
+
+    /// Rows of the matrix.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Number of entries, both triangles.
+    pub fn entries(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Number of entries of the factor.
+    pub fn factor_entries(&self) -> usize {
+        self.symbolic.cholesky.len_val()
+    }
+
+    /// Place of an entry among all; `None` where there is none.
+    pub fn place(&self, row: usize, column: usize) -> Option<usize> {
+        let start = *self.starts.get(column)?;
+        let rows = self.rows.get(start..*self.starts.get(column + 1)?)?;
+        rows.binary_search(&row).ok().map(|index| start + index)
+    }
+
+    /// Where unsymmetric factors have entries.
+    pub(crate) fn fill(&self) -> &LuPattern {
+        self.fill.get_or_init(|| LuPattern::new(&self.starts, &self.rows, &self.symbolic))
+    }
+
+    pub(crate) fn column(&self, column: usize) -> std::ops::Range<usize> {
+        self.starts[column]..self.starts[column + 1]
+    }
+
+    pub(crate) fn view<'a>(&'a self, values: &'a [f64]) -> faer::sparse::SparseColMatRef<'a, usize, f64> {
+        let symbolic = SymbolicSparseColMatRef::new_checked(self.size, self.size, &self.starts, None, &self.rows);
+        faer::sparse::SparseColMatRef::new(symbolic, values)
+    }
+}

@@ -1,0 +1,139 @@
+//! `K = L U` of a sparse matrix with a symmetric pattern, without exchanges.
+//!
+//! Friction makes a tangent unsymmetric where contacts slip; its pattern stays. The order is that of the symmetric
+//! factorisation, rows and columns are brought to entries of about 1, and a pivot that is lost in cancellation is raised by
+//! 1 as there; what is lost without exchanges is mended by refinement, and seen in the residual where it is not (X. S. Li,
+//! J. W. Demmel, ACM Trans. Math. Softw. 29 (2003) 110, doi:10.1145/779359.779361: static pivoting).
+
+use crate::algebra::sparse::factors::ldl::{SMALL, scales};
+use crate::algebra::sparse::factors::pattern::Pattern;
+use crate::resources::budget::{self, Taken};
+use std::sync::Arc;
+
+/// A factorisation of `K` with some diagonal entries raised.
+pub(crate) struct UnsymmetricFactor {
+    pattern: Arc<Pattern>,
+    lower: Vec<f64>,
+    upper: Vec<f64>,
+    pivots: Vec<f64>,
+    /// What rows and columns were multiplied by: powers of two.
+    scales: Vec<f64>,
+    /// Unknown and raise, in the units of the matrix.
+    raised: Vec<(usize, f64)>,
+    _held: Taken,
+}
+
+/// Raises beyond which there is something else wrong.
+const MOST_RAISED: usize = 64;
+/// Multiplications between two looks at whether the solve goes on.
+const AT_ONCE: usize = 1_000_000;
+
+impl UnsymmetricFactor {
+    /// Factorises; `values` as the pattern has them. `None` where a number is not finite or too many pivots are lost.
+    pub fn new(pattern: Arc<Pattern>, values: &[f64]) -> Option<Self> {
+        let size = pattern.size();
+        let scales = scales(&pattern, values);
+        let fill = pattern.fill();
+        let held = budget::take::<f64>(fill.lower_rows.len() + fill.upper_rows.len() + 2 * size);
+        let mut factor = Self {
+            lower: vec![0.0; fill.lower_rows.len()],
+            upper: vec![0.0; fill.upper_rows.len()],
+            pivots: vec![0.0; size],
+            raised: Vec::new(),
+            scales,
+            pattern: pattern.clone(),
+            _held: held,
+        };
+        let mut work = vec![0.0; size];
+        // Multiplications since the last look at the flag, roughly.
+        let mut ahead = 0;
+        for column in 0..size {
+            let unknown = fill.order[column];
+            for entry in pattern.column(unknown) {
+                let row = pattern.rows[entry];
+                work[fill.place_of[row]] = values[entry] * factor.scales[row] * factor.scales[unknown];
+            }
+            ahead += fill.upper(column).len() * (1 + fill.lower(column).len());
+            if ahead > AT_ONCE {
+                budget::spend(std::mem::take(&mut ahead));
+            }
+            for entry in fill.upper(column) {
+                let row = fill.upper_rows[entry];
+                let value = std::mem::take(&mut work[row]);
+                factor.upper[entry] = value;
+                if value != 0.0 {
+                    for below in fill.lower(row) {
+                        work[fill.lower_rows[below]] -= factor.lower[below] * value;
+                    }
+                }
+            }
+            let mut pivot = std::mem::take(&mut work[column]);
+            if !pivot.is_finite() {
+                return None;
+            }
+            if pivot.abs() < SMALL {
+                if factor.raised.len() == MOST_RAISED {
+                    return None;
+                }
+                pivot += 1.0;
+                factor.raised.push((unknown, 1.0 / (factor.scales[unknown] * factor.scales[unknown])));
+            }
+            factor.pivots[column] = pivot;
+            for below in fill.lower(column) {
+                factor.lower[below] = std::mem::take(&mut work[fill.lower_rows[below]]) / pivot;
+            }
+        }
+        Some(factor)
+    }
+
+    /// Unknowns whose diagonal entry was raised, and by how much.
+    pub fn raised(&self) -> &[(usize, f64)] {
+        &self.raised
+    }
+
+    /// Sign of the determinant of the raised matrix.
+    pub fn determinant_sign(&self) -> f64 {
+        self.pivots.iter().fold(1.0, |sign, pivot| sign * pivot.signum())
+    }
+
+    /// Smallest pivot over the largest one.
+    pub fn pivot_ratio(&self) -> f64 {
+        let (least, most) =
+            self.pivots.iter().fold((f64::INFINITY, 0.0_f64), |(l, m), pivot| (l.min(pivot.abs()), m.max(pivot.abs())));
+        if most > 0.0 { least / most } else { 1.0 }
+    }
+
+    /// Solves with the raised matrix for right-hand sides one after the other, overwritten; `false` when a result is not
+    /// finite.
+    pub fn solve(&self, right_hand_sides: &mut [f64], count: usize) -> bool {
+        let size = self.pattern.size();
+        if size == 0 || count == 0 {
+            return true;
+        }
+        let fill = self.pattern.fill();
+        let mut work = vec![0.0; size];
+        for values in right_hand_sides.chunks_exact_mut(size) {
+            budget::spend(self.lower.len() + self.upper.len());
+            for (place, unknown) in work.iter_mut().zip(&fill.order) {
+                *place = values[*unknown] * self.scales[*unknown];
+            }
+            for column in 0..size {
+                let value = work[column];
+                if value != 0.0 {
+                    fill.lower(column).for_each(|entry| work[fill.lower_rows[entry]] -= self.lower[entry] * value);
+                }
+            }
+            for column in (0..size).rev() {
+                let value = work[column] / self.pivots[column];
+                work[column] = value;
+                if value != 0.0 {
+                    fill.upper(column).for_each(|entry| work[fill.upper_rows[entry]] -= self.upper[entry] * value);
+                }
+            }
+            for (place, unknown) in work.iter().zip(&fill.order) {
+                values[*unknown] = place * self.scales[*unknown];
+            }
+        }
+        right_hand_sides.iter().all(|value| value.is_finite())
+    }
+}

@@ -1,0 +1,59 @@
+//! What holds the nodes of a matrix.
+
+use smallvec::SmallVec;
+use std::sync::Arc;
+
+/// Border rows that hold unknowns of one node, and the border columns with its reactions, one for each row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Holding {
+    /// Unknowns of the node: at most three.
+    pub unknowns: Places,
+    pub rows: Places,
+    pub columns: Places,
+}
+
+/// Some numbers of rows, columns or unknowns.
+pub type Places = SmallVec<[usize; 3]>;
+
+impl Holding {
+    /// Of a node that nothing holds yet.
+    pub fn new(unknowns: impl IntoIterator<Item = usize>) -> Self {
+        Self { unknowns: unknowns.into_iter().collect(), rows: Places::new(), columns: Places::new() }
+    }
+}
+
+/// All holdings of a matrix; copies share them.
+#[derive(Default, Clone, PartialEq)]
+pub struct Holdings {
+    list: Arc<Vec<Holding>>,
+}
+
+impl Holdings {
+    pub fn new(list: Vec<Holding>) -> Self {
+        Self { list: Arc::new(list) }
+    }
+
+    /// Those of the transposed matrix.
+    #[must_use]
+    pub fn transposed(&self) -> Self {
+        let turned = |holding: &Holding| Holding {
+            unknowns: holding.unknowns.clone(),
+            rows: holding.columns.clone(),
+            columns: holding.rows.clone(),
+        };
+        Self::new(self.list.iter().map(turned).collect())
+    }
+
+    pub fn iter(&self) -> std::slice::Iter<'_, Holding> {
+        self.list.iter()
+    }
+}
+
+/// What becomes of the reactions of contacts with friction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Friction {
+    /// They stay borders.
+    Bordered,
+    /// They are eliminated, and the matrix is unsymmetric.
+    Folded,
+}

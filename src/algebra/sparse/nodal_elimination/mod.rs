@@ -1,0 +1,165 @@
+//! Nodes that border rows hold, eliminated where they are.
+//!
+//! A closed contact adds rows `C u_i + d L = g` at its node `i` and reactions `r` in the node's own equations, so that its
+//! saddle point needs no border: with `Q` orthogonal, `y = Qᵀ u_i = (y_H, y_T)` and `C Q = [M, 0]`,
+//!
+//! ```text
+//! y_H = M⁻¹ (g - d L),      R r = f_H - (K y)_H - ...,      QᵀB = [R; F]
+//! ```
+//!
+//! Rows and columns `H` leave the matrix (a one stays on the diagonal), whose pattern remains. Without friction `F = 0`
+//! and `r` follows in the end. With friction (`F != 0`) there are two ways: `r` stays a border, and the equations `H` are
+//! its rows, so that the matrix stays symmetric; or the equations `H` times `F R⁻¹` are taken from the equations `T`, which
+//! makes it unsymmetric, and `r` follows in the end, too.
+
+pub(crate) mod making;
+pub(crate) mod nodes;
+
+pub(super) use crate::algebra::sparse::nodal::held_node::{Coupling, HeldNode, Matrices, gathered, times};
+pub(super) use crate::algebra::sparse::nodal::holdings::Friction;
+pub use crate::algebra::sparse::nodal::holdings::{Holding, Holdings, Places};
+
+use crate::algebra::sparse::factors::bordered::Bordered;
+use crate::algebra::sparse::factors::entries::Entries;
+use crate::algebra::sparse::nodal::last_nodes::Nodes;
+use smallvec::SmallVec;
+use std::sync::Arc;
+
+/// What is left of a matrix, and what was taken.
+pub(super) struct Elimination {
+    nodes: Arc<Nodes>,
+    /// Where the columns and the rows `H` of all nodes begin.
+    columns_at: Vec<u32>,
+    rows_at: Vec<u32>,
+    /// Entries of all rows and columns `H`.
+    entries: Vec<(usize, f64)>,
+}
+
+impl Elimination {
+    /// Eliminates; with the matrix that is left. A holding that cannot be eliminated so stays in the borders.
+    pub fn new(matrix: &Bordered, holdings: &Holdings, friction: Friction) -> (Self, Vec<f64>) {
+        let all = Nodes::of(matrix, holdings, friction);
+        let (nodes, numbers) = (&all.nodes, &all.numbers);
+        let mut values = matrix.values.clone();
+        nodes.iter().for_each(|node| node.rotate_matrix(matrix, numbers, &mut values));
+        let held = nodes.last().map_or(0, |node| node.before as usize + node.held_count());
+        let most = nodes.iter().flat_map(HeldNode::held).map(|unknown| matrix.pattern.column(unknown).len());
+        let mut entries = Vec::with_capacity(2 * most.sum::<usize>());
+        let [mut rows_at, mut columns_at] = [(); 2].map(|()| Vec::with_capacity(held + 1));
+        // All rows and columns are taken before any is cleared: those of neighbours have entries in each other's.
+        nodes.iter().for_each(|node| node.take(matrix, &values, true, &mut entries, &mut rows_at));
+        rows_at.push(entries.len() as u32);
+        nodes.iter().for_each(|node| node.fold(matrix, numbers, &mut values));
+        nodes.iter().for_each(|node| node.take(matrix, &values, false, &mut entries, &mut columns_at));
+        columns_at.push(entries.len() as u32);
+        nodes.iter().for_each(|node| node.clear(matrix, &mut values));
+        (Self { nodes: all, columns_at, rows_at, entries }, values)
+    }
+
+    pub fn nodes(&self) -> &[HeldNode] {
+        &self.nodes.nodes
+    }
+
+    pub fn couplings(&self) -> &[Coupling] {
+        &self.nodes.couplings
+    }
+
+    /// The small matrices of a node.
+    pub fn matrices(&self, node: &HeldNode) -> Matrices<'_> {
+        node.matrices(&self.nodes.numbers)
+    }
+
+    /// A column `H` of a node.
+    pub fn stiffness(&self, node: &HeldNode, index: usize) -> &[(usize, f64)] {
+        self.taken(&self.columns_at, node, index)
+    }
+
+    /// The column `H` of a held unknown.
+    pub fn stiffness_at(&self, unknown: usize) -> Option<&[(usize, f64)]> {
+        let (node, local) = self.nodes.place_of[unknown]?;
+        let node = &self.nodes()[node as usize];
+        ((local as usize) < node.held_count()).then(|| self.stiffness(node, local as usize))
+    }
+
+    /// A row `H` of a node.
+    pub fn equilibrium(&self, node: &HeldNode, index: usize) -> &[(usize, f64)] {
+        self.taken(&self.rows_at, node, index)
+    }
+
+    fn taken(&self, starts: &[u32], node: &HeldNode, index: usize) -> &[(usize, f64)] {
+        let place = node.before as usize + index;
+        &self.entries[starts[place] as usize..starts[place + 1] as usize]
+    }
+
+    /// Whether an unknown of the rotated system is held.
+    pub fn is_held(&self, unknown: usize) -> bool {
+        self.nodes.place_of[unknown]
+            .is_some_and(|(node, local)| (local as usize) < self.nodes()[node as usize].held_count())
+    }
+
+    /// Entries of a row or a column over the rotated unknowns: those that are not held, and those that are.
+    pub fn rotated(&self, entries: &[(usize, f64)]) -> (Entries, Entries) {
+        let (mut free, mut held) = (Entries::with_capacity(entries.len()), Entries::new());
+        let mut at_nodes: SmallVec<[(u32, u32, f64); 8]> = SmallVec::new();
+        for (unknown, value) in entries {
+            match self.nodes.place_of[*unknown] {
+                None => free.push((*unknown, *value)),
+                Some((node, local)) => at_nodes.push((node, local, *value)),
+            }
+        }
+        at_nodes.sort_by_key(|(node, local, _)| (*node, *local));
+        for group in at_nodes.chunk_by(|a, b| a.0 == b.0) {
+            let node = &self.nodes()[group[0].0 as usize];
+            let (rotation, count) = (self.matrices(node).rotation, node.count());
+            let mut put = |place: usize, value: f64| {
+                if value != 0.0 {
+                    if place < node.held_count() { &mut held } else { &mut free }.push((node.unknown(place), value));
+                }
+            };
+            if node.turns {
+                for (place, column) in rotation.chunks_exact(count).enumerate() {
+                    put(place, group.iter().map(|(_, local, value)| column[*local as usize] * value).sum());
+                }
+            } else {
+                for same in group.chunk_by(|a, b| a.1 == b.1) {
+                    put(same[0].1 as usize, same.iter().map(|(.., value)| value).sum());
+                }
+            }
+        }
+        (free, held)
+    }
+
+    /// Splits entries of a column of the rotated matrix: adds to those that are not held, and to those that are.
+    pub fn split_into(&self, entries: impl Iterator<Item = (usize, f64)>, free: &mut Entries, held: &mut Entries) {
+        entries.for_each(|entry| if self.is_held(entry.0) { &mut *held } else { &mut *free }.push(entry));
+    }
+
+    /// What entries of a column at held unknowns become in the other equations of their nodes, where friction is folded.
+    pub fn folded(&self, held: &[(usize, f64)]) -> Entries {
+        let mut free = Entries::new();
+        for (unknown, value) in held {
+            let Some((node, local)) = self.nodes.place_of[*unknown] else { continue };
+            let node = &self.nodes()[node as usize];
+            let others = node.count() - node.held_count();
+            let friction = self.matrices(node).friction.chunks_exact(others.max(1)).nth(local as usize);
+            for (other, factor) in friction.into_iter().flatten().enumerate() {
+                free.push((node.unknown(node.held_count() + other), -factor * value));
+            }
+        }
+        free
+    }
+
+    /// `Qᵀ x` or `Q x` at every node.
+    pub fn rotate(&self, x: &mut [f64], back: bool) {
+        self.nodes().iter().filter(|node| node.turns).for_each(|node| node.turn(&self.nodes.numbers, x, back));
+    }
+
+    /// Folds a right-hand side that was rotated.
+    pub fn fold(&self, x: &mut [f64]) {
+        for node in self.nodes().iter().filter(|node| node.folds) {
+            let (count, held) = (node.count(), node.held_count());
+            let taken = times(self.matrices(node).friction, count - held, &gathered(node.held(), x));
+            (held..count).zip(taken.iter()).for_each(|(other, value)| x[node.unknown(other)] -= value);
+        }
+    }
+}

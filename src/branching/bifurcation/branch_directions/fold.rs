@@ -1,0 +1,238 @@
+//! The plane of two null vectors of a mode's equations, and how paths leave a fold in it; the same of more null vectors.
+//!
+//! With the left null vector `ψ` and coordinates `w`, `p` along an orthonormal basis the equations are, to second order and
+//! beside what the others make of it,
+//!
+//! ```text
+//! σ·(w, p) + ½ ψ·F''(x, x) = 0,      σ = ψ·F_x of the basis.
+//! ```
+//!
+//! `σ` is zero at a point that is singular. Where the form has two roots, branches cross there. Where it has one, twice, all
+//! its curvature `c` is along one vector `g`, across the root `f`:
+//!
+//! ```text
+//! σ w + ½ c p² = 0
+//! ```
+//!
+//! but for where `p` is as small as `σ`. With `σ = 0` that is the line along `f`, in both senses. With a `σ` that is not
+//! zero, but so small that the path bends within less than a step can tell, it is a parabola whose arms leave along `f` in one
+//! sense: `x = f h ± g (2 |σ/c| h)^½`.
+//!
+//! Of several parts that nothing joins, each at its fold, there are as many equations, each with a form that is the square of
+//! one coordinate (the forms are of rank one, and their vectors independent):
+//!
+//! ```text
+//! σ_j w + ½ c_j p_j² = 0
+//! ```
+//!
+//! The line along `f` is that on which all `p_j` are zero, and of the parts whose `σ_j` is not zero each has two arms, all of
+//! which leave in one sense of `f` or none do.
+
+use crate::algebra::{nearest_null_space, null_space_as_scaled};
+use crate::branching::bifurcation::branch_directions::null::Derivative;
+use crate::branching::bifurcation::branch_directions::{MOST_MODES, NO_CURVATURE, Null, Point};
+use crate::complementarity::rates::combinations::combinations;
+use crate::mechanics::equations::scaled_rows::{RANK, scaled_rows};
+use crate::mechanics::problem::state::Rate;
+use nalgebra::{DMatrix, DVector, DVectorView, Matrix2};
+
+/// Parts of null vectors of which no motion is left are none.
+const NO_MOTION: f64 = 1e-8;
+/// Parabolas that are no wider than this at a unit arc length are lines: rounding of the equations moves a point at the fold
+/// as far.
+const NO_WIDTH: f64 = 1e-7;
+/// Singular values of coordinates (of unit size) up to this are zero: they are not independent.
+const DEPENDENT: f64 = 1e-6;
+
+/// A double root.
+pub(super) struct Fold {
+    /// `f`
+    pub flat: Null,
+    parts: Vec<Part>,
+}
+
+/// What is at a fold.
+struct Part {
+    /// `g`
+    steep: Null,
+    /// `(2 |σ/c|)^½`
+    width: f64,
+    /// In which sense of `f` the arms leave.
+    sense: f64,
+}
+
+/// The directions of a plane.
+pub(super) enum Plane {
+    /// All of it, to second order.
+    Continuum,
+    /// None, or the roots that cross.
+    Roots(Vec<Null>),
+    Fold(Box<Fold>),
+}
+
+impl Fold {
+    /// Whether it is a line in both senses.
+    pub fn is_straight(&self) -> bool {
+        self.wide().next().is_none()
+    }
+
+    /// The parts with arms.
+    fn wide(&self) -> impl Iterator<Item = &Part> {
+        self.parts.iter().filter(|part| part.width > NO_WIDTH)
+    }
+
+    /// The direction in which the arms leave; `None` where those of some part leave in the other sense.
+    pub fn ahead(&self, point: &Point<'_>) -> Option<Null> {
+        let sense = self.wide().next()?.sense;
+        let agree = self.wide().all(|part| part.sense == sense);
+        agree.then(|| point.combined(std::slice::from_ref(&self.flat), &[sense]))
+    }
+
+    /// Across that, how far the arm towards a rate lies off it at a unit arc length.
+    pub fn beside(&self, towards: &Rate) -> Option<Rate> {
+        self.sum(self.wide().map(|part| part.width.copysign(part.steep.rate.product(towards))))
+    }
+
+    /// Every arm of each part with those of the others.
+    pub fn arms(&self) -> Vec<Rate> {
+        let senses: Vec<Vec<f64>> = self.wide().map(|part| vec![part.width, -part.width]).collect();
+        combinations(&senses, MOST_MODES).filter_map(|chosen| self.sum(chosen.into_iter())).collect()
+    }
+
+    fn sum(&self, shares: impl Iterator<Item = f64>) -> Option<Rate> {
+        let scaled = |(part, share): (&Part, f64)| {
+            let mut rate = part.steep.rate.clone();
+            rate.scale(share);
+            rate
+        };
+        self.wide().zip(shares).map(scaled).reduce(|mut sum, rate| {
+            sum.add(&rate, 1.0);
+            sum
+        })
+    }
+}
+
+impl Point<'_> {
+    /// The null vectors of the mode, orthonormal in displacements and load.
+    pub(super) fn orthonormal_nulls(&self) -> Option<Vec<Null>> {
+        let (matrix, _) = scaled_rows(&self.system, self.here.loading, self.here.state);
+        self.orthonormal(&null_space_as_scaled(matrix, RANK)?)
+    }
+
+    fn orthonormal(&self, basis: &DMatrix<f64>) -> Option<Vec<Null>> {
+        let mut nulls: Vec<Null> = Vec::with_capacity(basis.ncols());
+        for column in basis.column_iter() {
+            let values = column.into_owned();
+            let mut null = Null { rate: self.system.rate_from(self.here.state, &values), values };
+            let whole = null.rate.size();
+            // Once more for what rounding left.
+            for _ in 0..2 {
+                for known in &nulls {
+                    let share = null.rate.product(&known.rate);
+                    null = self.combined(&[null, known.clone()], &[1.0, -share]);
+                }
+            }
+            let size = null.rate.size();
+            if !(size.is_finite() && size > NO_MOTION * whole && size > NO_MOTION * null.rate.largest_reaction()) {
+                return None;
+            }
+            nulls.push(self.combined(&[null], &[1.0 / size]));
+        }
+        Some(nulls)
+    }
+
+    /// The plane that comes nearest to two null vectors.
+    pub(super) fn plane(&self) -> Option<Plane> {
+        let (matrix, sizes) = scaled_rows(&self.system, self.here.loading, self.here.state);
+        let left = nearest_null_space(matrix.transpose(), 1)?.column(0).component_div(&sizes);
+        let nulls = self.orthonormal(&nearest_null_space(matrix, 2)?)?;
+        let [first, second] = &nulls[..] else { return None };
+        let [along_first, along_second] = [first, second].map(|null| self.second_derivative(&null.rate));
+        let mixed = left.dot(&along_first.times(&second.values));
+        let form = Matrix2::new(
+            left.dot(&along_first.times(&first.values)),
+            mixed,
+            mixed,
+            left.dot(&along_second.times(&second.values)),
+        );
+        let size = left.amax() * along_first.amax().max(along_second.amax());
+        let eigen = form.symmetric_eigen();
+        let (steep, flat) = if eigen.eigenvalues[0].abs() >= eigen.eigenvalues[1].abs() { (0, 1) } else { (1, 0) };
+        let (most, least) = (eigen.eigenvalues[steep], eigen.eigenvalues[flat]);
+        if !most.is_finite() || most.abs() <= NO_CURVATURE * size {
+            return Some(Plane::Continuum);
+        }
+        let combined = |weights: [f64; 2]| self.unit(&self.combined(&[first.clone(), second.clone()], &weights));
+        let [flat, steep] = [flat, steep].map(|column| [0, 1].map(|row| eigen.eigenvectors[(row, column)]));
+        if least.abs() > NO_CURVATURE * most.abs() {
+            if least * most > 0.0 {
+                return Some(Plane::Roots(Vec::new()));
+            }
+            let part = (-least / most).sqrt();
+            let roots = [part, -part].map(|part| combined([0, 1].map(|row| flat[row] + part * steep[row])));
+            return Some(Plane::Roots(roots.to_vec()));
+        }
+        Some(Plane::Fold(Box::new(self.fold(&DMatrix::from_columns(&[left]), combined(flat), vec![combined(steep)]))))
+    }
+
+    /// The fold of so many null vectors; `None` where the equations are not those of parts that nothing joins.
+    pub(super) fn fold_of_parts(&self, count: usize) -> Option<Fold> {
+        let (matrix, sizes) = scaled_rows(&self.system, self.here.loading, self.here.state);
+        let mut left = nearest_null_space(matrix.transpose(), count.checked_sub(1)?)?;
+        left.column_iter_mut().for_each(|mut column| column.component_div_assign(&sizes));
+        let nulls = self.orthonormal(&nearest_null_space(matrix, count)?)?;
+        let derivatives: Vec<Derivative> = nulls.iter().map(|null| self.second_derivative(&null.rate)).collect();
+        let largest = derivatives.iter().map(Derivative::amax).fold(0.0, f64::max);
+        // Of each form the vector whose square it is.
+        let mut squares = DMatrix::zeros(left.ncols(), count);
+        for (mut row, left) in squares.row_iter_mut().zip(left.column_iter()) {
+            let form = DMatrix::from_fn(count, count, |i, j| left.dot(&derivatives[i].times(&nulls[j].values)));
+            let eigen = ((&form + form.transpose()) * 0.5).symmetric_eigen();
+            let sizes = eigen.eigenvalues.abs();
+            let most = sizes.imax();
+            let is_square = (0..count).all(|other| other == most || sizes[other] <= NO_CURVATURE * sizes[most]);
+            if !(is_square && sizes[most] > NO_CURVATURE * left.amax() * largest) {
+                return None;
+            }
+            row.copy_from(&eigen.eigenvectors.column(most).transpose());
+        }
+        // Motions along which one of the coordinates changes, and none.
+        let dual = squares.clone().pseudo_inverse(DEPENDENT).ok()?;
+        if (&squares * &dual - DMatrix::identity(left.ncols(), left.ncols())).amax() > DEPENDENT {
+            return None;
+        }
+        let motion = |weights: &DVector<f64>| self.unit(&self.combined(&nulls, weights.as_slice()));
+        let flat = nearest_null_space(squares, 1)?.column(0).into_owned();
+        let steep = dual.column_iter().map(|column| motion(&column.into_owned())).collect();
+        Some(self.fold(&left, motion(&flat), steep))
+    }
+
+    fn unit(&self, null: &Null) -> Null {
+        self.combined(std::slice::from_ref(null), &[1.0 / null.rate.size()])
+    }
+
+    fn fold(&self, left: &DMatrix<f64>, mut flat: Null, steep: Vec<Null>) -> Fold {
+        let curvatures: Vec<f64> = left
+            .column_iter()
+            .zip(&steep)
+            .map(|(left, steep)| left.dot(&self.second_derivative(&steep.rate).times(&steep.values)))
+            .collect();
+        // Differences along the root itself are exact where it is a straight line, and those along others are not.
+        for _ in 0..2 {
+            let along = self.second_derivative(&flat.rate);
+            let (mut nulls, mut weights) = (vec![flat], vec![1.0]);
+            for ((left, steep), curvature) in left.column_iter().zip(&steep).zip(&curvatures) {
+                weights.push(-left.dot(&along.times(&steep.values)) / curvature);
+                nulls.push(steep.clone());
+            }
+            flat = self.unit(&self.combined(&nulls, &weights));
+        }
+        let force = self.system.matrix(self.here.state).rows(0, left.nrows()) * &flat.values;
+        let part = |((left, steep), curvature): ((DVectorView<'_, f64>, Null), &f64)| {
+            let ratio = left.dot(&force) / curvature;
+            Part { steep, width: (2.0 * ratio.abs()).sqrt(), sense: -ratio.signum() }
+        };
+        let parts = left.column_iter().zip(steep).zip(&curvatures).map(part).collect();
+        Fold { flat, parts }
+    }
+}

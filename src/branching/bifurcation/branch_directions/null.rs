@@ -1,0 +1,57 @@
+//! Null vectors at a point, and second derivatives along them.
+
+use crate::algebra::sparse::Bordered;
+use crate::branching::bifurcation::singularity::bordering::DIFFERENCE as FINE;
+use crate::mechanics::equations::{Kind, ModeSystem};
+use crate::mechanics::problem::state::{Rate, State};
+use nalgebra::{DMatrix, DVector};
+
+/// Difference step (dimensionless) for the second derivative.
+const DIFFERENCE: f64 = 1e-4;
+
+/// A null vector in both forms.
+#[derive(Clone)]
+pub(super) struct Null {
+    pub values: DVector<f64>,
+    pub rate: Rate,
+}
+
+/// `F''(v, ·)`, the rows of the mode but the last.
+pub(super) enum Derivative {
+    Dense(DMatrix<f64>),
+    Sparse(Bordered, usize),
+}
+
+impl Derivative {
+    /// By central differences.
+    pub fn new(system: &ModeSystem<'_>, state: &State, along: &Rate) -> Self {
+        let rows = system.size() - 1;
+        let sparse = |step: f64| {
+            let at = |step: f64| system.assemble_sparse(&system.iterate(state.advanced(along, step)), Kind::Rates);
+            Some(at(step)?.minus(&at(-step)?, 0.5 / step))
+        };
+        if let Some(coarse) = sparse(FINE)
+            && let Some(fine) = sparse(0.5 * FINE)
+        {
+            // Of fourth order.
+            return Self::Sparse(fine.minus(&coarse.scaled(0.25), 4.0 / 3.0), rows);
+        }
+        let ahead = system.matrix(&state.advanced(along, DIFFERENCE));
+        let behind = system.matrix(&state.advanced(along, -DIFFERENCE));
+        Self::Dense((ahead - behind).rows(0, rows) / (2.0 * DIFFERENCE))
+    }
+
+    pub fn times(&self, values: &DVector<f64>) -> DVector<f64> {
+        match self {
+            Self::Dense(matrix) => matrix * values,
+            Self::Sparse(matrix, rows) => matrix.times(values).rows(0, *rows).into_owned(),
+        }
+    }
+
+    pub fn amax(&self) -> f64 {
+        match self {
+            Self::Dense(matrix) => matrix.amax(),
+            Self::Sparse(matrix, _) => matrix.largest(),
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! Locating the point at which an eigenvalue crosses zero.
+//!
+//! Newton's method on the path's equations is singular at that very point, and near it may land on another branch. So the
+//! point is found on cubic Hermite interpolants of the path between regular points on both sides: first between the
+//! ends of the step, then between points a fiftieth of the step away, and closer. The interpolation's error falls
+//! with the fourth power of their distance; the residual of the point found is judged like any other's.
+//!
+//! So it is done with dense matrices. For many unknowns the equations are bordered, so that they are regular at the point
+//! (`sparse`); where that leads to none, as where a crossing is not transversal, the dense way is taken.
+
+pub(crate) mod folded_singularity;
+pub(crate) mod sparse;
+
+use crate::algebra::dense::root::find_root;
+use crate::algebra::null_space_as_scaled;
+use crate::branching::bifurcation::singularity::null_vectors::{NullVectors, SINGULAR};
+use crate::branching::bifurcation::singularity::test_functions::{
+    Change, Signature, bordered_determinant, counted_tangent,
+};
+use crate::mechanics::equations::ModeSystem;
+use crate::mechanics::equations::scaled_rows::scaled_rows;
+use crate::mechanics::problem::state::{Rate, State};
+use crate::step::corrector::newton::ACCEPTED_RESIDUAL;
+use crate::step::corrector::work::Work;
+use crate::step::interpolation::{Placed, between, placed, unit};
+use crate::step::segment::{Reached, Start};
+use std::sync::Arc;
+
+/// A smooth bifurcation point at the end of a step.
+#[derive(Debug, Clone)]
+pub struct Crossing {
+    /// Eigenvalues that are zero there; 0 where it is no bifurcation, but the direction is not determined (`folded_singularity`).
+    pub eigenvalues: usize,
+    /// It is one only when the contacts that touch here without reaction are free.
+    pub grazing: bool,
+    /// Signature just past it.
+    pub after: Signature,
+    /// Its null vectors, where they came with it.
+    pub nulls: Option<Arc<NullVectors>>,
+}
+
+/// Distances of the regular points, over the step.
+pub(crate) const WIDTHS: [f64; 4] = [2e-2, 4e-3, 1e-3, 2e-4];
+/// Parts of a bracket at which it may begin.
+const AHEAD: [f64; 4] = [0.0, 1e-4, 1e-3, 1e-2];
+/// Residual at which closer points gain nothing.
+const GOOD: f64 = 2e-15;
+
+/// Eigenvalues that are this small, relative to the largest, where the first crosses are taken to cross with it: closer
+/// than that the branches of one cannot be told from those of the other.
+const TOGETHER: f64 = 1e-10;
+
+/// A crossing no farther from the start of the step (dimensionless) is that start itself.
+const AT_START: f64 = 2e-9;
+
+/// What a step ends at: a point, whether it is a smooth bifurcation, and the signs just past it where they are known.
+pub(crate) type Ended = (Box<Reached>, Option<Crossing>, Option<Signature>);
+
+/// A crossing with the regular points between which it was found, where it was found so.
+pub(crate) struct Located {
+    pub point: Box<Reached>,
+    pub crossing: Crossing,
+    pub between: Option<[Placed; 2]>,
+}
+
+impl Located {
+    /// Regular points on both sides of it, the step being so long.
+    pub fn between(&self, start: &Start<'_>, length: f64, work: &mut Work) -> Option<[Placed; 2]> {
+        if let Some(between) = &self.between {
+            return Some(between.clone());
+        }
+        let Reached { corrected, rate, step, .. } = &*self.point;
+        let width = WIDTHS[1] * length;
+        let mut at = |ahead: f64| {
+            if step + ahead <= 0.0 {
+                return Some(Placed { place: 0.0, state: start.state.clone(), rate: start.rate.clone() });
+            }
+            let guess = corrected.state.advanced(rate, ahead);
+            start.reach_near(guess, step + ahead, work).map(|near| placed(start, &near)).ok()
+        };
+        Some([at(-width)?, at(width)?])
+    }
+}
+
+/// Finds the first crossing of a step, whose start has the signature `before`. `None` where none can be made out.
+pub fn locate(
+    start: &Start<'_>,
+    before: Signature,
+    change: Change,
+    reached: &Reached,
+    work: &mut Work,
+) -> Option<Located> {
+    work.at_bifurcation(|work| find(start, before, change, reached, work))
+}
+
+fn find(start: &Start<'_>, before: Signature, change: Change, reached: &Reached, work: &mut Work) -> Option<Located> {
+    let system = ModeSystem::new(start.loading, start.modes, start.state);
+    if system.has_tracks()
+        && let Some(point) = folded_singularity::locate(start, reached)
+    {
+        let crossing = Crossing { eigenvalues: 0, grazing: false, after: before, nulls: None };
+        return Some(Located { point, crossing, between: None });
+    }
+    if start.loading.structure.layout().is_some() && !system.has_tracks() {
+        let located = sparse::locate(start, before, change, reached);
+        if located.is_some() {
+            return located;
+        }
+    }
+    let origin = Placed { place: 0.0, state: start.state.clone(), rate: start.rate.clone() };
+    let end = placed(start, reached);
+    let reference = bordered_determinant(&system, start.loading, &end.state, &unit(&end.rate))?;
+    let value = |state: &State, rate: &Rate| -> Option<f64> {
+        match change {
+            Change::None => None,
+            Change::Count { before, net } => {
+                let values = eigenvalues(start, state)?;
+                if net > 0 { values.get(before).copied() } else { values.get(before.checked_sub(1)?).map(|v| -v) }
+            }
+            Change::Odd => {
+                // Negative on the far side, of the size of the determinant there.
+                let here = bordered_determinant(&system, start.loading, state, rate)?;
+                Some(-here.sign * reference.sign * (here.logarithm - reference.logarithm).min(300.0).exp())
+            }
+        }
+    };
+    let (mut left, mut right) = (origin.clone(), end.clone());
+    let mut root = root_between(&left, &right, &value)?;
+    let mut best: Option<(f64, Located)> = None;
+    let mut previous: Option<State> = None;
+    let mut error = end.place.powi(4);
+    for width in WIDTHS {
+        let width = width * end.place;
+        let guess = |place: f64| between(&left, &right, place).0;
+        let nearer = if root > width {
+            start.reach_near(guess(root - width), root - width, work).map(|near| placed(start, &near)).ok()
+        } else {
+            Some(origin.clone())
+        };
+        let farther = start.reach_near(guess(root + width), root + width, work).map(|far| placed(start, &far)).ok();
+        let (Some(nearer), Some(farther)) = (nearer, farther) else { break };
+        let Some(place) = root_between(&nearer, &farther, &value) else { break };
+        (left, right, root) = (nearer, farther, place);
+        let (state, rate) = between(&left, &right, root);
+        let rate = unit(&rate);
+        let corrected = system.judged(state, start.force_scale);
+        let residual = corrected.residual;
+        if let Some(previous) = &previous {
+            // Each round's points are at least four times closer.
+            error = corrected.state.distance(previous) / 256.0;
+        }
+        previous = Some(corrected.state.clone());
+        let (matrix, _) = scaled_rows(&system, start.loading, &corrected.state);
+        let null = null_space_as_scaled(matrix, SINGULAR)?;
+        if null.ncols() < 2 || best.as_ref().is_some_and(|(least, ..)| *least <= residual) {
+            continue;
+        }
+        let eigenvalues = match change {
+            Change::Count { net, .. } => {
+                together(&eigenvalues(start, &corrected.state)?, change)?.min(net.unsigned_abs())
+            }
+            Change::None | Change::Odd => null.ncols() - 1,
+        };
+        let after = before.past(change, eigenvalues)?;
+        let crossing = Crossing { eigenvalues, grazing: false, after, nulls: None };
+        let step = corrected.state.distance(start.state);
+        let mut point = Reached::new(corrected, rate, step, error);
+        point.drift = start.drift.cloned();
+        best = Some((residual, Located { point, crossing, between: Some([left.clone(), right.clone()]) }));
+        if residual <= GOOD {
+            break;
+        }
+    }
+    let (residual, located) = best?;
+    // With sparse matrices a start that is singular itself may look regular.
+    let is_start = start.loading.structure.layout().is_some() && located.point.step <= AT_START;
+    (residual <= ACCEPTED_RESIDUAL && !is_start).then_some(located)
+}
+
+/// Eigenvalues of the reduced tangent, the smallest first.
+fn eigenvalues(start: &Start<'_>, state: &State) -> Option<Vec<f64>> {
+    let tangent = counted_tangent(start.loading, start.modes, start.state, state)?;
+    let mut values: Vec<f64> = tangent.symmetric_eigenvalues().iter().copied().collect();
+    values.sort_by(f64::total_cmp);
+    Some(values)
+}
+
+/// How many of the eigenvalues that cross, in the order in which they do, are zero with the first.
+fn together(values: &[f64], change: Change) -> Option<usize> {
+    let Change::Count { before, net } = change else { return None };
+    let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let crossing: Vec<f64> =
+        if net > 0 { values.get(before..)?.to_vec() } else { values.get(..before)?.iter().rev().copied().collect() };
+    let first = *crossing.first()?;
+    Some(crossing.iter().take_while(|value| (*value - first).abs() <= TOGETHER * largest).count())
+}
+
+fn root_between(left: &Placed, right: &Placed, value: &impl Fn(&State, &Rate) -> Option<f64>) -> Option<f64> {
+    let evaluate = |place: f64| {
+        let (state, rate) = between(left, right, place);
+        value(&state, &unit(&rate))
+    };
+    let last = evaluate(right.place)?;
+    // A start that is a bifurcation point itself has no sign: begin a little further on.
+    let first = AHEAD.iter().find_map(|part| {
+        let place = left.place + part * (right.place - left.place);
+        evaluate(place).filter(|value| *value > 0.0).map(|value| (place, value))
+    })?;
+    (last < 0.0).then(|| find_root(evaluate, first, (right.place, last), 0.0))?
+}

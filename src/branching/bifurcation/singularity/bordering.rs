@@ -1,0 +1,225 @@
+//! The equations of a mode where they are singular, bordered so that they are regular.
+//!
+//! Let `F_x` have `k` left null vectors and `k + 1` right ones, the path's direction among them. Borders `Ψ` and `B` that
+//! are not orthogonal to them make
+//!
+//! ```text
+//! [[F_x, Ψ], [Bᵀ, 0]] [[X], [G]] = [[0], [I]],      [[F_x, Ψ], [Bᵀ, 0]]ᵀ [[ψ], [·]] = [[0], [I]]
+//! ```
+//!
+//! regular, and `G` (`k` by `k + 1`) vanishes just where the null vectors exist; `X` and `ψ` are these vectors then. Along a
+//! motion `v` the derivative of `G` is `-ψᵀ F''(v, X)` (A. Griewank, G. W. Reddien, IMA J. Numer. Anal. 4 (1984) 493,
+//! doi:10.1093/imanum/4.4.493; W. Govaerts, *Numerical Methods for Bifurcations of Dynamical Equilibria*, SIAM 2000,
+//! chapter 3). Two sparse factorisations give all of it: one of the matrix, one of its transpose.
+
+use crate::algebra::dense::sink::Sink;
+use crate::algebra::sparse::{Bordered, SparseFactorisation};
+use crate::branching::bifurcation::singularity::null_vectors::NullVectors;
+use crate::mechanics::equations::{Kind, ModeSystem};
+use crate::mechanics::problem::state::{Rate, State};
+use nalgebra::{DMatrix, DVector};
+
+/// Difference step (dimensionless) for second derivatives of states. The error of the formula is of fourth order.
+pub(crate) const DIFFERENCE: f64 = 1e-3;
+
+/// What left vectors leave over by symmetry, over the largest stiffness, up to which it is rounding.
+const SYMMETRIC: f64 = 1e-12;
+/// The same where the point is not singular yet, over the tests.
+const BEYOND_TESTS: f64 = 10.0;
+
+/// See the module.
+pub(crate) struct Bordering<'a> {
+    system: &'a ModeSystem<'a>,
+    pub state: State,
+    factors: SparseFactorisation,
+    /// `X`, one vector for each border row, over the unknowns of the mode.
+    pub right: Vec<DVector<f64>>,
+    /// `ψ`, one vector for each border column, over the equations of the mode but the last.
+    pub left: Vec<DVector<f64>>,
+    /// `G`, over the largest stiffness.
+    pub tests: DMatrix<f64>,
+}
+
+impl<'a> Bordering<'a> {
+    /// With a border row along each of `rows`, one more than there are columns; `columns` are forces over the unknown
+    /// displacements. `None` where dense matrices are used, and where the system is singular all the same.
+    pub fn new(system: &'a ModeSystem<'a>, state: State, rows: &[Rate], columns: &[DVector<f64>]) -> Option<Self> {
+        let (size, corank) = (system.size(), columns.len());
+        let mut matrix = system.assemble_sparse(&system.iterate(state.clone()), Kind::Rates)?.widened(corank);
+        let stiffness = matrix.largest_within();
+        for (index, rate) in rows.iter().enumerate() {
+            system.border_row(size - 1 + index, &mut matrix, |freedom| rate.displacement[freedom], rate.load);
+        }
+        for (index, column) in columns.iter().enumerate() {
+            column.iter().enumerate().for_each(|(row, value)| matrix.add(row, size + index, stiffness * value));
+        }
+        let transposed = matrix.transposed();
+        let factors = SparseFactorisation::new(matrix, system.holdings())?;
+        let unit = |place: usize| {
+            let mut values = DVector::zeros(size + corank);
+            values[place] = 1.0;
+            values
+        };
+        let mut tests = DMatrix::zeros(corank, corank + 1);
+        let mut right = Vec::with_capacity(corank + 1);
+        for index in 0..=corank {
+            let mut values = unit(size - 1 + index);
+            if !factors.solve(&mut values) {
+                return None;
+            }
+            tests.set_column(index, &values.rows(size, corank));
+            right.push(values.rows(0, size).into_owned());
+        }
+        let forces: Vec<DVector<f64>> = columns.iter().map(|column| column * stiffness).collect();
+        let left = by_symmetry(system, &right, &forces, &transposed, BEYOND_TESTS * tests.amax());
+        let left = match left {
+            Some(left) => left,
+            None => {
+                let transposed = SparseFactorisation::new(transposed, &system.holdings().transposed())?;
+                let solved = (0..corank).map(|index| {
+                    let mut values = unit(size + index);
+                    transposed.solve(&mut values).then(|| values.rows(0, size - 1).into_owned())
+                });
+                solved.collect::<Option<_>>()?
+            }
+        };
+        Some(Self { system, state, factors, right, left, tests })
+    }
+
+    /// Borders `ψ_j` and `X_i` in place of those that were chosen, of unit size and orthogonal to each other.
+    pub fn borders(&self) -> Option<(Vec<Rate>, Vec<DVector<f64>>)> {
+        let unknowns = self.left.first()?.len().min(self.system.loading.structure.unknowns());
+        let mut columns: Vec<DVector<f64>> = Vec::with_capacity(self.left.len());
+        for left in &self.left {
+            let mut column = left.rows(0, unknowns).into_owned();
+            for other in &columns {
+                column.axpy(-column.dot(other), other, 1.0);
+            }
+            columns.push(column.try_normalize(0.0)?);
+        }
+        Some((orthonormal(self.right.iter().map(|values| self.rate(values)))?, columns))
+    }
+
+    /// The null vectors of the equations: of tests that are all zero those of the borders, of others what they leave.
+    pub fn null_vectors(&self, tolerance: f64) -> Option<NullVectors> {
+        let corank = self.left.len();
+        if self.tests.amax() <= tolerance {
+            return Some(NullVectors { right: self.right.clone(), left: self.left.clone() });
+        }
+        // Square, so that all of the right vectors are told.
+        let square = self.tests.clone().insert_row(corank, 0.0);
+        let parts = square.svd(true, true);
+        let (u, v_t) = (parts.u?, parts.v_t?);
+        let combined = |vectors: &[DVector<f64>], weights: &mut dyn Iterator<Item = f64>| {
+            let mut sum = DVector::zeros(vectors.first()?.len());
+            vectors.iter().zip(weights).for_each(|(vector, weight)| sum.axpy(weight, vector, 1.0));
+            sum.try_normalize(0.0)
+        };
+        let zero: Vec<usize> = (0..=corank).filter(|index| parts.singular_values[*index] <= tolerance).collect();
+        let right: Option<Vec<_>> =
+            zero.iter().map(|index| combined(&self.right, &mut v_t.row(*index).iter().copied())).collect();
+        // One of the left ones is of the row that was added.
+        let columns = DMatrix::from_columns(&zero.iter().map(|index| u.column(*index)).collect::<Vec<_>>());
+        let own = columns.rows(0, corank).into_owned();
+        let parts = own.svd(true, false);
+        let u = parts.u?;
+        let left: Option<Vec<_>> = (0..zero.len().saturating_sub(1))
+            .map(|index| combined(&self.left, &mut u.column(index).iter().copied()))
+            .collect();
+        Some(NullVectors { right: right?, left: left? })
+    }
+
+    pub fn rate(&self, values: &DVector<f64>) -> Rate {
+        self.system.rate_from(&self.state, values)
+    }
+
+    /// Solves for a right-hand side over the equations of the mode; the unknowns of the solution, which is across `B`.
+    pub fn solve(&self, right_hand_side: &DVector<f64>) -> Option<DVector<f64>> {
+        let size = self.system.size();
+        let mut values = DVector::zeros(size + self.left.len());
+        values.rows_mut(0, size - 1).copy_from(&right_hand_side.rows(0, size - 1));
+        self.factors.solve(&mut values).then(|| values.rows(0, size).into_owned())
+    }
+
+    /// `F''(v, ·)`, the last row apart; `None` where the motion is none.
+    pub fn second_derivative(&self, along: &Rate) -> Option<Bordered> {
+        let size = along.size();
+        if size <= 0.0 {
+            return None;
+        }
+        let difference = |step: f64| {
+            let at = |step: f64| {
+                let state = self.state.advanced(along, step);
+                self.system.assemble_sparse(&self.system.iterate(state), Kind::Rates)
+            };
+            Some(at(step)?.minus(&at(-step)?, 0.5 / step))
+        };
+        let step = DIFFERENCE / size;
+        // (4 D(h/2) - D(h)) / 3, as 4/3 (D(h/2) - D(h)/4).
+        Some(difference(0.5 * step)?.minus(&difference(step)?.scaled(0.25), 4.0 / 3.0))
+    }
+
+    /// `ψ_j F''(v, X_i)` for all `j` (rows) and `i` (columns).
+    pub fn curvatures(&self, along: &Rate) -> Option<DMatrix<f64>> {
+        let derivative = self.second_derivative(along)?;
+        let mut curvatures = DMatrix::zeros(self.left.len(), self.right.len());
+        for (i, right) in self.right.iter().enumerate() {
+            let product = derivative.times(right);
+            for (j, left) in self.left.iter().enumerate() {
+                curvatures[(j, i)] = left.dot(&product.rows(0, left.len()));
+            }
+        }
+        Some(curvatures)
+    }
+}
+
+/// The left vectors without a factorisation, where no contact slips against friction: then motions without load and the
+/// reactions that go with them, turned round, are what the equations' rows add up to nothing by. `None` where that is not
+/// so, but for what the tests leave over.
+fn by_symmetry(
+    system: &ModeSystem<'_>,
+    right: &[DVector<f64>],
+    forces: &[DVector<f64>],
+    transposed: &Bordered,
+    left_over: f64,
+) -> Option<Vec<DVector<f64>>> {
+    let (size, unknowns, corank) = (system.size(), system.loading.structure.unknowns(), forces.len());
+    let (own, others) = right.split_first()?;
+    let turned = |other: &DVector<f64>| {
+        let motion = other - own * (other[unknowns] / own[unknowns]);
+        // Those of equilibrium, and for each reaction the row of its contact, one before its column.
+        DVector::from_fn(size - 1, |row, _| if row < unknowns { motion[row] } else { -motion[row + 1] })
+    };
+    let turned: Vec<DVector<f64>> = others.iter().map(turned).collect();
+    let products = DMatrix::from_fn(corank, corank, |j, l| turned[j].rows(0, unknowns).dot(&forces[l]));
+    let weights = products.try_inverse()?;
+    let (stiffness, mut left) = (transposed.largest_within(), Vec::with_capacity(corank));
+    for j in 0..corank {
+        let mut sum = DVector::zeros(size - 1);
+        turned.iter().enumerate().for_each(|(l, turned)| sum.axpy(weights[(j, l)], turned, 1.0));
+        let whole = sum.clone().resize_vertically(size + corank, 0.0);
+        let rest = transposed.times(&whole).rows(0, size).amax();
+        let most = (SYMMETRIC + left_over) * stiffness * sum.rows(0, unknowns).amax();
+        if rest > most || rest.is_nan() {
+            return None;
+        }
+        left.push(sum);
+    }
+    Some(left)
+}
+
+/// Rates made orthogonal one after the other, of unit size.
+pub(crate) fn orthonormal(rates: impl Iterator<Item = Rate>) -> Option<Vec<Rate>> {
+    let mut done: Vec<Rate> = Vec::new();
+    for mut rate in rates {
+        // Twice is enough (W. Kahan, B. N. Parlett).
+        for _ in 0..2 {
+            for other in &done {
+                rate.add(other, -rate.product(other));
+            }
+            rate = rate.normalised()?;
+        }
+        done.push(rate);
+    }
+    Some(done)
+}

@@ -1,0 +1,15 @@
+//! Null vectors of the equations of a mode at a singular point.
+
+use nalgebra::DVector;
+
+/// Null vectors of the equations of a mode.
+#[derive(Debug)]
+pub struct NullVectors {
+    /// Over the unknowns, one more than there are left ones.
+    pub right: Vec<DVector<f64>>,
+    /// Over the equations but the last.
+    pub left: Vec<DVector<f64>>,
+}
+
+/// Pivots of the singular equations up to this, relative, are zero.
+pub(crate) const SINGULAR: f64 = 1e-8;

@@ -1,0 +1,370 @@
+//! Whether the path passes a smooth bifurcation point within a step.
+//!
+//! Two signs are carried along the path:
+//!
+//! * the determinant of the equations of the mode, bordered by the path's own direction. It is regular at limit points
+//!   and changes sign exactly where an odd number of branches' null vectors joins (H. B. Keller, in: Applications of
+//!   Bifurcation Theory, Academic Press 1977, 359). It comes with the factorisation that gives the direction, and holds
+//!   for unsymmetric matrices (frictional slip) as well.
+//! * the number of negative eigenvalues of the tangent reduced to the motions
+//!   that the mode allows, `Zᵀ K Z` with `Z` a basis of the null space of the closed contacts' equations (Sylvester's
+//!   law: any basis will do). It sees two eigenvalues cross together, where the determinant keeps its sign. At a limit
+//!   point it changes by one; the determinant tells that change from a bifurcation's.
+//!
+//! Contacts that touch without reaction all along a step do nothing to the path in whatever mode, but hold back what may
+//! leave it: the mode in which they are free is watched as well.
+//!
+//! In a mode with frictional slip the eigenvalues are those of the structure with the slipping contacts held: two that
+//! cross at once are seen where their motions do not move these contacts. Others are not. Nor are, in any mode,
+//! eigenvalues that cross one step to and fro, nor those within the first ten-thousandth of a step from a singular start
+//! (with sparse matrices the first hundredth). Under slip
+//! in a plane the determinant changes its sign also where the direction is not determined (`folded_singularity`).
+
+use crate::algebra::sparse::{Bordered, held_inertia};
+use crate::algebra::{Determinant, Inertia, SystemFactorisation, determinant, inertia, null_space};
+use crate::mechanics::contact::{Contact, Mode};
+use crate::mechanics::equations::scaled_rows::{RANK, scaled_rows};
+use crate::mechanics::equations::{Kind, ModeSystem};
+use crate::mechanics::problem::loading::Loading;
+use crate::mechanics::problem::natural_residual::ZERO;
+use crate::mechanics::problem::state::{Rate, State};
+use crate::mechanics::structure::elements::Element;
+use crate::step::corrector::tolerances::UNCERTAIN;
+use crate::step::corrector::work::Work;
+use crate::step::event_functions::Watch;
+use crate::step::segment::{Reached, Start};
+use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
+
+/// What is carried along the path.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Signature {
+    /// Sign of the bordered determinant.
+    pub determinant: f64,
+    /// Negative eigenvalues of the reduced tangent; `None` where they are not counted.
+    pub negative: Option<usize>,
+}
+
+/// How the signature changed over a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Change {
+    None,
+    /// So many more eigenvalues are negative (fewer, if below 0).
+    Count {
+        before: usize,
+        net: isize,
+    },
+    /// An odd number of real eigenvalues crossed zero.
+    Odd,
+}
+
+/// Pivots below this fraction of the largest entry count as zero.
+const ZERO_PIVOT: f64 = 1e-13;
+
+/// Parts of a step after which the signs of a singular start are looked for.
+const FURTHER_ON: [f64; 3] = [1e-4, 1e-3, 1e-2];
+/// The same with sparse matrices, whose pivots do not tell how nearly singular they are: along a branch that leaves without
+/// a load rate the eigenvalue grows with the square of the way, and where it is rounding so is the branch.
+const FURTHER_ON_SPARSE: [f64; 1] = [1e-2];
+
+/// Whether some contact slips with friction.
+fn slips(loading: Loading<'_>, modes: &[Mode]) -> bool {
+    let slips = |(mode, contact): (&Mode, &Contact)| matches!(mode, Mode::Slip { .. }) && contact.tangents() > 0;
+    modes.iter().zip(loading.contacts).any(slips)
+}
+
+/// The tangent whose negative eigenvalues are counted: reduced to the motions that the mode allows, those of contacts
+/// that slip with friction left out. `None` where fewer than two motions remain (the determinant says all), and where the
+/// tangent cannot change.
+pub fn counted_tangent(loading: Loading<'_>, modes: &[Mode], start: &State, state: &State) -> Option<DMatrix<f64>> {
+    let (modes, anchor) = counted_modes(loading, modes, start, state)?;
+    let system = ModeSystem::new(loading, &modes, anchor);
+    let constraints = system.size() - 1 - loading.structure.unknowns();
+    if constraints + 2 > loading.structure.unknowns() {
+        return None;
+    }
+    reduced_tangent(&system, loading, state).filter(|tangent| tangent.nrows() > 1)
+}
+
+/// The modes in which the tangent is counted, and where they begin.
+fn counted_modes<'s>(
+    loading: Loading<'_>,
+    modes: &[Mode],
+    start: &'s State,
+    state: &'s State,
+) -> Option<(Vec<Mode>, &'s State)> {
+    let unknowns = loading.structure.unknowns();
+    if unknowns < 2
+        || (loading.structure.elements.iter().all(Element::is_linear)
+            && !loading.contacts.iter().any(|contact| contact.obstacle.is_curved()))
+    {
+        return None;
+    }
+    // Each closed contact takes one motion at the least, but for those that hold a node together.
+    let closed = modes.iter().filter(|mode| mode.is_active()).count();
+    if loading.corners.is_empty() && closed + 2 > unknowns {
+        return None;
+    }
+    if !slips(loading, modes) {
+        return Some((modes.to_vec(), start));
+    }
+    let held = |(mode, contact): (&Mode, &Contact)| {
+        if mode.is_active() && contact.tangents() > 0 { Mode::Stick } else { *mode }
+    };
+    Some((modes.iter().zip(loading.contacts).map(held).collect(), state))
+}
+
+/// Negative eigenvalues of that tangent, by a sparse factorisation: `Some(None)` where they are not counted, `None` where
+/// the count fails.
+fn count_sparse(
+    loading: Loading<'_>,
+    modes: &[Mode],
+    start: &State,
+    state: &State,
+    work: &mut Work,
+) -> Option<Option<usize>> {
+    let Some((modes, anchor)) = counted_modes(loading, modes, start, state) else { return Some(None) };
+    let system = ModeSystem::new(loading, &modes, anchor);
+    let unknowns = loading.structure.unknowns();
+    if system.size() + 1 > 2 * unknowns {
+        return Some(None);
+    }
+    let matrix = system.assemble_sparse(&system.iterate(state.clone()), Kind::Rates)?;
+    inertia_of_sparse(&system, &matrix, work).map(|inertia| Some(inertia.negative))
+}
+
+/// Negative eigenvalues of the tangent reduced to the motions that a mode without slip against friction allows, however few;
+/// `None` where it is singular or the count fails.
+pub fn negative_eigenvalues(
+    loading: Loading<'_>,
+    modes: &[Mode],
+    start: &State,
+    state: &State,
+    work: &mut Work,
+) -> Option<usize> {
+    let system = ModeSystem::new(loading, modes, start);
+    let counted = match system.assemble_sparse(&system.iterate(state.clone()), Kind::Rates) {
+        Some(matrix) => inertia_of_sparse(&system, &matrix, work),
+        None => inertia(reduced_tangent(&system, loading, state)?, ZERO_PIVOT),
+    };
+    counted.filter(|counted| counted.zero == 0).map(|counted| counted.negative)
+}
+
+fn inertia_of_sparse(system: &ModeSystem<'_>, matrix: &Bordered, work: &mut Work) -> Option<Inertia> {
+    work.factorisations += 1;
+    held_inertia(matrix, system.holdings(), ZERO_PIVOT)
+}
+
+fn reduced_tangent(system: &ModeSystem<'_>, loading: Loading<'_>, state: &State) -> Option<DMatrix<f64>> {
+    let unknowns = loading.structure.unknowns();
+    let constraints = system.size() - 1 - unknowns;
+    let matrix = system.matrix(state);
+    let tangent = matrix.view((0, 0), (unknowns, unknowns));
+    if constraints == 0 {
+        return Some(tangent.into_owned());
+    }
+    let basis = null_space(&matrix.view((unknowns, 0), (constraints, unknowns)).into_owned(), RANK)?;
+    if basis.ncols() == 0 {
+        return Some(DMatrix::zeros(0, 0));
+    }
+    let basis = basis.qr().q();
+    let reduced = basis.transpose() * (tangent * &basis);
+    Some((&reduced + reduced.transpose()) * 0.5)
+}
+
+/// The modes of a step with every contact free that touches without reaction at both of its ends; `None` where there is
+/// none. Free or closed, such a contact lets the path go the same way, but a branch may leave it.
+pub fn loosened(start: &Start<'_>, reached: &Reached) -> Option<Vec<Mode>> {
+    let touches = |state: &State, contact: usize| {
+        let force_scale = start.force_scale.max(reached.corrected.force_scale);
+        let reaction = state.reactions[contact].size();
+        let is_zero = reaction == 0.0 || start.loading.is_no_force(contact, state, reaction, ZERO, force_scale);
+        is_zero && start.loading.gap(contact, state) <= ZERO
+    };
+    let grazes = |(contact, mode): (usize, &Mode)| {
+        mode.is_active() && touches(start.state, contact) && touches(&reached.corrected.state, contact)
+    };
+    let modes = || start.modes.iter().enumerate();
+    let loosened = |(contact, mode): (usize, &Mode)| if grazes((contact, mode)) { Mode::Free } else { *mode };
+    modes().any(grazes).then(|| modes().map(loosened).collect())
+}
+
+impl Signature {
+    /// At a point whose bordered determinant's sign is known; `None` where the reduced tangent is singular.
+    pub fn with_determinant(
+        loading: Loading<'_>,
+        modes: &[Mode],
+        start: &State,
+        state: &State,
+        sign: f64,
+        work: &mut Work,
+    ) -> Option<Self> {
+        let negative = if loading.structure.layout().is_some() {
+            if !loading.structure.allows_dense() {
+                return None;
+            }
+            count_sparse(loading, modes, start, state, work)?
+        } else {
+            match counted_tangent(loading, modes, start, state) {
+                Some(tangent) => Some(inertia(tangent, ZERO_PIVOT)?.negative),
+                None => None,
+            }
+        };
+        Some(Self { determinant: sign, negative })
+    }
+
+    /// Just past a point where so many eigenvalues cross, from the signature before it.
+    pub fn past(self, change: Change, eigenvalues: usize) -> Option<Self> {
+        let turns = if eigenvalues % 2 == 1 { -1.0 } else { 1.0 };
+        let negative = match (change, self.negative) {
+            (Change::Count { net, .. }, Some(negative)) => {
+                let by = isize::try_from(eigenvalues).ok()?;
+                Some(negative.checked_add_signed(if net > 0 { by } else { -by })?)
+            }
+            _ => None,
+        };
+        Some(Self { determinant: turns * self.determinant, negative })
+    }
+
+    /// At the start of a step; where the equations are singular there, a little further on. `serving` becomes the
+    /// factorisation at the start.
+    pub fn past_start(
+        start: &Start<'_>,
+        step: f64,
+        serving: &mut Option<SystemFactorisation>,
+        work: &mut Work,
+    ) -> Option<Self> {
+        if !start.loading.structure.allows_dense() || start.is_singular {
+            // Bifurcation points are not looked for, or the path leaves one.
+            return None;
+        }
+        Self::at(start.loading, start.modes, start.state, start.rate, serving, work).or_else(|| {
+            let is_sparse = start.loading.structure.layout().is_some();
+            let parts: &[f64] = if is_sparse { &FURTHER_ON_SPARSE } else { &FURTHER_ON };
+            parts.iter().find_map(|part| {
+                let near = start.reach(part * step, work).ok()?;
+                let sign = near.determinant?;
+                Self::with_determinant(start.loading, start.modes, start.state, &near.corrected.state, sign, work)
+            })
+        })
+    }
+
+    /// At a point from which a step is to start; `None` where the equations are singular.
+    pub fn at(
+        loading: Loading<'_>,
+        modes: &[Mode],
+        state: &State,
+        rate: &Rate,
+        serving: &mut Option<SystemFactorisation>,
+        work: &mut Work,
+    ) -> Option<Self> {
+        let system = ModeSystem::new(loading, modes, state);
+        if !loading.structure.allows_dense() {
+            return None;
+        }
+        work.factorisations += 1;
+        if loading.structure.layout().is_some() {
+            let iterate = system.iterate(state.clone());
+            let bordered = system.bordered(&iterate, rate)?;
+            if bordered.pivot_ratio() <= UNCERTAIN {
+                return None;
+            }
+            let sign = bordered.determinant_sign();
+            *serving = system.may_serve(bordered);
+            return Self::with_determinant(loading, modes, state, state, sign, work);
+        }
+        let determinant = bordered_determinant(&system, loading, state, rate)?;
+        if determinant.pivot_ratio <= UNCERTAIN {
+            return None;
+        }
+        Self::with_determinant(loading, modes, state, state, determinant.sign, work)
+    }
+}
+
+/// The determinant of the scaled equations bordered by a direction.
+pub fn bordered_determinant(
+    system: &ModeSystem<'_>,
+    loading: Loading<'_>,
+    state: &State,
+    rate: &Rate,
+) -> Option<Determinant> {
+    let (matrix, _) = scaled_rows(system, loading, state);
+    let mut matrix = matrix.insert_row(system.size() - 1, 0.0);
+    system.border(&mut matrix, rate);
+    determinant(matrix)
+}
+
+/// Sign of the bordered determinant at the end of a step, where it is certain. Next to stiff elements the pivots of a
+/// factorisation that adds them up leave it open; rows over their own sizes tell it as at a start. Else each step would begin
+/// with signs and end without, as if it passed a singular point, and be taken shorter than the one before.
+pub fn sign_at_end(start: &Start<'_>, reached: &Reached, work: &mut Work) -> Option<f64> {
+    reached.determinant.or_else(|| {
+        let (loading, state) = (start.loading, &reached.corrected.state);
+        if loading.structure.layout().is_some() {
+            return None;
+        }
+        work.factorisations += 1;
+        let system = ModeSystem::new(loading, &reached.corrected.modes, state);
+        let determinant = bordered_determinant(&system, loading, state, &reached.rate)?;
+        (determinant.pivot_ratio > UNCERTAIN).then_some(determinant.sign)
+    })
+}
+
+/// The signature at the end of a step, and how it changed.
+pub fn compare(
+    start: &Start<'_>,
+    before: Signature,
+    reached: &Reached,
+    work: &mut Work,
+) -> (Option<Signature>, Change) {
+    let Some(sign) = sign_at_end(start, reached, work) else { return (None, Change::None) };
+    let state = &reached.corrected.state;
+    let Some(mut after) = Signature::with_determinant(start.loading, start.modes, start.state, state, sign, work)
+    else {
+        return (None, Change::None);
+    };
+    let odd = sign != before.determinant;
+    let (Some(first), Some(last)) = (before.negative, after.negative) else {
+        return (Some(after), if odd { Change::Odd } else { Change::None });
+    };
+    let mut net = last as isize - first as isize;
+    if slips(start.loading, start.modes) {
+        // The count is of the structure with these contacts held. It tells of two at once; where an odd number crosses,
+        // the determinant knows where.
+        let change = match (odd, net) {
+            (true, _) => Change::Odd,
+            (false, 0) => Change::None,
+            (false, _) if net % 2 == 0 => Change::Count { before: first, net },
+            (false, _) => Change::None,
+        };
+        return (Some(after), change);
+    }
+    if let Some(Watch::LoadRate { sign }) = reached.event {
+        // K u̇ = ṡ f: the eigenvalue that vanishes at the limit point goes the way of the load, times the sign of f·u̇.
+        let system = ModeSystem::new(start.loading, start.modes, start.state);
+        let structure = start.loading.structure;
+        let motion = |unknown: usize| reached.rate.displacement[structure.freedom_of[unknown]];
+        let work: f64 = match system.assemble_sparse(&system.iterate(state.clone()), Kind::Rates) {
+            Some(matrix) => matrix.right_column(0).iter().map(|(unknown, value)| -value * motion(*unknown)).sum(),
+            None => {
+                let matrix = system.matrix(state);
+                let column = matrix.column(structure.unknowns());
+                (0..structure.unknowns()).map(|unknown| -column[unknown] * motion(unknown)).sum()
+            }
+        };
+        let own = if sign * work > 0.0 { 1 } else { -1 };
+        // Which side of zero it has at the point itself is chance.
+        if (net % 2 != 0) != odd {
+            net -= own;
+        }
+        after.negative = first.checked_add_signed(net + own);
+    }
+    let change = match (net, (net % 2 != 0) == odd) {
+        (0, true) => Change::None,
+        (_, true) => Change::Count { before: first, net },
+        // A count at the edge of a limit point; the determinant is regular there.
+        (_, false) if odd => Change::Odd,
+        (_, false) => Change::None,
+    };
+    (Some(after), change)
+}

@@ -1,0 +1,127 @@
+//! Directions of first order: the rate, and the contact modes that fit it.
+
+use crate::algebra::null_space;
+use crate::mechanics::contact::vector::{Vector, add, size};
+use crate::mechanics::contact::{Contact, Mode};
+use crate::mechanics::equations::ModeSystem;
+use crate::mechanics::equations::scaled_rows::RANK;
+use crate::mechanics::multi_contact::contact_status::Standing;
+use crate::mechanics::problem::loading::Loading;
+use crate::mechanics::problem::state::{Rate, State};
+use crate::step::corrector::cached_factorisation::AtHand;
+
+/// A feasible direction.
+#[derive(Debug, Clone)]
+pub struct Candidate {
+    pub rate: Rate,
+    /// Rates of the contacts' forces, those on one node together: see `node_forces::whole_rates`.
+    pub forces: Vec<Vector>,
+    /// Modes under which it is feasible at first order: stuck where a contact can be.
+    pub modes: Vec<Mode>,
+    /// What the contacts that change together may do under it at first order, or nearly so, one entry for each that can
+    /// change (those without a doubt may be left out); more than one alternative where an inequality holds with equality.
+    /// Every combination of those that hold is feasible.
+    pub alternatives: Vec<Vec<Alternative>>,
+    /// Some inequality holds with equality: only a finite step can tell whether the direction exists.
+    pub weak: bool,
+    /// `-r_t·u̇_t` summed over the contacts.
+    pub dissipation: f64,
+    /// The factorisation that it was found with, bordered by it.
+    pub at_hand: AtHand,
+}
+
+/// Modes of contacts that change together.
+pub type Alternative = Vec<(usize, Mode)>;
+
+/// What was found at a point.
+#[derive(Debug, Clone, Default)]
+pub struct Found {
+    pub candidates: Vec<Candidate>,
+    /// A matrix whose principal minors are all positive proves that they are all.
+    pub is_proven: bool,
+    /// Modes that were not examined.
+    pub unexplored: u64,
+    /// Those of them in which nodes begin to slip at once in space, in directions that are not proven to be all.
+    pub slips_in_doubt: u64,
+    /// Some mode has more than one independent direction.
+    pub degenerate: bool,
+    /// Some direction set contains a motion that no element resists.
+    pub mechanism: bool,
+    /// A node is closed against several obstacles in a way that is not available.
+    pub corner_not_available: bool,
+}
+
+/// Inequalities (of rates of unit arc length) that hold within this are weak.
+pub(crate) const WEAK: f64 = 1e-9;
+
+/// Directions closer than this are one.
+pub(crate) const SAME: f64 = 1e-7;
+
+/// The modes in which every contact that can change is held.
+pub(crate) fn held_modes(loading: Loading<'_>, standings: &[Standing]) -> Vec<Mode> {
+    let held = |(standing, contact): (&Standing, &Contact)| match standing {
+        Standing::Settled(mode) => *mode,
+        Standing::OnCone { .. } | Standing::Cornered { .. } => Mode::Stick,
+        Standing::Touching if contact.tangents() > 0 => Mode::Stick,
+        Standing::Touching => Mode::Slip { direction: [0.0; 3] },
+    };
+    standings.iter().zip(loading.contacts).map(held).collect()
+}
+
+/// Whether the held structure has a motion that no element resists.
+pub(crate) fn resists_nothing(system: &ModeSystem<'_>, loading: Loading<'_>, state: &State) -> bool {
+    if !loading.structure.allows_dense() {
+        return false;
+    }
+    let matrix = system.matrix(state);
+    let Some(basis) = null_space(&matrix.rows(0, system.size() - 1).into_owned(), RANK) else { return false };
+    basis.column_iter().any(|column| {
+        let rate = system.rate_from(state, &column.into_owned());
+        is_mechanism(loading, state, &rate)
+    })
+}
+
+/// A motion with no change of load or reactions that no element resists.
+pub fn is_mechanism(loading: Loading<'_>, state: &State, rate: &Rate) -> bool {
+    let size = rate.size();
+    size > 0.0
+        && rate.load.abs() < WEAK * size
+        && rate.largest_reaction() < WEAK * size
+        && loading.structure.resistance(&state.displacement, &rate.displacement) < WEAK
+}
+
+/// Keeps one entry for one motion, whatever its modes.
+pub(crate) fn merge(found: &mut Found, candidate: Candidate) {
+    for known in &mut found.candidates {
+        let same_motion = (1.0 - known.rate.product(&candidate.rate)) < 0.5 * SAME * SAME;
+        if same_motion && difference_of_forces(&known.forces, &candidate.forces, 1.0) <= SAME {
+            for (alternatives, others) in known.alternatives.iter_mut().zip(candidate.alternatives) {
+                for other in others {
+                    if !alternatives.contains(&other) {
+                        alternatives.push(other);
+                    }
+                }
+                sort(alternatives);
+            }
+            known.weak = true;
+            return;
+        }
+    }
+    found.candidates.push(candidate);
+}
+
+/// Largest difference of forces to others times a factor, over the largest of all.
+pub(crate) fn difference_of_forces(forces: &[Vector], others: &[Vector], factor: f64) -> f64 {
+    let largest = forces.iter().chain(others).fold(f64::MIN_POSITIVE, |largest, force| largest.max(size(force)));
+    forces
+        .iter()
+        .zip(others)
+        .fold(0.0, |most, (force, other)| f64::max(most, size(&add(force, -factor, other)) / largest))
+}
+
+/// More sticking contacts first, then more that are closed.
+pub(crate) fn sort(alternatives: &mut [Alternative]) {
+    let count = |modes: &Alternative, is: fn(&Mode) -> bool| modes.iter().filter(|(_, mode)| is(mode)).count();
+    alternatives
+        .sort_by_key(|modes| (count(modes, |mode| *mode != Mode::Stick), count(modes, |mode| *mode == Mode::Free)));
+}

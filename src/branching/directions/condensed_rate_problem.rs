@@ -1,0 +1,386 @@
+//! The rate equations condensed on the contacts that can change, and the directions of each contact mode.
+//!
+//! With `v` the velocities of those contacts and `τ` the coordinate along the held structure's own direction `z₀`,
+//! `(u̇, ṡ, ṙ) = Z v + z₀ τ`; a mode picks one linear equation for each velocity and leaves a line, taken in both senses.
+//! The inequalities are those listed in `directions`; `rate_options` writes them down, `rates` finds the rays.
+
+use crate::branching::directions::arrival_tangent::Incoming;
+use crate::branching::directions::candidate::{Alternative, Candidate, Found, WEAK, is_mechanism, merge, sort};
+use crate::complementarity::rate_search::branch_and_bound::{self, Effort, Ray};
+use crate::complementarity::rate_search::simultaneous_slips;
+use crate::complementarity::rate_search::slip_onset_direction::{self, Touch, Turning};
+use crate::complementarity::rates::rate_problem::RateProblem;
+use crate::complementarity::rates::{gauss_seidel, warm_start};
+use crate::mechanics::contact::vector::{Vector, add, dot, scaled};
+use crate::mechanics::contact::{Mode, Reaction};
+use crate::mechanics::equations::ModeSystem;
+use crate::mechanics::multi_contact::contact_status::Standing;
+use crate::mechanics::multi_contact::rate_options::changeable::{Changeable, Forms, Outcome};
+use crate::mechanics::problem::loading::Loading;
+use crate::mechanics::problem::node_forces::whole_rates;
+use crate::mechanics::problem::state::{Rate, State};
+use crate::resources::budget::{self, Taken};
+use crate::step::corrector::cached_factorisation::AtHand;
+use nalgebra::{DMatrix, DVector};
+
+/// Up to so many contacts the search finds its way alone, and slips of unknown direction are sought one by one.
+const FEW: usize = 6;
+
+/// The rate equations condensed on the changeable contacts: column `j` is the full rate for unit `v_j`, the last one
+/// is `z₀`.
+pub(crate) struct Condensed<'a> {
+    loading: Loading<'a>,
+    columns: Vec<Rate>,
+    changeable: Vec<Changeable>,
+    problem: RateProblem,
+    /// What the options of each mean.
+    outcomes: Vec<Vec<Outcome>>,
+    _held: Taken,
+}
+
+impl<'a> Condensed<'a> {
+    /// `None` where the held structure has more than one independent direction.
+    pub(crate) fn new(
+        system: &ModeSystem<'_>,
+        loading: Loading<'a>,
+        state: &State,
+        standings: &[Standing],
+        incoming: Option<Incoming<'_>>,
+    ) -> Option<Self> {
+        let changeable = changeable(loading, state, standings);
+        let of_column = loading.structure.freedoms() + 4 * loading.contacts.len();
+        let velocities: usize = changeable.iter().map(|entry| entry.velocities.len()).sum();
+        // The columns themselves, and the matrices of their motions and reactions.
+        let held = budget::take::<f64>(2 * (velocities + 1) * of_column);
+        let columns = system.columns(&changeable, incoming)?;
+        let normals = |contact: usize| loading.frame(contact, state).normal;
+        let mut forms = Forms { columns: &columns, normals: &normals, rows: Vec::new(), is_force: Vec::new(), held };
+        let (entities, outcomes) = changeable.iter().map(|entry| entry.options(loading, state, &mut forms)).unzip();
+        forms.held.add::<f64>(forms.rows.len() * columns.len());
+        let freedoms = columns[0].displacement.len();
+        let motion = column_by_column(freedoms + 1, columns.len(), |row, column| {
+            if row < freedoms { columns[column].displacement[row] } else { columns[column].load }
+        });
+        let reactions = column_by_column(4 * columns[0].reactions.len(), columns.len(), |row, column| {
+            let reaction = &columns[column].reactions[row / 4];
+            if row % 4 == 0 { reaction.normal } else { reaction.tangential[row % 4 - 1] }
+        });
+        let problem = RateProblem {
+            forms: column_by_column(forms.rows.len(), columns.len(), |row, column| forms.rows[row][column]),
+            is_force: forms.is_force,
+            entities,
+            motion,
+            reactions,
+        };
+        let held = forms.held;
+        Some(Self { loading, columns, changeable, problem, outcomes, _held: held })
+    }
+
+    /// The rate problem, for those who try every combination.
+    #[cfg(test)]
+    pub(crate) fn problem(&self) -> &RateProblem {
+        &self.problem
+    }
+
+    /// Lists the directions, by branch and bound over the contacts' options.
+    pub(crate) fn enumerate(
+        &self,
+        held: &[Mode],
+        state: &State,
+        incoming: Option<&Rate>,
+        effort: Effort<'_>,
+        found: &mut Found,
+    ) {
+        let first = || {
+            let mut first = vec![vec![0; self.changeable.len()]];
+            if let Some(rate) = incoming {
+                first.extend(warm_start::near(&self.problem, &self.weights_of(rate)));
+            }
+            if self.changeable.len() > FEW {
+                first.extend(gauss_seidel::sweeps(&self.problem, effort.cancel));
+            }
+            first
+        };
+        let findings = branch_and_bound::explore(&self.problem, first, effort);
+        found.unexplored = findings.unexplored;
+        found.degenerate |= findings.degenerate;
+        for basis in &findings.planes {
+            let motions: Vec<Rate> = basis.column_iter().map(|column| self.combine(&column.into_owned()).0).collect();
+            found.mechanism |= motions.iter().any(|rate| is_mechanism(self.loading, state, rate));
+            if let Some(incoming) = incoming {
+                self.add_nearest_mechanism(&motions, incoming, held, state, found);
+            }
+        }
+        for ray in &findings.rays {
+            self.add(ray, &[], held, state, found);
+        }
+        let touches: Vec<Touch> = (0..self.changeable.len())
+            .filter(|entry| self.changeable[*entry].may_turn(self.loading))
+            .filter_map(|entry| {
+                let contact = self.changeable[entry].contacts[0];
+                Touch::of(&self.problem, entry, self.loading.contacts[contact].friction)
+            })
+            .collect();
+        let mut turning: Vec<Turning> = Vec::new();
+        if touches.len() <= FEW {
+            turning.extend(touches.iter().flat_map(|touch| slip_onset_direction::slips(&self.problem, touch, effort)));
+        }
+        if touches.len() > 1 {
+            let at_once = simultaneous_slips::slips(&self.problem, &touches, effort.cancel);
+            turning.extend(at_once.rays);
+            if !at_once.complete {
+                found.slips_in_doubt = touches.len() as u64;
+                found.unexplored = found.unexplored.saturating_add(found.slips_in_doubt);
+            }
+        }
+        self.add_slips_out_of_pockets(held, state, effort, found);
+        for slip in &turning {
+            let directions: Vec<(usize, Vector)> = slip
+                .slips
+                .iter()
+                .map(|(entity, parts)| {
+                    let tangents = self.changeable[*entity].tangents();
+                    let direction = add(&scaled(&tangents[0], parts[0]), parts[1], &tangents[1]);
+                    (self.changeable[*entity].contacts[0], direction)
+                })
+                .collect();
+            self.add(&slip.ray, &directions, held, state, found);
+        }
+    }
+
+    /// Where a node in a pocket is not pressed, first slips along one of its obstacles in a direction that is unknown.
+    fn add_slips_out_of_pockets(&self, held: &[Mode], state: &State, effort: Effort<'_>, found: &mut Found) {
+        let normals = |contact: usize| self.loading.frame(contact, state).normal;
+        let mut forms = Forms {
+            columns: &self.columns,
+            normals: &normals,
+            rows: self.problem.forms.row_iter().map(|row| row.transpose()).collect(),
+            is_force: self.problem.is_force.clone(),
+            held: Taken::default(),
+        };
+        let mut touches = Vec::new();
+        for (entity, entry) in self.changeable.iter().enumerate() {
+            touches.extend(entry.touches_in_pocket(entity, &mut forms));
+        }
+        if touches.is_empty() {
+            return;
+        }
+        let copied = self.problem.motion.len() + self.problem.reactions.len() + forms.rows.len() * self.columns.len();
+        forms.held.add::<f64>(copied);
+        let rows = DMatrix::from_fn(forms.rows.len(), self.columns.len(), |row, column| forms.rows[row][column]);
+        let problem = RateProblem {
+            forms: rows,
+            is_force: forms.is_force,
+            entities: self.problem.entities.clone(),
+            motion: self.problem.motion.clone(),
+            reactions: self.problem.reactions.clone(),
+        };
+        for (contact, touch) in &touches {
+            let tangents = self.loading.frame(*contact, state).tangents;
+            for slip in slip_onset_direction::slips(&problem, touch, effort) {
+                let parts = slip.slips[0].1;
+                let direction = add(&scaled(&tangents[0], parts[0]), parts[1], &tangents[1]);
+                self.add(&slip.ray, &[(*contact, direction)], held, state, found);
+            }
+        }
+    }
+
+    /// Of a set of motions that no element resists, the one nearest to the direction in which the path came.
+    fn add_nearest_mechanism(
+        &self,
+        motions: &[Rate],
+        incoming: &Rate,
+        held: &[Mode],
+        state: &State,
+        found: &mut Found,
+    ) {
+        let mut basis: Vec<Rate> = Vec::new();
+        for motion in motions.iter().filter(|rate| is_mechanism(self.loading, state, rate)) {
+            let mut rest = motion.clone();
+            basis.iter().for_each(|known| rest.add(known, -known.product(&rest)));
+            let size = rest.size();
+            if size > WEAK {
+                rest.scale(1.0 / size);
+                basis.push(rest);
+            }
+        }
+        let [first, others @ ..] = &basis[..] else { return };
+        let mut nearest = first.clone();
+        nearest.scale(first.product(incoming));
+        others.iter().for_each(|motion| nearest.add(motion, motion.product(incoming)));
+        let size = nearest.size();
+        let opens = |entry: &Changeable| {
+            let contact = entry.contacts[0];
+            dot(&self.loading.frame(contact, state).normal, &self.loading.relative_rate(contact, &nearest)) >= -WEAK
+        };
+        if size <= WEAK || !self.changeable.iter().all(opens) {
+            return;
+        }
+        nearest.scale(1.0 / size);
+        let mut modes = held.to_vec();
+        self.changeable.iter().flat_map(|entry| &entry.contacts).for_each(|contact| modes[*contact] = Mode::Free);
+        let forces = whole_rates(self.loading, state, &nearest);
+        let (alternatives, dissipation) = (Vec::new(), 0.0);
+        merge(
+            found,
+            Candidate {
+                rate: nearest,
+                forces,
+                modes,
+                alternatives,
+                weak: true,
+                dissipation,
+                at_hand: AtHand::default(),
+            },
+        );
+    }
+
+    /// The weights that come nearest to a rate: its velocities, and what it has along `z₀`.
+    fn weights_of(&self, rate: &Rate) -> DVector<f64> {
+        let last = self.columns.len() - 1;
+        budget::spend(last * rate.displacement.len());
+        let mut weights = DVector::zeros(last + 1);
+        for entry in &self.changeable {
+            let motion = self.loading.relative_rate(entry.contacts[0], rate);
+            for (column, direction) in &entry.velocities {
+                weights[*column] = dot(&motion, direction);
+            }
+        }
+        let mut rest = rate.clone();
+        for (column, weight) in self.columns.iter().zip(weights.iter()).take(last) {
+            rest.displacement.iter_mut().zip(&column.displacement).for_each(|(sum, value)| *sum -= weight * value);
+            rest.load -= weight * column.load;
+        }
+        let own = &self.columns[last];
+        weights[last] = own.product(&rest) / own.product(own);
+        weights
+    }
+
+    /// Adds a ray as a candidate direction.
+    fn add(&self, ray: &Ray, turning: &[(usize, Vector)], held: &[Mode], state: &State, found: &mut Found) {
+        let (mut rate, _) = self.combine(&ray.weights);
+        let mut modes = held.to_vec();
+        for ((entry, outcomes), choice) in self.changeable.iter().zip(&self.outcomes).zip(ray.chosen()) {
+            entry.take_reaction_apart(self.loading, &mut rate);
+            let slips_out = turning.iter().any(|(slipping, _)| entry.contacts.contains(slipping));
+            for (contact, mode) in &outcomes[choice].modes {
+                // The other obstacles of its node are left.
+                let mode = if slips_out && entry.contacts.len() > 1 { &Mode::Free } else { mode };
+                let slips = turning.iter().find(|(turning, _)| turning == contact);
+                let mode = &slips.map_or(*mode, |(_, direction)| Mode::Slip { direction: *direction });
+                modes[*contact] = *mode;
+                let reaction = &mut rate.reactions[*contact];
+                match mode {
+                    Mode::Free if entry.contacts.len() == 1 => *reaction = Reaction::default(),
+                    Mode::Slip { direction } if entry.contacts.len() == 1 => {
+                        // Exactly on the cone along the direction; what is across it turns the direction.
+                        let friction = self.loading.contacts[*contact].friction;
+                        let drag = -friction * reaction.normal - dot(&reaction.tangential, direction);
+                        reaction.tangential = add(&reaction.tangential, drag, direction);
+                    }
+                    Mode::Free | Mode::Stick | Mode::Slip { .. } => {}
+                }
+            }
+        }
+        self.changeable.iter().for_each(|entry| entry.move_to_slider(self.loading, &modes, &mut rate, state));
+        let force = WEAK * rate.largest_reaction().max(f64::MIN_POSITIVE);
+        if !self.changeable.iter().all(|entry| entry.is_in_cone(self.loading, &modes, &rate, force)) {
+            return;
+        }
+        let dissipation =
+            self.changeable.iter().map(|entry| entry.dissipation(self.loading, &modes, &rate, state)).sum();
+        let alternatives = self.alternatives(ray, turning, &modes, &rate, force);
+        let forces = whole_rates(self.loading, state, &rate);
+        let just_held = |entry: &Changeable| entry.margin(&modes, &rate).is_some_and(|margin| margin <= force);
+        let weak = ray.weak || self.changeable.iter().any(just_held);
+        merge(found, Candidate { rate, forces, modes, alternatives, weak, dissipation, at_hand: AtHand::default() });
+    }
+
+    /// What each contact may do along a ray.
+    fn alternatives(
+        &self,
+        ray: &Ray,
+        turning: &[(usize, Vector)],
+        modes: &[Mode],
+        rate: &Rate,
+        force: f64,
+    ) -> Vec<Vec<Alternative>> {
+        budget::spend(self.changeable.len());
+        let of_entity = |((entry, outcomes), in_doubt): ((&Changeable, &Vec<Outcome>), &Vec<usize>)| {
+            if turning.iter().any(|(turning, _)| entry.contacts.contains(turning)) {
+                return vec![entry.contacts.iter().map(|contact| (*contact, modes[*contact])).collect()];
+            }
+            let mut alternatives: Vec<Alternative> =
+                in_doubt.iter().map(|&choice| outcomes[choice].modes.clone()).collect();
+            alternatives.retain(|alternative| {
+                budget::spend(modes.len());
+                let mut modes = modes.to_vec();
+                alternative.iter().for_each(|(contact, mode)| modes[*contact] = *mode);
+                entry.is_in_cone(self.loading, &modes, rate, force)
+            });
+            if let [contact] = entry.contacts[..]
+                && alternatives.contains(&vec![(contact, Mode::Free)])
+            {
+                alternatives.extend(entry.grazing_slip(self.loading, rate).map(|slip| vec![(contact, slip)]));
+            }
+            sort(&mut alternatives);
+            alternatives
+        };
+        self.changeable.iter().zip(&self.outcomes).zip(&ray.in_doubt).map(of_entity).collect()
+    }
+
+    /// The rate of unit arc length for weights of the columns, and the weights that give it; of no size where the
+    /// weights move nothing.
+    pub(crate) fn combine(&self, weights: &DVector<f64>) -> (Rate, DVector<f64>) {
+        budget::spend(self.columns.len() * (self.columns[0].displacement.len() + 4 * self.loading.contacts.len()));
+        let mut rate = self.columns[0].clone();
+        rate.scale(weights[0]);
+        for (column, weight) in self.columns.iter().zip(weights.iter()).skip(1) {
+            rate.displacement.iter_mut().zip(&column.displacement).for_each(|(sum, value)| *sum += weight * value);
+            rate.load += weight * column.load;
+            rate.reactions.iter_mut().zip(&column.reactions).for_each(|(sum, value)| sum.add(*weight, value));
+        }
+        let size = rate.size();
+        if size > WEAK * rate.largest_reaction() {
+            rate.scale(1.0 / size);
+            (rate, weights / size)
+        } else {
+            rate.scale(0.0);
+            (rate, weights.clone())
+        }
+    }
+}
+
+/// The contacts that can change, each corner once, with their columns.
+pub(crate) fn changeable(loading: Loading<'_>, state: &State, standings: &[Standing]) -> Vec<Changeable> {
+    let mut entries: Vec<Changeable> = Vec::new();
+    let mut next = 0;
+    for (contact, standing) in standings.iter().enumerate() {
+        let contacts = match standing {
+            Standing::Settled(_) => continue,
+            Standing::OnCone { .. } | Standing::Touching => vec![contact],
+            Standing::Cornered { .. } => {
+                if entries.iter().any(|entry| entry.contacts.contains(&contact)) {
+                    continue;
+                }
+                let cornered = |other: &usize| matches!(standings[*other], Standing::Cornered { .. });
+                let corner = loading.corners.iter().find(|corner| corner.contacts.contains(&contact));
+                corner.map_or(vec![contact], |corner| corner.contacts.iter().copied().filter(cornered).collect())
+            }
+        };
+        let entry = Changeable::new(loading, state, contacts, *standing, next);
+        next += entry.velocities.len();
+        entries.push(entry);
+    }
+    entries
+}
+
+/// A matrix by its entries: each column is work of its own, so that a large one can be interrupted.
+fn column_by_column(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> DMatrix<f64> {
+    let mut matrix = DMatrix::zeros(rows, columns);
+    for (column, mut values) in matrix.column_iter_mut().enumerate() {
+        budget::spend(rows);
+        values.iter_mut().enumerate().for_each(|(row, value)| *value = entry(row, column));
+    }
+    matrix
+}

@@ -1,0 +1,199 @@
+//! The rate equations of contacts that can change, by their entries.
+
+use crate::algebra::sparse::factors::cholesky::Triangle;
+use crate::mechanics::contact::vector::{Vector, add, scaled};
+use crate::mechanics::contact::{Frame, Mode};
+use crate::mechanics::multi_contact::contact_status::Standing;
+use crate::mechanics::problem::loading::Loading;
+use crate::mechanics::problem::state::{Rate, State};
+use smallvec::SmallVec;
+
+/// A contact that can change.
+pub(super) struct Changing {
+    pub contact: usize,
+    /// The slip that it would begin with; `None` where it touches without reaction.
+    pub direction: Option<Vector>,
+    pub frame: Frame,
+    /// Its column in `A`: of its slip on the cone; where it touches, of its velocity along the tangent, and after it the
+    /// one along the normal.
+    pub column: usize,
+}
+
+/// What a degree of freedom has in a column of `A`, and in the row.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Part {
+    pub column: usize,
+    pub motion: f64,
+    pub test: f64,
+}
+
+/// Entries of a column of `A`, as they mostly are in the plane.
+const ENTRIES: usize = 6;
+
+/// See the module.
+pub(super) struct Equations<'a> {
+    pub loading: Loading<'a>,
+    pub state: &'a State,
+    /// Modes of those that cannot change; of the others that they stick.
+    pub held: Vec<Mode>,
+    pub changing: Vec<Changing>,
+    /// Of each degree of freedom.
+    pub parts: Vec<SmallVec<[Part; 2]>>,
+    /// Columns of `A`.
+    pub size: usize,
+    /// How reactions turn with the place: diagonal entries of `A`.
+    turning: Vec<(usize, f64)>,
+}
+
+impl<'a> Equations<'a> {
+    /// `None` where the equations are not of the kind described.
+    pub fn new(loading: Loading<'a>, state: &'a State, standings: &[Standing]) -> Option<Self> {
+        let structure = loading.structure;
+        let shares = loading.corners.iter().any(|corner| {
+            corner.contacts.iter().filter(|contact| standings[**contact] != Standing::Settled(Mode::Free)).count() > 1
+        });
+        if structure.dimension != 2 || shares {
+            return None;
+        }
+        let mut equations = Self {
+            loading,
+            state,
+            held: Vec::with_capacity(standings.len()),
+            changing: Vec::with_capacity(standings.len()),
+            parts: vec![SmallVec::new(); structure.freedoms()],
+            size: 0,
+            turning: Vec::new(),
+        };
+        let mut is_closed = vec![false; structure.freedoms() / 2];
+        for (contact, (standing, data)) in standings.iter().zip(loading.contacts).enumerate() {
+            if *standing == Standing::Settled(Mode::Free) {
+                equations.held.push(Mode::Free);
+                continue;
+            }
+            let first = 2 * data.node;
+            let is_free = (first..first + 2).all(|freedom| structure.unknown_of[freedom].is_some());
+            if *standing != Standing::Settled(Mode::Stick) && !is_free {
+                return None;
+            }
+            is_closed[data.node] = true;
+            equations.add_closed(contact, standing)?;
+            equations.held.push(match standing {
+                Standing::Settled(mode) => *mode,
+                _ if data.tangents() > 0 => Mode::Stick,
+                _ => Mode::Slip { direction: [0.0; 3] },
+            });
+        }
+        for freedom in &structure.freedom_of {
+            if !is_closed[freedom / 2] {
+                equations.parts[*freedom].push(Part { column: equations.size, motion: 1.0, test: 1.0 });
+                equations.size += 1;
+            }
+        }
+        Some(equations)
+    }
+
+    fn add_closed(&mut self, contact: usize, standing: &Standing) -> Option<()> {
+        let data = &self.loading.contacts[contact];
+        let frame = self.loading.frame(contact, self.state);
+        let first = 2 * data.node;
+        let column = self.size;
+        let mut add_column = |motion: &Vector, test: &Vector| {
+            let column = self.size;
+            (0..2).for_each(|k| self.parts[first + k].push(Part { column, motion: motion[k], test: test[k] }));
+            self.size += 1;
+        };
+        let along = match standing {
+            Standing::Settled(Mode::Slip { .. }) => frame.tangents[0],
+            Standing::OnCone { direction } => *direction,
+            Standing::Settled(Mode::Stick | Mode::Free) => return Some(()),
+            Standing::Touching => {
+                add_column(&frame.tangents[0], &frame.tangents[0]);
+                add_column(&frame.normal, &frame.normal);
+                self.changing.push(Changing { contact, direction: None, frame, column });
+                return Some(());
+            }
+            Standing::Cornered { .. } => return None,
+        };
+        add_column(&along, &add(&along, data.friction, &frame.normal));
+        let turning = -frame.curvature * self.state.reactions[contact].normal;
+        if turning != 0.0 {
+            self.turning.push((column, turning * (1.0 + data.friction * data.friction)));
+        }
+        if matches!(standing, Standing::OnCone { .. }) {
+            self.changing.push(Changing { contact, direction: Some(along), frame, column });
+        }
+        Some(())
+    }
+
+    /// Calls with every entry of `A`; several at one place add up.
+    pub fn each_entry(&self, each: &mut impl FnMut(usize, usize, f64)) {
+        self.loading.structure.each_stiffness(&self.state.displacement, &mut |row, column, value| {
+            for test in &self.parts[row] {
+                let value = test.test * value;
+                if value != 0.0 {
+                    self.parts[column]
+                        .iter()
+                        .filter(|part| part.motion != 0.0)
+                        .for_each(|part| each(test.column, part.column, value * part.motion));
+                }
+            }
+        });
+        self.turning.iter().for_each(|(column, value)| each(*column, *column, *value));
+    }
+
+    /// The lower triangle of `(A + Aᵀ)/2`.
+    pub fn symmetric_part(&self) -> Triangle {
+        let mut lower = Triangle::with_capacity(ENTRIES * self.size);
+        self.each_entry(&mut |row, column, value| {
+            let half = if row == column { value } else { 0.5 * value };
+            lower.push((row.max(column), row.min(column), half));
+        });
+        lower
+    }
+
+    /// Velocities of all degrees of freedom from those of the columns.
+    pub fn velocities(&self, columns: &[f64]) -> Vec<f64> {
+        let velocity = |parts: &SmallVec<[Part; 2]>| parts.iter().map(|part| part.motion * columns[part.column]).sum();
+        self.parts.iter().map(velocity).collect()
+    }
+
+    /// Velocities of the columns from those of all degrees of freedom.
+    pub fn columns_of(&self, rate: &Rate) -> Vec<f64> {
+        let mut columns = vec![0.0; self.size];
+        for (parts, velocity) in self.parts.iter().zip(&rate.displacement) {
+            // The motions of one node are orthonormal.
+            parts.iter().for_each(|part| columns[part.column] += part.motion * velocity);
+        }
+        columns
+    }
+
+    /// `q`: the load on the rows.
+    pub fn load(&self) -> Vec<f64> {
+        let mut load = vec![0.0; self.size];
+        for (parts, force) in self.parts.iter().zip(&self.loading.pattern.forces) {
+            parts.iter().for_each(|part| load[part.column] += part.test * force);
+        }
+        load
+    }
+
+    pub fn largest_load(&self) -> f64 {
+        self.loading.pattern.forces.iter().fold(0.0, |largest, force| largest.max(force.abs()))
+    }
+
+    /// The power of the load on velocities of the columns.
+    pub fn power(&self, columns: &[f64]) -> f64 {
+        self.load().iter().zip(columns).map(|(load, velocity)| load * velocity).sum()
+    }
+
+    /// The mode in which a contact that touches, or is on its cone, goes at some velocity without any force.
+    pub fn mode_of_motion(&self, one: &Changing, columns: &[f64], still: f64) -> Mode {
+        let along = columns[one.column];
+        match one.direction {
+            Some(direction) => Mode::Slip { direction },
+            None if columns[one.column + 1] > still => Mode::Free,
+            None if self.loading.contacts[one.contact].tangents() == 0 => Mode::Slip { direction: [0.0; 3] },
+            None if along.abs() > still => Mode::Slip { direction: scaled(&one.frame.tangents[0], along.signum()) },
+            None => Mode::Stick,
+        }
+    }
+}

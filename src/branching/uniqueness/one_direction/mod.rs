@@ -1,0 +1,109 @@
+//! Directions where many contacts can change, without a matrix of them.
+//!
+//! Let `w >= 0` be the speeds of the nodes on their cones, along the directions `d` in which they may slip, and
+//! `y = μ ṙ_n + d·ṙ_t >= 0` what their forces leave of the cones, `w y = 0`; let `v` be the velocities of the nodes that
+//! touch without reaction, and `x` those of what is free. The rates obey
+//!
+//! ```text
+//! A (x, w, v) - q ṡ = (0, y, ṙ),      A = Rᵀ K C,      columns C of a node on its cone: d,      rows R: d + μ n
+//! ```
+//!
+//! in the plane. [`proof`] tells where a sparse Cholesky factorisation shows that each load rate has one solution at the
+//! most; [`pivoting`] finds it: solve in a mode, change every contact that violates it, and again. Time and memory go with
+//! the structure.
+//!
+//! Where contacts are too many for the condensed matrix and there is no such proof, what pivoting finds is listed, and the
+//! modes not examined are counted.
+
+pub(crate) mod equations;
+pub(crate) mod pivoting;
+pub(crate) mod proof;
+#[cfg(test)]
+mod tests;
+
+use crate::branching::directions::arrival_tangent::Incoming;
+use crate::branching::directions::candidate::Found;
+use crate::complementarity::rate_search::branch_and_bound::Effort;
+use crate::mechanics::multi_contact::contact_status::Standing;
+use crate::mechanics::problem::loading::Loading;
+use crate::mechanics::problem::state::State;
+use equations::Equations;
+use proof::Control;
+
+/// Contacts that can change up to which the search of every combination is as quick: where all are on their cones, and
+/// where some touch, each of which has four ways to go on.
+const FEW: usize = 16;
+const FEW_TOUCHING: usize = 3;
+/// The same of structures with sparse matrices, at the least: each contact that can change is one more solve, and costs as
+/// much of the factorisations that a proof takes as the factor's columns are short.
+const FEW_OF_MANY: usize = 4;
+/// And at the most: the search, which may have to try every combination, is cut where it takes too long.
+const MOST_OF_MANY: usize = 24;
+/// Entries of a column of the factor for which one more contact is as quick.
+const ENTRIES_A_CONTACT: usize = 3;
+/// Numbers of the condensed equations (contacts that can change times what each moves) that are too many.
+const MOST_CONDENSED: usize = 25_000_000;
+
+/// Lists the directions; `false` where there is no proof that they are all and the contacts are few enough for a search.
+pub(crate) fn directions(
+    loading: Loading<'_>,
+    state: &State,
+    standings: &[Standing],
+    incoming: Option<Incoming<'_>>,
+    effort: Effort<'_>,
+    found: &mut Found,
+) -> bool {
+    if !effort.certify {
+        return false;
+    }
+    let Some(equations) = Equations::new(loading, state, standings) else { return false };
+    let columns = equations.changing.len() * loading.structure.dimension;
+    let is_huge = columns * (loading.structure.freedoms() + 4 * loading.contacts.len()) > MOST_CONDENSED;
+    // The members of a family that no element resists are searched for where contacts are few.
+    let is_few = equations.changing.len() <= FEW;
+    let proof =
+        equations.proof(incoming.map(|incoming| incoming.rate)).filter(|proof| !is_few || proof.free_motions() <= 1);
+    if proof.is_none() && !is_huge {
+        return false;
+    }
+    let mut candidates = Vec::new();
+    let mut complete = proof.is_some();
+    for sign in [1.0, -1.0] {
+        if proof.as_ref().is_some_and(|proof| equations.has_none(sign, proof)) {
+            continue;
+        }
+        let control = proof.as_ref().map_or(Control::Load, |proof| proof.control);
+        let candidate = equations.solve(control, sign, incoming);
+        complete &= proof.as_ref().zip(candidate.as_ref()).is_some_and(|(proof, one)| equations.is_only(one, proof));
+        candidates.extend(candidate);
+    }
+    if !complete && !is_huge {
+        return false;
+    }
+    if let Some(proof) = proof.filter(|_| complete) {
+        equations.add_free_motions(&proof, found);
+        if proof.control == Control::Power {
+            candidates.extend(equations.at_rest());
+        }
+    }
+    found.candidates.extend(candidates);
+    found.is_proven = complete;
+    found.candidates.sort_by_cached_key(|candidate| equations.order(candidate));
+    if !complete {
+        let modes = |ways: u64, count: usize| ways.saturating_pow(u32::try_from(count).unwrap_or(u32::MAX));
+        let touching = equations.changing.iter().filter(|one| one.direction.is_none()).count();
+        found.unexplored = modes(2, equations.changing.len() - touching).saturating_mul(modes(4, touching));
+    }
+    true
+}
+
+/// Whether the search is quicker than a proof.
+pub(crate) fn are_few(loading: Loading<'_>, standings: &[Standing]) -> bool {
+    let touching = standings.iter().filter(|standing| matches!(standing, Standing::Touching)).count();
+    let changing = standings.iter().filter(|standing| !matches!(standing, Standing::Settled(_))).count();
+    let few = loading.structure.layout().map_or(FEW, |layout| {
+        let entries_of_column = layout.pattern.factor_entries() / layout.pattern.size().max(1);
+        (entries_of_column / ENTRIES_A_CONTACT).clamp(FEW_OF_MANY, MOST_OF_MANY)
+    });
+    changing <= few && touching <= FEW_TOUCHING
+}

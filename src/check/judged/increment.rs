@@ -1,0 +1,13 @@
+//! An increment with what the measure says of it.
+
+use crate::check::measure::Errors;
+use crate::result::increment::Increment;
+use serde::{Deserialize, Serialize};
+
+/// An increment as it is printed, streamed and stored: one flat object, `measure` its last member.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct JudgedIncrement {
+    #[serde(flatten)]
+    pub increment: Increment,
+    pub measure: Errors,
+}

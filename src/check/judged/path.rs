@@ -1,0 +1,222 @@
+//! A path being traced and judged.
+
+use crate::check::judged::alternatives::Alternatives;
+use crate::check::judged::checkpoint::{JudgedCheckpoint, JudgedCheckpointError};
+use crate::check::judged::increment::JudgedIncrement;
+use crate::check::judged::record::Recorder;
+use crate::check::judged::report::{JudgedReport, MeasureReport, OFF_MEASURE};
+use crate::check::measure::Judge;
+use crate::continuation::path::iterator::Path;
+use crate::continuation::scene::Scene;
+use crate::continuation::traced::TracedPath;
+use crate::model::JobRequest;
+use crate::model::request::Method;
+use crate::resources::cancel::CancelFlag;
+use crate::result::increment::{Diagnostics, Increment};
+
+/// An iterator of judged increments, by whichever method the analysis names.
+pub struct JudgedPath<'a> {
+    path: TracedPath<'a>,
+    judge: Judge,
+    measure: MeasureReport,
+    record: Recorder,
+    /// The last increment is off the measure.
+    off_measure: bool,
+    alternatives: Alternatives,
+    /// Directions that appear first at the last increment.
+    found: Vec<u64>,
+    /// The last increment where it was left out: the last of the path is given after all.
+    left_out: Option<LeftOut>,
+    /// The path at the last increment given, where it has gone on from there.
+    put_down: Option<Option<Place>>,
+}
+
+/// An increment of the path, and the increment itself where it is recorded.
+#[derive(Debug)]
+pub struct Step {
+    pub index: u64,
+    /// The path's totals.
+    pub diagnostics: Diagnostics,
+    pub given: Option<JudgedIncrement>,
+}
+
+/// An increment not given yet.
+struct LeftOut {
+    judged: JudgedIncrement,
+    place: Option<Place>,
+}
+
+/// A path put down where directions are listed.
+struct Place {
+    checkpoint: JudgedCheckpoint,
+    open: Vec<bool>,
+}
+
+impl<'a> JudgedPath<'a> {
+    /// From the start; `scene` is the request's.
+    pub fn new(request: &JobRequest, scene: &'a Scene, cancel: CancelFlag) -> Self {
+        Self::of(request, TracedPath::new(scene, cancel), judge(request, scene), fresh(request))
+    }
+
+    fn of(request: &JobRequest, path: TracedPath<'a>, judge: Judge, measure: MeasureReport) -> Self {
+        Self {
+            path,
+            judge,
+            measure,
+            record: Recorder::new(request),
+            off_measure: false,
+            alternatives: Alternatives::default(),
+            found: Vec::new(),
+            left_out: None,
+            put_down: None,
+        }
+    }
+
+    /// Along a direction listed at a checkpoint: see [`Path::follow`]. The judge goes on from where it was; the maxima
+    /// are the new path's own.
+    ///
+    /// # Errors
+    /// A checkpoint that does not fit, and a direction along which there is no path.
+    pub fn follow(
+        request: &JobRequest,
+        scene: &'a Scene,
+        checkpoint: JudgedCheckpoint,
+        direction: usize,
+        event: String,
+        cancel: CancelFlag,
+    ) -> Result<Self, JudgedCheckpointError> {
+        let JudgedCheckpoint { path, history, measure: _, alternatives: _, left_out: _ } = checkpoint;
+        let path = Path::follow(scene, path, direction, event, cancel)?;
+        let judge = judge(request, scene).taking_up(history)?;
+        let mut followed = Self::of(request, TracedPath::Exact(Box::new(path)), judge, fresh(request));
+        followed.alternatives = Alternatives::of(true);
+        Ok(followed)
+    }
+
+    /// Takes a path up where it was put down: increments and report are the same as if it had not been, but for
+    /// `elapsed_s`.
+    ///
+    /// # Errors
+    /// A checkpoint of another model, or of another version of this program.
+    pub fn resume(
+        request: &JobRequest,
+        scene: &'a Scene,
+        checkpoint: JudgedCheckpoint,
+        cancel: CancelFlag,
+    ) -> Result<Self, JudgedCheckpointError> {
+        let JudgedCheckpoint { path, history, measure, alternatives, left_out } = checkpoint;
+        let path = Path::resume(scene, path, cancel)?;
+        let judge = judge(request, scene).taking_up(history)?;
+        let path = TracedPath::Exact(Box::new(path));
+        let mut resumed = Self { alternatives, ..Self::of(request, path, judge, measure) };
+        resumed.left_out = left_out.map(|judged| LeftOut { judged: *judged, place: resumed.place() });
+        Ok(resumed)
+    }
+
+    /// The path at the last step; `None` by a method whose paths cannot be put down.
+    pub fn checkpoint(&self) -> Option<JudgedCheckpoint> {
+        match &self.put_down {
+            Some(place) => place.as_ref().map(|place| place.checkpoint.clone()),
+            None => {
+                let left_out = self.left_out.as_ref().map(|left_out| Box::new(left_out.judged.clone()));
+                self.present().map(|checkpoint| JudgedCheckpoint { left_out, ..checkpoint })
+            }
+        }
+    }
+
+    /// Traces and judges one increment more; the last of a path is given though it was left out before.
+    pub fn step(&mut self) -> Option<Step> {
+        self.put_down = None;
+        let Some(increment) = self.path.next() else {
+            let LeftOut { judged, place } = self.left_out.take()?;
+            self.put_down = Some(place);
+            self.off_measure = false;
+            let Increment { index, diagnostics, .. } = judged.increment;
+            return Some(Step { index, diagnostics, given: Some(judged) });
+        };
+        let Increment { index, diagnostics, .. } = increment;
+        let measure = self.judge.judge(&increment);
+        self.off_measure = self.measure.include(index, &measure);
+        self.found = self.alternatives.at(&increment, &self.open());
+        let kept = self.off_measure || !self.found.is_empty() || self.record.keeps(&increment);
+        let judged = JudgedIncrement { increment: self.record.cut(increment), measure };
+        if kept {
+            self.left_out = None;
+            return Some(Step { index, diagnostics, given: Some(judged) });
+        }
+        self.left_out = Some(LeftOut { judged, place: self.place() });
+        Some(Step { index, diagnostics, given: None })
+    }
+
+    fn present(&self) -> Option<JudgedCheckpoint> {
+        let TracedPath::Exact(path) = &self.path else { return None };
+        let alternatives = self.alternatives.clone();
+        Some(JudgedCheckpoint {
+            path: path.checkpoint(),
+            history: self.judge.history(),
+            measure: self.measure,
+            alternatives,
+            left_out: None,
+        })
+    }
+
+    /// Put down here where directions are listed: what comes next may not lead to a point, and leave another state behind.
+    fn place(&self) -> Option<Place> {
+        let open = self.open_directions();
+        if open.is_empty() { None } else { self.present().map(|checkpoint| Place { checkpoint, open }) }
+    }
+
+    /// For each direction listed with the last increment, whether a path goes along it; empty where there is one way on,
+    /// and where none are recorded.
+    pub fn open_directions(&self) -> Vec<bool> {
+        match &self.put_down {
+            _ if !self.record.directions() => Vec::new(),
+            Some(place) => place.as_ref().map_or_else(Vec::new, |place| place.open.clone()),
+            None => self.open(),
+        }
+    }
+
+    /// The directions among them that appear first at the last increment.
+    pub fn alternatives(&self) -> &[u64] {
+        &self.found
+    }
+
+    fn open(&self) -> Vec<bool> {
+        let TracedPath::Exact(path) = &self.path else { return Vec::new() };
+        (0..path.listed_directions()).map(|direction| path.can_be_followed(direction)).collect()
+    }
+
+    /// Whether the last increment is off the measure: a defect of the solver.
+    pub fn is_off_measure(&self) -> bool {
+        self.off_measure
+    }
+
+    /// Present when the path has ended, that is when `next` has returned `None`.
+    pub fn report(&self) -> Option<JudgedReport> {
+        self.path.report().map(|report| JudgedReport { report, measure: self.measure })
+    }
+}
+
+fn judge(request: &JobRequest, scene: &Scene) -> Judge {
+    let plan = scene.plan();
+    Judge::new(request, plan.displacement_scale, &plan.load_scales)
+}
+
+fn fresh(request: &JobRequest) -> MeasureReport {
+    MeasureReport::with_bar(match request.analysis.method {
+        Method::Auto | Method::Mpec => Some(OFF_MEASURE),
+        Method::Regularised => None,
+    })
+}
+
+impl Iterator for JudgedPath<'_> {
+    type Item = JudgedIncrement;
+
+    fn next(&mut self) -> Option<JudgedIncrement> {
+        loop {
+            if let Some(judged) = self.step()?.given {
+                return Some(judged);
+            }
+        }
+    }
+}

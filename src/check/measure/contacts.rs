@@ -1,0 +1,101 @@
+//! One contact against the laws of contact and friction.
+
+use crate::check::measure::errors::{Errors, worse};
+use crate::check::measure::obstacles::Frame;
+use crate::check::measure::vector::{Vector, angle};
+use crate::result::increment::{ContactState, Status};
+
+/// A traction within this part of `μ r_n` of the cone is on it.
+const ON_THE_CONE: f64 = 1e-6;
+
+/// A contact at the end of an increment.
+pub(super) struct Seen<'a> {
+    pub state: &'a ContactState,
+    pub frame: &'a Frame,
+    pub friction: f64,
+    /// Motion of the node against the obstacle in the increment (length).
+    pub motion: Vector,
+    /// `-r_t/|r_t|` in space where the increment began, if the contact was on its cone there.
+    pub direction_before: Option<Vector>,
+    pub dimension: usize,
+}
+
+impl Seen<'_> {
+    /// Takes the contact's errors into `errors`; answers its direction of slip at the end, where it is on its cone.
+    /// `length` and `force` make lengths and forces dimensionless.
+    pub fn judge(&self, length: f64, force: f64, errors: &mut Errors) -> Option<Vector> {
+        let Self { state, frame, friction, .. } = *self;
+        let beyond_rounding =
+            |error: f64| if error.abs() <= frame.rounding { 0.0 } else { (error.abs() - frame.rounding) / length };
+        let tangents = self.dimension - 1;
+        if state.tangential_reaction.len() != tangents || state.slip.len() != tangents {
+            errors.reported = f64::MAX;
+            return None;
+        }
+        let pair = |values: &[f64]| [values[0], values.get(1).copied().unwrap_or(0.0)];
+        let normal = state.normal_reaction / force;
+        let traction = pair(&state.tangential_reaction).map(|value| value / force);
+        let size = traction[0].hypot(traction[1]);
+        let radius = friction * normal;
+
+        // Written out: `min` passes over what is not a number.
+        let apart = state.gap / length;
+        errors.contact = worse(errors.contact, if normal < apart { normal.abs() } else { apart.abs() });
+        errors.contact = worse(errors.contact, if normal.is_nan() { normal } else { 0.0 });
+        errors.cone = worse(errors.cone, size - radius);
+
+        let slip = frame.along(&self.motion);
+        let distance = slip[0].hypot(slip[1]);
+        // Motion within the rounding of the coordinates has no direction.
+        let moves = distance > frame.rounding;
+        let slipped = beyond_rounding(distance);
+        let on_the_cone = size > 0.0 && size >= (1.0 - ON_THE_CONE) * radius;
+        let shrunk = if moves { slipped / distance } else { 0.0 };
+        let slip_scaled = slip.map(|value| value * shrunk);
+        let off = if on_the_cone {
+            // Along the traction only: across it the chord of a curving slip is judged by its angle.
+            let against = -(traction[0] * slip_scaled[0] + traction[1] * slip_scaled[1]) / size;
+            size - (size + against).clamp(-radius.max(0.0), radius.max(0.0))
+        } else {
+            natural_map(traction, slip_scaled, radius.max(0.0))
+        };
+        errors.friction = worse(errors.friction, off.abs());
+
+        errors.reported = worse(errors.reported, beyond_rounding(state.gap - frame.gap));
+        let moved_closed = if state.status == Status::Free { [0.0; 2] } else { slip };
+        let reported = pair(&state.slip);
+        for k in 0..tangents {
+            errors.reported = worse(errors.reported, beyond_rounding(reported[k] - moved_closed[k]));
+        }
+        let of_status = match state.status {
+            Status::Free => size.max(normal.abs()),
+            Status::Stick => slipped,
+            Status::Slip if friction > 0.0 && moves => (size - radius).abs(),
+            Status::Slip => 0.0,
+        };
+        errors.reported = worse(errors.reported, of_status);
+
+        if !(self.dimension == 3 && friction > 0.0 && on_the_cone) {
+            return None;
+        }
+        let direction = frame.in_space(traction) * (-1.0 / size);
+        if let (Status::Slip, true, Some(before)) = (state.status, moves, self.direction_before) {
+            errors.slip_direction = worse(errors.slip_direction, angle(&self.motion, &(before + direction)));
+        }
+        Some(direction)
+    }
+}
+
+/// `|t - P(t - x)|`, `P` the projection onto the disc.
+fn natural_map(traction: [f64; 2], slip: [f64; 2], radius: f64) -> f64 {
+    let moved = [traction[0] - slip[0], traction[1] - slip[1]];
+    let size = moved[0].hypot(moved[1]);
+    let factor = if size > radius { radius / size } else { 1.0 };
+    (traction[0] - factor * moved[0]).hypot(traction[1] - factor * moved[1])
+}
+
+/// The whole force of an obstacle on its node.
+pub(super) fn force(state: &ContactState, frame: &Frame) -> Vector {
+    let component = |k: usize| state.tangential_reaction.get(k).copied().unwrap_or(0.0);
+    frame.in_space([component(0), component(1)]) + frame.normal * state.normal_reaction
+}

@@ -1,0 +1,119 @@
+//! Forces and strain energy of the posted elements, for the measure alone.
+
+use crate::check::measure::vector::{Vector, largest, padded};
+use crate::model::request::{Element as Posted, Model, Strain};
+
+/// An element with its nodes numbered.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Element {
+    Bar {
+        ends: [usize; 2],
+        /// From the first end to the second, undeformed.
+        reference: Vector,
+        /// Its length.
+        before: f64,
+        rest: f64,
+        stiffness: f64,
+        prestress: f64,
+        strain: Strain,
+    },
+    Spring {
+        node: usize,
+        /// `None`: the ground.
+        other: Option<usize>,
+        /// Its rows.
+        stiffness: [Vector; 3],
+    },
+}
+
+/// What the nodes do to an element: a force on the second node, the opposite on the first; and its energy.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Response {
+    pub first: Option<usize>,
+    pub second: usize,
+    /// On the second node.
+    pub force: Vector,
+    pub energy: f64,
+    /// What the rounding of the displacements (and of a bar's places, over its length) puts into the force.
+    pub rounding: f64,
+}
+
+/// Multiple of unit round-off that a difference of two rounded numbers, made from rounded ones, may be off by.
+const ROUNDINGS: f64 = 16.0;
+
+impl Element {
+    /// `None` where a node is unknown.
+    pub fn new(model: &Model, posted: &Posted) -> Option<Self> {
+        let index = |name: &String| model.nodes.get_index_of(name);
+        match posted {
+            Posted::Bar { nodes, axial_stiffness, rest_length, prestress, strain } => {
+                let ends = [index(nodes.first()?)?, index(nodes.get(1)?)?];
+                let reference = padded(&model.nodes[ends[1]]) - padded(&model.nodes[ends[0]]);
+                let before = reference.norm();
+                let rest = rest_length.unwrap_or(before);
+                let (stiffness, prestress, strain) = (*axial_stiffness, *prestress, *strain);
+                Some(Self::Bar { ends, reference, before, rest, stiffness, prestress, strain })
+            }
+            Posted::Spring { nodes, stiffness } => {
+                let row = |k: usize| stiffness.get(k).map_or_else(Vector::zeros, |row| padded(row));
+                let other = nodes.get(1).map(|name| index(name).ok_or(())).transpose().ok()?;
+                Some(Self::Spring { node: index(nodes.first()?)?, other, stiffness: [row(0), row(1), row(2)] })
+            }
+        }
+    }
+
+    /// Under these displacements of the nodes.
+    /// Force by unit displacement, undeformed: the largest in any direction, near enough.
+    pub fn stiffness(&self) -> f64 {
+        match self {
+            Self::Bar { rest, stiffness, .. } => stiffness / rest,
+            Self::Spring { stiffness, .. } => stiffness.iter().map(Vector::norm).fold(0.0, f64::max),
+        }
+    }
+
+    pub fn response(&self, u: &[Vector]) -> Response {
+        match self {
+            Self::Bar { ends, reference, before, rest, stiffness, prestress, strain } => {
+                let change = u[ends[1]] - u[ends[0]];
+                let deformed = reference + change;
+                let length = deformed.norm();
+                // `L - L0` and `(L - L0)/L0` without the cancellation of two lengths.
+                let grown = change.dot(&(reference * 2.0 + change)) / (length + before);
+                let elongation = grown + (before - rest);
+                let linear = elongation / rest;
+                let stretch = length / rest;
+                // The measure of strain, and the axial force over EA.
+                let (measure, elastic) = match strain {
+                    Strain::Engineering => (linear, linear),
+                    Strain::Green => {
+                        let green = linear * (1.0 + 0.5 * linear);
+                        (green, green * stretch)
+                    }
+                    Strain::Log => {
+                        let logarithmic = linear.ln_1p();
+                        (logarithmic, logarithmic / stretch)
+                    }
+                };
+                let force = deformed * ((stiffness * elastic + prestress) / length);
+                let energy = 0.5 * stiffness * rest * measure * measure + prestress * elongation;
+                // The tangent of Green strain grows with the square of the stretch.
+                let tangent = stiffness / rest * stretch.max(1.0).powi(2);
+                let moved = largest(&u[ends[0]]).max(largest(&u[ends[1]]));
+                let rounding = ROUNDINGS * f64::EPSILON * tangent * moved;
+                Response { first: Some(ends[0]), second: ends[1], force, energy, rounding }
+            }
+            Self::Spring { node, other, stiffness } => {
+                let relative = match other {
+                    Some(other) => u[*node] - u[*other],
+                    None => u[*node],
+                };
+                let force = Vector::from(stiffness.map(|row| row.dot(&relative)));
+                let row = |row: &Vector| row.iter().map(|value| value.abs()).sum::<f64>();
+                let most = stiffness.iter().map(row).fold(0.0, f64::max);
+                let moved = largest(&u[*node]).max(other.map_or(0.0, |other| largest(&u[other])));
+                let rounding = ROUNDINGS * f64::EPSILON * most * moved;
+                Response { first: *other, second: *node, force, energy: 0.5 * force.dot(&relative), rounding }
+            }
+        }
+    }
+}

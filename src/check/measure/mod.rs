@@ -1,0 +1,283 @@
+//! The measure of error, apart from the solver that it judges: it reads the posted model and the streamed increments,
+//! in the user's units, and shares no code with what produced them.
+//!
+//! ```text
+//! equilibrium     max |Σ N d + K Δu - s f - f_held - Σ n r_n - Σ t r_t| / F    free components; F: largest force so far
+//! support         max |u - s u_given - u_held| / ℓ                            supported components
+//! contact         max |min(g/ℓ, r_n/F)|                                       natural map of 0 <= g ⊥ r_n >= 0
+//! friction        max |t - P(t - x)|,   t = r_t/F,   x = Tᵀ(Δu - Δd)/ℓ         natural map of Coulomb's law;
+//!                 P: projection onto the disc of radius μ r_n/F;  d: the obstacle's translation
+//! cone            max (|r_t| - μ r_n)/F
+//! reported        |gap - g|/ℓ, |slip - Tᵀ(Δu - Δd)|/ℓ;   free: |r|/F;   stick: |x|;   slip: ||r_t| - μ r_n|/F
+//! arc_length      |‖(Δu/ℓ, Δs/σ)‖ - step|,   |arc_length - arc_length before - step|
+//! energy          |W - E - D| / largest energy so far (at least 1e-12 F ℓ)
+//! strain_energy   |E - E(u)| / the same
+//! slip_direction  3D: angle between the slip and the sum of the unit directions -r_t/|r_t| at its two ends
+//! ```
+//!
+//! What the rounding of the numbers that are given puts into a gap or a balance of forces is no error of the state: of a
+//! bar, unit round-off times `EA/L0` times its displacements and places; of a spring, times `|K|` and its displacements.
+//! Both count only where stiff elements move far.
+//!
+//! `ℓ` and `σ` are the plan's displacement and load scales. (Natural map: F. Facchinei, J.-S. Pang, *Finite-Dimensional
+//! Variational Inequalities and Complementarity Problems*, Springer 2003, section 1.5; of Coulomb's law: P. Alart,
+//! A. Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353, doi:10.1016/0045-7825(91)90022-X.) `W` and `D` are the
+//! reported ones: integrals along the path, of which two increments do not hold enough to compute them anew.
+//!
+//! In 3D the slip of an increment is the chord of a curve. Traction opposes the velocity, and the chord of a curve with
+//! unit end directions `d0`, `d1` is along `d0 + d1` up to an angle of second order in the step. So on the cone the
+//! friction's natural map takes the part of the chord along the traction, and the chord is judged by that angle, which
+//! is a figure of its own: it falls with the step and is not an error of the state. It is 0 where the slip began off the
+//! cone (a first touch), where no direction is known.
+//!
+//! | file | what it does |
+//! |---|---|
+//! | `errors` | the figures and their maxima |
+//! | `posted`, `elements`, `obstacles`, `vector` | the model as posted, with numbers for names |
+//! | `contacts` | one contact |
+//! | `rows`, `apart` | which contacts an increment has rows of; those that it has none of |
+//! | `history` | what a judge remembers, put down and taken up |
+
+pub(crate) mod apart;
+pub(crate) mod contacts;
+pub(crate) mod elements;
+pub(crate) mod errors;
+pub(crate) mod history;
+pub(crate) mod obstacles;
+pub(crate) mod posted;
+pub(crate) mod rows;
+pub(crate) mod vector;
+
+pub use errors::{Errors, Largest, Maxima};
+pub use history::{History, HistoryError};
+
+use crate::model::JobRequest;
+use crate::result::increment::Increment;
+use apart::Apart;
+use contacts::Seen;
+use elements::Element;
+use errors::worse;
+use history::Before;
+use obstacles::Frame;
+use posted::{Loading, Posted};
+use rows::{Change, Rows};
+use vector::{Vector, largest, padded};
+
+/// Forces below this part of what the stiffest element takes to be stretched by the displacement scale are none.
+const NO_FORCE: f64 = 1e-20;
+/// Energies below this part of the largest force times the displacement scale are rounding.
+const NO_ENERGY: f64 = 1e-10;
+
+/// Judges the increments of one path, in order.
+#[derive(Debug, Clone)]
+pub struct Judge {
+    posted: Posted,
+    /// The plan's displacement scale.
+    length: f64,
+    /// Forces below this are none: what rounding leaves where nothing is loaded.
+    no_force: f64,
+    stage: usize,
+    /// Loads at which the stages before ended.
+    reached: Vec<f64>,
+    held: Loading,
+    before: Before,
+    largest_force: f64,
+    largest_energy: f64,
+    initial_strain: f64,
+    rows: Rows,
+    apart: Apart,
+    /// What the increment at hand is computed in.
+    work: Workspace,
+}
+
+#[derive(Debug, Clone)]
+struct Workspace {
+    loading: Loading,
+    displacements: Vec<Vector>,
+    /// Unbalanced force, one a node.
+    balance: Vec<Vector>,
+    /// What rounding puts into it.
+    rounding: Vec<f64>,
+    frames: Vec<Frame>,
+}
+
+impl Judge {
+    /// Of a request that has been checked. The scales are those of the plan: `displacement_scale` makes lengths
+    /// dimensionless, `load_scales` the load factor, one a stage.
+    pub fn new(request: &JobRequest, displacement_scale: f64, load_scales: &[f64]) -> Self {
+        let posted = Posted::new(request, load_scales);
+        let none = Loading::none(&posted);
+        let nodes = posted.nodes.len();
+        let (displacements, balance, rounding) =
+            (vec![Vector::zeros(); nodes], vec![Vector::zeros(); nodes], vec![0.0; nodes]);
+        let frames = Vec::new();
+        let stiffest = posted.elements.iter().map(Element::stiffness).fold(0.0, f64::max);
+        let no_force = (NO_FORCE * stiffest * displacement_scale).max(f64::MIN_POSITIVE);
+        let mut apart = Apart::new(&posted, displacement_scale);
+        apart.begin(&posted, &none, &displacements);
+        let initial_strain = posted.elements.iter().map(|element| element.response(&displacements).energy).sum();
+        Self {
+            length: displacement_scale,
+            no_force,
+            stage: 0,
+            reached: Vec::new(),
+            held: none.clone(),
+            before: Before::at_rest(&posted),
+            largest_force: 0.0,
+            largest_energy: 0.0,
+            initial_strain,
+            rows: Rows::new(request),
+            apart,
+            work: Workspace { loading: none, displacements, balance, rounding, frames },
+            posted,
+        }
+    }
+
+    /// Errors of the next increment.
+    pub fn judge(&mut self, increment: &Increment) -> Errors {
+        let mut errors = Errors::default();
+        if !self.read(increment) {
+            errors.reported = f64::MAX;
+        }
+        let strain = self.forces(increment);
+        let force = self.largest_force.max(self.no_force);
+        errors.equilibrium = worse(0.0, self.unbalanced() / force);
+        errors.support = self.off_support();
+        let distance = self.distance(increment);
+        // Of long steps the part that rounding may change is as much longer.
+        let of_step = (distance - increment.step).abs() / distance.max(1.0);
+        let sum = self.before.arc_length + increment.step;
+        let of_sum = (increment.arc_length - sum).abs() / sum.max(1.0);
+        errors.arc_length = worse(worse(0.0, of_step), of_sum);
+        for ((state, index), frame) in increment.contacts.iter().zip(self.rows.contacts()).zip(&self.work.frames) {
+            let contact = self.posted.contacts[*index];
+            let moved = self.work.displacements[contact.node] - self.before.displacements[contact.node];
+            let before = contact.motion.map_or_else(Vector::zeros, |place| self.before.shifts[place]);
+            let shifted = self.work.loading.shift(&contact) - before;
+            let seen = Seen {
+                state,
+                frame,
+                friction: contact.friction,
+                motion: moved - shifted,
+                direction_before: self.before.directions.get(index).copied(),
+                dimension: self.posted.dimension,
+            };
+            match seen.judge(self.length, force, &mut errors) {
+                Some(direction) => self.before.directions.insert(*index, direction),
+                None => self.before.directions.remove(index),
+            };
+        }
+        self.apart.judge(&self.posted, &self.work.loading, &self.work.displacements, distance, &mut errors);
+        self.energy(increment, strain, &mut errors);
+        std::mem::swap(&mut self.before.displacements, &mut self.work.displacements);
+        self.before.shifts.copy_from_slice(&self.work.loading.shifts);
+        self.before.load = increment.load_factor;
+        self.before.arc_length = increment.arc_length;
+        errors
+    }
+
+    /// Goes to the increment's stage and takes its displacements and load; `false` where it does not fit the model.
+    fn read(&mut self, increment: &Increment) -> bool {
+        let posted = &self.posted;
+        let known = posted.stages[self.stage..].iter().position(|stage| stage.name == *increment.stage);
+        for _ in 0..known.unwrap_or(0) {
+            self.work.loading.set(&self.held, &posted.stages[self.stage], self.before.load);
+            std::mem::swap(&mut self.held, &mut self.work.loading);
+            self.reached.push(self.before.load);
+            self.stage += 1;
+            self.before.load = 0.0;
+        }
+        self.work.loading.set(&self.held, &posted.stages[self.stage], increment.load_factor);
+        let mut fits = known.is_some();
+        match self.rows.read(&increment.contacts) {
+            Change::None => {}
+            Change::Others => self.apart.rows_are(self.rows.contacts()),
+            Change::Unknown => fits = false,
+        }
+        for (index, (node, displacement)) in posted.nodes.iter().zip(&mut self.work.displacements).enumerate() {
+            let in_place = increment.displacements.get_index(index).filter(|(name, _)| ***name == node.name);
+            let found = in_place.map(|(_, values)| values).or_else(|| increment.displacements.get(node.name.as_str()));
+            let found = found.filter(|values| values.len() == posted.dimension);
+            *displacement = found.map_or_else(Vector::zeros, padded);
+            fits &= found.is_some();
+        }
+        fits
+    }
+
+    /// Sums up the forces on every node; answers the strain energy.
+    fn forces(&mut self, increment: &Increment) -> f64 {
+        let (posted, work) = (&self.posted, &mut self.work);
+        let mut most = self.largest_force;
+        work.rounding.fill(0.0);
+        for (balance, load) in work.balance.iter_mut().zip(&work.loading.forces) {
+            *balance = -load;
+            most = most.max(largest(load));
+        }
+        let mut strain = 0.0;
+        for element in &posted.elements {
+            let response = element.response(&work.displacements);
+            strain += response.energy;
+            most = most.max(largest(&response.force));
+            if let Some(first) = response.first {
+                work.balance[first] -= response.force;
+                work.rounding[first] += response.rounding;
+            }
+            work.balance[response.second] += response.force;
+            work.rounding[response.second] += response.rounding;
+        }
+        work.frames.clear();
+        let rows = self.rows.contacts().iter().map(|index| &posted.contacts[*index]);
+        for (contact, state) in rows.zip(&increment.contacts) {
+            let frame = posted.frame(contact, &work.loading, &work.displacements);
+            work.frames.push(frame);
+            work.balance[contact.node] -= contacts::force(state, &frame);
+            most = most.max(state.normal_reaction.abs());
+        }
+        // An error without bound is one already; what scales the others stays a number.
+        if most.is_finite() {
+            self.largest_force = most;
+        }
+        strain
+    }
+
+    /// The largest unbalanced force on a free component.
+    fn unbalanced(&self) -> f64 {
+        let sums = self.work.balance.iter().zip(&self.work.rounding);
+        let components = self.posted.nodes.iter().zip(sums).flat_map(|(node, (balance, rounding))| {
+            let beyond = |k: usize| balance[k].abs() - rounding.min(balance[k].abs());
+            (0..self.posted.dimension).filter(|k| !node.held[*k]).map(beyond)
+        });
+        components.fold(0.0, worse)
+    }
+
+    fn off_support(&self) -> f64 {
+        let given = self.work.displacements.iter().zip(&self.work.loading.displacements);
+        let components = self.posted.nodes.iter().zip(given).flat_map(|(node, (found, given))| {
+            (0..self.posted.dimension).filter(|k| node.held[*k]).map(|k| (found[k] - given[k]).abs())
+        });
+        worse(0.0, components.fold(0.0, worse) / self.length)
+    }
+
+    /// The dimensionless distance from the increment before.
+    fn distance(&self, increment: &Increment) -> f64 {
+        let mut squared =
+            ((increment.load_factor - self.before.load) / self.posted.stages[self.stage].load_scale).powi(2);
+        for (after, before) in self.work.displacements.iter().zip(&self.before.displacements) {
+            squared += ((after - before) * (1.0 / self.length)).norm_squared();
+        }
+        squared.sqrt()
+    }
+
+    fn energy(&mut self, increment: &Increment, strain: f64, errors: &mut Errors) {
+        let energy = increment.energy;
+        let most = [energy.external_work, energy.strain, energy.dissipated].map(f64::abs);
+        let most = most.into_iter().fold(self.largest_energy, f64::max);
+        if most.is_finite() {
+            self.largest_energy = most;
+        }
+        let size = self.largest_energy.max(NO_ENERGY * self.largest_force.max(self.no_force) * self.length);
+        let imbalance = energy.external_work - energy.strain - energy.dissipated;
+        errors.energy = worse(0.0, imbalance.abs() / size);
+        errors.strain_energy = worse(0.0, (energy.strain - (strain - self.initial_strain)).abs() / size);
+    }
+}

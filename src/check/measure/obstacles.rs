@@ -1,0 +1,92 @@
+//! Obstacles as posted: where they are under a load factor, and their frame at a node, for the measure alone.
+//!
+//! A frame is the gap, the unit normal into the free side, and the tangents: in 2D `(n_y, -n_x)`; in 3D
+//! `t1 = (e_k - n_k n)/|.|` with `k` the first of the smallest `|n_k|`, and `t2 = n x t1`.
+
+use crate::check::measure::vector::{Vector, largest, padded};
+use crate::model::request::{Obstacle as Posted, Side};
+
+/// An obstacle at rest.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Obstacle {
+    /// A point of a plane, or a ball's centre.
+    place: Vector,
+    shape: Shape,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Shape {
+    /// Unit normal into the free side.
+    Plane(Vector),
+    /// `sign` is 1 where the free side is outside.
+    Ball { radius: f64, sign: f64 },
+}
+
+/// How the obstacle lies to a node.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Frame {
+    pub gap: f64,
+    /// What rounding of the coordinates may put into the gap.
+    pub rounding: f64,
+    pub normal: Vector,
+    /// `dimension - 1` of them; the other is zero.
+    pub tangents: [Vector; 2],
+}
+
+impl Obstacle {
+    pub fn new(posted: &Posted) -> Self {
+        match posted {
+            Posted::Plane { point, normal } => {
+                let normal = padded(normal);
+                Self { place: padded(point), shape: Shape::Plane(normal * (1.0 / normal.norm())) }
+            }
+            Posted::Ball { center, radius, side } => {
+                let sign = if *side == Side::Outside { 1.0 } else { -1.0 };
+                Self { place: padded(center), shape: Shape::Ball { radius: *radius, sign } }
+            }
+        }
+    }
+
+    /// The frame of this obstacle moved by `shift`, at a node at `place` moved by `displacement`.
+    pub fn frame(&self, dimension: usize, shift: &Vector, place: &Vector, displacement: &Vector) -> Frame {
+        let from = (place - self.place) + (displacement - shift);
+        let (gap, normal, size) = match self.shape {
+            Shape::Plane(normal) => (from.dot(&normal), normal, 0.0),
+            Shape::Ball { radius, sign } => {
+                let distance = from.norm();
+                let normal = if distance > 0.0 { from * (sign / distance) } else { Vector::x() };
+                (sign * (distance - radius), normal, radius)
+            }
+        };
+        let reach = [place, &self.place, displacement, shift].into_iter().map(largest).fold(size, f64::max);
+        Frame { gap, rounding: 16.0 * f64::EPSILON * reach, normal, tangents: tangents(dimension, &normal) }
+    }
+}
+
+impl Frame {
+    /// The vector with these components along the tangents.
+    pub fn in_space(&self, components: [f64; 2]) -> Vector {
+        self.tangents[0] * components[0] + self.tangents[1] * components[1]
+    }
+
+    /// Components of a vector along the tangents.
+    pub fn along(&self, vector: &Vector) -> [f64; 2] {
+        self.tangents.map(|tangent| tangent.dot(vector))
+    }
+}
+
+fn tangents(dimension: usize, normal: &Vector) -> [Vector; 2] {
+    if dimension == 2 {
+        return [Vector::new(normal.y, -normal.x, 0.0), Vector::zeros()];
+    }
+    let mut axis = 0;
+    for k in 1..3 {
+        if normal[k].abs() < normal[axis].abs() {
+            axis = k;
+        }
+    }
+    let mut across = normal * -normal[axis];
+    across[axis] += 1.0;
+    let first = across * (1.0 / across.norm());
+    [first, normal.cross(&first)]
+}

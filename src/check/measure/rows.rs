@@ -1,0 +1,68 @@
+//! Which contacts of the model an increment has rows of: all of them, or those within reach and those that are asked for.
+
+use crate::model::JobRequest;
+use crate::result::increment::ContactState;
+use std::collections::HashMap;
+
+/// The contacts of the last increment's rows.
+#[derive(Debug, Clone)]
+pub(super) struct Rows {
+    /// Node and obstacle of every contact of the model.
+    names: Vec<(String, String)>,
+    /// By node and obstacle, the contacts of these names, in order.
+    named: HashMap<String, HashMap<String, Vec<usize>>>,
+    /// For each row its contact.
+    contacts: Vec<usize>,
+}
+
+/// What is different from the rows of the increment before.
+pub(super) enum Change {
+    None,
+    /// They are of other contacts.
+    Others,
+    /// They are not of the model, or not in its order.
+    Unknown,
+}
+
+impl Rows {
+    pub fn new(request: &JobRequest) -> Self {
+        let mut named: HashMap<String, HashMap<String, Vec<usize>>> = HashMap::new();
+        let mut names = Vec::with_capacity(request.model.contacts.len());
+        for (index, contact) in request.model.contacts.iter().enumerate() {
+            let (node, obstacle) = (contact.node.clone(), contact.obstacle.clone());
+            named.entry(node.clone()).or_default().entry(obstacle.clone()).or_default().push(index);
+            names.push((node, obstacle));
+        }
+        Self { names, named, contacts: Vec::new() }
+    }
+
+    pub fn contacts(&self) -> &[usize] {
+        &self.contacts
+    }
+
+    /// Goes to the rows of the next increment.
+    pub fn read(&mut self, rows: &[ContactState]) -> Change {
+        let is_of = |(row, contact): (&ContactState, &usize)| {
+            let (node, obstacle) = &self.names[*contact];
+            **node == *row.node && **obstacle == *row.obstacle
+        };
+        if rows.len() == self.contacts.len() && rows.iter().zip(&self.contacts).all(is_of) {
+            return Change::None;
+        }
+        let mut next = 0;
+        let found = rows.iter().map(|row| {
+            let of_names = self.named.get(&*row.node)?.get(&*row.obstacle)?;
+            let contact = *of_names.iter().find(|contact| **contact >= next)?;
+            next = contact + 1;
+            Some(contact)
+        });
+        let found: Option<Vec<usize>> = found.collect();
+        match found {
+            Some(found) => {
+                self.contacts = found;
+                Change::Others
+            }
+            None => Change::Unknown,
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! A path in closed form: stages made of smooth pieces.
+
+use crate::check::scenes::exact::zeros::zero;
+use crate::model::Model;
+use crate::model::request::{self, DisplacementBound};
+use crate::result::increment::PointKind;
+
+/// A point of a path, in the user's units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Place {
+    /// `dimension` components a node, in the model's order (length).
+    pub displacements: Vec<f64>,
+    pub load: f64,
+}
+
+/// How far unbounded branches are asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reach {
+    /// Largest load factor in size.
+    pub load: f64,
+    /// Largest displacement component in size (length).
+    pub displacement: f64,
+}
+
+/// Negative before the bound, 0 at it.
+type Bound = Box<dyn Fn(&Place) -> f64>;
+type At = Box<dyn Fn(f64) -> Place + Send + Sync>;
+
+/// A smooth stretch of a path.
+pub struct Piece {
+    /// The parameter where the piece begins.
+    pub from: f64,
+    /// The parameter where it ends; on this side of `from` where the parameter falls.
+    pub to: f64,
+    at: At,
+    /// What the path does where the piece ends, if that is an event.
+    pub ends_with: Option<PointKind>,
+}
+
+/// A stage of a path.
+pub struct Stage {
+    pub name: String,
+    pub pieces: Vec<Piece>,
+}
+
+/// Parts of a stage in which a bound is looked for; a piece has four at least.
+const PARTS: usize = 1000;
+
+impl Piece {
+    pub fn new(from: f64, to: f64, at: impl Fn(f64) -> Place + Send + Sync + 'static) -> Self {
+        Self { from, to, at: Box::new(at), ends_with: None }
+    }
+
+    pub fn ending(mut self, kind: PointKind) -> Self {
+        self.ends_with = Some(kind);
+        self
+    }
+
+    /// The point at a parameter between `from` and `to`.
+    pub fn at(&self, parameter: f64) -> Place {
+        (self.at)(parameter)
+    }
+
+    /// The parameter at a part of the way from 0 to 1.
+    pub fn parameter(&self, part: f64) -> f64 {
+        self.from + part * (self.to - self.from)
+    }
+
+    /// Where a quantity that is negative at first becomes zero; the parameter.
+    fn reaches(&self, quantity: impl Fn(&Place) -> f64, parts: usize) -> Option<f64> {
+        let value = |part: f64| quantity(&self.at(self.parameter(part)));
+        let mut before = 0.0;
+        for part in 1..=parts {
+            let here = part as f64 / parts as f64;
+            if value(here) >= 0.0 {
+                return Some(self.parameter(zero(value, before, here)));
+            }
+            before = here;
+        }
+        None
+    }
+}
+
+impl Stage {
+    /// A curve cut into pieces where its load turns: `slope` is the load's derivative by the parameter.
+    pub(super) fn turning(
+        name: &str,
+        (from, to): (f64, f64),
+        slope: impl Fn(f64) -> f64,
+        at: impl Fn(f64) -> Place + Clone + Send + Sync + 'static,
+    ) -> Self {
+        let mut pieces = Vec::new();
+        let mut begins = from;
+        for turn in crate::check::scenes::exact::zeros::zeros(slope, from, to) {
+            pieces.push(Piece::new(begins, turn, at.clone()).ending(PointKind::SmoothLimit));
+            begins = turn;
+        }
+        pieces.push(Piece::new(begins, to, at));
+        Self { name: name.to_owned(), pieces }
+    }
+
+    /// The event at the end of the stage.
+    pub(super) fn ending(mut self, kind: PointKind) -> Self {
+        if let Some(last) = self.pieces.last_mut() {
+            last.ends_with = Some(kind);
+        }
+        self
+    }
+
+    /// Cuts the stage where one of its bounds is met first.
+    pub(super) fn end_at(&mut self, model: &Model, stage: &request::Stage) {
+        let Some(until) = &stage.until else { return };
+        let mut bounds: Vec<Bound> = Vec::new();
+        if let Some(bound) = until.load_above {
+            bounds.push(Box::new(move |place| place.load - bound));
+        }
+        if let Some(bound) = until.load_below {
+            bounds.push(Box::new(move |place| bound - place.load));
+        }
+        if let Some(DisplacementBound { node, component, above, below }) = &until.displacement
+            && let Some(number) = model.nodes.get_index_of(node)
+        {
+            let freedom = number * model.dimension + component.index();
+            if let Some(bound) = *above {
+                bounds.push(Box::new(move |place| place.displacements[freedom] - bound));
+            }
+            if let Some(bound) = *below {
+                bounds.push(Box::new(move |place| bound - place.displacements[freedom]));
+            }
+        }
+        let parts = (PARTS / self.pieces.len().max(1)).max(4);
+        for index in 0..self.pieces.len() {
+            let piece = &self.pieces[index];
+            let met = bounds.iter().filter_map(|bound| piece.reaches(bound, parts));
+            let first = met.min_by(|a, b| (a - piece.from).abs().total_cmp(&(b - piece.from).abs()));
+            if let Some(first) = first {
+                // An event at the very bound stays what it is.
+                let kind = piece.ends_with.filter(|_| first == piece.to).unwrap_or(PointKind::End);
+                self.pieces[index].to = first;
+                self.pieces[index].ends_with = Some(kind);
+                self.pieces.truncate(index + 1);
+                return;
+            }
+        }
+    }
+}

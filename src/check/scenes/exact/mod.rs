@@ -1,0 +1,88 @@
+//! Exact solutions of scenes, as curves.
+//!
+//! [`recognise`] says whether the model of a request is one of a family whose whole path is known in closed form, with
+//! whatever sizes and units; a solution then gives the path stage by stage, in smooth pieces between events. Nothing
+//! here comes from the solver. The formulas are derived in each family's file.
+//!
+//! | family | scene | of which the path is known |
+//! |---|---|---|
+//! | [`one_bar`] | `one-bar-truss` | up to where the bar is unstressed again |
+//! | [`klarbring`] | `klarbring` | all |
+//! | [`slider_chain`] | `slider-chain` | up to where all blocks slide |
+//! | [`tractrix`] | `curving-slip` | while the bar is compressed |
+//! | [`hump`] | `hump` | while the bar is compressed |
+//! | [`bowl`] | `bowl` | up to where the load grows without bound |
+//! | [`turning_drag`] | `turning-drag` | all |
+//! | [`von_mises`] | `von-mises-truss` | all |
+//!
+//! Where a stage's `until` names a load or a displacement, the curve ends there.
+
+pub mod bowl;
+pub mod curve;
+pub mod hump;
+pub mod klarbring;
+pub mod one_bar;
+pub(crate) mod pattern;
+pub mod slider_chain;
+pub(crate) mod solution;
+#[cfg(test)]
+mod tests;
+pub mod tractrix;
+pub mod turning_drag;
+pub mod von_mises;
+pub(crate) mod zeros;
+
+use crate::check::scenes::exact::solution::Solution;
+pub use curve::{Piece, Place, Reach, Stage};
+
+use crate::model::request::Selection;
+use crate::model::{JobRequest, Model};
+
+/// The exact path of a request, if it is of a family with one.
+pub struct Exact {
+    solution: Box<dyn Solution>,
+    model: Model,
+}
+
+impl Exact {
+    pub fn name(&self) -> &'static str {
+        self.solution.name()
+    }
+
+    pub fn formula(&self) -> &'static str {
+        self.solution.formula()
+    }
+
+    /// The path's stages, each ended where its `until` names a load or a displacement; unbounded branches go as far as
+    /// `reach`.
+    pub fn stages(&self, reach: Reach) -> Vec<Stage> {
+        let mut stages = self.solution.stages(reach);
+        for (stage, loads) in stages.iter_mut().zip(&self.model.stages) {
+            stage.end_at(&self.model, loads);
+        }
+        stages
+    }
+}
+
+type Recognise = fn(&Model) -> Option<Box<dyn Solution>>;
+
+/// Whether the request's path is known in closed form: by its model, and by its selecting the direction of largest
+/// dissipation where there are several, as the formulas do.
+pub fn recognise(request: &JobRequest) -> Option<Exact> {
+    if request.analysis.selection != Selection::MaxDissipation {
+        return None;
+    }
+    let model = &request.model;
+    let families: [Recognise; 8] = [
+        |model| Some(Box::new(one_bar::OneBar::recognise(model)?)),
+        |model| Some(Box::new(klarbring::Klarbring::recognise(model)?)),
+        |model| Some(Box::new(slider_chain::SliderChain::recognise(model)?)),
+        |model| Some(Box::new(tractrix::CurvingSlip::recognise(model)?)),
+        |model| Some(Box::new(hump::OverHump::recognise(model)?)),
+        |model| Some(Box::new(bowl::Bowl::recognise(model)?)),
+        |model| Some(Box::new(turning_drag::TurningDrag::recognise(model)?)),
+        |model| Some(Box::new(von_mises::VonMises::recognise(model)?)),
+    ];
+    let solution = families.iter().find_map(|recognise| recognise(model))?;
+    Some(Exact { solution, model: model.clone() })
+}

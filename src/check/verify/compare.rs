@@ -1,0 +1,53 @@
+//! Comparing what was found with what is exact.
+
+use crate::result::increment::{Increment, PointKind};
+
+/// The larger error; one that is not a number is without bound.
+pub fn worse(error: f64, other: f64) -> f64 {
+    if other.is_nan() { f64::INFINITY } else { error.max(other) }
+}
+
+/// Difference over the larger of the exact size and a given one.
+pub fn relative(found: f64, exact: f64, size: f64) -> f64 {
+    worse(0.0, (found - exact).abs() / exact.abs().max(size))
+}
+
+/// The worst of the errors; without bound where there are none.
+pub fn worst(errors: impl Iterator<Item = f64>) -> f64 {
+    errors.fold(None, |all: Option<f64>, error| Some(worse(all.unwrap_or(0.0), error))).unwrap_or(f64::INFINITY)
+}
+
+/// A node's displacement component.
+pub fn moved(increment: &Increment, node: &str, component: usize) -> f64 {
+    increment.displacements.get(node).and_then(|values| values.get(component)).copied().unwrap_or(f64::NAN)
+}
+
+/// Increments of a stage. The point that ended the stage before is not among them.
+pub fn of_stage<'a>(increments: &'a [Increment], stage: &'a str) -> impl Iterator<Item = &'a Increment> {
+    increments.iter().filter(move |increment| &*increment.stage == stage)
+}
+
+/// Points at which a contact changes, limit points or not.
+pub fn changes(increments: &[Increment]) -> impl Iterator<Item = &Increment> {
+    let changes =
+        |increment: &&Increment| matches!(increment.point.kind, PointKind::ContactChange | PointKind::NonsmoothLimit);
+    increments.iter().filter(changes)
+}
+
+/// Points of one kind.
+pub fn points(increments: &[Increment], kind: PointKind) -> impl Iterator<Item = &Increment> {
+    increments.iter().filter(move |increment| increment.point.kind == kind)
+}
+
+/// A root between two places of different sign, by bisection to the last bit.
+pub fn bisected(function: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    let rises = function(low) < 0.0;
+    for _ in 0..2000 {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        if (function(middle) < 0.0) == rises { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}

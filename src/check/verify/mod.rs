@@ -1,0 +1,15 @@
+//! Scenes with known answers, each a row: what was found, against what, within which bar.
+//!
+//! A [`Case`] is a job request with the answer derived by hand, or the named reason for which it has to stop. Each of its
+//! increments is judged by [`measure`](crate::check::measure), which shares no code with the solver, and the whole path by the
+//! case itself. `published` holds the built-in scenes and published problems, `check::extreme` families of
+//! cases over decades; `make` builds requests, `compare` compares numbers. Called by `command` and by tests; knows
+//! `model`, `path`, `measure` and `scenes`, and neither HTTP nor SQL.
+
+pub(crate) mod case;
+pub(crate) mod compare;
+pub(crate) mod known;
+pub(crate) mod make;
+pub(crate) mod published;
+
+pub use case::{Case, ENERGY_BAR, Row, STATE_BAR};

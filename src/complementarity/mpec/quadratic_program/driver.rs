@@ -1,0 +1,281 @@
+//! One step's quadratic program, by the cheapest way that works.
+//!
+//! 1. where the equalities leave a line, the program condensed on it (`quadratic_program::one_dimensional`);
+//! 2. the linear system of the working set that the last program ended with (`quadratic_program::active_set`);
+//! 3. the interior-point method, its active set taken to round-off by the same linear system;
+//! 4. the elastic program, where the constraints seem contradictory:
+//!
+//! ```text
+//! min ½ dᵀHd + q·d + ρ Σ (p + m + t)   s.t.   e + E d = p - m,   c + C d >= -t,   v + V d + t (1, 0) ∈ K,
+//!                                               lower <= d <= upper,   p, m, t >= 0
+//! ```
+//!
+//! which always has a solution; `ρ` is raised until the violation that remains no longer falls. Source: P. E. Gill,
+//! W. Murray and M. A. Saunders, *SNOPT*, SIAM Review 47 (2005), doi:10.1137/S0036144504446096, section on elastic mode.
+
+use nalgebra::DVector;
+
+use crate::complementarity::mpec::program::counts::{Counts, Iterate};
+use crate::complementarity::mpec::program::sparse_rows::SparseRows;
+use crate::complementarity::mpec::quadratic_program::active_set::{self, WorkingSet};
+use crate::complementarity::mpec::quadratic_program::interior_point::{
+    ConeRows, InteriorSolver, QuadraticFailure, QuadraticProgram, QuadraticSolution,
+};
+use crate::complementarity::mpec::quadratic_program::one_dimensional::{Binding, LineSolver, Outcome};
+use crate::resources::cancel::CancelFlag;
+
+/// Changes of the working set before the interior-point method is asked.
+const WORKING_SET_CHANGES: usize = 8;
+/// Raises of the elastic weight, and the factor of each.
+const WEIGHT_RAISES: usize = 3;
+const WEIGHT_FACTOR: f64 = 100.0;
+/// What is active at the start, before any multiplier is known.
+const REST_MARGIN: f64 = 1e-7;
+
+/// A step and what it leaves violated.
+#[derive(Debug, Clone)]
+pub struct Step {
+    pub solution: QuadraticSolution,
+    /// Sum of the linearised violations that no step removes; zero unless elastic.
+    pub remaining_violation: f64,
+    /// The working set was the one that the previous program ended with.
+    pub same_working_set: bool,
+}
+
+/// Solves the programs of one sequence, keeping the working set from one to the next.
+pub struct StepSolver {
+    ended_with: Option<Ended>,
+    line: LineSolver,
+    interior: InteriorSolver,
+    /// Whether rows that contradict each other on a line are relaxed.
+    pub is_elastic: bool,
+    /// Whether the interior-point method is asked for every program.
+    pub interior_only: bool,
+    pub counts: Counts,
+    /// The last bound on products of a sequence.
+    pub relaxation: Option<f64>,
+    /// Where they are kept.
+    pub iterates: Option<Vec<Iterate>>,
+}
+
+impl Default for StepSolver {
+    fn default() -> Self {
+        Self {
+            ended_with: None,
+            line: LineSolver::default(),
+            interior: InteriorSolver::default(),
+            is_elastic: true,
+            interior_only: false,
+            counts: Counts::default(),
+            relaxation: None,
+            iterates: None,
+        }
+    }
+}
+
+/// What bound the last program's solution.
+#[derive(Debug, Clone, PartialEq)]
+enum Ended {
+    OnLine(Option<Binding>),
+    With(WorkingSet),
+}
+
+impl StepSolver {
+    /// Forgets the working set: the next program has other rows.
+    pub fn forget(&mut self) {
+        self.ended_with = None;
+    }
+
+    /// Whether anything but equalities bound the last solution.
+    pub fn is_bound(&self) -> bool {
+        match &self.ended_with {
+            Some(Ended::OnLine(binding)) => binding.is_some(),
+            Some(Ended::With(set)) => !set.is_empty(),
+            None => true,
+        }
+    }
+
+    /// Tells where the next programs are likely to go: the step from the origin to `x`.
+    pub fn head_for(&mut self, program: &QuadraticProgram, x: &DVector<f64>) {
+        self.line.head_for(&program.hessian, x);
+    }
+
+    /// Solves one program.
+    ///
+    /// # Errors
+    /// [`QuadraticFailure::NotFinite`], [`QuadraticFailure::Cancelled`], or the elastic program's own failure;
+    /// [`QuadraticFailure::SuspectedInfeasible`] on a line where that is not asked.
+    pub fn solve(&mut self, program: &QuadraticProgram, cancel: &CancelFlag) -> Result<Step, QuadraticFailure> {
+        if cancel.is_cancelled() {
+            return Err(QuadraticFailure::Cancelled);
+        }
+        if !program.is_well_formed() {
+            return Err(QuadraticFailure::NotFinite);
+        }
+        self.counts.qp_solves += 1;
+        let before = self.ended_with.take();
+        let on_line = if self.interior_only { Outcome::Declined } else { self.line.solve(program) };
+        match on_line {
+            Outcome::Solved(solution, binding) => {
+                let ended = Ended::OnLine(binding);
+                // Before the first program nothing is taken to bind.
+                let same_working_set = *before.as_ref().unwrap_or(&Ended::OnLine(None)) == ended;
+                self.ended_with = Some(ended);
+                return Ok(Step { solution, remaining_violation: 0.0, same_working_set });
+            }
+            Outcome::Contradictory if !self.is_elastic => return Err(QuadraticFailure::SuspectedInfeasible),
+            Outcome::Contradictory | Outcome::Declined => {}
+        }
+        let mut set = match &before {
+            Some(Ended::With(set)) => set.clone(),
+            Some(Ended::OnLine(_)) | None => WorkingSet::at_rest(program, REST_MARGIN),
+        };
+        let mut solution =
+            if self.interior_only { None } else { active_set::solve(program, &mut set, WORKING_SET_CHANGES) };
+        if solution.is_none() {
+            self.counts.interior_point_solves += 1;
+            match self.interior.solve(program, cancel) {
+                Ok(approximate) => {
+                    set = WorkingSet::of_solution(program, &approximate);
+                    solution = active_set::solve(program, &mut set, WORKING_SET_CHANGES).or(Some(approximate));
+                }
+                Err(failure @ (QuadraticFailure::Cancelled | QuadraticFailure::NotFinite)) => return Err(failure),
+                Err(
+                    QuadraticFailure::SuspectedInfeasible
+                    | QuadraticFailure::SuspectedUnbounded
+                    | QuadraticFailure::Inaccurate,
+                ) => {}
+            }
+        }
+        let Some(solution) = solution else { return self.solve_elastic(program, cancel) };
+        let ended = Ended::With(set);
+        let same_working_set = before.as_ref() == Some(&ended);
+        self.ended_with = Some(ended);
+        Ok(Step { solution, remaining_violation: 0.0, same_working_set })
+    }
+
+    fn solve_elastic(&mut self, program: &QuadraticProgram, cancel: &CancelFlag) -> Result<Step, QuadraticFailure> {
+        let mut weight = 10.0 * program.gradient.amax().max(1.0);
+        let mut best: Option<Step> = None;
+        for raise in 0..=WEIGHT_RAISES {
+            self.counts.elastic_solves += 1;
+            self.counts.interior_point_solves += 1;
+            let solution = match self.interior.solve(&relax_rows(program, weight), cancel) {
+                Ok(solution) => solution,
+                Err(failure @ QuadraticFailure::Cancelled) => return Err(failure),
+                Err(failure) => return best.ok_or(failure),
+            };
+            let n = program.gradient.len();
+            let remaining_violation: f64 = solution.step.iter().skip(n).map(|slack| slack.max(0.0)).sum();
+            let in_cones = program.cones.iter().fold(0.0_f64, |worst, cone| worst.max(largest(cone.values.as_slice())));
+            let scale = 1.0
+                + largest(program.equality_values.as_slice())
+                    .max(largest(program.inequality_values.as_slice()))
+                    .max(in_cones);
+            let settled = remaining_violation <= 1e-8 * scale
+                || best.as_ref().is_some_and(|step| remaining_violation > 0.99 * step.remaining_violation);
+            best = Some(Step { solution: first_variables(solution, n), remaining_violation, same_working_set: false });
+            if settled && raise > 0 || remaining_violation <= 1e-8 * scale {
+                break;
+            }
+            weight *= WEIGHT_FACTOR;
+        }
+        best.ok_or(QuadraticFailure::Inaccurate)
+    }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |worst, value| worst.max(value.abs()))
+}
+
+fn relax_rows(program: &QuadraticProgram, weight: f64) -> QuadraticProgram {
+    let n = program.gradient.len();
+    let (equalities, inequalities) = (program.equality_values.len(), program.inequality_values.len());
+    let in_cones = n + 2 * equalities + inequalities;
+    let total = in_cones + program.cones.len();
+    let mut hessian = SparseRows::zeros(total, total);
+    (0..n).for_each(|i| hessian.set_row(i, program.hessian.row(i).iter().copied()));
+    let mut equality = program.equality.clone();
+    equality.widen(total);
+    for i in 0..equalities {
+        equality[(i, n + i)] = -1.0;
+        equality[(i, n + equalities + i)] = 1.0;
+    }
+    let mut inequality = program.inequality.clone();
+    inequality.widen(total);
+    for i in 0..inequalities {
+        inequality[(i, n + 2 * equalities + i)] = 1.0;
+    }
+    // A vector that lacks `t` of lying in the cone lies there with `t` added to its first entry.
+    let cones = program.cones.iter().enumerate().map(|(i, cone)| {
+        let mut rows = cone.rows.clone().resize_horizontally(total, 0.0);
+        rows[(0, in_cones + i)] = 1.0;
+        ConeRows { rows, values: cone.values.clone() }
+    });
+    QuadraticProgram {
+        cones: cones.collect(),
+        hessian,
+        gradient: program.gradient.clone().resize_vertically(total, weight),
+        equality,
+        equality_values: program.equality_values.clone(),
+        inequality,
+        inequality_values: program.inequality_values.clone(),
+        lower: program.lower.clone().resize_vertically(total, 0.0),
+        upper: program.upper.clone().resize_vertically(total, f64::INFINITY),
+    }
+}
+
+fn first_variables(solution: QuadraticSolution, n: usize) -> QuadraticSolution {
+    QuadraticSolution {
+        step: solution.step.rows(0, n).into_owned(),
+        lower_multipliers: solution.lower_multipliers.rows(0, n).into_owned(),
+        upper_multipliers: solution.upper_multipliers.rows(0, n).into_owned(),
+        ..solution
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::complementarity::mpec::quadratic_program::interior_point;
+    use nalgebra::DMatrix;
+
+    /// `min ½ x²` s.t. `x >= 1` and `x <= -1`: every x in [-1, 1] violates by 2 in sum, and the smallest x wins.
+    #[test]
+    fn contradictory_rows_end_elastic_with_the_least_violation() {
+        let program = QuadraticProgram {
+            hessian: SparseRows::identity(1),
+            gradient: DVector::zeros(1),
+            equality: SparseRows::zeros(0, 1),
+            equality_values: DVector::zeros(0),
+            inequality: SparseRows::from(&DMatrix::from_column_slice(2, 1, &[1.0, -1.0])),
+            inequality_values: DVector::from_column_slice(&[-1.0, -1.0]),
+            lower: DVector::from_element(1, f64::NEG_INFINITY),
+            upper: DVector::from_element(1, f64::INFINITY),
+            cones: Vec::new(),
+        };
+        let mut steps = StepSolver::default();
+        let step = steps.solve(&program, &CancelFlag::default()).expect("the elastic program has a solution");
+        assert!((step.remaining_violation - 2.0).abs() < 1e-6, "{}", step.remaining_violation);
+        assert!(step.solution.step[0].abs() < 1e-5, "{}", step.solution.step[0]);
+        assert!(steps.counts.elastic_solves >= 1);
+    }
+
+    #[test]
+    fn data_that_are_not_finite_are_named_before_any_solve() {
+        let program = QuadraticProgram {
+            hessian: SparseRows::identity(1),
+            gradient: DVector::from_element(1, f64::NAN),
+            equality: SparseRows::zeros(0, 1),
+            equality_values: DVector::zeros(0),
+            inequality: SparseRows::zeros(0, 1),
+            inequality_values: DVector::zeros(0),
+            lower: DVector::from_element(1, f64::NEG_INFINITY),
+            upper: DVector::from_element(1, f64::INFINITY),
+            cones: Vec::new(),
+        };
+        let cancel = CancelFlag::default();
+        assert_eq!(StepSolver::default().solve(&program, &cancel).err(), Some(QuadraticFailure::NotFinite));
+        assert_eq!(interior_point::solve_interior(&program, &cancel).err(), Some(QuadraticFailure::NotFinite));
+    }
+}

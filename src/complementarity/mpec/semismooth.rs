@@ -1,0 +1,201 @@
+//! Newton's method on the complementarity system itself, to round-off.
+//!
+//! ```text
+//! h(x) = 0,     min(a_i, b_i) = 0,     A_j - P(A_j - B_j) = 0,     c(x) = 0
+//! ```
+//!
+//! `P` projects on the second-order cone (`program::cone`); `c` is one closing equation of the caller's where the system
+//! has one unknown too many, as an increment has (its arc length). `A - P(A - B)` vanishes exactly for complementary
+//! members of the cone, and where the projection has no derivative any element of its B-subdifferential serves: the map
+//! is strongly semismooth, so convergence is quadratic from close by, whichever way the members of a pair go, also where
+//! the direction of slip is not known beforehand. Far away nothing is promised: steps are halved while the residual does
+//! not fall, and the end says whether it converged. Inequalities, bounds and the objective play no part.
+//!
+//! Sources: S. Hayashi, N. Yamashita and M. Fukushima, *A combined smoothing and regularization method for monotone
+//! second-order cone complementarity problems*, SIAM J. Optim. 15 (2005), doi:10.1137/S1052623403421516 (the map and its
+//! derivatives); L. Qi and J. Sun, *A nonsmooth version of Newton's method*, Math. Program. 58 (1993),
+//! doi:10.1007/BF01581275 (convergence).
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::algebra::Factorisation;
+use crate::complementarity::mpec::program::cone;
+use crate::complementarity::mpec::program::evaluation::{Evaluation, Quantity};
+use crate::complementarity::mpec::program::problem::Problem;
+use crate::resources::cancel::CancelFlag;
+
+/// Iterations before the system is given up.
+const MOST_ITERATIONS: usize = 30;
+/// Halvings of a step.
+const HALVINGS: usize = 12;
+/// Full steps taken although no part of them makes the residual smaller: where a pair changes sides, the way to the
+/// solution may lead over larger residuals.
+const WATCHDOG_STEPS: usize = 3;
+/// Residual of a converged system.
+const CONVERGED: f64 = 1e-11;
+/// Residual below which iterating on gains nothing.
+const ROUND_OFF: f64 = 1e-15;
+/// Singular values below this part of the largest count as zero.
+const RANK: f64 = 1e-11;
+/// Sweeps of the singular value decomposition.
+const SWEEPS: usize = 1000;
+
+/// An equation that closes the system: its value and gradient.
+pub type Closing<'a> = &'a dyn Fn(&DVector<f64>) -> (f64, DVector<f64>);
+
+/// Where the method ended.
+#[derive(Debug, Clone)]
+pub struct Polished {
+    pub x: DVector<f64>,
+    /// Largest residual at the start and after every step.
+    pub residuals: Vec<f64>,
+    pub is_converged: bool,
+}
+
+impl Polished {
+    /// Linear systems solved.
+    pub fn iterations(&self) -> usize {
+        self.residuals.len().saturating_sub(1)
+    }
+}
+
+/// Runs from `start`.
+///
+/// # Errors
+/// The quantity that is not finite at the start.
+pub fn polish<P: Problem + ?Sized>(
+    problem: &P,
+    start: &DVector<f64>,
+    closing: Option<Closing<'_>>,
+    cancel: &CancelFlag,
+) -> Result<Polished, Quantity> {
+    if start.len() != problem.variables() || start.iter().any(|value| !value.is_finite()) {
+        return Err(Quantity::Start);
+    }
+    let mut at = Evaluation::new(problem);
+    at.update_values(problem, start)?;
+    let mut x = start.clone();
+    let mut values = residual(&at, &x, closing);
+    let mut residuals = vec![values.amax()];
+    let mut best = (values.amax(), x.clone());
+    let mut watchdog_steps = WATCHDOG_STEPS;
+    for _ in 0..MOST_ITERATIONS {
+        let size = values.amax();
+        if cancel.is_cancelled() || size <= ROUND_OFF || at.update_derivatives(problem, &x).is_err() {
+            break;
+        }
+        let Some(step) = newton_step(jacobian(&at, &x, closing), &values) else { break };
+        let (next, next_values) = match shortened(problem, &mut at, &x, &step, &values, closing) {
+            Some(better) => better,
+            // Below the bar, a step that no longer helps is round-off.
+            None if size <= CONVERGED || watchdog_steps == 0 => break,
+            None => {
+                watchdog_steps -= 1;
+                let trial = &x + step;
+                if at.update_values(problem, &trial).is_err() {
+                    break;
+                }
+                let trial_values = residual(&at, &trial, closing);
+                if trial_values.iter().any(|value| !value.is_finite()) {
+                    break;
+                }
+                (trial, trial_values)
+            }
+        };
+        residuals.push(next_values.amax());
+        x = next;
+        values = next_values;
+        if values.amax() < best.0 {
+            best = (values.amax(), x.clone());
+        }
+    }
+    Ok(Polished { x: best.1, is_converged: best.0 <= CONVERGED, residuals })
+}
+
+/// The first of `step`, half of it, ... that makes the residual smaller; `at` is left with the values there. `None`
+/// where none does.
+fn shortened<P: Problem + ?Sized>(
+    problem: &P,
+    at: &mut Evaluation,
+    x: &DVector<f64>,
+    step: &DVector<f64>,
+    values: &DVector<f64>,
+    closing: Option<Closing<'_>>,
+) -> Option<(DVector<f64>, DVector<f64>)> {
+    let mut length = 1.0;
+    for _ in 0..=HALVINGS {
+        let trial = x + step * length;
+        if at.update_values(problem, &trial).is_ok() {
+            let trial_values = residual(at, &trial, closing);
+            let enough = (1.0 - 1e-4 * length) * values.norm();
+            if trial_values.iter().all(|value| value.is_finite()) && trial_values.norm() <= enough {
+                return Some((trial, trial_values));
+            }
+        }
+        length *= 0.5;
+    }
+    None
+}
+
+fn residual(at: &Evaluation, x: &DVector<f64>, closing: Option<Closing<'_>>) -> DVector<f64> {
+    let mut values: Vec<f64> = at.equality.iter().copied().collect();
+    values.extend(at.first.iter().zip(at.second.iter()).map(|(a, b)| a.min(*b)));
+    for (a, b) in at.cones.pairs() {
+        let difference: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+        values.extend(a.iter().zip(cone::projection(&difference).iter()).map(|(a, p)| a - p));
+    }
+    values.extend(closing.map(|closing| closing(x).0));
+    DVector::from_vec(values)
+}
+
+fn jacobian(at: &Evaluation, x: &DVector<f64>, closing: Option<Closing<'_>>) -> DMatrix<f64> {
+    let variables = x.len();
+    let (equalities, pairs, in_cones) = (at.equality.len(), at.first.len(), at.cones.first.len());
+    let rows = equalities + pairs + in_cones + usize::from(closing.is_some());
+    let mut matrix = DMatrix::zeros(rows, variables);
+    put_rows(&mut matrix, 0, at.equality_jacobian.entries());
+    for pair in 0..pairs {
+        let smaller =
+            if at.first[pair] <= at.second[pair] { at.first_jacobian.row(pair) } else { at.second_jacobian.row(pair) };
+        put_rows(&mut matrix, equalities + pair, smaller.iter().map(|&(column, value)| (0, column, value)));
+    }
+    for pair in 0..at.cones.count() {
+        let range = at.cones.range(pair);
+        let difference: Vec<f64> =
+            at.cones.first_of(pair).iter().zip(at.cones.second_of(pair)).map(|(a, b)| a - b).collect();
+        let derivative = cone::projection_derivative(&difference);
+        let of_first = at.cones.first_jacobian.rows(range.start, range.len());
+        let of_second = at.cones.second_jacobian.rows(range.start, range.len());
+        let block = of_first - &derivative * (of_first - of_second);
+        matrix.rows_mut(equalities + pairs + range.start, range.len()).copy_from(&block);
+    }
+    if let Some(closing) = closing {
+        matrix.set_row(rows - 1, &closing(x).1.transpose());
+    }
+    matrix
+}
+
+fn put_rows(matrix: &mut DMatrix<f64>, first: usize, entries: impl Iterator<Item = (usize, usize, f64)>) {
+    entries.for_each(|(row, column, value)| matrix[(first + row, column)] = value);
+}
+
+/// `-J⁻¹ F`; the least-squares solution of least norm where `J` is singular: a contact that is apart leaves the bound on
+/// its slip undetermined.
+fn newton_step(matrix: DMatrix<f64>, values: &DVector<f64>) -> Option<DVector<f64>> {
+    let right = -values;
+    if matrix.is_square()
+        && let Some(factors) = Factorisation::new(matrix.clone())
+    {
+        let mut step = right.clone();
+        if factors.solve(&mut step) && (&matrix * &step - &right).amax() <= 1e-8 * (1.0 + right.amax()) {
+            return Some(step);
+        }
+    }
+    if matrix.iter().any(|value| !value.is_finite()) {
+        return None;
+    }
+    let decomposition = matrix.try_svd(true, true, f64::EPSILON, SWEEPS)?;
+    let cutoff = RANK * decomposition.singular_values.amax();
+    let step = decomposition.solve(&right, cutoff).ok()?;
+    step.iter().all(|value| value.is_finite()).then_some(step)
+}

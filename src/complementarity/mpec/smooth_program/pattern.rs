@@ -1,0 +1,74 @@
+//! How each pair is treated in a smooth program; the rows that follow from it are `smooth_program::relaxation`'s and `smooth_program::cone_rows`'.
+
+use crate::complementarity::mpec::program::activity::PairActivity;
+use crate::complementarity::mpec::smooth_program::cone_rows::ConeTreatment;
+
+/// How one pair enters the smooth program.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PairTreatment {
+    /// Both nonnegative, their product at most this.
+    Product(f64),
+    FirstZero,
+    SecondZero,
+    BothFree,
+    BothZero,
+}
+
+impl PairTreatment {
+    pub fn first_is_zero(self) -> bool {
+        matches!(self, Self::FirstZero | Self::BothZero)
+    }
+
+    pub fn second_is_zero(self) -> bool {
+        matches!(self, Self::SecondZero | Self::BothZero)
+    }
+}
+
+/// How every pair is treated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pattern {
+    pub pairs: Vec<PairTreatment>,
+    pub cones: Vec<ConeTreatment>,
+}
+
+impl Pattern {
+    /// All products at most `relaxation`.
+    pub fn relaxed(pairs: usize, cones: usize, relaxation: f64) -> Self {
+        Self {
+            pairs: vec![PairTreatment::Product(relaxation); pairs],
+            cones: vec![ConeTreatment::Product(relaxation); cones],
+        }
+    }
+
+    /// The bound on the products, where they have one.
+    pub fn relaxation(&self) -> Option<f64> {
+        let of_pairs = self.pairs.iter().find_map(|treatment| match treatment {
+            PairTreatment::Product(relaxation) => Some(*relaxation),
+            PairTreatment::FirstZero
+            | PairTreatment::SecondZero
+            | PairTreatment::BothFree
+            | PairTreatment::BothZero => None,
+        });
+        of_pairs.or_else(|| {
+            self.cones.iter().find_map(|treatment| match treatment {
+                ConeTreatment::Product(relaxation) => Some(*relaxation),
+                ConeTreatment::FirstZero
+                | ConeTreatment::SecondZero
+                | ConeTreatment::AlongFirst
+                | ConeTreatment::AlongSecond => None,
+            })
+        })
+    }
+
+    /// The same with the members zero that are named; what names none, or both, changes nothing.
+    pub fn with_zeros(mut self, members: &[PairActivity]) -> Self {
+        for (treatment, member) in self.pairs.iter_mut().zip(members) {
+            match member {
+                PairActivity::FirstZero => *treatment = PairTreatment::FirstZero,
+                PairActivity::SecondZero => *treatment = PairTreatment::SecondZero,
+                PairActivity::BothZero | PairActivity::NeitherZero => {}
+            }
+        }
+        self
+    }
+}

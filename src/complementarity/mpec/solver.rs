@@ -1,0 +1,370 @@
+//! A mathematical program with complementarity constraints, from a start to a classified point.
+//!
+//! 1. Warm start (or no pairs at all): the branch that the start itself suggests is solved; near a solution that takes
+//!    two or three quadratic programs.
+//! 2. Otherwise regularised programs with `ε` falling from its first to its last value; each starts where the last one
+//!    ended. As soon as every pair's pattern is clear, or has come back unchanged, `mpec::branch` takes over and
+//!    `mpec::stationarity` has the last word.
+//! 3. Where that gave no feasible stationary point: again from the start with a hundred times larger `ε`, a bounded
+//!    number of times; then, where nothing was feasible, from the branches around the least infeasible point. The best
+//!    point seen is returned, with a status that says what it is.
+//!
+//! What is found is a local solution. Source of the sequence: S. Scholtes, SIAM J. Optim. 11 (2001),
+//! doi:10.1137/S1052623499361233.
+
+use nalgebra::DVector;
+
+use crate::complementarity::mpec::branch::{self, Candidate};
+use crate::complementarity::mpec::growth;
+use crate::complementarity::mpec::input::check_input;
+use crate::complementarity::mpec::program::activity::{Activities, PairActivity};
+use crate::complementarity::mpec::program::cone::ConeActivity;
+use crate::complementarity::mpec::program::evaluation::{Evaluation, Quantity};
+use crate::complementarity::mpec::program::problem::Problem;
+use crate::complementarity::mpec::quadratic_program::driver::StepSolver;
+use crate::complementarity::mpec::result::{InputError, Solution, StationarityKind, Status};
+use crate::complementarity::mpec::settings::Settings;
+use crate::complementarity::mpec::smooth_program::pattern::Pattern;
+use crate::complementarity::mpec::smooth_program::relaxation::Rows;
+use crate::complementarity::mpec::smooth_program::sqp::{self, SqpEnd, SqpSettings};
+use crate::resources::cancel::CancelFlag;
+
+/// Factor on `ε` from one restart to the next.
+const RESTART_FACTOR: f64 = 100.0;
+/// Past this, `ε` relaxes nothing any more.
+const LARGEST_RELAXATION: f64 = 1e8;
+/// Most values of `ε` in one descent, whatever the settings ask for.
+const LEVEL_LIMIT: usize = 200;
+
+/// Solves `problem` from `start`.
+///
+/// Numerical trouble is a [`Status`], never an error.
+///
+/// # Errors
+/// [`InputError`] for a start or bounds that do not fit the problem, or settings out of range.
+pub fn solve<P: Problem + ?Sized>(
+    problem: &P,
+    start: &DVector<f64>,
+    settings: &Settings,
+    cancel: &CancelFlag,
+) -> Result<Solution, InputError> {
+    solve_by(problem, start, settings, cancel, |run, at| run.go(start, at))
+}
+
+/// Follows one branch from `start` to its own optimum and looks at no other: the branch in which the given member of each
+/// pair is zero (of the pairs without such an entry, and of cone pairs, the member that is smaller at the start).
+///
+/// Where nothing holds the branch up on the way, its solution is the problem's: [`Status::PatternSettled`] or
+/// [`Status::Solved`], of kind [`StationarityKind::OneBranch`] where a pair is zero to rounding and another branch might
+/// lead further. [`Status::Feasible`] where the branch ends before, at a pair that has to change.
+///
+/// # Errors
+/// [`InputError`] for a start or bounds that do not fit the problem, or settings out of range.
+pub fn follow_branch<P: Problem + ?Sized>(
+    problem: &P,
+    start: &DVector<f64>,
+    zero_members: &[PairActivity],
+    settings: &Settings,
+    cancel: &CancelFlag,
+) -> Result<Solution, InputError> {
+    solve_by(problem, start, settings, cancel, |run, at| {
+        run.steps.is_elastic = false;
+        let pattern = branch::nearest_pattern(at).with_zeros(zero_members);
+        let (steps, bounds) = (&mut run.steps, &run.bounds);
+        let candidate = branch::follow(problem, bounds, start, &pattern, settings, steps, cancel);
+        run.accept(candidate).and_then(Over::reason)
+    })
+}
+
+/// Solves by a search that begins with the functions' values at the start; it answers the reason where it was stopped
+/// before its time.
+fn solve_by<'a, P: Problem + ?Sized>(
+    problem: &'a P,
+    start: &DVector<f64>,
+    settings: &'a Settings,
+    cancel: &'a CancelFlag,
+    search: impl FnOnce(&mut Run<'a, P>, &Evaluation) -> Option<Status>,
+) -> Result<Solution, InputError> {
+    let bounds = problem.bounds();
+    check_input(problem, start, &bounds, settings)?;
+    let mut steps = StepSolver::default();
+    steps.interior_only = settings.interior_only;
+    steps.iterates = settings.keep_iterates.then(Vec::new);
+    let mut run = Run { problem, bounds, settings, cancel, steps, best: None, seen: Ends::default() };
+    let mut at = Evaluation::new(problem);
+    let is_finite = start.iter().all(|value| value.is_finite());
+    let values = if is_finite { at.update_values(problem, start) } else { Err(Quantity::Start) };
+    let stopped = match values {
+        Ok(()) => search(&mut run, &at),
+        Err(quantity) => Some(Status::NotFinite(quantity)),
+    };
+    Ok(run.finish(start, stopped))
+}
+
+/// Ends that matter for the status when no point is feasible.
+#[derive(Debug, Clone, Copy, Default)]
+struct Ends {
+    infeasible: bool,
+    iteration_limit: bool,
+    unbounded: bool,
+    not_finite: Option<Quantity>,
+}
+
+/// A solve under way.
+struct Run<'a, P: Problem + ?Sized> {
+    problem: &'a P,
+    bounds: (DVector<f64>, DVector<f64>),
+    settings: &'a Settings,
+    cancel: &'a CancelFlag,
+    steps: StepSolver,
+    best: Option<Candidate>,
+    seen: Ends,
+}
+
+impl<P: Problem + ?Sized> Run<'_, P> {
+    /// Runs to the end; the reason where it was stopped before its time.
+    fn go(&mut self, start: &DVector<f64>, at: &Evaluation) -> Option<Status> {
+        let unpaired = self.problem.pairs() == 0 && at.cones.count() == 0;
+        let may_search = self.settings.warm_start && !self.settings.whole_sequence && branch::is_clear(at);
+        if (unpaired || may_search)
+            && let Some(end) = self.search(start, at)
+        {
+            return end.reason();
+        }
+        if unpaired {
+            return None;
+        }
+        let mut first_relaxation = self.settings.first_relaxation;
+        for restart in 0..=self.settings.restarts {
+            self.steps.counts.restarts = restart;
+            if let Some(end) = self.regularise(start, first_relaxation) {
+                return end.reason();
+            }
+            first_relaxation = (first_relaxation * RESTART_FACTOR).min(LARGEST_RELAXATION);
+        }
+        self.try_other_branches()
+    }
+
+    /// The last resort where no feasible point was found: the branch nearest to the least infeasible one, then
+    /// those that differ in one pair; all of them where there are few pairs.
+    fn try_other_branches(&mut self) -> Option<Status> {
+        let best = self.best.as_ref().filter(|best| !best.is_feasible(self.settings.tolerance))?;
+        let x = best.x.clone();
+        for pattern in branch::patterns_around(&best.at, self.settings.enumeration_limit) {
+            if let Some(over) = self.search_from(&x, pattern) {
+                return over.reason();
+            }
+        }
+        None
+    }
+
+    /// One descent of `ε`; an end where there is nothing left to do.
+    fn regularise(&mut self, start: &DVector<f64>, first_relaxation: f64) -> Option<Over> {
+        let mut x = start.clone();
+        let mut relaxation = first_relaxation;
+        let mut last_searched: Option<Pattern> = None;
+        let mut last_pattern: Option<Pattern> = None;
+        let cone_sizes = self.problem.cone_sizes();
+        let sequence = SqpSettings {
+            tolerance: self.settings.tolerance,
+            iteration_limit: self.settings.iteration_limit,
+            stop_when_settled: false,
+        };
+        for _ in 0..LEVEL_LIMIT {
+            self.steps.counts.relaxation_levels += 1;
+            self.steps.relaxation = Some(relaxation);
+            let treatments = Pattern::relaxed(self.problem.pairs(), cone_sizes.len(), relaxation);
+            let rows = Rows::new(self.problem.equalities(), self.problem.inequalities(), &cone_sizes, treatments);
+            let outcome = sqp::solve(self.problem, &rows, &self.bounds, &x, sequence, &mut self.steps, self.cancel);
+            match outcome.end {
+                SqpEnd::Cancelled => return Some(Over::Stopped(Status::Cancelled)),
+                SqpEnd::NotFinite(quantity) => {
+                    self.seen.not_finite = Some(quantity);
+                    return None;
+                }
+                SqpEnd::Unbounded => self.seen.unbounded = true,
+                SqpEnd::Infeasible => self.seen.infeasible = true,
+                SqpEnd::IterationLimit => self.seen.iteration_limit = true,
+                SqpEnd::Converged | SqpEnd::Settled | SqpEnd::Stalled => {}
+            }
+            x = outcome.x;
+            let is_last = relaxation <= self.settings.last_relaxation;
+            let pattern = branch::nearest_pattern(&outcome.at);
+            let same = last_pattern.as_ref() == Some(&pattern);
+            let hopeless = outcome.end == SqpEnd::Infeasible;
+            let is_certain = !self.settings.whole_sequence && (branch::is_clear(&outcome.at) || same);
+            let worth_a_search = is_certain || is_last || hopeless;
+            if worth_a_search && last_searched.as_ref() != Some(&pattern) {
+                if let Some(over) = self.search(&x, &outcome.at) {
+                    return Some(over);
+                }
+                last_searched = Some(pattern.clone());
+            }
+            last_pattern = Some(pattern);
+            // Where even this much relaxation left the rows contradictory, less of it can't help.
+            if is_last || hopeless {
+                return None;
+            }
+            relaxation = (relaxation * self.settings.relaxation_factor).max(self.settings.last_relaxation);
+        }
+        None
+    }
+
+    /// Descends from the branch nearest to `x`; an end where the point is final or the solve has to stop.
+    fn search(&mut self, x: &DVector<f64>, at: &Evaluation) -> Option<Over> {
+        self.search_from(x, branch::nearest_pattern(at))
+    }
+
+    /// Descends from the branch `pattern`.
+    fn search_from(&mut self, x: &DVector<f64>, pattern: Pattern) -> Option<Over> {
+        let candidate =
+            branch::descend(self.problem, &self.bounds, x, pattern, self.settings, &mut self.steps, self.cancel);
+        self.accept(candidate)
+    }
+
+    /// Keeps a point that is better than the last; an end where it is final or the solve has to stop.
+    fn accept(&mut self, candidate: Candidate) -> Option<Over> {
+        let over = match candidate.end {
+            SqpEnd::Cancelled => Some(Over::Stopped(Status::Cancelled)),
+            SqpEnd::Infeasible => {
+                self.seen.infeasible = true;
+                None
+            }
+            SqpEnd::IterationLimit => {
+                self.seen.iteration_limit = true;
+                None
+            }
+            SqpEnd::Unbounded => {
+                self.seen.unbounded = true;
+                None
+            }
+            SqpEnd::NotFinite(quantity) => {
+                self.seen.not_finite = Some(quantity);
+                None
+            }
+            SqpEnd::Converged | SqpEnd::Settled | SqpEnd::Stalled => {
+                (candidate.end == SqpEnd::Settled || candidate.is_final(self.settings.tolerance)).then_some(Over::Found)
+            }
+        };
+        let tolerance = self.settings.tolerance;
+        if matches!(over, Some(Over::Found))
+            || self.best.as_ref().is_none_or(|best| is_better(&candidate, best, tolerance))
+        {
+            self.best = Some(candidate);
+        }
+        over
+    }
+
+    fn finish(mut self, start: &DVector<f64>, stopped: Option<Status>) -> Solution {
+        let tolerance = self.settings.tolerance;
+        let Some(candidate) = self.best.take() else {
+            return empty_solution(self.problem, start, stopped.unwrap_or(self.seen.status()), self.steps);
+        };
+        let is_feasible = candidate.is_feasible(tolerance);
+        let status = match (stopped, candidate.end) {
+            (Some(status), _) => status,
+            (None, SqpEnd::Settled) => Status::PatternSettled,
+            (None, SqpEnd::NotFinite(quantity)) => Status::NotFinite(quantity),
+            (None, SqpEnd::Unbounded) if is_feasible => Status::Unbounded,
+            (
+                None,
+                SqpEnd::Converged
+                | SqpEnd::Stalled
+                | SqpEnd::Infeasible
+                | SqpEnd::IterationLimit
+                | SqpEnd::Unbounded
+                | SqpEnd::Cancelled,
+            ) => match (is_feasible, candidate.stationarity) {
+                (false, _) => self.seen.status(),
+                (true, StationarityKind::Unknown) => Status::Feasible,
+                (true, _) if !self.settings.looks_beyond => Status::Solved,
+                (true, _) => {
+                    let (problem, bounds, steps) = (self.problem, &self.bounds, &mut self.steps);
+                    growth::without_end(problem, bounds, &candidate, self.settings, steps, self.cancel)
+                        .map_or(Status::Solved, Status::UnboundedIterates)
+                }
+            },
+        };
+        let both_zero = self.settings.biactive_tolerance;
+        // A settled pattern is not refined: what its point leaves violated says how near the cones' boundary is near.
+        let left = if status == Status::PatternSettled { 10.0 * candidate.at.largest_violation() } else { 0.0 };
+        let activities = Activities::of(&candidate.at, both_zero, both_zero.max(left));
+        Solution {
+            status,
+            objective: candidate.at.objective,
+            activity: activities.pairs,
+            cone_activity: activities.cones,
+            stationarity: candidate.stationarity,
+            largest_violation: candidate.at.largest_violation(),
+            largest_product: candidate.at.largest_product(),
+            multipliers: candidate.multipliers,
+            x: candidate.x,
+            counts: self.steps.counts,
+            last_relaxation: self.steps.relaxation,
+            iterates: self.steps.iterates.unwrap_or_default(),
+        }
+    }
+}
+
+/// Why a solve need not go on.
+enum Over {
+    Found,
+    Stopped(Status),
+}
+
+impl Over {
+    fn reason(self) -> Option<Status> {
+        match self {
+            Self::Found => None,
+            Self::Stopped(status) => Some(status),
+        }
+    }
+}
+
+impl Ends {
+    fn status(self) -> Status {
+        if let Some(quantity) = self.not_finite {
+            Status::NotFinite(quantity)
+        } else if self.infeasible {
+            Status::Infeasible
+        } else if self.iteration_limit {
+            Status::IterationLimit
+        } else if self.unbounded {
+            Status::Unbounded
+        } else {
+            Status::NoProgress
+        }
+    }
+}
+
+fn is_better(candidate: &Candidate, best: &Candidate, tolerance: f64) -> bool {
+    match (candidate.is_feasible(tolerance), best.is_feasible(tolerance)) {
+        (true, false) => true,
+        (false, true) => false,
+        (true, true) => candidate.at.objective < best.at.objective,
+        (false, false) => candidate.infeasibility() < best.infeasibility(),
+    }
+}
+
+/// The start itself, where nothing was computed that is worth returning.
+fn empty_solution<P: Problem + ?Sized>(
+    problem: &P,
+    start: &DVector<f64>,
+    status: Status,
+    steps: StepSolver,
+) -> Solution {
+    Solution {
+        status,
+        x: start.clone(),
+        objective: f64::NAN,
+        multipliers: sqp::no_multipliers(problem),
+        activity: vec![PairActivity::NeitherZero; problem.pairs()],
+        cone_activity: vec![ConeActivity::NotComplementary; problem.cone_sizes().len()],
+        stationarity: StationarityKind::Unknown,
+        largest_violation: f64::INFINITY,
+        largest_product: f64::INFINITY,
+        counts: steps.counts,
+        last_relaxation: steps.relaxation,
+        iterates: steps.iterates.unwrap_or_default(),
+    }
+}

@@ -1,0 +1,359 @@
+//! Branch and bound over the entities.
+//!
+//! A node has some entities decided; what is left is the cone of their options' forms and of what the options of every
+//! other entity have in common. The node is done where that cone holds nothing but zero, where it is one line (whatever
+//! fits that line is examined), or where the open entities are certified to have one ray for each sign of the load rate.
+//! Otherwise the entity that fits the cone's present point worst is decided, best option first. The first branching is
+//! on the sign of the load rate. Every ray comes from the exact equations of its combination, so that the search decides
+//! only where to look.
+
+use crate::complementarity::rates::dictionary::{Dictionary, Feasibility};
+use crate::complementarity::rates::lemke::lemke;
+use crate::complementarity::rates::rate_problem::{Choice, Entity, RateProblem, Signed};
+use crate::resources::budget::{self, Taken};
+use crate::resources::cancel::CancelFlag;
+use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeSet;
+use std::rc::Rc;
+
+/// A feasible direction under one combination of options.
+#[derive(Debug, Clone)]
+pub struct Ray {
+    /// Of unit arc length.
+    pub weights: DVector<f64>,
+    /// The options of each entity that hold; under every combination of them the ray is feasible.
+    pub fitting: Vec<Vec<usize>>,
+    /// Those and the ones that nearly hold.
+    pub in_doubt: Vec<Vec<usize>>,
+    /// Some inequality holds with equality.
+    pub weak: bool,
+}
+
+impl Ray {
+    /// The first combination under which it is feasible: held where it can be.
+    pub fn chosen(&self) -> Vec<usize> {
+        self.fitting.iter().map(|options| options[0]).collect()
+    }
+
+    pub(crate) fn is_under(&self, chosen: &[usize]) -> bool {
+        self.fitting.iter().zip(chosen).all(|(options, choice)| options.contains(choice))
+    }
+}
+
+/// What was found.
+#[derive(Debug, Clone, Default)]
+pub struct Findings {
+    /// Each motion once, in the order of their first combinations, the first entity counting fastest.
+    pub rays: Vec<Ray>,
+    /// Combinations that were not examined, saturating; an upper bound.
+    pub unexplored: u64,
+    /// Some combination has more than one independent vector, or one along which nothing moves.
+    pub degenerate: bool,
+    /// Bases of such sets, one vector a column.
+    pub planes: Vec<DMatrix<f64>>,
+    /// One ray for each sign of the load rate, by the certificate, without any branching.
+    pub certified: bool,
+    /// Nodes and combinations looked at, large ones counted as several.
+    pub examined: u64,
+}
+
+/// How far a search may go.
+#[derive(Debug, Clone, Copy)]
+pub struct Effort<'a> {
+    /// Nodes and combinations looked at.
+    pub most_modes: u64,
+    /// Whether it may end where a certificate says that there is one ray for each sign of the load rate.
+    pub certify: bool,
+    pub cancel: &'a CancelFlag,
+}
+
+/// Entries of a dictionary that make a node count as one; a larger node counts as several.
+const UNIT_OF_WORK: u64 = 4096;
+/// Nodes spent inside sets of solutions of more than one dimension, whose edges are rays like any other.
+const MOST_IN_SETS: u64 = 512;
+/// A form this small at a node's point is zero as far as the search is concerned.
+pub(crate) const FITS: f64 = 1e-7;
+
+/// All rays, as far as the effort goes; `first` gives combinations to examine before the others, where there is no
+/// certificate.
+pub fn explore(problem: &RateProblem, first: impl FnOnce() -> Vec<Vec<usize>>, effort: Effort<'_>) -> Findings {
+    explore_by(problem, first, effort, lemke)
+}
+
+#[cfg(test)]
+pub(crate) fn explore_without_pivoting(problem: &RateProblem, effort: Effort<'_>) -> Findings {
+    explore_by(problem, Vec::new, effort, |_, _| Vec::new())
+}
+
+/// The same; `further` names combinations to examine where the search was cut.
+fn explore_by(
+    problem: &RateProblem,
+    first: impl FnOnce() -> Vec<Vec<usize>>,
+    effort: Effort<'_>,
+    further: impl Fn(&RateProblem, &CancelFlag) -> Vec<Vec<usize>>,
+) -> Findings {
+    let mut search = Search {
+        problem,
+        findings: Findings::default(),
+        seen: BTreeSet::new(),
+        held: Taken::default(),
+        effort,
+        common: Vec::new(),
+        coupling: DMatrix::zeros(0, 0),
+        cost: 1 + (problem.forms.nrows() * problem.weights()) as u64 / UNIT_OF_WORK,
+    };
+    if !search.certified_at_once() {
+        for chosen in first() {
+            search.examine(&chosen);
+        }
+        search.branch();
+        if search.findings.unexplored > 0 {
+            for chosen in further(problem, effort.cancel) {
+                search.examine(&chosen);
+            }
+        }
+    }
+    let mut findings = search.findings;
+    findings.unexplored = findings.unexplored.min(problem.combinations());
+    findings.rays.sort_by_cached_key(|ray| ray.chosen().into_iter().rev().collect::<Vec<_>>());
+    findings
+}
+
+/// Decided entities and the cone that is left.
+pub(crate) struct Node {
+    pub chosen: Vec<Option<usize>>,
+    pub dictionary: Dictionary,
+    /// Sign of the load rate.
+    pub sign: f64,
+    /// Inside a set of solutions.
+    pub in_set: bool,
+    /// The entity decided last.
+    last: Option<usize>,
+}
+
+/// A child that has not been looked at.
+struct Task {
+    parent: Rc<Node>,
+    decision: Option<(usize, usize)>,
+}
+
+/// The search as far as it has come.
+pub(crate) struct Search<'a> {
+    pub problem: &'a RateProblem,
+    pub findings: Findings,
+    /// Combinations whose equations were solved.
+    pub seen: BTreeSet<Vec<usize>>,
+    /// What they and the rays hold.
+    pub held: Taken,
+    pub effort: Effort<'a>,
+    /// What all options of each entity have in common, once there is branching.
+    common: Vec<Vec<Signed>>,
+    /// How strongly entities feel each other, once there is branching.
+    coupling: DMatrix<f64>,
+    /// What a node counts: large problems take longer over each.
+    pub cost: u64,
+}
+
+impl Search<'_> {
+    fn branch(&mut self) {
+        self.common = self.problem.entities.iter().map(Entity::common).collect();
+        let Some(dictionary) = Dictionary::new(self.problem, &self.common) else {
+            self.findings.degenerate = true;
+            return;
+        };
+        self.coupling = self.problem.coupling();
+        let root = |sign: f64| {
+            let mut dictionary = dictionary.clone();
+            dictionary.require(None, sign);
+            let chosen = vec![None; self.problem.entities.len()];
+            Task { parent: Rc::new(Node { chosen, dictionary, sign, in_set: false, last: None }), decision: None }
+        };
+        let settled = self.settled_signs();
+        let mut tasks: Vec<Task> = [-1.0, 1.0].into_iter().filter(|sign| !settled.contains(sign)).map(root).collect();
+        if tasks.is_empty() {
+            // Rays along which the load rests are left.
+            let mut dictionary = dictionary.clone();
+            if dictionary.rest_load() {
+                let chosen = vec![None; self.problem.entities.len()];
+                let node = Node { chosen, dictionary, sign: 1.0, in_set: false, last: None };
+                tasks.push(Task { parent: Rc::new(node), decision: None });
+            }
+        }
+        let mut in_sets = Vec::new();
+        let mut left_in_sets = MOST_IN_SETS;
+        loop {
+            let task = match tasks.pop() {
+                Some(task) => task,
+                None if left_in_sets > 0 => match in_sets.pop() {
+                    Some(task) => {
+                        left_in_sets = left_in_sets.saturating_sub(self.cost);
+                        task
+                    }
+                    None => return,
+                },
+                None => break,
+            };
+            if self.effort.cancel.is_cancelled() || self.findings.examined >= self.effort.most_modes {
+                tasks.push(task);
+                break;
+            }
+            self.findings.examined += self.cost;
+            budget::spend(self.problem.weights());
+            for child in self.look_at(task) {
+                if child.parent.in_set { in_sets.push(child) } else { tasks.push(child) }
+            }
+        }
+        for task in tasks.iter().chain(&in_sets) {
+            let left = self.combinations_of(task);
+            self.findings.unexplored = self.findings.unexplored.saturating_add(left);
+        }
+    }
+
+    /// Combinations under a task.
+    fn combinations_of(&self, task: &Task) -> u64 {
+        let decided = task.decision.map(|(entity, _)| entity);
+        self.problem
+            .entities
+            .iter()
+            .enumerate()
+            .filter(|(index, _)| task.parent.chosen[*index].is_none() && decided != Some(*index))
+            .fold(1, |total, (_, entity)| total.saturating_mul(entity.options.len() as u64))
+    }
+
+    /// Closes a node or gives its children, the most promising last.
+    fn look_at(&mut self, task: Task) -> Vec<Task> {
+        let Some(mut node) = decide(self.problem, task) else { return Vec::new() };
+        if node.dictionary.feasibility() == Feasibility::OnlyLines
+            && !node.dictionary.is_lines_only()
+            && !node.dictionary.leave_lines()
+        {
+            return Vec::new();
+        }
+        let open: Vec<usize> = (0..node.chosen.len()).filter(|&index| node.chosen[index].is_none()).collect();
+        if open.is_empty() {
+            let chosen: Vec<usize> = node.chosen.iter().flatten().copied().collect();
+            self.examine(&chosen);
+            return Vec::new();
+        }
+        node.dictionary.drop_forced();
+        let dictionary = &node.dictionary;
+        let dimension = dictionary.dimension() + usize::from(!dictionary.is_lines_only());
+        if dimension == 0 {
+            return Vec::new();
+        }
+        if dimension == 1 {
+            let mut options: Vec<Vec<usize>> =
+                node.chosen.iter().map(|choice| choice.iter().copied().collect()).collect();
+            for &entity in &open {
+                let choices = &self.problem.entities[entity].options;
+                options[entity] = (0..choices.len()).filter(|&index| fits(dictionary, &choices[index])).collect();
+            }
+            if options.iter().all(|options| !options.is_empty()) {
+                self.examine_all(&options);
+            }
+            return Vec::new();
+        }
+        if self.certified_below(&node, &open) {
+            return Vec::new();
+        }
+        if !node.in_set
+            && let Some(filled) = self.filled(&node)
+        {
+            // Whatever is left solves the problem: a set of more than one dimension.
+            self.examine(&filled);
+            node.in_set = true;
+        }
+        let entity = self.next(&node, &open);
+        let choices = &self.problem.entities[entity].options;
+        let mut order: Vec<(f64, usize)> =
+            choices.iter().enumerate().map(|(index, choice)| (misfit(dictionary, choice), index)).collect();
+        order.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
+        let parent = Rc::new(node);
+        order
+            .into_iter()
+            .map(|(_, choice)| Task { parent: Rc::clone(&parent), decision: Some((entity, choice)) })
+            .collect()
+    }
+
+    /// The entity to decide next. Of those that do not fit the node's point, the one that feels the last decision most:
+    /// a decision that cannot be is then refuted near by, in a few nodes. Where all fit, the first that still decides
+    /// something.
+    fn next(&self, node: &Node, open: &[usize]) -> usize {
+        let mut next: Option<((f64, f64), usize)> = None;
+        for &entity in open {
+            let fit = self.problem.entities[entity]
+                .options
+                .iter()
+                .map(|choice| misfit(&node.dictionary, choice))
+                .fold(f64::INFINITY, f64::min);
+            if fit <= FITS {
+                continue;
+            }
+            let score = (node.last.map_or(0.0, |last| self.coupling[(last, entity)]), fit);
+            if next.is_none_or(|(best, _)| score > best) {
+                next = Some((score, entity));
+            }
+        }
+        let decides = |entity: &&usize| {
+            let choices = &self.problem.entities[**entity].options;
+            choices.iter().any(|choice| choice.zero.iter().any(|form| !node.dictionary.vanishes(*form)))
+        };
+        next.map(|(_, entity)| entity).or_else(|| open.iter().find(decides).copied()).unwrap_or(open[0])
+    }
+
+    /// A combination under which everything left is a solution, if there is one.
+    fn filled(&self, node: &Node) -> Option<Vec<usize>> {
+        node.chosen
+            .iter()
+            .zip(self.problem.entities.iter().zip(&self.common))
+            .map(|(chosen, (entity, common))| {
+                chosen.or_else(|| {
+                    entity.options.iter().position(|choice| {
+                        choice.zero.iter().all(|form| node.dictionary.vanishes(*form))
+                            && choice.nonnegative.iter().all(|signed| common.contains(signed))
+                    })
+                })
+            })
+            .collect()
+    }
+}
+
+/// How far a node's point is from an option.
+fn misfit(dictionary: &Dictionary, choice: &Choice) -> f64 {
+    let zero = choice
+        .zero
+        .iter()
+        .map(|form| dictionary.value(crate::complementarity::rates::rate_problem::Signed::plus(*form)).abs());
+    let negative = choice.nonnegative.iter().map(|signed| -dictionary.value(*signed));
+    zero.chain(negative).fold(0.0, f64::max)
+}
+
+/// Whether an option holds on the one line or ray that is left.
+fn fits(dictionary: &Dictionary, choice: &Choice) -> bool {
+    misfit(dictionary, choice) <= FITS
+        && (!dictionary.is_lines_only() || choice.zero.iter().all(|form| dictionary.vanishes(*form)))
+}
+
+/// The node of a task; `None` where nothing but zero is left.
+fn decide(problem: &RateProblem, task: Task) -> Option<Node> {
+    let parent = &task.parent;
+    let mut node = Node {
+        chosen: parent.chosen.clone(),
+        dictionary: parent.dictionary.clone(),
+        sign: parent.sign,
+        in_set: parent.in_set,
+        last: task.decision.map(|(entity, _)| entity),
+    };
+    let Some((entity, choice)) = task.decision else { return Some(node) };
+    node.chosen[entity] = Some(choice);
+    let choice = &problem.entities[entity].options[choice];
+    for form in &choice.zero {
+        if !node.dictionary.make_zero(*form) {
+            return None;
+        }
+    }
+    for signed in choice.nonnegative.iter().chain(&choice.implied) {
+        node.dictionary.require(Some(signed.form), signed.sign);
+    }
+    Some(node)
+}

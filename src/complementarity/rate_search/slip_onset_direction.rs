@@ -1,0 +1,179 @@
+//! Slip that begins at a touch in space: its direction is unknown.
+//!
+//! With `v` the velocity and `Ṙ` the rate of the force on a node that touches without reaction,
+//!
+//! ```text
+//! v_n = 0,    v_t = λ d,  λ >= 0,    Ṙ_t = -μ Ṙ_n d,  Ṙ_n >= 0,    |d| = 1
+//! ```
+//!
+//! For a given angle of `d` all but `d⊥·Ṙ_t = 0` are linear forms; the rays under the equations are found as any others,
+//! and the angles at which the remaining form vanishes on one of them by scanning the circle and Chandrupatla's method.
+//! The node's own inequalities are looked at there only: the angles at which they hold may be a sliver (a node that
+//! comes down almost along the obstacle is hardly pressed). With one such node this finds every slip that a scan of the circle tells apart. Of several, each is taken here to begin to
+//! slip while the others stick or leave; `simultaneous_slips` finds those that begin at once.
+
+use crate::algebra::dense::root::find_root;
+use crate::complementarity::rate_search::branch_and_bound::{Effort, Ray, explore};
+use crate::complementarity::rates::gauss_seidel::own_column;
+use crate::complementarity::rates::rate_problem::{Choice, Entity, RateProblem};
+use crate::resources::budget;
+use nalgebra::DVector;
+use std::f64::consts::TAU;
+
+/// Angles at which the circle is scanned.
+pub(crate) const SECTORS: usize = 64;
+/// Least cosine between the motions of rays at neighbouring angles that belong together.
+const TOGETHER: f64 = 0.9;
+/// Misfit (over the force rates) at which an angle is a root.
+const ROOT: f64 = 1e-9;
+
+/// A ray along which entities begin to slip.
+pub(crate) struct Turning {
+    pub ray: Ray,
+    /// The entities, with the components of their directions along their two tangents.
+    pub slips: Vec<(usize, [f64; 2])>,
+}
+
+/// Forms of a touching entity, as [normal, first tangent, second tangent].
+pub(crate) struct Touch {
+    pub entity: usize,
+    pub velocities: [usize; 3],
+    pub forces: [usize; 3],
+    pub friction: f64,
+    /// Forms that are not negative while it slips: gaps of other obstacles of the node.
+    pub opening: Vec<usize>,
+}
+
+/// All rays along which a touching entity slips while the others take one of their options.
+pub(crate) fn slips(problem: &RateProblem, touch: &Touch, effort: Effort<'_>) -> Vec<Turning> {
+    let mut found: Vec<Turning> = Vec::new();
+    let mut before: Vec<(Ray, f64)> = Vec::new();
+    for sector in 0..=SECTORS {
+        if effort.cancel.is_cancelled() {
+            return found;
+        }
+        let angle = TAU * sector as f64 / SECTORS as f64;
+        let here = touch.rays(problem, angle, effort);
+        for (ray, misfit) in &here {
+            if misfit.abs() <= ROOT {
+                touch.keep(&mut found, problem, ray.clone(), angle);
+                continue;
+            }
+            let partner = before.iter().find(|(other, other_misfit)| {
+                other.chosen() == ray.chosen()
+                    && misfit * other_misfit < 0.0
+                    && other_misfit.abs() > ROOT
+                    && cosine(problem, other, ray) > TOGETHER
+            });
+            let Some((other, other_misfit)) = partner else { continue };
+            let first = TAU * (sector as f64 - 1.0) / SECTORS as f64;
+            let mut last_ray = other.clone();
+            let evaluate = |angle: f64| {
+                let rays = touch.rays(problem, angle, effort);
+                let near = rays.into_iter().filter(|(one, _)| one.chosen() == ray.chosen());
+                let (one, value) =
+                    near.max_by(|a, b| cosine(problem, &a.0, ray).total_cmp(&cosine(problem, &b.0, ray)))?;
+                last_ray = one;
+                Some(value)
+            };
+            if let Some(root) = find_root(evaluate, (first, *other_misfit), (angle, *misfit), 1e-15) {
+                touch.keep(&mut found, problem, last_ray, root);
+            }
+        }
+        before = here;
+    }
+    found
+}
+
+fn cosine(problem: &RateProblem, first: &Ray, second: &Ray) -> f64 {
+    (&problem.motion * &first.weights).dot(&(&problem.motion * &second.weights))
+}
+
+impl Touch {
+    /// Of an entity whose options are stick and free.
+    pub fn of(problem: &RateProblem, entity: usize, friction: f64) -> Option<Self> {
+        let [stick, free] = &problem.entities[entity].options[..] else { return None };
+        let three = |forms: &[usize]| <[usize; 3]>::try_from(forms).ok();
+        Some(Self {
+            entity,
+            velocities: three(&stick.zero)?,
+            forces: three(&free.zero)?,
+            friction,
+            opening: Vec::new(),
+        })
+    }
+
+    /// The rays for one angle, and how far the traction is from the direction, over the size of the force rates.
+    fn rays(&self, problem: &RateProblem, angle: f64, effort: Effort<'_>) -> Vec<(Ray, f64)> {
+        let copied = problem.forms.len() + problem.motion.len() + problem.reactions.len();
+        let _held = budget::take::<f64>(copied);
+        budget::spend(copied);
+        let (sine, cosine) = angle.sin_cos();
+        let row = |forms: [usize; 3], parts: [f64; 3]| {
+            (0..3).fold(DVector::zeros(problem.weights()), |sum, k| {
+                sum + problem.forms.row(forms[k]).transpose() * parts[k]
+            })
+        };
+        let along = row(self.velocities, [0.0, cosine, sine]);
+        let across = row(self.velocities, [0.0, -sine, cosine]);
+        let cone = row(self.forces, [self.friction, cosine, sine]);
+        let misfit = row(self.forces, [0.0, -sine, cosine]);
+        let base = problem.forms.nrows();
+        let mut forms = problem.forms.clone().resize_vertically(base + 3, 0.0);
+        for (place, values) in [along, across, cone].iter().enumerate() {
+            forms.set_row(base + place, &values.transpose());
+        }
+        let mut is_force = problem.is_force.clone();
+        is_force.extend([false, false, true]);
+        let mut entities = problem.entities.clone();
+        let slip =
+            Choice { zero: vec![self.velocities[0], base + 1, base + 2], nonnegative: Vec::new(), implied: Vec::new() };
+        entities[self.entity] = Entity { options: vec![slip], touching: None };
+        let turned = RateProblem {
+            forms,
+            is_force,
+            entities,
+            motion: problem.motion.clone(),
+            reactions: problem.reactions.clone(),
+        };
+        let findings = explore(&turned, Vec::new, effort);
+        let with_misfit = |ray: Ray| {
+            let size = (&problem.reactions * &ray.weights).amax().max(f64::MIN_POSITIVE);
+            let misfit = misfit.dot(&ray.weights) / size;
+            (ray, misfit)
+        };
+        findings.rays.into_iter().map(with_misfit).collect()
+    }
+
+    /// Whether the node moves along the direction, otherwise it sticks, and is pressed, otherwise it is free.
+    fn is_slip(&self, problem: &RateProblem, ray: &Ray, angle: f64) -> bool {
+        let value = |form: usize| problem.forms.row(form).transpose().dot(&ray.weights);
+        let size = (&problem.reactions * &ray.weights).amax().max(f64::MIN_POSITIVE);
+        let opens = self.opening.iter().all(|gap| value(*gap) >= -ROOT);
+        self.motion(problem, &ray.weights, angle) > ROOT && value(self.forces[0]) > ROOT * size && opens
+    }
+
+    /// How clearly the node moves along a direction, dimensionless: by its velocity, or, of a node on stiff supports, which
+    /// is slow, by what that velocity changes in its own forces.
+    pub(crate) fn motion(&self, problem: &RateProblem, weights: &DVector<f64>, angle: f64) -> f64 {
+        let value = |form: usize| problem.forms.row(form).transpose().dot(weights);
+        let parts = [angle.cos(), angle.sin()];
+        let along = value(self.velocities[1]) * parts[0] + value(self.velocities[2]) * parts[1];
+        let columns = [1, 2].map(|tangent| own_column(problem, self.velocities[tangent]));
+        let [Some(first), Some(second)] = columns else { return along };
+        let largest = |values: [f64; 3]| values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        let stiffness = largest(
+            self.forces
+                .map(|force| problem.forms[(force, first)] * parts[0] + problem.forms[(force, second)] * parts[1]),
+        );
+        let forces = largest(self.forces.map(value)).max(f64::MIN_POSITIVE);
+        along * (stiffness / forces).max(1.0)
+    }
+
+    fn keep(&self, found: &mut Vec<Turning>, problem: &RateProblem, ray: Ray, angle: f64) {
+        let known = |one: &Turning| one.ray.chosen() == ray.chosen() && cosine(problem, &one.ray, &ray) > 1.0 - 1e-12;
+        if self.is_slip(problem, &ray, angle) && !found.iter().any(known) {
+            found.push(Turning { ray, slips: vec![(self.entity, [angle.cos(), angle.sin()])] });
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! Data of a rate problem.
+
+use crate::resources::budget;
+use nalgebra::DMatrix;
+
+/// Columns of a product that are formed at a time.
+const TOGETHER: usize = 8;
+
+/// A form with a sign: `sign F_form w`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Signed {
+    pub form: usize,
+    pub sign: f64,
+}
+
+impl Signed {
+    pub fn plus(form: usize) -> Self {
+        Self { form, sign: 1.0 }
+    }
+
+    pub fn minus(form: usize) -> Self {
+        Self { form, sign: -1.0 }
+    }
+}
+
+/// One way in which an entity may go on.
+#[derive(Debug, Clone, Default)]
+pub struct Choice {
+    /// Forms that are zero.
+    pub zero: Vec<usize>,
+    /// Forms that are not negative.
+    pub nonnegative: Vec<Signed>,
+    /// Forms that are not negative as a consequence of the others. They decide nothing; what all options of an entity
+    /// have in common holds before the entity is decided, and the more that is, the sooner a branch is seen to be empty.
+    pub implied: Vec<Signed>,
+}
+
+/// Something that takes exactly one of its options.
+#[derive(Debug, Clone)]
+pub struct Entity {
+    pub options: Vec<Choice>,
+    /// Present for a contact that touches without reaction, with Coulomb friction in the plane.
+    pub touching: Option<Touching>,
+}
+
+/// The forms of a contact that touches without reaction: `ġ`, `v_t`, `ṙ_n`, `ṙ_t`, `μ ṙ_n + ṙ_t` and `μ ṙ_n - ṙ_t`.
+#[derive(Debug, Clone, Copy)]
+pub struct Touching {
+    pub gap: usize,
+    pub along: usize,
+    pub pressing: usize,
+    pub traction: usize,
+    pub cone: [usize; 2],
+}
+
+/// Forms over the weights, and the entities.
+#[derive(Debug, Clone)]
+pub struct RateProblem {
+    /// One form a row, one weight a column.
+    pub forms: DMatrix<f64>,
+    /// Whether a form is a rate of force; the others are velocities.
+    pub is_force: Vec<bool>,
+    pub entities: Vec<Entity>,
+    /// Displacement rates and, in the last row, the load rate; one weight a column. Gives the arc length of a ray.
+    pub motion: DMatrix<f64>,
+    /// Rates of all reactions: the size against which a rate of force is zero.
+    pub reactions: DMatrix<f64>,
+}
+
+impl RateProblem {
+    /// Number of weights.
+    pub fn weights(&self) -> usize {
+        self.forms.ncols()
+    }
+
+    /// How strongly entities feel each other: products of the sizes of their forms' coefficients, forms of unit size.
+    pub(crate) fn coupling(&self) -> DMatrix<f64> {
+        let (count, weights) = (self.entities.len(), self.weights());
+        let _held = budget::take::<f64>(2 * count * weights + count * count);
+        let mut footprints: DMatrix<f64> = DMatrix::zeros(count, weights);
+        for (row, entity) in self.entities.iter().enumerate() {
+            for form in entity.options.iter().flat_map(|choice| &choice.zero) {
+                budget::spend(2 * weights);
+                let values = self.forms.row(*form);
+                let size = values.amax().max(f64::MIN_POSITIVE);
+                // The last weight, the held structure's own, couples everything.
+                for column in 0..weights.saturating_sub(1) {
+                    footprints[(row, column)] += values[column].abs() / size;
+                }
+            }
+        }
+        let transposed = footprints.transpose();
+        let mut coupling = DMatrix::zeros(count, count);
+        for first in (0..count).step_by(TOGETHER) {
+            let columns = TOGETHER.min(count - first);
+            budget::spend(count * weights * columns);
+            footprints.mul_to(&transposed.columns(first, columns), &mut coupling.columns_mut(first, columns));
+        }
+        coupling
+    }
+
+    /// Number of combinations of options, saturating.
+    pub fn combinations(&self) -> u64 {
+        self.entities.iter().fold(1, |total: u64, entity| total.saturating_mul(entity.options.len() as u64))
+    }
+}
+
+impl Entity {
+    /// `0 <= a ⊥ b >= 0`; `b` is zero in the first option.
+    pub fn complementary(a: usize, b: usize) -> Self {
+        let option = |zero: usize, other: usize| Choice {
+            zero: vec![zero],
+            nonnegative: vec![Signed::plus(other)],
+            implied: vec![],
+        };
+        Self { options: vec![option(b, a), option(a, b)], touching: None }
+    }
+
+    /// Stick, slip forward, slip backward, free.
+    pub fn touching(forms: Touching) -> Self {
+        let plus = Signed::plus;
+        let both = |form: usize| [plus(form), Signed::minus(form)];
+        let Touching { gap, along, pressing, traction, cone: [forward, backward] } = forms;
+        let stick = Choice {
+            zero: vec![gap, along],
+            nonnegative: vec![plus(forward), plus(backward)],
+            implied: vec![plus(pressing)],
+        };
+        let slip = |along: Signed, cone: usize, other: usize| Choice {
+            zero: vec![gap, cone],
+            nonnegative: vec![along, plus(pressing)],
+            implied: vec![plus(other)],
+        };
+        let free = Choice {
+            zero: vec![pressing, traction],
+            nonnegative: vec![plus(gap)],
+            implied: [both(forward), both(backward)].concat(),
+        };
+        let options =
+            vec![stick, slip(plus(along), forward, backward), slip(Signed::minus(along), backward, forward), free];
+        Self { options, touching: Some(forms) }
+    }
+
+    /// Velocities and the forces that work on them, `(force, velocity)`, where the entity is one of the two kinds above.
+    pub(crate) fn conjugates(&self) -> Option<Vec<[Signed; 2]>> {
+        match self.touching {
+            Some(forms) => Some(vec![
+                [Signed::plus(forms.pressing), Signed::plus(forms.gap)],
+                [Signed::plus(forms.traction), Signed::plus(forms.along)],
+            ]),
+            None => self.pair().map(|pair| vec![pair]),
+        }
+    }
+
+    /// A complementary pair `0 <= a ⊥ b >= 0`, if that is what the entity is: `b` vanishes in the first option (held),
+    /// `a` in the second.
+    pub fn pair(&self) -> Option<[Signed; 2]> {
+        let [first, second] = &self.options[..] else { return None };
+        let ([b], [a]) = (&first.zero[..], &second.zero[..]) else { return None };
+        let ([a_sign], [b_sign]) = (&first.nonnegative[..], &second.nonnegative[..]) else { return None };
+        (a_sign.form == *a && b_sign.form == *b).then_some([*a_sign, *b_sign])
+    }
+}
+
+impl Choice {
+    /// Whether the option makes a signed form not negative.
+    pub fn gives(&self, signed: Signed) -> bool {
+        self.zero.contains(&signed.form) || self.nonnegative.contains(&signed) || self.implied.contains(&signed)
+    }
+}
+
+impl Entity {
+    /// The signed forms that are not negative whatever the option.
+    pub fn common(&self) -> Vec<Signed> {
+        let mut common = Vec::new();
+        for choice in &self.options {
+            for signed in choice
+                .zero
+                .iter()
+                .flat_map(|form| [Signed::plus(*form), Signed::minus(*form)])
+                .chain(choice.nonnegative.iter().copied().chain(choice.implied.iter().copied()))
+            {
+                if !common.contains(&signed) && self.options.iter().all(|other| other.gives(signed)) {
+                    common.push(signed);
+                }
+            }
+        }
+        common
+    }
+}

@@ -1,0 +1,209 @@
+//! The ray of one combination of options, exactly: the null vector of its equations in both senses.
+
+use crate::algebra::null_space;
+use crate::complementarity::rates::rate_problem::{Choice, Entity, RateProblem};
+use crate::resources::budget;
+use nalgebra::{DMatrix, DVector};
+
+/// Inequalities (of rates of unit arc length) that hold within this are weak.
+pub const WEAK: f64 = 1e-9;
+/// What is below this may change its sign within the small steps by which weak rays are tried.
+pub const IN_DOUBT: f64 = 1e-7;
+/// Rounding of a sum against the sum of its terms' sizes.
+const ROUNDING: f64 = 1e-14;
+/// Relative pivot that decides the rank of a combination's equations.
+pub const RANK: f64 = 1e-11;
+
+/// What the equations of one combination leave.
+pub enum Line {
+    /// Nothing but zero.
+    Nothing,
+    /// A vector of unit arc length and its multiples.
+    Along(DVector<f64>),
+    /// More than one independent vector, one a column.
+    Plane(DMatrix<f64>),
+    /// A vector along which reactions change and nothing moves.
+    Still,
+    /// The equations hold a number that is not finite.
+    NotFinite,
+}
+
+/// Sizes of the rates of force along a vector of weights.
+struct Forces {
+    largest: f64,
+    /// Rounding of the sums.
+    rounding: f64,
+}
+
+impl Forces {
+    /// What is zero among the forces of an entity. A contact that touches is judged by its own forces: along a chain that
+    /// is close to jamming they fall by orders of magnitude from node to node.
+    fn tolerance(&self, entity: &Entity, values: &DVector<f64>, tolerance: f64) -> f64 {
+        let own = entity
+            .touching
+            .map_or(self.largest, |forms| values[forms.pressing].abs().max(values[forms.traction].abs()));
+        (tolerance * own).max(tolerance / WEAK * self.rounding)
+    }
+}
+
+impl RateProblem {
+    /// Arc length of a vector of weights.
+    pub(crate) fn size(&self, weights: &DVector<f64>) -> f64 {
+        (&self.motion * weights).norm()
+    }
+
+    pub(crate) fn line(&self, chosen: &[usize]) -> Line {
+        let choices = || self.entities.iter().zip(chosen).map(|(entity, &choice)| &entity.options[choice]);
+        let rows: Vec<usize> = choices().flat_map(|choice| choice.zero.iter().copied()).collect();
+        // Its scaled copy, and the basis.
+        let _held = budget::take::<f64>(3 * rows.len() * self.weights());
+        budget::spend(rows.len() * self.weights());
+        let equations = self.forms.select_rows(&rows);
+        let Some(basis) = null_space(&equations, RANK) else { return Line::NotFinite };
+        if basis.ncols() > 1 {
+            return Line::Plane(basis);
+        }
+        if basis.ncols() == 0 {
+            return Line::Nothing;
+        }
+        let weights: DVector<f64> = basis.column(0).into_owned();
+        let size = self.size(&weights);
+        let largest = (&self.reactions * &weights).amax();
+        if size.is_nan() || size <= WEAK * largest {
+            return Line::Still;
+        }
+        let weights = weights / size;
+        if weights.iter().all(|weight| weight.is_finite()) { Line::Along(weights) } else { Line::NotFinite }
+    }
+
+    /// Whether a combination has a ray, or more than a line.
+    pub(crate) fn is_feasible(&self, chosen: &[usize]) -> bool {
+        match self.line(chosen) {
+            Line::Along(weights) => {
+                let along = self.along(&weights);
+                along.violated(chosen).is_empty() || along.reversed().violated(chosen).is_empty()
+            }
+            Line::Plane(_) => true,
+            Line::Nothing | Line::Still | Line::NotFinite => false,
+        }
+    }
+
+    fn forces(&self, weights: &DVector<f64>) -> Forces {
+        let largest = (&self.reactions * weights).amax();
+        // Where no force changes, what is left is the rounding of the sums.
+        let mut terms = vec![0.0; self.reactions.nrows()];
+        for (column, weight) in self.reactions.column_iter().zip(weights.iter()) {
+            terms.iter_mut().zip(column.iter()).for_each(|(sum, value)| *sum += (value * weight).abs());
+        }
+        let rounding = ROUNDING * terms.into_iter().fold(0.0, f64::max);
+        Forces { largest, rounding: rounding.max(f64::MIN_POSITIVE) }
+    }
+
+    /// The edges, of unit arc length, of what a combination leaves of a plane: along each some inequality holds with
+    /// equality. None where the plane has another dimension than two.
+    pub(crate) fn edges(&self, chosen: &[usize], basis: &DMatrix<f64>) -> Vec<DVector<f64>> {
+        if basis.ncols() != 2 {
+            return Vec::new();
+        }
+        let choices = self.entities.iter().zip(chosen).map(|(entity, &choice)| &entity.options[choice]);
+        let mut edges: Vec<DVector<f64>> = Vec::new();
+        for signed in choices.flat_map(|choice| &choice.nonnegative) {
+            budget::spend((self.motion.nrows() + self.reactions.nrows()) * self.weights());
+            let row = self.forms.row(signed.form);
+            let parts = [0, 1].map(|column| row.transpose().dot(&basis.column(column)));
+            if parts[0].abs().max(parts[1].abs()) <= WEAK * row.amax() * basis.amax() {
+                continue;
+            }
+            let along = basis.column(0) * parts[1] - basis.column(1) * parts[0];
+            let size = self.size(&along);
+            if !(size.is_finite() && size > WEAK * (&self.reactions * &along).amax()) {
+                continue;
+            }
+            for weights in [-&along / size, &along / size] {
+                let is_new = |known: &DVector<f64>| (known - &weights).amax() > WEAK * weights.amax();
+                if edges.iter().all(is_new) && self.along(&weights).violated(chosen).is_empty() {
+                    edges.push(weights);
+                }
+            }
+        }
+        edges
+    }
+
+    /// What the forms are along a vector of weights of unit arc length.
+    pub(crate) fn along(&self, weights: &DVector<f64>) -> Along<'_> {
+        budget::spend((self.forms.nrows() + 2 * self.reactions.nrows()) * self.weights());
+        Along { problem: self, values: &self.forms * weights, forces: self.forces(weights) }
+    }
+}
+
+/// A vector of weights of unit arc length as the entities see it.
+pub(crate) struct Along<'a> {
+    problem: &'a RateProblem,
+    /// Of each form.
+    values: DVector<f64>,
+    forces: Forces,
+}
+
+impl Along<'_> {
+    /// The same of the weights reversed.
+    pub fn reversed(mut self) -> Self {
+        self.values.neg_mut();
+        self
+    }
+
+    /// What is zero among the rates of force.
+    pub fn force_tolerance(&self) -> f64 {
+        (WEAK * self.forces.largest).max(self.forces.rounding)
+    }
+
+    /// The options of each entity under which a ray, found under the chosen ones, is feasible. As every option speaks of
+    /// its own entity only, the ray is feasible under every combination of them.
+    pub fn fitting(&self, chosen: &[usize]) -> Vec<Vec<usize>> {
+        self.within(WEAK, chosen)
+    }
+
+    /// The same where what is small counts as zero.
+    pub fn in_doubt(&self, chosen: &[usize]) -> Vec<Vec<usize>> {
+        self.within(IN_DOUBT, chosen)
+    }
+
+    fn within(&self, tolerance: f64, chosen: &[usize]) -> Vec<Vec<usize>> {
+        let (values, is_force) = (&self.values, &self.problem.is_force);
+        let fits = |entity: &Entity, choice: &Choice| {
+            let force = self.forces.tolerance(entity, values, tolerance);
+            let tolerance = |form: usize| if is_force[form] { force } else { tolerance };
+            choice.zero.iter().all(|&form| values[form].abs() <= tolerance(form))
+                && choice.nonnegative.iter().all(|signed| signed.sign * values[signed.form] >= -tolerance(signed.form))
+        };
+        let of_entity = |(entity, &chosen): (&Entity, &usize)| {
+            (0..entity.options.len()).filter(|&index| index == chosen || fits(entity, &entity.options[index])).collect()
+        };
+        self.problem.entities.iter().zip(chosen).map(of_entity).collect()
+    }
+
+    /// The entities whose inequalities are violated under a combination: below zero by more than the weak tolerance.
+    pub fn violated(&self, chosen: &[usize]) -> Vec<usize> {
+        let is_violated = |(index, choice): &(usize, &usize)| {
+            self.some_inequality(*index, **choice, |value, tolerance| value < -tolerance)
+        };
+        chosen.iter().enumerate().filter(is_violated).map(|(index, _)| index).collect()
+    }
+
+    /// Whether some inequality of a ray holds with equality under the first of its options.
+    pub fn is_weak(&self, fitting: &[Vec<usize>]) -> bool {
+        let equals = |(index, options): (usize, &Vec<usize>)| {
+            self.some_inequality(index, options[0], |value, tolerance| value <= tolerance)
+        };
+        fitting.iter().enumerate().any(equals)
+    }
+
+    /// Whether something is so of the value and the weak tolerance of some inequality of an entity's option.
+    fn some_inequality(&self, entity: usize, choice: usize, is_so: impl Fn(f64, f64) -> bool) -> bool {
+        let entity = &self.problem.entities[entity];
+        let force = self.forces.tolerance(entity, &self.values, WEAK);
+        entity.options[choice].nonnegative.iter().any(|signed| {
+            let tolerance = if self.problem.is_force[signed.form] { force } else { WEAK };
+            is_so(signed.sign * self.values[signed.form], tolerance)
+        })
+    }
+}

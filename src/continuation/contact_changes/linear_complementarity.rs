@@ -1,0 +1,250 @@
+//! Which of several contacts without friction are closed at the end of a step, by equations that are linearised once.
+//!
+//! With `x₀` the state after one iteration in some mode, and `x_j` the solutions of the same equations for a unit force of a
+//! contact that is open in it and for a unit gap of one that is closed, each `x₀ + Σ z_j x_j` obeys equilibrium at first
+//! order. The gaps of the former and the forces of the latter are `w`:
+//!
+//! ```text
+//! w = w₀ + M z,    0 <= w ⊥ z >= 0
+//! ```
+//!
+//! This linear complementarity problem of the contacts that change is solved by letting all of them change whose sign is
+//! wrong, again and again (block pivoting: J. J. Júdice, F. M. Pires, Computers Ops. Res. 21 (1994) 587,
+//! doi:10.1016/0305-0548(94)90106-6, without its way out of circles: what is found here is a guess). A contact joins them
+//! when its own sign is wrong.
+
+use crate::algebra::sparse::SparseFactorisation;
+use crate::algebra::{Factorisation, SystemFactorisation};
+use crate::mechanics::contact::vector::dot;
+use crate::mechanics::contact::{Mode, Reaction};
+use crate::mechanics::equations::{Kind, ModeSystem};
+use crate::mechanics::problem::state::{Rate, State};
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+/// Contacts that may change: for each a solution as large as the structure is kept.
+const MOST_CHANGING: usize = 64;
+/// Sets of contacts that are tried.
+const MOST_SETS: usize = 12;
+
+/// What the equations linearised once say of a step's end.
+pub(crate) struct Complementary {
+    /// The contacts that change.
+    pub changed: Vec<usize>,
+    /// About the end with them changed.
+    pub state: State,
+    /// Whether the contacts that may change feel a positive definite stiffness.
+    pub leaves_no_choice: bool,
+}
+
+/// The contacts that may change, as far as they are known.
+struct Changing {
+    contacts: Vec<usize>,
+    /// Whether each is changed.
+    are_changed: Vec<bool>,
+    /// The rate with its own unit for each.
+    columns: Vec<Rate>,
+}
+
+impl ModeSystem<'_> {
+    /// The contacts that change at about the state that one iteration of this system led to, with its factorisation; the
+    /// `first` are known to break their modes. `broken` tells those that do so at a state, and nothing where something else
+    /// is broken, and the path has about the direction `rate` there. `None` where that is not found.
+    pub(crate) fn complementary(
+        &self,
+        state: &State,
+        rate: &Rate,
+        factorisation: &SystemFactorisation,
+        first: &[usize],
+        broken: impl Fn(&State) -> Option<Vec<usize>>,
+    ) -> Option<Complementary> {
+        let SystemFactorisation::Sparse(factorisation) = factorisation else { return None };
+        let mut changing = Changing { contacts: Vec::new(), are_changed: Vec::new(), columns: Vec::new() };
+        self.join(&mut changing, first, state, factorisation)?;
+        for _ in 0..MOST_SETS {
+            let (end, mut wrong) = self.with_changes(&changing, state)?;
+            // Those that are changed already are judged by what they changed to.
+            let is_changed = |contact: &usize| {
+                changing.contacts.iter().position(|other| other == contact).is_some_and(|at| changing.are_changed[at])
+            };
+            let others: Vec<usize> = broken(&end)?.into_iter().filter(|contact| !is_changed(contact)).collect();
+            if wrong.is_empty() && others.is_empty() {
+                let leaves_no_choice = self.leaves_no_choice(&changing, state, rate);
+                let changed = changing.contacts.into_iter().zip(changing.are_changed);
+                let changed = changed.filter_map(|(contact, is_changed)| is_changed.then_some(contact)).collect();
+                return Some(Complementary { changed, state: end, leaves_no_choice });
+            }
+            let mut joining = Vec::new();
+            for contact in others {
+                match changing.contacts.iter().position(|other| *other == contact) {
+                    Some(at) => wrong.push(at),
+                    None => joining.push(contact),
+                }
+            }
+            wrong.iter().for_each(|at| changing.are_changed[*at] ^= true);
+            self.join(&mut changing, &joining, state, factorisation)?;
+        }
+        None
+    }
+
+    /// More contacts change.
+    fn join(
+        &self,
+        changing: &mut Changing,
+        contacts: &[usize],
+        state: &State,
+        factorisation: &SparseFactorisation,
+    ) -> Option<()> {
+        if changing.contacts.len() + contacts.len() > MOST_CHANGING {
+            return None;
+        }
+        let normal = |contact: usize| self.loading.frame(contact, state).normal;
+        let mut values = Vec::with_capacity(contacts.len() * self.size);
+        for contact in contacts {
+            let is_closed = self.modes[*contact].is_active();
+            let right = if is_closed { Self::moving } else { Self::pushed };
+            values.extend_from_slice(right(self, *contact, &normal(*contact)).as_slice());
+        }
+        if !factorisation.solve_all_once(&mut values, contacts.len()) || !values.iter().all(|value| value.is_finite()) {
+            return None;
+        }
+        let iterate = self.iterate(state.clone());
+        for (contact, values) in contacts.iter().zip(values.chunks_exact(self.size)) {
+            let mut rate = self.rate_at(&iterate, &DVector::from_column_slice(values), Kind::Rates);
+            if self.modes[*contact] == Mode::Free {
+                let normal = normal(*contact);
+                rate.reactions[*contact].add(1.0, &Reaction::of(&normal, &normal));
+            }
+            changing.columns.push(rate);
+            changing.contacts.push(*contact);
+            changing.are_changed.push(true);
+        }
+        Some(())
+    }
+
+    /// Whether at a load that is held the gaps of the open contacts by forces there, and the forces of the closed ones by
+    /// gaps, are positive definite: then (additivity of inertia) the tangent has as many negative eigenvalues with all of
+    /// these contacts held as with all of them free.
+    fn leaves_no_choice(&self, changing: &Changing, state: &State, rate: &Rate) -> bool {
+        [false, true].into_iter().all(|are_closed| {
+            let contacts: Vec<usize> = (0..changing.contacts.len())
+                .filter(|at| self.modes[changing.contacts[*at]].is_active() == are_closed)
+                .collect();
+            let matrix = DMatrix::from_fn(contacts.len(), contacts.len(), |row, column| {
+                let (contact, column) = (changing.contacts[contacts[row]], &changing.columns[contacts[column]]);
+                // The columns have the arc length held.
+                let along = self.left_over_by(contact, rate, state) * column.load / rate.load;
+                self.left_over_by(contact, column, state) - along
+            });
+            Cholesky::new(matrix).is_some()
+        })
+    }
+
+    /// The rate of what a contact leaves over: the force of one that is closed, the gap of one that is not.
+    fn left_over_by(&self, contact: usize, rate: &Rate, state: &State) -> f64 {
+        if self.modes[contact].is_active() {
+            rate.reactions[contact].normal
+        } else {
+            let normal = self.loading.frame(contact, state).normal;
+            dot(&normal, &self.loading.relative_rate(contact, rate))
+        }
+    }
+
+    /// The state at which nothing is left over of those that are changed, and which of them have the wrong sign there.
+    fn with_changes(&self, changing: &Changing, state: &State) -> Option<(State, Vec<usize>)> {
+        let changed: Vec<usize> = (0..changing.contacts.len()).filter(|at| changing.are_changed[*at]).collect();
+        let count = changed.len();
+        if count == 0 {
+            return Some((state.clone(), Vec::new()));
+        }
+        let entry = |row: usize, column: usize| {
+            self.left_over_by(changing.contacts[changed[row]], &changing.columns[changed[column]], state)
+        };
+        let left_over = |row: usize| {
+            let contact = changing.contacts[changed[row]];
+            let is_closed = self.modes[contact].is_active();
+            if is_closed { state.reactions[contact].normal } else { self.loading.gap(contact, state) }
+        };
+        let matrix = DMatrix::from_fn(count, count, entry);
+        let mut parts = DVector::from_fn(count, |row, _| -left_over(row));
+        if !Factorisation::new(matrix)?.solve(&mut parts) {
+            return None;
+        }
+        let mut end = state.clone();
+        changed.iter().zip(parts.iter()).for_each(|(at, part)| end.advance(&changing.columns[*at], *part));
+        let wrong = changed.iter().zip(parts.iter()).filter(|(_, part)| **part < 0.0).map(|(at, _)| *at).collect();
+        Some((end, wrong))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::check::scenes::lattice::LatticeArch;
+    use crate::continuation::path::iterator::Path;
+    use crate::continuation::scene::Scene;
+    use crate::mechanics::contact::Mode;
+    use crate::mechanics::equations::ModeSystem;
+    use crate::mechanics::equations::closing_equation::ArcLengthEquation;
+    use crate::mechanics::problem::state::State;
+    use crate::resources::cancel::CancelFlag;
+    use crate::step::corrector::work::Work;
+    use crate::step::segment::Start;
+    use std::collections::BTreeSet;
+
+    /// Where an arch lands on several contacts at a time, its equations linearised without them tell about where the arch
+    /// is with them: gaps and forces obey the law of contact, the larger part of what the contacts do to the step is found, and
+    /// whether they leave a choice is what the tangent's eigenvalues say.
+    #[test]
+    fn the_end_of_a_step_onto_several_contacts_is_foreseen() {
+        let arch = LatticeArch { increments: 150, friction: 0.0, ..LatticeArch::of_unknowns(400) }.landing(40);
+        let mut scene = Scene::new(&arch.request().expect("a request")).expect("a scene");
+        scene.structure.set_sparse(true);
+        let mut path = Path::new(&scene, CancelFlag::default());
+        let (mut looks, mut choices, mut most) = (0, 0, 0.0_f64);
+        while path.next().is_some() {
+            let (loading, here) = (path.trace.loading(), &path.trace.at.here);
+            let Some(rate) = &here.rate else { continue };
+            let step = path.trace.at.step;
+            let closing = ArcLengthEquation { from: &here.state, step };
+            let forces = path.trace.at.totals.force_scale;
+            let start = Start {
+                loading,
+                state: &here.state,
+                rate,
+                modes: &here.modes,
+                drift: None,
+                force_scale: forces,
+                is_singular: false,
+                beside: None,
+            };
+            let broken = |state: &State| start.broken(&here.modes, state, forces);
+            let system = ModeSystem::new(loading, &here.modes, &here.state);
+            let guess = here.state.advanced(rate, step);
+            let Some((far, factorisation)) = system.iterated_once(guess, &closing, &mut Work::default()) else {
+                continue;
+            };
+            let Some(first) = broken(&far).filter(|first| first.len() > 1) else { continue };
+            let along = system.direction_about(&far, &factorisation, rate).expect("a direction");
+            let Some(foreseen) = system.complementary(&far, &along, &factorisation, &first, broken) else { continue };
+            let asked: BTreeSet<usize> = first.iter().chain(&foreseen.changed).copied().collect();
+            let counted = start.negative_where_held_or_free(&asked, &far, &mut Work::default());
+            assert_eq!(foreseen.leaves_no_choice, counted.is_some(), "{asked:?}");
+            choices += u32::from(!foreseen.leaves_no_choice);
+            let mut modes = here.modes.clone();
+            for contact in &foreseen.changed {
+                let is_closed = modes[*contact].is_active();
+                modes[*contact] = if is_closed { Mode::Free } else { Mode::Slip { direction: [0.0; 3] } };
+            }
+            for (contact, mode) in modes.iter().enumerate() {
+                let (gap, force) = (loading.gap(contact, &foreseen.state), foreseen.state.reactions[contact].normal);
+                let (none, some) = if mode.is_active() { (gap, force) } else { (force, gap) };
+                assert!(none.abs() < 1e-9 && some > -1e-9, "contact {contact} of {first:?}: gap {gap}, force {force}");
+            }
+            let system = ModeSystem::new(loading, &modes, &here.state);
+            let Ok(end) = system.correct(foreseen.state.clone(), &closing, forces) else { continue };
+            looks += 1;
+            most = most.max(end.state.distance(&foreseen.state) / far.distance(&foreseen.state));
+        }
+        assert!(looks >= 10 && choices >= 1, "{looks} steps, {choices} with a choice");
+        assert!(most < 0.4, "{most}");
+    }
+}

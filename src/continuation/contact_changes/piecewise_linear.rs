@@ -1,0 +1,77 @@
+//! Straight stretches of a path, which are one increment.
+//!
+//! Where every element is linear, every contact in reach a plane's and no slip can turn, the tangent of a mode is constant
+//! and everything that is watched is linear in the arc length: the place of the next event is known from where the path
+//! stands, and nothing lies in between. It is solved for at once (`prediction`); the direction there is that of the start, and
+//! so are the signs that tell of bifurcations. Along stretches of bifurcations the increments are kept, because from any of
+//! them another direction can be followed.
+
+use crate::continuation::contact_changes::prediction::Foreseen;
+use crate::continuation::trace::trace::Trace;
+use crate::mechanics::equations::stage_end::End;
+use crate::mechanics::problem::linearity::is_straight;
+use crate::mechanics::problem::node_forces;
+use crate::step::event_functions::{self, Watch};
+
+/// How far past the event the step is tried, over the way there: the event is then seen to be passed.
+const PAST: f64 = 1.0 / 64.0;
+/// A quantity that changes by less than this fraction of its scale by unit arc length does not change.
+const CONSTANT: f64 = 1e-10;
+/// The same of the load and displacements, which are no differences of others.
+const CONSTANT_BOUND: f64 = 1e-14;
+/// What counts as zero, over a quantity's scale.
+const ZERO: f64 = 1e-12;
+
+/// The next event, where the path is straight up to there and a little farther.
+pub(crate) fn next_event_ahead(trace: &mut Trace<'_>) -> Option<Foreseen> {
+    if !trace.scene.jumps || trace.at.listed.as_ref().is_some_and(|listed| listed.point.bifurcation) {
+        return None;
+    }
+    loop {
+        let (watch, way) = straight_way(trace)?;
+        let (contacts, step) = (trace.at.near.len(), way * (1.0 + PAST));
+        trace.look_ahead(step);
+        if trace.at.near.len() == contacts {
+            return Some(Foreseen { watch, way, step, is_straight: true });
+        }
+    }
+}
+
+/// What falls to zero first, and the arc length up to there.
+fn straight_way(trace: &Trace<'_>) -> Option<(Watch, f64)> {
+    let (loading, here) = (trace.loading(), &trace.at.here);
+    let rate = here.rate.as_ref()?;
+    // The force of several obstacles in space reaches the bound of what they hold along no straight line.
+    if !loading.contacts.iter().all(is_straight)
+        || loading.corners.iter().any(|corner| !node_forces::is_in_plane(loading, corner))
+    {
+        return None;
+    }
+    let ends = &trace.scene.stages[trace.at.stage].ends;
+    if ends.iter().any(|end| matches!(end, End::Increments(_))) {
+        return None;
+    }
+    let mut watches = event_functions::of_mode(loading, &here.modes, &here.state, rate);
+    watches.extend(ends.iter().map(|end| Watch::End(*end)));
+    let ahead = here.state.advanced(rate, 1.0);
+    let mut nearest: Option<(Watch, f64)> = None;
+    for watch in watches {
+        let now = watch.value(loading, &here.modes, &here.state, rate);
+        let change = watch.value(loading, &here.modes, &ahead, rate) - now;
+        if change >= 0.0 {
+            continue;
+        }
+        let scale = watch.scale(loading, &here.state, trace.at.totals.force_scale);
+        let constant = if watch.is_of_contact() { CONSTANT } else { CONSTANT_BOUND };
+        if change < -constant * scale {
+            if now <= ZERO * scale {
+                return None;
+            }
+            let way = now / -change;
+            if nearest.is_none_or(|(_, least)| way < least) {
+                nearest = Some((watch, way));
+            }
+        }
+    }
+    nearest.filter(|(_, way)| way.is_finite())
+}

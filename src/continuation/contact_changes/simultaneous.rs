@@ -1,0 +1,360 @@
+//! Contact changes of one step that are taken together.
+//!
+//! Contacts without friction that touch or lift off within a step leave no trace of where they did: the end of the step is
+//! found from the laws at the end alone,
+//!
+//! ```text
+//! equilibrium,    0 <= g ⊥ r_n >= 0,    ‖(Δu, Δs)‖ = S
+//! ```
+//!
+//! by Newton's method in one mode after another: what a mode breaks at its end is changed, all of it at once (a
+//! primal-dual active set: M. Hintermüller, K. Ito, K. Kunisch, SIAM J. Optim. 13 (2002) 865,
+//! doi:10.1137/S1052623401383558). In large structures one iteration a mode tells that, until nothing is broken any more,
+//! and from one mode to the next it is found with the equations of that iteration (`linear_complementarity`); then the point is
+//! solved for, and looked at again.
+//!
+//! That end is the path's where nothing on the way leaves a choice. With `M` the stiffness that the contacts which
+//! change feel (the others as they are), each sign of the load rate has exactly one direction in any mode of theirs if
+//! `M` is positive definite: see `rates`. By the additivity of inertia it is if and only if the reduced tangent has as
+//! many negative eigenvalues with all of them held as with all of them free. That is asked for at both ends of the
+//! step, and the same number at both: but for eigenvalues that cross zero to and fro in between, as they may in any step,
+//! no limit point and no bifurcation lies there in any mode that the path may have had. The way on from each change is then
+//! not the way back, and keeps the sign of the load rate. Contacts that change there and back within the step are asked for
+//! as well. Where the equations linearised once already tell of a choice, or of too great a turn, nothing more is looked at.
+//! Nor may the direction turn by more than in any other step: where closing contacts turn it further each change
+//! ends a step. Nothing slides against friction, so that the work of the step is taken from the energy stored.
+//!
+//! Where a try fails, as many in a row do as a rule (an arch that rolls onto a floor leaves it where it first touched, and
+//! stands only while one of the two contacts holds it): it waits for some steps, and for longer each time.
+//!
+//! Everything else ends a step as it always does: friction remembers where a node has landed. On the kinks of such a step
+//! a quantity may go to and fro unseen. So there is none where a contact with friction is closed or could close within the
+//! length of the path, nor where a displacement that ends the stage could get there. A contact without friction that
+//! touches and leaves again within the step is not named.
+
+use crate::algebra::SystemFactorisation;
+use crate::branching::bifurcation::singularity::test_functions::{Signature, negative_eigenvalues};
+use crate::continuation::contact_changes::linear_complementarity::Complementary;
+use crate::mechanics::contact::Mode;
+use crate::mechanics::contact::vector::size;
+use crate::mechanics::equations::ModeSystem;
+use crate::mechanics::equations::closing_equation::ArcLengthEquation;
+use crate::mechanics::equations::solution::Corrected;
+use crate::mechanics::equations::stage_end::End;
+use crate::mechanics::multi_contact::contact_status::{Standing, standings};
+use crate::mechanics::problem::loading::Loading;
+use crate::mechanics::problem::state::{Rate, State};
+use crate::step::corrector::work::Work;
+use crate::step::event_functions::{self, Watch};
+use crate::step::segment::{Attempt, COINCIDING, PASSED, Reached, Start, may_turn};
+use std::collections::BTreeSet;
+
+/// A mode that breaks so many times the contacts that the first one broke leads away from the end.
+const MOST_RISE: usize = 2;
+/// Modes that are tried at the end of a step.
+const MOST_ROUNDS: usize = 12;
+
+/// Length of a path with kinks over that of its chord, as it is reckoned with: not proven to be the most.
+const LONGEST: f64 = 4.0;
+
+/// The end of a step with contact changes inside.
+pub(crate) struct Joined {
+    pub reached: Box<Reached>,
+    /// How many.
+    pub changes: u64,
+    pub signature: Option<Signature>,
+    /// The path's direction at the step's end if no contact changed: how much it turns beside its kinks.
+    pub unchanged: Rate,
+}
+
+/// The modes that hold at the end of a step, and the point there.
+struct EndModes {
+    modes: Vec<Mode>,
+    corrected: Corrected,
+    /// All contacts that were changed on the way to the modes.
+    asked: BTreeSet<usize>,
+    /// Negative eigenvalues at the start with those held, and as many with them free.
+    negative: usize,
+}
+
+/// About where a step would end if no contact changed.
+#[derive(Clone, Copy)]
+struct Far<'a> {
+    state: &'a State,
+    rate: &'a Rate,
+    step: f64,
+    /// Of the equations whose solution the state is at first order.
+    factorisation: Option<&'a SystemFactorisation>,
+}
+
+/// The contact that touches or lifts off where a quantity is zero, if it has no friction and its node no other contact.
+fn smooth(loading: Loading<'_>, watch: Watch) -> Option<usize> {
+    let (Watch::Gap(contact) | Watch::Normal(contact)) = watch else { return None };
+    let alone = !loading.corners.iter().any(|corner| corner.contacts.contains(&contact));
+    (alone && loading.contacts[contact].tangents() == 0).then_some(contact)
+}
+
+/// Whether a contact with friction is closed.
+fn remembers(loading: Loading<'_>, modes: &[Mode]) -> bool {
+    let mut modes = modes.iter().zip(loading.contacts);
+    modes.any(|(mode, contact)| mode.is_active() && contact.tangents() > 0)
+}
+
+/// Whether the change at which a quantity is zero may be taken together with others.
+pub(crate) fn may_join_at(loading: Loading<'_>, modes: &[Mode], watch: Watch) -> bool {
+    smooth(loading, watch).is_some() && !remembers(loading, modes)
+}
+
+impl Start<'_> {
+    /// The contacts that change in a step that was tried, if they are several and may be taken together.
+    pub(crate) fn changes_to_join(&self, tried: &Attempt) -> Option<BTreeSet<usize>> {
+        self.joinable(&tried.watches, &tried.passed, tried.reached.step)
+    }
+
+    /// The end of a step that was tried and passes these contact changes, if they can be taken together.
+    pub(crate) fn join_changes(&self, first: &BTreeSet<usize>, tried: &Attempt, work: &mut Work) -> Option<Joined> {
+        let Attempt { reached, watches, .. } = tried;
+        self.join(
+            first,
+            Far { state: &reached.corrected.state, rate: &reached.rate, step: reached.step, factorisation: None },
+            watches,
+            work,
+        )
+    }
+
+    /// The same of a step in which the rates foresee such changes, which is not tried any further then. `None` where they
+    /// foresee none, `Some(None)` where they cannot be taken together.
+    pub(crate) fn join_foreseen(
+        &self,
+        step: f64,
+        ends: &[End],
+        load_sign: f64,
+        work: &mut Work,
+    ) -> Option<Option<Joined>> {
+        self.loading.structure.layout()?;
+        let watches = self.watches(ends, load_sign);
+        let passes = |watch: &Watch| {
+            let slope = watch.slope(self.loading, self.modes, self.state, self.rate).filter(|slope| *slope < 0.0);
+            slope.is_some_and(|slope| self.value(*watch, self.state, self.rate) < -slope * step)
+        };
+        let foreseen: Vec<Watch> = watches.iter().copied().filter(passes).collect();
+        self.joinable(&watches, &foreseen, step)?;
+        let system = ModeSystem::new(self.loading, self.modes, self.state);
+        let closing = ArcLengthEquation { from: self.state, step };
+        let (state, factorisation) = system.iterated_once(self.state.advanced(self.rate, step), &closing, work)?;
+        let rate = system.direction_about(&state, &factorisation, self.rate)?;
+        let negative = |watch: &Watch| {
+            self.value(*watch, &state, &rate) < -PASSED * watch.scale(self.loading, &state, self.force_scale)
+        };
+        let passed: Vec<Watch> = watches.iter().copied().filter(negative).collect();
+        let first = self.joinable(&watches, &passed, step)?;
+        let far = Far { state: &state, rate: &rate, step, factorisation: Some(&factorisation) };
+        Some(self.join(&first, far, &watches, work))
+    }
+
+    fn joinable(&self, watches: &[Watch], passed: &[Watch], step: f64) -> Option<BTreeSet<usize>> {
+        let turns = watches.iter().any(|watch| matches!(watch, Watch::LoadRate { .. }));
+        if passed.len() < 2 || !turns || !self.may_join() || !self.leaves_no_trace(watches, step) {
+            return None;
+        }
+        passed.iter().map(|watch| self.smooth(*watch)).collect()
+    }
+
+    fn join(&self, first: &BTreeSet<usize>, far: Far<'_>, watches: &[Watch], work: &mut Work) -> Option<Joined> {
+        let mut serving = None;
+        let EndModes { modes, corrected, asked, negative } = self.end_modes(first, far, &mut serving, work)?;
+        let end = Start { modes: &modes, ..*self };
+        let system = ModeSystem::new(self.loading, &modes, self.state);
+        let closing = ArcLengthEquation { from: self.state, step: far.step };
+        let reached = end.directed(system, corrected, &closing, &mut serving, work).ok()?;
+        let mut restless: BTreeSet<usize> =
+            (0..modes.len()).filter(|contact| modes[*contact] != self.modes[*contact]).collect();
+        let changes = restless.len();
+        let turns = may_turn(self.rate.product(&reached.rate)).is_err();
+        if changes < 2 || turns || !self.nothing_else_ends(watches, &mut restless, &reached) {
+            return None;
+        }
+        let mut same = |state: &State| self.negative_where_held_or_free(&restless, state, work) == Some(negative);
+        if (!restless.is_subset(&asked) && !same(self.state)) || !same(&reached.corrected.state) {
+            return None;
+        }
+        let analysed = self.loading.structure.allows_dense();
+        let signature = reached.determinant.filter(|_| analysed);
+        let signature = signature.map(|determinant| Signature { determinant, negative: Some(negative) });
+        Some(Joined { reached, changes: changes as u64, signature, unchanged: far.rate.clone() })
+    }
+
+    /// Whether changes in a step may be taken together: not where a contact with friction is closed.
+    pub(crate) fn may_join(&self) -> bool {
+        self.drift.is_none() && !remembers(self.loading, self.modes)
+    }
+
+    /// Whether within a step nothing can end that leaves a trace: on its kinks a quantity may go to and fro. The load goes
+    /// one way; no displacement goes farther than the path is long.
+    fn leaves_no_trace(&self, watches: &[Watch], step: f64) -> bool {
+        let length = LONGEST * step;
+        watches.iter().all(|watch| {
+            let value = self.value(*watch, self.state, self.rate);
+            match *watch {
+                Watch::LoadRate { .. } | Watch::End(End::Load { .. }) => true,
+                Watch::End(_) => value > length,
+                Watch::Gap(contact) if self.smooth(*watch).is_none() => {
+                    value > length * (1.0 + size(&self.loading.pattern.shifts[contact]))
+                }
+                _ => self.smooth(*watch).is_some(),
+            }
+        })
+    }
+
+    fn smooth(&self, watch: Watch) -> Option<usize> {
+        smooth(self.loading, watch)
+    }
+
+    /// The modes that hold at the end of the step, with the `last` factorisation; the mode just now breaks the `first`
+    /// contacts there. `None` where the contacts leave a choice at the start.
+    fn end_modes(
+        &self,
+        first: &BTreeSet<usize>,
+        far: Far<'_>,
+        last: &mut Option<SystemFactorisation>,
+        work: &mut Work,
+    ) -> Option<EndModes> {
+        let mut modes = self.modes.to_vec();
+        let mut state = far.state.clone();
+        // In most modes on the way one iteration tells what breaks them.
+        let mut roughly = self.loading.structure.layout().is_some();
+        let mut wrong: Vec<usize> = first.iter().copied().collect();
+        let mut asked = first.clone();
+        let mut tried = BTreeSet::new();
+        // Contacts that were looked at together at the start, and the negative eigenvalues found.
+        let mut counted: Option<(usize, usize)> = None;
+        let mut linearised = None;
+        for round in 0..MOST_ROUNDS {
+            if wrong.len() > MOST_RISE * first.len() {
+                return None;
+            }
+            let nearby = linearised.as_ref().or(far.factorisation.filter(|_| round == 0));
+            if let Some(settled) = self.settled(&modes, &state, far.rate, nearby, &wrong) {
+                if !settled.leaves_no_choice {
+                    return None;
+                }
+                (wrong, state) = (settled.changed, settled.state);
+                may_turn(self.state.cosine_of_chord(&state, state.distance(self.state), self.rate)).ok()?;
+                asked.extend(&wrong);
+            }
+            for contact in &wrong {
+                let held = modes[*contact].is_active();
+                modes[*contact] = if held { Mode::Free } else { Mode::Slip { direction: [0.0; 3] } };
+            }
+            if !tried.insert((roughly, modes.iter().map(|mode| mode.is_active()).collect::<Vec<bool>>())) {
+                if !roughly {
+                    return None;
+                }
+                roughly = false;
+            }
+            let system = ModeSystem::new(self.loading, &modes, self.state);
+            let closing = ArcLengthEquation { from: self.state, step: far.step };
+            // Each mode has equations of its own.
+            (*last, linearised) = (None, None);
+            if roughly {
+                let (next, factorisation) = system.iterated_once(state, &closing, work)?;
+                state = next;
+                wrong = self.broken(&modes, &state, self.force_scale)?;
+                asked.extend(&wrong);
+                if wrong.is_empty() {
+                    roughly = false;
+                    *last = system.may_serve(factorisation);
+                } else {
+                    linearised = Some(factorisation);
+                }
+            }
+            // What leaves a choice at the start is not worth the solves. One iteration tells most of what is asked besides,
+            // and what holds with more contacts held or free holds with fewer.
+            if counted.is_none() {
+                counted = Some((asked.len(), self.negative_where_held_or_free(&asked, self.state, work)?));
+            }
+            if roughly {
+                continue;
+            }
+            let corrected = system.correct_from(system.iterate(state), &closing, self.force_scale, last, work).ok()?;
+            let forces = self.force_scale.max(corrected.force_scale);
+            wrong = self.broken(&modes, &corrected.state, forces)?;
+            if wrong.is_empty() {
+                let negative = match counted {
+                    Some((all, negative)) if all == asked.len() => negative,
+                    _ => self.negative_where_held_or_free(&asked, self.state, work)?,
+                };
+                return Some(EndModes { modes, corrected, asked, negative });
+            }
+            asked.extend(&wrong);
+            state = corrected.state;
+        }
+        None
+    }
+
+    /// The contacts that change from some modes at about the state that one iteration in them led to, by that factorisation.
+    fn settled(
+        &self,
+        modes: &[Mode],
+        state: &State,
+        rate: &Rate,
+        factorisation: Option<&SystemFactorisation>,
+        wrong: &[usize],
+    ) -> Option<Complementary> {
+        let broken = |state: &State| self.broken(modes, state, self.force_scale);
+        ModeSystem::new(self.loading, modes, self.state).complementary(state, rate, factorisation?, wrong, broken)
+    }
+
+    /// The contacts whose modes do not hold at a state; `None` where some other quantity is negative.
+    pub(crate) fn broken(&self, modes: &[Mode], state: &State, forces: f64) -> Option<Vec<usize>> {
+        let broken = event_functions::of_mode(self.loading, modes, state, self.rate).into_iter().filter(|watch| {
+            let value = watch.value(self.loading, modes, state, self.rate);
+            value < -PASSED * watch.scale(self.loading, state, forces)
+        });
+        broken.map(|watch| self.smooth(watch)).collect()
+    }
+
+    /// Whether no stage ends within the step or at its end, the load rate keeps its sign, the other contacts keep their
+    /// modes, and none can change at the end. Those that may have changed there and back join the `restless`.
+    fn nothing_else_ends(&self, watches: &[Watch], restless: &mut BTreeSet<usize>, reached: &Reached) -> bool {
+        let state = &reached.corrected.state;
+        let forces = self.force_scale.max(reached.corrected.force_scale);
+        let ends = ((self.state, self.rate), (state, &reached.rate));
+        for watch in watches {
+            let smooth = self.smooth(*watch);
+            if smooth.is_some_and(|contact| restless.contains(&contact)) {
+                continue;
+            }
+            let last = watch.value(self.loading, self.modes, state, &reached.rate);
+            let dips = |zero| watch.dip(self.loading, self.modes, ends.0, ends.1, reached.step, zero).is_some();
+            if watch.is_above_zero(self.loading, state, last, COINCIDING, forces)
+                && !(dips(0.0) && dips(PASSED * watch.scale(self.loading, state, forces)))
+            {
+                continue;
+            }
+            match smooth {
+                Some(contact) => restless.insert(contact),
+                None => return false,
+            };
+        }
+        let settled = |standing: &Standing| matches!(standing, Standing::Settled(_));
+        standings(self.loading, state, forces).iter().all(settled)
+    }
+
+    /// Negative eigenvalues of the tangent at a state with some contacts held and with them free, where these are as many.
+    pub(crate) fn negative_where_held_or_free(
+        &self,
+        contacts: &BTreeSet<usize>,
+        state: &State,
+        work: &mut Work,
+    ) -> Option<usize> {
+        let mut count = |mode: Mode| {
+            let mut modes = self.modes.to_vec();
+            contacts.iter().for_each(|contact| modes[*contact] = mode);
+            negative_eigenvalues(self.loading, &modes, self.state, state, work)
+        };
+        let free = count(Mode::Free)?;
+        // Held they can only be fewer.
+        (free == 0 || count(Mode::Slip { direction: [0.0; 3] })? == free).then_some(free)
+    }
+}

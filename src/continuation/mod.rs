@@ -1,0 +1,24 @@
+//! Path following: from a checked scene to a sequence of increments.
+//!
+//! [`path::iterator::Path`] is an iterator; whoever drives it (command line, worker, test) decides what to do with each
+//! increment.
+//!
+//! | room or file | what it holds |
+//! |---|---|
+//! | [`scene`] | a request made dimensionless, and the plan: what the scene does not need |
+//! | [`trace`] | the state of a path: present point, contacts in reach, totals, history; rows for the user |
+//! | [`contact_changes`] | contact changes that are foreseen, taken together, or jumped to |
+//! | [`path`] | the loop of an increment: stages, step control, trial, acceptance, classification, checkpoints |
+//! | [`penalty`] | the conventional method with penalties, for comparison |
+//! | [`traced`] | the path by whichever method the analysis names |
+
+pub mod contact_changes;
+#[cfg(test)]
+mod exhaustive;
+pub mod path;
+pub mod penalty;
+pub mod scene;
+#[cfg(test)]
+mod tests_of_lattice;
+pub(crate) mod trace;
+pub mod traced;

@@ -1,0 +1,102 @@
+//! A point that a step has reached becomes the present one and a row.
+
+use crate::continuation::path::classification::{self, Came};
+use crate::continuation::path::stages;
+use crate::continuation::path::step_control::{self, Accepted};
+use crate::continuation::trace::progress::{Arriving, Phase};
+use crate::continuation::trace::tolerances::ROUND_OFF;
+use crate::continuation::trace::trace::{Emitted, Trace};
+use crate::mechanics::contact::{Reaction, all_continue};
+use crate::mechanics::problem::natural_residual;
+use crate::result::increment::{Increment, PointKind};
+use crate::result::stop_reason::StopReason;
+use crate::step::event_functions::Watch;
+use crate::step::interpolation::Placed;
+
+/// Makes a reached point the present one and says what it is; none where the way on would break the laws of contact.
+pub(crate) fn accept(trace: &mut Trace<'_>, accepted: Accepted) -> Option<Increment> {
+    let reached = accepted.reached;
+    trace.at.totals.add(&accepted.added);
+    trace.at.counts.increments += 1;
+    let here = &mut trace.at.here;
+    let before = std::mem::replace(&mut here.state, reached.corrected.state);
+    let begun = here.rate.take().filter(|_| accepted.joined == 0);
+    let changes = reached.event.is_some_and(Watch::is_of_contact);
+    here.apart = (changes && here.before.is_none()).then_some(reached.step);
+    (here.before, here.is_factorised) = (None, false);
+    let mut modes = std::mem::replace(&mut here.modes, reached.corrected.modes);
+    here.drift = reached.drift;
+    // Past its bend the path is like any other, and what is foreseen of it does not go back beyond.
+    let bends = here.beside.take().is_some();
+    here.is_singular &= !bends;
+    let begun = begun.filter(|_| !bends);
+    here.signature = accepted.signature;
+    let arriving = Arriving { modes: here.modes.clone(), load_sign: here.load_sign, counts: trace.at.counts };
+    let at_bound = stages::at_bound(trace, &reached.rate);
+    let (step, joins) = (reached.step, accepted.joined > 0);
+    let arrived = changes.then(|| trace.at.here.state.reactions.clone());
+    let mut arrival = if accepted.joined > 0 {
+        trace.at.here.is_singular = false;
+        let arrival = classification::joined_changes(trace, &modes, accepted.joined, reached.rate);
+        modes.clone_from(&trace.at.here.modes);
+        arrival
+    } else {
+        let came = Came {
+            rate: reached.rate,
+            step: reached.step,
+            stopped: reached.stopped,
+            nearby: reached.nearby,
+            motions: reached.motions,
+        };
+        classification::classify(trace, reached.event, accepted.crossing, came)
+    };
+    if accepted.returned {
+        arrival.stop = Some(StopReason::Cycle);
+    }
+    let changed = joins || !all_continue(&trace.at.here.modes, &modes);
+    let creeps = step_control::reason_of_creep(trace, step, changed || at_bound || arrival.stage_ends);
+    arrival.stop = arrival.stop.or(creeps);
+    // A change may have moved reactions.
+    if changes && !natural_residual::holds(trace.loading(), &trace.at.here.state, trace.at.totals.force_scale) {
+        trace.at.totals.index -= 1;
+        trace.end(StopReason::ContactViolated);
+        return None;
+    }
+    let stage = &trace.scene.stages[trace.at.stage];
+    let stage_ends = arrival.stage_ends || at_bound || trace.at.counts.end_stage(&stage.ends);
+    let mut point = arrival.point;
+    if let Some(reason) = arrival.stop {
+        point.kind = PointKind::End;
+        trace.end(reason);
+    } else if stage_ends {
+        if point.kind == PointKind::Regular {
+            point.kind = PointKind::End;
+        }
+        let what = format!("stage \"{}\" ends", stage.name);
+        point.event = Some(point.event.map_or(what.clone(), |event| format!("{event}; {what}")));
+    }
+    // Where contacts of a node share its force in another way as the path goes on, they do not yet where it arrives.
+    let round_off = ROUND_OFF * trace.at.totals.force_scale;
+    let is_anew = |arrived: &Vec<Reaction>| {
+        let now = trace.at.here.state.reactions.iter();
+        now.zip(arrived).any(|(now, arrived)| now.difference(arrived) > round_off)
+    };
+    let row = trace.emit(Emitted {
+        before: &before,
+        reactions: arrived.filter(is_anew),
+        modes: &modes,
+        step: reached.step,
+        point,
+        options: arrival.options,
+        taken: arrival.taken,
+        residual: reached.corrected.residual,
+        error_estimate: reached.error_estimate,
+        mode_named: accepted.mode_named.map(|named| named && !arrival.unconfirmed),
+        arriving: Some(arriving),
+    });
+    if !changes && let Some(rate) = begun {
+        trace.at.here.before = Placed::before(before, rate, &trace.at.here.state);
+    }
+    trace.at.stage_over = stage_ends && trace.at.phase == Phase::Running;
+    Some(row)
+}

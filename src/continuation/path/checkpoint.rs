@@ -1,0 +1,146 @@
+//! A path put down at a point: everything that decides how it goes on, so that it can be taken up there again with the
+//! same bits, or followed along another of the directions listed there (`follow`).
+//!
+//! Written as JSON, a checkpoint reads back to the same bits: serde_json writes the shortest digits that do, and reads
+//! them exactly (`float_roundtrip`). What a scene says (structure, loads, settings) is not in it: a checkpoint is taken
+//! up with the scene that it was made with, or with one that differs in `max_increments` alone.
+
+use crate::continuation::scene::Scene;
+use crate::continuation::trace::progress::{Listed, Progress};
+use crate::continuation::trace::trace::Trace;
+use crate::continuation::trace::visited_states::Numbered;
+use crate::mechanics::contact::Mode;
+use crate::mechanics::problem::state::{Rate, State};
+use crate::resources::cancel::CancelFlag;
+use serde::{Deserialize, Serialize};
+
+/// Changes when a checkpoint of before would be read as something else.
+const VERSION: u32 = 9;
+
+/// A path at one of its points.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Checkpoint {
+    version: u32,
+    elapsed_s: f64,
+    at: Progress,
+}
+
+/// States that a path has passed, for telling a cycle. Along a stage new ones come and old ones are forgotten: kept apart
+/// from the checkpoints, each is stored once, and a checkpoint takes back those that it knew.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Trail(Vec<Numbered>);
+
+impl Trail {
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
+
+/// Why a checkpoint cannot be taken up, or a direction not followed.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum CheckpointError {
+    #[error("the checkpoint is of version {found}; this program reads version {VERSION}")]
+    Version { found: u32 },
+    #[error("the checkpoint does not fit the model: it has {found} {what}, the model {expected}")]
+    OtherModel { what: &'static str, found: usize, expected: usize },
+    #[error("no directions are listed at this point: the path has one way on")]
+    NothingListed,
+    #[error("found {found}; {listed} directions are listed at this point: 0 to {} would do", listed.saturating_sub(1))]
+    NoSuchDirection { found: usize, listed: usize },
+    #[error("direction {direction} is a mechanism, a motion that no element resists: no path goes that way")]
+    Mechanism { direction: usize },
+    #[error("stage \"{stage}\" ends at this point along direction {direction}: there is nothing of it to follow")]
+    StageEnds { stage: String, direction: usize },
+}
+
+impl Checkpoint {
+    /// Index of the increment at which the path was put down.
+    pub fn index(&self) -> u64 {
+        self.at.totals.index
+    }
+
+    /// The running stage.
+    pub fn stage(&self) -> usize {
+        self.at.stage
+    }
+
+    /// How many states there were, those that are forgotten among them.
+    pub fn trail_length(&self) -> u64 {
+        self.at.visited.seen()
+    }
+
+    /// Takes the trail out, and of it the part that begins at this number.
+    pub fn take_trail(&mut self, from: u64) -> Trail {
+        Trail(self.at.visited.take(from))
+    }
+
+    /// Puts the parts of a trail back, in the order in which they were taken.
+    pub fn put_trail(&mut self, parts: impl IntoIterator<Item = Trail>) {
+        let stage = self.at.stage;
+        self.at.visited.put(parts.into_iter().flat_map(|part| part.0), stage);
+    }
+
+    fn fits(&self, scene: &Scene) -> Result<(), CheckpointError> {
+        if self.version != VERSION {
+            return Err(CheckpointError::Version { found: self.version });
+        }
+        let same = |what: &'static str, found: usize, expected: usize| {
+            if found == expected { Ok(()) } else { Err(CheckpointError::OtherModel { what, found, expected }) }
+        };
+        let (freedoms, all) = (scene.structure.freedoms(), scene.contacts.len());
+        if self.at.stage >= scene.stages.len() {
+            return same("stages", self.at.stage + 1, scene.stages.len());
+        }
+        let near = &self.at.near;
+        if !near.is_sorted_by(|one, next| one < next) || near.last().is_some_and(|last| *last >= all) {
+            return same("contacts", near.last().map_or(0, |last| last + 1), all);
+        }
+        let contacts = near.len();
+        let state = |state: &State| {
+            same("degrees of freedom", state.displacement.len(), freedoms)?;
+            same("contacts", state.reactions.len(), contacts)
+        };
+        let rate = |rate: &Rate| {
+            same("degrees of freedom", rate.displacement.len(), freedoms)?;
+            same("contacts", rate.reactions.len(), contacts)
+        };
+        let modes = |modes: &[Mode]| same("contacts", modes.len(), contacts);
+        let listed = |listed: &Listed| {
+            listed.arriving.iter().try_for_each(|arriving| modes(&arriving.modes))?;
+            listed.options.iter().try_for_each(|option| rate(&option.rate).and_then(|()| modes(&option.modes)))
+        };
+        same("stages before", self.at.reached.len(), self.at.stage)?;
+        if let Some((begun, direction)) = &self.at.begun {
+            state(begun)?;
+            rate(direction)?;
+        }
+        state(&self.at.here.state)?;
+        modes(&self.at.here.modes)?;
+        self.at.here.rate.iter().try_for_each(rate)?;
+        self.at.here.drift.iter().try_for_each(rate)?;
+        self.at.here.before.iter().try_for_each(|before| state(&before.state).and_then(|()| rate(&before.rate)))?;
+        self.at.visited.states().try_for_each(|visited| {
+            same("degrees of freedom", visited.displacement.len(), freedoms)?;
+            let last = visited.held.iter().map(|held| held.contact).max();
+            last.filter(|last| *last >= all).map_or(Ok(()), |last| same("contacts", last + 1, all))
+        })?;
+        self.at.listed.iter().try_for_each(listed)?;
+        self.at.followed.iter().try_for_each(|followed| listed(&followed.listed))
+    }
+}
+
+/// The path at its present point.
+pub(crate) fn put_down(trace: &Trace<'_>) -> Checkpoint {
+    Checkpoint { version: VERSION, elapsed_s: trace.elapsed_s(), at: trace.at.clone() }
+}
+
+/// Takes a path up where it was put down.
+pub(crate) fn take_up<'a>(
+    scene: &'a Scene,
+    checkpoint: Checkpoint,
+    cancel: CancelFlag,
+) -> Result<Trace<'a>, CheckpointError> {
+    checkpoint.fits(scene)?;
+    Ok(Trace::at(scene, checkpoint.at, checkpoint.elapsed_s, cancel))
+}

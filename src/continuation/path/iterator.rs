@@ -1,0 +1,146 @@
+//! The path as an iterator of increments.
+//!
+//! Between events the path keeps its contact mode and is followed by arc-length steps; where the mode ends, the
+//! directions are listed and one is taken. The step follows the turn of the path and the work of Newton's method.
+
+use crate::continuation::path::checkpoint::{self, Checkpoint, CheckpointError};
+use crate::continuation::path::{acceptance, follow, stages, step_control};
+use crate::continuation::scene::Scene;
+use crate::continuation::trace::progress::{Phase, Progress};
+use crate::continuation::trace::trace::Trace;
+use crate::resources::budget::{self, Budget};
+use crate::resources::cancel::CancelFlag;
+use crate::result::increment::Increment;
+use crate::result::program_iterate::ProgramIterate;
+use crate::result::report::Report;
+use crate::result::stop_reason::StopReason;
+
+/// A path being traced.
+pub struct Path<'a> {
+    pub(crate) trace: Trace<'a>,
+    budget: Budget,
+}
+
+impl<'a> Path<'a> {
+    pub fn new(scene: &'a Scene, cancel: CancelFlag) -> Self {
+        Self::along(Trace::at(scene, Progress::new(scene), 0.0, cancel))
+    }
+
+    fn along(trace: Trace<'a>) -> Self {
+        Self { budget: Budget::under_way(trace.cancel.clone()), trace }
+    }
+
+    /// Present when the path has ended, that is when `next` has returned `None`.
+    pub fn report(&self) -> Option<Report> {
+        let at = &self.trace.at;
+        (at.phase == Phase::Ended).then(|| at.totals.report.clone())
+    }
+
+    /// Makes the next step no longer than this (arc length, dimensionless), so that a point can be put where it is wanted.
+    /// `analysis.arc_length.min` stays the shortest.
+    pub fn shorten_next(&mut self, longest: f64) {
+        let least = self.trace.scene.analysis.arc_length.min;
+        self.trace.at.step = self.trace.at.step.min(longest.max(least));
+    }
+
+    /// Keeps the iterates of each increment's programs from now on, until the next increment.
+    pub fn keep_iterates(&mut self) {
+        self.trace.iterates = Some(Vec::new());
+    }
+
+    /// Those of the last increment that a program was solved for; empty where they are not kept.
+    pub fn iterates(&self) -> &[ProgramIterate] {
+        self.trace.iterates.as_deref().unwrap_or_default()
+    }
+
+    /// The path at its present point; after any call of `next`.
+    pub fn checkpoint(&self) -> Checkpoint {
+        checkpoint::put_down(&self.trace)
+    }
+
+    /// Takes a path up where it was put down; its increments are the same, bit for bit, as if it had not been.
+    ///
+    /// # Errors
+    /// A checkpoint of another model, or of another version of this program.
+    pub fn resume(scene: &'a Scene, checkpoint: Checkpoint, cancel: CancelFlag) -> Result<Self, CheckpointError> {
+        checkpoint::take_up(scene, checkpoint, cancel).map(Self::along)
+    }
+
+    /// How many directions are listed at the present point; 0 where there is one way on.
+    pub fn listed_directions(&self) -> usize {
+        self.trace.at.listed.as_ref().map_or(0, |listed| listed.options.len())
+    }
+
+    /// A path of its own from a checkpoint along one of the directions listed there.
+    ///
+    /// Its first increment, of index 0, is the point itself with `event` as its event; loads, energies, arc length and
+    /// the counts of the stage are carried on. Work and time are its own. Along the direction that was taken, the
+    /// increments are those of the path that was put down.
+    ///
+    /// # Errors
+    /// A checkpoint that does not fit, and a direction along which there is no path.
+    pub fn follow(
+        scene: &'a Scene,
+        checkpoint: Checkpoint,
+        direction: usize,
+        event: String,
+        cancel: CancelFlag,
+    ) -> Result<Self, CheckpointError> {
+        let trace = checkpoint::take_up(scene, checkpoint, cancel)?;
+        follow::along(trace, direction, event).map(Self::along)
+    }
+
+    /// Whether a path goes along this one of the directions listed at the present point.
+    pub fn can_be_followed(&self, direction: usize) -> bool {
+        follow::counts_along(&self.trace, direction).is_ok()
+    }
+}
+
+impl Iterator for Path<'_> {
+    type Item = Increment;
+
+    fn next(&mut self) -> Option<Increment> {
+        let (budget, index) = (self.budget.clone(), self.trace.at.totals.index);
+        let trace = &mut self.trace;
+        budget.during(|| increment(trace)).unwrap_or_else(|breach| {
+            self.trace.break_off(breach, index);
+            None
+        })
+    }
+}
+
+/// The next increment; `None` where the path has ended.
+fn increment(trace: &mut Trace<'_>) -> Option<Increment> {
+    match trace.at.phase {
+        Phase::Ended => return None,
+        Phase::NotStarted => {
+            budget::spend(0);
+            return Some(match trace.at.followed.take() {
+                Some(followed) => follow::first_increment(trace, followed),
+                None => stages::begin_stage(trace),
+            });
+        }
+        Phase::Running => {}
+    }
+    if std::mem::take(&mut trace.at.stage_over) && !stages::next_stage(trace) {
+        return None;
+    }
+    if trace.cancel.is_cancelled() {
+        trace.end(StopReason::Cancelled);
+        return None;
+    }
+    if trace.at.totals.index >= trace.scene.analysis.max_increments {
+        trace.end(StopReason::MaxIncrements);
+        return None;
+    }
+    if trace.at.here.rate.is_none() {
+        return Some(stages::begin_stage(trace));
+    }
+    match step_control::step(trace) {
+        Ok(accepted) => acceptance::accept(trace, accepted),
+        Err(reason) => {
+            trace.end(reason);
+            None
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! Every increment found by its program alone: `method: "mpec"` where the certificate is skipped.
+//!
+//! How far an increment goes and which event ends it is decided as it always is (`step_control`), so that increments are as long
+//! as those of `auto`. Its end is then found anew, by the program from the point before and the direction there; the
+//! contact mode is read off, and Newton's method on the mode's equations with the arc-length equation takes the program's
+//! end to round-off. That point becomes the path's where rounding leaves no more of it than of the first. Where an event ends the increment, a contact is at the edge of two modes
+//! there and the program may name either; the event's own equation has placed the point, which has to be the same.
+//!
+//! `γ1` is adapted until the program ends near the arc length sought, and further where it ends in another mode: an event may
+//! lie just past the point. An increment whose end no search finds is counted as a fall-back: the point stands as the
+//! mode's equations gave it.
+
+use crate::continuation::path::mpec_verification;
+use crate::continuation::path::step_control::Accepted;
+use crate::continuation::trace::trace::Trace;
+use crate::mechanics::contact::Mode;
+use crate::mechanics::equations::ModeSystem;
+use crate::mechanics::equations::closing_equation::ArcLengthEquation;
+use crate::mechanics::multi_contact::sharing::agree;
+use crate::mechanics::problem::loading::Loading;
+use crate::mechanics::problem::natural_residual;
+use crate::mechanics::problem::state::{Rate, State};
+use crate::result::program_iterate::{ContactIterate, ProgramIterate};
+use crate::step::corrector::work::Work;
+use crate::step::increment_mpec::{Counts, End, IncrementProgram, Searched};
+use crate::step::segment::{Reached, Start};
+use std::sync::Arc;
+
+/// Searches of one increment, `γ1` adapted from one to the next.
+const MOST_SEARCHES: usize = 8;
+/// Arc lengths over the one sought from which the polish starts.
+const NEAR: [f64; 2] = [0.5, 2.0];
+/// An arc length over the one sought that is off by no more has been adapted to it.
+const SETTLED: f64 = 1e-2;
+/// Distance (dimensionless) of a polished point from the one that the step ended at within which they are the same.
+const SAME: f64 = 1e-9;
+/// Reactions over the force scale, and gaps over the arc length, that are zero at the edge of two modes.
+const EDGE: f64 = 1e-6;
+
+/// What an increment's searches leave.
+#[derive(Default)]
+struct Left {
+    counts: Vec<Counts>,
+    work: Work,
+    iterates: Vec<ProgramIterate>,
+}
+
+/// Finds the end of an increment that is about to be accepted by its program.
+pub(crate) fn found_by_program(trace: &mut Trace<'_>, rate: &Rate, mut accepted: Accepted) -> Accepted {
+    let (found, Left { counts, work, iterates }) = search_end(trace, rate, &accepted);
+    trace.at.totals.work = work;
+    counts.into_iter().for_each(|counts| mpec_verification::count(trace, counts));
+    if let Some(kept) = &mut trace.iterates {
+        *kept = iterates;
+    }
+    accepted.mode_named = Some(found.is_some());
+    let Some(found) = found else {
+        trace.at.totals.work.mpec_fallbacks += 1;
+        return accepted;
+    };
+    let reached = &mut accepted.reached;
+    // Next to stiff elements rounding may leave more of equilibrium at the one than at the other.
+    let is_as_good = found.corrected.residual <= reached.corrected.residual.max(f64::EPSILON);
+    if is_as_good && reached.event.is_none() && accepted.crossing.is_none() && !accepted.returned {
+        let hardness = reached.corrected.iterations_to_small;
+        (reached.corrected, reached.rate) = (found.corrected, found.rate);
+        reached.corrected.iterations_to_small = hardness;
+    }
+    accepted
+}
+
+fn search_end(trace: &Trace<'_>, rate: &Rate, accepted: &Accepted) -> (Option<Box<Reached>>, Left) {
+    let (here, reached) = (&trace.at.here, &accepted.reached);
+    let mut left = Left { work: trace.at.totals.work, ..Left::default() };
+    let (loading, base, step) = (trace.loading(), &here.state, reached.step);
+    let modes = if accepted.joined > 0 { &reached.corrected.modes } else { &here.modes };
+    if step <= 0.0 {
+        return (Some(reached.clone()), left);
+    }
+    let ahead = base.advanced(rate, step);
+    let mut program =
+        mpec_verification::increment_program(loading, trace.at.totals.force_scale, (base, &ahead), rate, step);
+    program.stay_near();
+    let predicted = program.variables_at(rate);
+    let (mut start, mut relaxation) = (predicted.clone(), program.first_relaxation());
+    for _ in 0..MOST_SEARCHES {
+        let searched = program.search(&start, relaxation, modes, trace.iterates.is_some(), &trace.cancel);
+        note(trace, &program, &searched, &mut left);
+        if trace.cancel.is_cancelled() {
+            break;
+        }
+        let Some(end) = searched.end else {
+            let Some(tighter) = IncrementProgram::tighter(relaxation) else { break };
+            (start, relaxation) = (predicted.clone(), tighter);
+            continue;
+        };
+        let is_near = (NEAR[0]..=NEAR[1]).contains(&end.size);
+        if is_near && is_mode_at(trace, loading, &end, modes, reached) {
+            let found = polished(trace, &end, rate, modes, step, &mut left.work);
+            let is_same = |found: &Reached| {
+                let state = &found.corrected.state;
+                let forces = trace.at.totals.force_scale.max(found.corrected.force_scale);
+                state.distance(&reached.corrected.state) <= SAME * (1.0 + step)
+                    && natural_residual::holds(loading, state, forces)
+            };
+            if let Some(found) = found.filter(|found| is_same(found)) {
+                return (Some(found), left);
+            }
+        }
+        // Off the path: so large a relaxation led away from it.
+        let is_off = !is_near || (end.size - 1.0).abs() <= SETTLED;
+        match IncrementProgram::tighter(relaxation).filter(|_| is_off) {
+            Some(tighter) => (start, relaxation) = (predicted.clone(), tighter),
+            None => {
+                program.adapt(end.size);
+                start = end.variables;
+            }
+        }
+    }
+    (None, left)
+}
+
+fn note(trace: &Trace<'_>, program: &IncrementProgram<'_>, searched: &Searched, left: &mut Left) {
+    left.counts.push(searched.counts);
+    let plan = trace.scene.plan();
+    let (length, force) = (plan.displacement_scale, plan.force_scale);
+    let number = left.counts.len() as u64;
+    for iterate in &searched.iterates {
+        let (state, contacts) = program.contacts_at(&iterate.x);
+        let contacts = contacts.into_iter().filter_map(|at| {
+            let (node, obstacle) = trace.names().nth(at.contact)?;
+            Some(ContactIterate {
+                node: Arc::clone(node),
+                obstacle: Arc::clone(obstacle),
+                gap: at.gap * length,
+                normal_reaction: at.normal * force,
+                within_cone: at.within_cone * force,
+                slip: at.slip * length,
+            })
+        });
+        left.iterates.push(ProgramIterate {
+            program: number,
+            relaxation: iterate.relaxation,
+            size: program.size(&iterate.x),
+            load_factor: trace.scene.stages[trace.at.stage].load_factor(state.load),
+            violation: iterate.violation,
+            contacts: contacts.collect(),
+        });
+    }
+}
+
+/// The end of a search taken to round-off in a mode, at the arc length sought.
+fn polished(
+    trace: &Trace<'_>,
+    end: &End,
+    rate: &Rate,
+    modes: &[Mode],
+    step: f64,
+    work: &mut Work,
+) -> Option<Box<Reached>> {
+    let (here, force_scale) = (&trace.at.here, trace.at.totals.force_scale);
+    let start = Start {
+        loading: trace.loading(),
+        state: &here.state,
+        rate,
+        modes,
+        drift: None,
+        force_scale,
+        is_singular: here.is_singular,
+        beside: here.beside.as_ref(),
+    };
+    let system = ModeSystem::new(trace.loading(), modes, &here.state);
+    let closing = ArcLengthEquation { from: &here.state, step };
+    let polished = start.settle(system, end.state.clone(), &closing, work).ok()?;
+    // Once more: from so near the first time may stop where the tolerance is met.
+    let system = ModeSystem::new(trace.loading(), modes, &here.state);
+    start.settle(system, polished.corrected.state, &closing, work).ok()
+}
+
+/// Whether the modes that a search ends in are these, but for contacts that are at the edge of both.
+fn is_mode_at(trace: &Trace<'_>, loading: Loading<'_>, end: &End, modes: &[Mode], reached: &Reached) -> bool {
+    if agree(loading, &end.modes, modes) {
+        return true;
+    }
+    let forces = trace.at.totals.force_scale.max(reached.corrected.force_scale);
+    let state = &reached.corrected.state;
+    let either: Vec<Mode> = (0..modes.len())
+        .map(|contact| {
+            let (found, expected) = (end.modes[contact], modes[contact]);
+            if is_at_edge(loading, contact, (found, expected), state, reached.step, forces) { expected } else { found }
+        })
+        .collect();
+    agree(loading, &either, modes)
+}
+
+/// Whether a contact is in both modes at once.
+fn is_at_edge(
+    loading: Loading<'_>,
+    contact: usize,
+    (one, other): (Mode, Mode),
+    state: &State,
+    step: f64,
+    forces: f64,
+) -> bool {
+    let reaction = &state.reactions[contact];
+    if one.is_active() != other.is_active() {
+        return loading.gap(contact, state).abs() <= EDGE * step && reaction.size() <= EDGE * forces;
+    }
+    let cone = loading.contacts[contact].friction * reaction.normal - reaction.tangential_size();
+    match (one, other) {
+        (Mode::Slip { .. }, Mode::Slip { .. }) => reaction.tangential_size() <= EDGE * forces,
+        _ => cone.abs() <= EDGE * forces,
+    }
+}

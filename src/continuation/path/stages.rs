@@ -1,0 +1,106 @@
+//! How a stage begins, ends and hands over to the next.
+
+use crate::branching::directions::choice::{self, Before};
+use crate::branching::selection::decision;
+use crate::continuation::trace::event_names::describe_start;
+use crate::continuation::trace::progress::{Phase, StageCounts};
+use crate::continuation::trace::trace::{Emitted, Trace};
+use crate::continuation::trace::visited_states::History;
+use crate::mechanics::equations::ModeSystem;
+use crate::mechanics::equations::stage_end::End;
+use crate::mechanics::problem::state::Rate;
+use crate::result::increment::{Increment, Point, PointKind};
+use crate::result::stop_reason::StopReason;
+use crate::step::event_functions::Watch;
+use crate::step::segment::AT_END;
+
+/// The row with which a stage begins: the directions that exist there, one of them taken. Where a bound of the stage
+/// is met already, it ends there too.
+pub(crate) fn begin_stage(trace: &mut Trace<'_>) -> Increment {
+    if trace.at.phase == Phase::Running {
+        trace.at.totals.index += 1;
+    }
+    trace.at.phase = Phase::Running;
+    trace.look_ahead(trace.at.step);
+    trace.at.stage_over = bound_is_met(trace);
+    let event = describe_start(trace.scene, trace.at.stage, trace.at.stage_over);
+    let mut point = Point::plain(PointKind::Start, Some(event));
+    let (mut options, mut taken) = (Vec::new(), None);
+    if !trace.at.stage_over {
+        let state = &trace.at.here.state;
+        let mut decision =
+            decision::decide(trace.loading(), state, &trace.standings(state), Before::StageStart, trace.rules());
+        trace.take(&mut decision);
+        trace.at.begun = trace.at.here.rate.clone().map(|rate| (trace.at.here.state.clone(), rate));
+        trace.at.step = trace.at.step.min(trace.scene.analysis.arc_length.initial);
+        point.bifurcation = choice::is_bifurcation(&decision.options, decision.taken, None);
+        point.unexplored_modes = decision.unexplored;
+        point.degenerate = decision.degenerate;
+        if let Some(reason) = decision.stop {
+            trace.end(reason);
+        }
+        (options, taken) = (decision.options, decision.taken);
+    }
+    let here = &trace.at.here;
+    let (state, modes) = (here.state.clone(), here.modes.clone());
+    let system = ModeSystem::new(trace.loading(), &modes, &state);
+    let residual = system.judged(state.clone(), trace.at.totals.force_scale).residual;
+    let error_estimate = here.drift.as_ref().map_or(0.0, Rate::size);
+    trace.emit(Emitted {
+        before: &state,
+        reactions: None,
+        modes: &modes,
+        step: 0.0,
+        point,
+        options,
+        taken,
+        residual,
+        error_estimate,
+        mode_named: None,
+        arriving: None,
+    })
+}
+
+/// Whether a load or displacement at which the stage ends is met before it begins.
+fn bound_is_met(trace: &Trace<'_>) -> bool {
+    let here = &trace.at.here;
+    let still = Rate {
+        displacement: vec![0.0; here.state.displacement.len()],
+        load: 0.0,
+        reactions: here.state.reactions.clone(),
+    };
+    let left = |end: &End| Watch::End(*end).value(trace.loading(), &here.modes, &here.state, &still);
+    trace.scene.stages[trace.at.stage].ends.iter().any(|end| left(end) <= 0.0)
+}
+
+/// Holds what the stage reached and goes to the next; `false` where there is none.
+pub(crate) fn next_stage(trace: &mut Trace<'_>) -> bool {
+    if trace.at.stage + 1 == trace.scene.stages.len() {
+        trace.end(StopReason::StagesCompleted);
+        return false;
+    }
+    let at = &mut trace.at;
+    at.reached.push(at.here.state.load);
+    at.hold(trace.scene);
+    at.stage += 1;
+    at.here.state.load = 0.0;
+    at.here.rate = None;
+    at.here.signature = None;
+    (at.here.before, at.here.apart) = (None, None);
+    at.counts = StageCounts::default();
+    at.visited = History::default();
+    trace.load_anew();
+    true
+}
+
+/// Whether a load or displacement at which the stage ends is reached here, whatever else happens here; it is then
+/// made exact.
+pub(crate) fn at_bound(trace: &mut Trace<'_>, rate: &Rate) -> bool {
+    let here = &trace.at.here;
+    let left = |end: &End| Watch::End(*end).value(trace.loading(), &here.modes, &here.state, rate);
+    let met = trace.scene.stages[trace.at.stage].ends.iter().find(|end| left(end) <= AT_END);
+    if let Some(End::Load { bound, .. }) = met {
+        trace.at.here.state.load = *bound;
+    }
+    met.is_some()
+}

@@ -1,0 +1,428 @@
+//! Choosing the step: by the path's turn, by Newton's work and by the energy balance of the increment.
+
+use crate::algebra::dense::root::find_root;
+use crate::branching::bifurcation::locate::Crossing;
+use crate::branching::bifurcation::singularity::test_functions::Signature;
+use crate::branching::directions::arrival_tangent::Incoming;
+use crate::branching::directions::choice::Before;
+use crate::branching::selection::decision;
+use crate::continuation::contact_changes::piecewise_linear;
+use crate::continuation::contact_changes::prediction::{self, Foreseen};
+use crate::continuation::contact_changes::simultaneous::may_join_at;
+use crate::continuation::path::trial::{self, Sought, Tried, Tries};
+use crate::continuation::path::{mpec_increments, mpec_verification};
+use crate::continuation::trace::step_quantum::quantised;
+use crate::continuation::trace::tolerances::SAME_STATE;
+use crate::continuation::trace::totals::{Added, NO_ENERGY};
+use crate::continuation::trace::trace::Trace;
+use crate::mechanics::contact::all_continue;
+use crate::mechanics::equations::ModeSystem;
+use crate::mechanics::equations::stage_end::End;
+use crate::mechanics::problem::energy;
+use crate::mechanics::problem::state::{Rate, State};
+use crate::mechanics::structure::elements::bar::COLLAPSED;
+use crate::model::request::{Events, Method};
+use crate::result::increment::Energy;
+use crate::result::stop_reason::StopReason;
+use crate::step::corrector::work::Work;
+use crate::step::event_functions::Watch;
+use crate::step::interpolation::unit;
+use crate::step::segment::{Reached, Refused, Start};
+
+/// The turn of the path (radians) that a step aims at.
+const TURN_SOUGHT: f64 = 0.08;
+/// Newton iterations to a small error that a step aims at.
+const ITERATIONS_SOUGHT: f64 = 4.0;
+
+/// Energy imbalance of an increment, over the largest energy so far, that a step aims at.
+const IMBALANCE_SOUGHT: f64 = 5e-9;
+/// What rounding may do to the work of an increment, over the largest force and the arc length.
+const ROUNDING_OF_WORK: f64 = 16.0 * f64::EPSILON;
+/// Arc length from which on the rounding of forces, which falls with it, is let be.
+const SHORT: f64 = 1e-3;
+
+/// Stretch of a bar at which the rounding of displacements of its length turns it by as much as forces may be off.
+const A_POINT: f64 = 1e-6;
+/// A step after which the next would have to be shorter than this fraction of it is taken again, shorter.
+const REJECTED: f64 = 0.55;
+
+/// The next step over this one, at the most.
+const MOST_GROWTH: f64 = 1.8;
+/// The curvature of the path over that of the step before, at the most, by which the next step's is foreseen.
+const MOST_BEND: f64 = 4.0;
+/// How far past a bend that no step follows the path is taken up, over the square of the width of its arms there: the chord
+/// is off the direction by a fifth then, a third of what a step may turn by.
+const PAST_BEND: f64 = 25.0;
+/// Arc length (dimensionless) below which a step creeps at which no contact changes. From the shortest at which a path can be
+/// told from rounding a step grows beyond this within a few.
+const CREEPS: f64 = 2e-8;
+/// The same over the longest step that is asked for, where short ones are.
+const CREEPS_AT_MOST: f64 = 1e-3;
+/// Steps that creep one after another, at the most: the sharpest bend, there and back, takes fewer at the turn that a step
+/// aims at, and what takes more turns to and fro.
+const MOST_CREEPING: u64 = 48;
+/// A step that ends before this fraction of what was tried does not let the next be longer.
+const CUT_SHORT: f64 = 0.5;
+
+/// A point reached, with the energies of the way there.
+pub(crate) struct Accepted {
+    pub reached: Box<Reached>,
+    pub added: Added,
+    /// By how much the direction turns (radians), but for contact changes within the step.
+    pub turned: f64,
+    /// Whether the increment's program named the mode; `None` where it was not asked.
+    pub mode_named: Option<bool>,
+    /// The point is the one where the stage began.
+    pub returned: bool,
+    /// The smooth bifurcation at the point, if it is one.
+    pub crossing: Option<Crossing>,
+    /// Signs just past the point, in the mode that led there.
+    pub signature: Option<Signature>,
+    /// Contact changes within the step that are taken together; 0 where its mode lasted.
+    pub joined: u64,
+}
+
+impl Accepted {
+    /// A step that so many contact changes are taken together in. Nothing slides against friction in it: the work is what
+    /// is stored.
+    fn join(&mut self, changes: u64, before: &Energy) {
+        self.joined = changes;
+        self.added.external_work = self.added.strain - before.strain;
+    }
+}
+
+/// Steps until a point is accepted.
+pub(crate) fn step(trace: &mut Trace<'_>) -> Result<Accepted, StopReason> {
+    let mut sought = sought_step(trace);
+    let Some(rate) = trace.at.here.rate.take() else { return Err(StopReason::NoDirection) };
+    let stepped = step_along(trace, &rate, &mut sought);
+    trace.at.here.rate = Some(rate);
+    stepped
+}
+
+/// The same along the direction just now.
+fn step_along(trace: &mut Trace<'_>, rate: &Rate, sought: &mut Sought) -> Result<Accepted, StopReason> {
+    let least = trace.scene.analysis.arc_length.min;
+    let mut step = sought.step();
+    let mut was_shortened = false;
+    let mut tries = Tries::new(&trace.at.here, std::mem::take(&mut trace.at_hand));
+    loop {
+        if trace.cancel.is_cancelled() {
+            return Err(StopReason::Cancelled);
+        }
+        let mut work = trace.at.totals.work;
+        let outcome = trial::try_step(trace, rate, step, sought, &mut tries, &mut work);
+        trace.at.totals.work = work;
+        if let Some(joined) = tries.joined.take() {
+            trace.at.waiting.note(joined);
+            sought.may_join &= joined;
+        }
+        match outcome {
+            Ok(tried) => match weigh(trace, rate, tried, step, sought, was_shortened) {
+                // A search that was broken off says nothing of its increment.
+                Ok(accepted) if accepted.mode_named == Some(false) && trace.cancel.is_cancelled() => {
+                    return Err(StopReason::Cancelled);
+                }
+                Ok(accepted) => return Ok(accepted),
+                Err(factor) => {
+                    step *= factor;
+                    was_shortened = true;
+                }
+            },
+            Err(Refused::AtStart(watch)) if watch.is_of_contact() && mode_ends_here(trace, rate) => {
+                let mut accepted = balance(trace, rate, without_step(trace, watch, rate));
+                accepted.mode_named = is_named_by_program(trace).then_some(true);
+                return Ok(accepted);
+            }
+            Err(Refused::Apart) => {
+                // Each of them ends a step then, the first of them this one.
+                sought.ordinary = sought.ordinary.min(step);
+                sought.foreseen = prediction::step_to_foreseen_change(trace, step, rate, false);
+                step = sought.foreseen.map_or(step, |change| change.step);
+            }
+            Err(Refused::Unresolved) => {
+                tries.unresolved += 1;
+                step *= 0.7;
+            }
+            Err(refused) => {
+                was_shortened = true;
+                step *= match refused {
+                    Refused::Turned(angle) => (0.5 * TURN_SOUGHT / angle).clamp(0.1, 0.5),
+                    Refused::Newton(_) => 0.5,
+                    Refused::AtStart(_)
+                    | Refused::Unlawful
+                    | Refused::Collapsed
+                    | Refused::Unresolved
+                    | Refused::Apart => 0.25,
+                };
+                if step < least {
+                    return Err(match refused {
+                        Refused::Unlawful => StopReason::ContactViolated,
+                        Refused::Collapsed => StopReason::CollapsedBar,
+                        _ => reason_of_underflow(trace),
+                    });
+                }
+            }
+        }
+    }
+}
+
+/// How long a step is to be, as far as is known before it is tried.
+fn sought_step(trace: &mut Trace<'_>) -> Sought {
+    let ordinary = trace.at.step.min(trace.scene.analysis.arc_length.max);
+    // Closer to a bend the path is still on its way round it.
+    let width = trace.at.here.beside.as_ref().map_or(0.0, Rate::size);
+    let ordinary = ordinary.max(PAST_BEND * width * width);
+    let may_join = trace.at.waiting.is_over() && may_join_changes(trace);
+    // Changes nearer than an ordinary step may be several that are taken together.
+    let ahead = piecewise_linear::next_event_ahead(trace);
+    let joins = |event: &Foreseen| may_join && may_join_at(trace.loading(), &trace.at.here.modes, event.watch);
+    let jump = ahead.filter(|event| event.step > ordinary || !joins(event));
+    trace.look_ahead(jump.map_or(ordinary, |event| event.step));
+    let rate = trace.at.here.rate.as_ref().filter(|_| jump.is_none());
+    let foreseen = rate.and_then(|rate| prediction::step_to_foreseen_change(trace, ordinary, rate, may_join));
+    Sought { ordinary, jump, foreseen, may_join }
+}
+
+/// Accepts a point with what its increment did to the energies and chooses the next step, or says by what factor a
+/// step is to be shorter that went too far for them.
+fn weigh(
+    trace: &mut Trace<'_>,
+    rate: &Rate,
+    tried: Tried,
+    step: f64,
+    sought: &Sought,
+    was_shortened: bool,
+) -> Result<Accepted, f64> {
+    let (least, most) = (trace.scene.analysis.arc_length.min, trace.scene.analysis.arc_length.max);
+    let Tried { reached, crossing, signature, returned, joined } = tried;
+    let mut accepted = balance(trace, rate, reached);
+    (accepted.crossing, accepted.signature, accepted.returned) = (crossing, signature, returned);
+    if let Some((changes, unchanged)) = joined {
+        accepted.join(changes, &trace.at.totals.energy);
+        // The kinks of a step with contact changes say nothing of its length.
+        accepted.turned = rate.angle(&unchanged);
+    }
+    let factor = next_step_factor(trace, &accepted, step, was_shortened);
+    if factor <= REJECTED && step * factor >= least {
+        return Err(factor);
+    }
+    let factor = factor.min(factor_foreseen(trace, rate, &accepted, step));
+    // Where the mode ends inside the step, the program names the next one, from there.
+    if trace.scene.analysis.skips_certificate() && is_named_by_program(trace) {
+        accepted = mpec_increments::found_by_program(trace, rate, accepted);
+    } else {
+        accepted.mode_named = is_named_by_program(trace).then(|| match accepted.joined {
+            0 => mpec_verification::program_keeps_mode(trace, rate, &accepted.reached, step),
+            _ => mpec_verification::program_joins_changes(trace, rate, step, &accepted.reached.corrected.modes),
+        });
+    }
+    if !sought.jumps(step) {
+        let was_cut = sought.foreseen.is_some_and(|foreseen| foreseen.step == step) && factor >= 1.0;
+        let next = if was_cut { sought.ordinary } else { step * factor };
+        trace.at.step = next.clamp(least, most);
+    }
+    Ok(accepted)
+}
+
+/// Why a path that has come to a point by a step of this length gets nowhere, if it does not. A step at the end of which
+/// the contacts' modes change, or the stage ends, is progress, however short. One to a limit or bifurcation point, or to
+/// where a contact keeps its mode, is none: a smooth path has few of them within so short a way; where signs are rounding
+/// they have no end.
+pub(crate) fn reason_of_creep(trace: &mut Trace<'_>, step: f64, changes: bool) -> Option<StopReason> {
+    // Scales that are larger than the scene's own make every step as much shorter.
+    let enlarged = trace.scene.stages[trace.at.stage].enlarged;
+    let bar = (CREEPS / enlarged).min(CREEPS_AT_MOST * trace.scene.analysis.arc_length.max);
+    let creeps = !changes && step < bar;
+    trace.at.creeping = if creeps { trace.at.creeping + 1 } else { 0 };
+    (trace.at.creeping >= MOST_CREEPING).then(|| reason_of_underflow(trace))
+}
+
+/// Whether some bar has come to have no direction that the displacements could tell.
+pub(crate) fn shrinks_to_a_point(trace: &Trace<'_>, state: &State) -> bool {
+    let structure = &trace.scene.structure;
+    structure.smallest_stretch(&state.displacement) < A_POINT
+        && structure.smallest_stretch(&trace.at.here.state.displacement) >= A_POINT
+}
+
+/// Whether contact changes may be taken together: not where each is asked for, or counted.
+fn may_join_changes(trace: &Trace<'_>) -> bool {
+    let analysis = &trace.scene.analysis;
+    let counted = trace.scene.stages[trace.at.stage].ends.iter().any(|end| matches!(end, End::ContactChanges(_)));
+    analysis.events == Events::Auto && !counted
+}
+
+/// Whether the program of each increment is asked to name its mode.
+fn is_named_by_program(trace: &Trace<'_>) -> bool {
+    trace.scene.analysis.method == Method::Mpec && !trace.scene.contacts.is_empty()
+}
+
+/// Whether the mode cannot go on from the present point.
+fn mode_ends_here(trace: &Trace<'_>, rate: &Rate) -> bool {
+    let here = &trace.at.here;
+    let standings = trace.standings(&here.state);
+    let before = Before::Incoming(Incoming::along(rate));
+    let decision = decision::decide(trace.loading(), &here.state, &standings, before, trace.rules());
+    decision.taken.is_none_or(|index| !all_continue(&decision.options[index].modes, &here.modes))
+}
+
+/// The present point once more, as the place where the mode ends: two changes at one state, the second of which the
+/// point itself did not show, are two points of the path.
+fn without_step(trace: &Trace<'_>, watch: Watch, rate: &Rate) -> Box<Reached> {
+    let here = &trace.at.here;
+    let system = ModeSystem::new(trace.loading(), &here.modes, &here.state);
+    let mut corrected = system.judged(here.state.clone(), trace.at.totals.force_scale);
+    (corrected.state, corrected.modes) = (here.state.clone(), here.modes.clone());
+    let mut point = Reached::new(corrected, rate.clone(), 0.0, here.drift.as_ref().map_or(0.0, Rate::size));
+    (point.drift, point.event) = (here.drift.clone(), Some(watch));
+    point
+}
+
+/// The point at which the stage began, where a step without event passes it again in the same sense.
+pub(crate) fn way_back(
+    trace: &Trace<'_>,
+    start: &Start<'_>,
+    reached: &Reached,
+    work: &mut Work,
+) -> Option<Box<Reached>> {
+    let (origin, sense) = trace.at.begun.as_ref()?;
+    // How far a state lies past the origin.
+    let past = |state: &State| {
+        let chord = state.displacement.iter().zip(&origin.displacement).zip(&sense.displacement);
+        chord.map(|((to, from), rate)| (to - from) * rate).sum::<f64>() + (state.load - origin.load) * sense.load
+    };
+    let (first, last) = (past(start.state), past(&reached.corrected.state));
+    let near = || start.state.distance(origin).min(reached.corrected.state.distance(origin)) <= reached.step;
+    let passes = reached.event.is_none() && first < -SAME_STATE && last >= 0.0 && near();
+    if !passes || reached.rate.product(sense) <= 0.0 {
+        return None;
+    }
+    let at = |place: f64| start.reach(place, work).ok().map(|near| -past(&near.corrected.state));
+    let place = find_root(at, (0.0, -first), (reached.step, -last), 1e-14)?;
+    let back = start.reach(place, work).ok()?;
+    let same = back.corrected.state.distance(origin) < SAME_STATE
+        && back
+            .corrected
+            .state
+            .reactions
+            .iter()
+            .zip(&origin.reactions)
+            .all(|(a, b)| a.difference(b) < SAME_STATE * trace.at.totals.force_scale);
+    same.then_some(back)
+}
+
+/// Why steps became too short.
+fn reason_of_underflow(trace: &Trace<'_>) -> StopReason {
+    let stretch = trace.scene.structure.smallest_stretch(&trace.at.here.state.displacement);
+    if stretch < COLLAPSED { StopReason::CollapsedBar } else { StopReason::StepUnderflow }
+}
+
+/// Work, dissipation and strain energy of a point reached.
+fn balance(trace: &Trace<'_>, rate: &Rate, reached: Box<Reached>) -> Accepted {
+    let start = (&trace.at.here.state, rate);
+    let end = (&reached.corrected.state, &reached.rate);
+    let (loading, modes, turned) = (trace.loading(), &trace.at.here.modes, rate.angle(&reached.rate));
+    let (external_work, dissipated) = energy::work_and_dissipation(loading, modes, start, end, turned);
+    let strain = trace.scene.structure.strain_energy(&reached.corrected.state.displacement) - trace.initial_strain;
+    let (step, force_scale) = (reached.step, reached.corrected.force_scale);
+    let added = Added { step, external_work, dissipated, strain, force_scale };
+    let (mode_named, crossing, signature) = (None, None, None);
+    Accepted { reached, added, turned, mode_named, returned: false, crossing, signature, joined: 0 }
+}
+
+/// How the next step should compare with this one where the path bends more and more: its curvature is foreseen to grow
+/// as it did from the step before to this one (predictive control: K. Gustafsson, ACM Trans. Math. Softw. 20 (1994)
+/// 496, doi:10.1145/198429.198437).
+fn factor_foreseen(trace: &Trace<'_>, rate: &Rate, accepted: &Accepted, tried: f64) -> f64 {
+    let here = &trace.at.here;
+    let before = here.before.as_ref().filter(|_| accepted.reached.step > 0.0);
+    let curvature_before = before.map(|before| unit(&before.rate).angle(rate) / -before.place);
+    let Some(curvature_before) = curvature_before.filter(|curvature| *curvature > 0.0) else {
+        return f64::INFINITY;
+    };
+    let curvature = accepted.turned / accepted.reached.step;
+    let growth = (curvature / curvature_before).min(MOST_BEND);
+    if growth <= 1.0 {
+        return f64::INFINITY;
+    }
+    quantised((TURN_SOUGHT / (curvature * growth * tried)).max(0.2))
+}
+
+/// How the next step should compare with this one: by the path's turn, Newton's work and the energy balance.
+fn next_step_factor(trace: &Trace<'_>, accepted: &Accepted, tried: f64, was_shortened: bool) -> f64 {
+    let reached = &accepted.reached;
+    let done = (reached.step / tried).clamp(0.1, 1.0);
+    let turn = accepted.turned / done;
+    let by_turn = TURN_SOUGHT / turn.max(1e-3 * TURN_SOUGHT);
+    let by_work = ITERATIONS_SOUGHT / reached.corrected.iterations_to_small.max(1) as f64;
+    let added = &accepted.added;
+    let imbalance = (added.external_work - added.dissipated - (added.strain - trace.at.totals.energy.strain)).abs();
+    // Where next to nothing is stored, what rounding of the displacements does to the work says nothing about the step.
+    let rounding = ROUNDING_OF_WORK * trace.at.totals.force_scale.max(reached.corrected.force_scale) * reached.step;
+    let imbalance = if imbalance <= rounding { 0.0 } else { imbalance };
+    let floor = (NO_ENERGY * trace.at.totals.force_scale.max(reached.corrected.force_scale)).max(f64::MIN_POSITIVE);
+    let size = trace.at.totals.largest_energy.max(added.external_work.abs()).max(added.strain.abs()).max(floor);
+    // Beside stiff elements the forces themselves are no better than what rounding leaves of them: what is stored against
+    // soft ones alone may be less than that, and no step short enough. So one that is short is not made any shorter.
+    let by_stiffness = || {
+        let of_forces = trace.scene.structure.rounding(&reached.corrected.state.displacement);
+        reached.step * of_forces.iter().fold(0.0_f64, |most, value| value.max(most))
+    };
+    let is_too_large = imbalance > IMBALANCE_SOUGHT * size;
+    let is_none = is_too_large && reached.step <= SHORT && imbalance <= by_stiffness();
+    let imbalance = if is_none { IMBALANCE_SOUGHT * size } else { imbalance };
+    // The balance of one increment has an error of fifth order in its arc length.
+    let by_energy = (IMBALANCE_SOUGHT / (imbalance / size).max(1e-3 * IMBALANCE_SOUGHT)).powf(0.2);
+    // A step that an event cut short says little of a longer one in the mode that follows. After one that was too long
+    // the next is no longer either (E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I,
+    // Springer 1993, section II.4).
+    let most = if done < CUT_SHORT || was_shortened { 1.0 } else { MOST_GROWTH };
+    quantised(by_turn.min(by_work).min(by_energy).clamp(0.2, most))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check::scenes;
+    use crate::continuation::scene::Scene;
+    use crate::continuation::trace::progress::Progress;
+    use crate::model::request::ArcLength;
+    use crate::resources::cancel::CancelFlag;
+
+    fn scene(change: impl Fn(&mut ArcLength)) -> Scene {
+        let built_in = scenes::find("one-bar-truss").expect("a scene");
+        let mut request = crate::model::decode::decode(built_in.request.as_bytes()).expect("a request");
+        change(&mut request.analysis.arc_length);
+        Scene::new(&request).expect("a scene")
+    }
+
+    /// After how many steps of a length the path is given up, of a hundred.
+    fn given_up_after(scene: &Scene, step: f64) -> Option<u64> {
+        let mut trace = Trace::at(scene, Progress::new(scene), 0.0, CancelFlag::default());
+        (1..=100).find(|_| reason_of_creep(&mut trace, step, false).is_some())
+    }
+
+    #[test]
+    fn steps_that_change_nothing_end_the_path_within_fifty() {
+        let plain = scene(|_| {});
+        assert_eq!(given_up_after(&plain, 2e-9), Some(MOST_CREEPING));
+        const { assert!(MOST_CREEPING < 50) };
+        assert_eq!(given_up_after(&plain, 1e-7), None);
+        // One that is no shorter than others were asked to be, or than larger scales make it, is no creep.
+        let short = |arc_length: &mut ArcLength| {
+            (arc_length.min, arc_length.initial, arc_length.max) = (1e-10, 1e-8, 1e-8);
+        };
+        assert_eq!(given_up_after(&scene(short), 5e-9), None);
+        assert_eq!(given_up_after(&scene(|arc_length| arc_length.displacement_scale = Some(1e8)), 2e-9), None);
+        assert_eq!(given_up_after(&scene(|arc_length| arc_length.load_scale = Some(1e8)), 2e-9), None);
+    }
+
+    #[test]
+    fn a_contact_change_is_progress() {
+        let scene = scene(|_| {});
+        let mut trace = Trace::at(&scene, Progress::new(&scene), 0.0, CancelFlag::default());
+        for step in 1..=1000 {
+            assert_eq!(reason_of_creep(&mut trace, 1e-9, step % 40 == 0), None);
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! One increment: predictor, and corrector on the arc-length sphere or cylinder, or under control of a load or a
+//! displacement.
+
+use crate::algebra::Factorisation;
+use crate::continuation::penalty::system::{Point, System};
+use crate::mechanics::problem::state::State;
+use crate::resources::cancel::CancelFlag;
+use crate::step::corrector::work::Work;
+use nalgebra::DVector;
+
+/// Difference of the roots' products with the displacements before, over the square of the arc length, that is none.
+const NO_TURN: f64 = 1e-12;
+
+/// What closes the equations.
+#[derive(Debug, Clone, Copy)]
+pub enum Control {
+    /// `|Δu|² + ψ² Δs² = size²`
+    ArcLength { size: f64, load_weight: f64 },
+    /// `s = value`
+    Load(f64),
+    /// `u = value` at a degree of freedom.
+    Displacement { freedom: usize, value: f64 },
+}
+
+/// `(Δu, Δs)`, displacements one an unknown.
+#[derive(Debug, Clone)]
+pub struct Change {
+    pub displacement: DVector<f64>,
+    pub load: f64,
+}
+
+/// Settings of the corrector.
+pub struct Limits<'a> {
+    pub tolerance: f64,
+    pub most_iterations: u64,
+    /// Largest force so far.
+    pub force_scale: f64,
+    pub cancel: &'a CancelFlag,
+}
+
+/// A point found.
+pub struct Converged {
+    pub point: Point,
+    pub change: Change,
+    /// The consistent tangent there; `None` where it is singular.
+    pub tangent: Option<Factorisation>,
+    pub iterations: u64,
+    pub residual: f64,
+    pub force_scale: f64,
+}
+
+/// Why none was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Failure {
+    Singular,
+    /// The corrected displacement does not meet the sphere: the quadratic has no real root.
+    NoRoot,
+    NotConverged,
+    Cancelled,
+}
+
+impl Change {
+    /// `|Δu|² + ψ² Δs²`
+    fn squared(&self, load_weight: f64) -> f64 {
+        self.displacement.norm_squared() + (load_weight * self.load).powi(2)
+    }
+
+    pub fn size(&self, load_weight: f64) -> f64 {
+        self.squared(load_weight).sqrt()
+    }
+
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self { displacement: &self.displacement * factor, load: self.load * factor }
+    }
+}
+
+impl System<'_> {
+    fn moved(&self, from: &Point, change: &Change) -> State {
+        let mut state = from.state.clone();
+        for (unknown, freedom) in self.loading.structure.freedom_of.iter().enumerate() {
+            state.displacement[*freedom] += change.displacement[unknown];
+        }
+        state.load += change.load;
+        self.loading.place_supports(&mut state);
+        state
+    }
+
+    /// Newton iterations from a predictor.
+    pub fn correct(
+        &self,
+        from: &Point,
+        predictor: Change,
+        control: Control,
+        limits: &Limits<'_>,
+        work: &mut Work,
+    ) -> Result<Converged, Failure> {
+        let mut change = predictor;
+        for iterations in 0..=limits.most_iterations {
+            if limits.cancel.is_cancelled() {
+                return Err(Failure::Cancelled);
+            }
+            let mut state = self.moved(from, &change);
+            let evaluation = self.evaluate(from, &state);
+            let residual = self.relative_residual(&evaluation, limits.force_scale);
+            if !residual.is_finite() {
+                return Err(Failure::NotConverged);
+            }
+            work.factorisations += 1;
+            let mut by_residual = self.right_hand_side(&evaluation);
+            let tangent = Factorisation::new(evaluation.tangent);
+            if residual <= limits.tolerance && meets(control, &state) {
+                let force_scale = evaluation.force_scale;
+                match control {
+                    Control::ArcLength { .. } => {}
+                    Control::Load(value) => state.load = value,
+                    Control::Displacement { freedom, value } => state.displacement[freedom] = value,
+                }
+                let point = self.point(state, evaluation.contacts);
+                return Ok(Converged { point, change, tangent, iterations, residual, force_scale });
+            }
+            if iterations == limits.most_iterations {
+                break;
+            }
+            let factorisation = tangent.ok_or(Failure::Singular)?;
+            let mut by_load = self.load_vector(&state, &evaluation.contacts);
+            if !factorisation.solve(&mut by_residual) || !factorisation.solve(&mut by_load) {
+                return Err(Failure::Singular);
+            }
+            let load_step = match control {
+                Control::ArcLength { size, load_weight } => {
+                    root(&change, &by_residual, &by_load, size, load_weight).ok_or(Failure::NoRoot)?
+                }
+                Control::Load(value) => value - state.load,
+                Control::Displacement { freedom, value } => {
+                    let left = value - state.displacement[freedom];
+                    match self.loading.structure.unknown_of[freedom] {
+                        Some(unknown) => (left - by_residual[unknown]) / by_load[unknown],
+                        None => left / self.loading.support_rate(freedom),
+                    }
+                }
+            };
+            if !load_step.is_finite() {
+                return Err(Failure::Singular);
+            }
+            change.displacement += by_residual + by_load * load_step;
+            change.load += load_step;
+            work.newton_iterations += 1;
+        }
+        Err(Failure::NotConverged)
+    }
+}
+
+/// Whether the controlled quantity has its value; the arc length has it by construction.
+fn meets(control: Control, state: &State) -> bool {
+    let near = |found: f64, sought: f64| (found - sought).abs() <= 1e-12 * sought.abs().max(1.0);
+    match control {
+        Control::ArcLength { .. } => true,
+        Control::Load(value) => near(state.load, value),
+        Control::Displacement { freedom, value } => near(state.displacement[freedom], value),
+    }
+}
+
+/// The load step that brings `Δu + δ_r + δs δ_t` back to the sphere: of two roots the one whose displacements make the
+/// smaller angle with those before the correction.
+fn root(
+    change: &Change,
+    by_residual: &DVector<f64>,
+    by_load: &DVector<f64>,
+    size: f64,
+    load_weight: f64,
+) -> Option<f64> {
+    let corrected = &change.displacement + by_residual;
+    let weight = load_weight * load_weight;
+    let a = by_load.norm_squared() + weight;
+    let b = 2.0 * (by_load.dot(&corrected) + weight * change.load);
+    let c = Change { displacement: corrected.clone(), load: change.load }.squared(load_weight) - size * size;
+    let discriminant = b * b - 4.0 * a * c;
+    if !(discriminant >= 0.0 && a > 0.0) {
+        return None;
+    }
+    // Without cancellation: the root of larger size first, the other from the product of both.
+    let far = -0.5 * (b + discriminant.sqrt().copysign(b));
+    let roots = if far == 0.0 { [0.0, 0.0] } else { [far / a, c / far] };
+    // Where the load changes and the displacements do not, the loads tell the roots apart.
+    let turning = change.displacement.dot(by_load) * (roots[0] - roots[1]);
+    let still = turning.abs() <= NO_TURN * size * size;
+    let ahead = if still { change.load * (roots[0] - roots[1]) } else { turning };
+    Some(if ahead >= 0.0 { roots[0] } else { roots[1] })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Change, root};
+    use nalgebra::DVector;
+
+    #[test]
+    fn the_root_lies_on_the_sphere_and_goes_forward() {
+        let change = Change { displacement: DVector::from_vec(vec![0.3, 0.1]), load: 0.05 };
+        let by_residual = DVector::from_vec(vec![-0.02, 0.01]);
+        let by_load = DVector::from_vec(vec![1.5, -0.4]);
+        let size = change.size(0.7);
+        let step = root(&change, &by_residual, &by_load, size, 0.7).expect("a root");
+        let next =
+            Change { displacement: &change.displacement + by_residual + &by_load * step, load: change.load + step };
+        assert!((next.size(0.7) - size).abs() < 1e-15);
+        assert!(next.displacement.dot(&change.displacement) > 0.0);
+    }
+
+    #[test]
+    fn a_sphere_out_of_reach_has_no_root() {
+        let change = Change { displacement: DVector::from_vec(vec![1e-3, 0.0]), load: 0.0 };
+        let by_residual = DVector::from_vec(vec![0.0, 1.0]);
+        let by_load = DVector::from_vec(vec![1.0, 0.0]);
+        assert_eq!(root(&change, &by_residual, &by_load, 1e-3, 0.0), None);
+    }
+}

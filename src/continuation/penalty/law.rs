@@ -1,0 +1,187 @@
+//! One contact: penalty reaction, return mapping of friction, and the derivative of both.
+
+use crate::mechanics::contact::vector::{Vector, add, dot, size};
+use crate::mechanics::contact::{Frame, Reaction};
+use crate::result::increment::Status;
+
+type Matrix = [[f64; 3]; 3];
+
+/// Stiffnesses of the regularisation (dimensionless).
+#[derive(Debug, Clone, Copy)]
+pub struct Penalties {
+    pub normal: f64,
+    pub tangential: f64,
+}
+
+/// What the obstacle does to a node.
+#[derive(Debug, Clone, Copy)]
+pub struct Response {
+    pub status: Status,
+    /// `r_n` and `t`.
+    pub reaction: Reaction,
+    /// Part of the tangential motion since the start of the increment that was slip, a vector in space.
+    pub slip: Vector,
+    /// The force on the node, `r_n n + t`.
+    pub force: Vector,
+    /// `-∂force/∂x`
+    pub stiffness: Matrix,
+}
+
+impl Default for Response {
+    fn default() -> Self {
+        Self {
+            status: Status::Free,
+            reaction: Reaction::default(),
+            slip: [0.0; 3],
+            force: [0.0; 3],
+            stiffness: [[0.0; 3]; 3],
+        }
+    }
+}
+
+/// The response at a frame, where the increment began with the tangential reaction `before` and the node has moved by
+/// `moved` since. A gap of exactly zero is closed: a path may start there.
+pub fn respond(penalties: Penalties, friction: f64, frame: &Frame, before: &Vector, moved: &Vector) -> Response {
+    if frame.gap > 0.0 {
+        return Response::default();
+    }
+    let n = &frame.normal;
+    let project = across(n);
+    let normal = penalties.normal * -frame.gap + 0.0;
+    let reaction = Reaction { normal, tangential: [0.0; 3] };
+    let mut response = Response { status: Status::Slip, reaction, ..Response::default() };
+    // -∂(r_n n)/∂x
+    let normal_part = |row: usize, column: usize| {
+        penalties.normal * n[row] * n[column] - normal * frame.curvature * project[row][column]
+    };
+    response.stiffness = matrix(normal_part);
+    response.force = vector(|k| normal * n[k]);
+    if friction == 0.0 {
+        response.slip = times(&project, moved);
+        return response;
+    }
+    let unprojected = add(before, -penalties.tangential, moved);
+    let trial = times(&project, &unprojected);
+    let size = size(&trial);
+    let along_normal = dot(n, &unprojected);
+    // ∂(trial)/∂x, the turn of the tangent plane included
+    let trial_slope = matrix(|row, column| {
+        -penalties.tangential * project[row][column]
+            - frame.curvature * (along_normal * project[row][column] + n[row] * trial[column])
+    });
+    let bound = friction * normal;
+    let slope = if size <= bound {
+        response.status = Status::Stick;
+        response.reaction.tangential = trial;
+        trial_slope
+    } else {
+        let direction = vector(|k| trial[k] / size);
+        let turning = across(&direction);
+        response.reaction.tangential = vector(|k| bound * direction[k]);
+        response.slip = vector(|k| (bound - size) / penalties.tangential * direction[k]);
+        matrix(|row, column| {
+            let turned: f64 = (0..3).map(|k| turning[row][k] * trial_slope[k][column]).sum();
+            bound / size * turned - friction * penalties.normal * direction[row] * n[column]
+        })
+    };
+    response.force = vector(|k| normal * n[k] + response.reaction.tangential[k]);
+    response.stiffness = matrix(|row, column| normal_part(row, column) - slope[row][column]);
+    response
+}
+
+fn vector(entry: impl Fn(usize) -> f64) -> Vector {
+    std::array::from_fn(entry)
+}
+
+fn matrix(entry: impl Fn(usize, usize) -> f64) -> Matrix {
+    std::array::from_fn(|row| std::array::from_fn(|column| entry(row, column)))
+}
+
+/// `I - n nᵀ`
+fn across(n: &Vector) -> Matrix {
+    matrix(|row, column| if row == column { 1.0 - n[row] * n[column] } else { -n[row] * n[column] })
+}
+
+fn times(matrix: &Matrix, values: &Vector) -> Vector {
+    vector(|row| dot(&matrix[row], values))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Frame, Penalties, Response, dot, respond};
+    use crate::mechanics::contact::obstacle::Obstacle;
+    use crate::mechanics::contact::{Contact, Sliding};
+    use crate::result::increment::Status;
+
+    const PENALTIES: Penalties = Penalties { normal: 300.0, tangential: 70.0 };
+
+    /// A ball of radius 2 around the origin, or the plane z = 0.
+    fn frame(place: &[f64; 3], ball: bool) -> Frame {
+        let (obstacle, initial_gap, relative) = if ball {
+            let offset = [0.0, 0.0, 2.0];
+            (Obstacle::Ball { offset, side: 1.0 }, 0.0, [place[0], place[1], place[2] - 2.0])
+        } else {
+            (Obstacle::Plane { normal: [0.0, 0.0, 1.0] }, 0.0, *place)
+        };
+        Contact { node: 0, obstacle, initial_gap, friction: 0.4, sliding: Sliding::Plane }.frame(&relative)
+    }
+
+    fn response(place: &[f64; 3], start: &[f64; 3], ball: bool) -> Response {
+        let before = if ball { [0.02, 0.03, -0.01] } else { [0.02, 0.03, 0.0] };
+        let moved = std::array::from_fn(|k| place[k] - start[k]);
+        respond(PENALTIES, 0.4, &frame(place, ball), &before, &moved)
+    }
+
+    /// Central differences of the force against the stiffness, sticking and slipping, flat and curved.
+    #[test]
+    fn the_stiffness_is_the_derivative_of_the_force() {
+        let flat = [0.0, 0.0, -0.01];
+        let curved = [0.6, 1.1, (1.99_f64.powi(2) - 0.36 - 1.21).sqrt()];
+        for (start, ball) in [(flat, false), (curved, true)] {
+            for (motion, status) in [([1e-4, -2e-4, -1e-4], Status::Stick), ([0.05, -0.03, -0.01], Status::Slip)] {
+                let place: [f64; 3] = std::array::from_fn(|k| start[k] + motion[k]);
+                let here = response(&place, &start, ball);
+                assert_eq!(here.status, status);
+                for column in 0..3 {
+                    let shifted = |sign: f64| {
+                        let mut place = place;
+                        place[column] += sign * 1e-6;
+                        response(&place, &start, ball).force
+                    };
+                    let (ahead, behind) = (shifted(1.0), shifted(-1.0));
+                    for row in 0..3 {
+                        let slope = (behind[row] - ahead[row]) / 2e-6;
+                        let found = here.stiffness[row][column];
+                        assert!((slope - found).abs() < 1e-4, "{row} {column}: {slope} {found}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn slip_lies_on_the_cone_and_runs_against_friction() {
+        let slipping = response(&[0.05, 0.03, -0.02], &[0.0, 0.0, -0.01], false);
+        let tangential = slipping.reaction.tangential;
+        let size = dot(&tangential, &tangential).sqrt();
+        assert!((size - 0.4 * slipping.reaction.normal).abs() < 1e-14);
+        assert!((slipping.reaction.normal - 6.0).abs() < 1e-14);
+        let slip = dot(&slipping.slip, &slipping.slip).sqrt();
+        assert!((dot(&slipping.slip, &tangential) + slip * size).abs() < 1e-14);
+        // Slip and change of the elastic part make up the whole motion.
+        let elastic = [0.02, 0.03, 0.0].map(|t| -t / PENALTIES.tangential);
+        for k in 0..2 {
+            let change = -tangential[k] / PENALTIES.tangential - elastic[k];
+            assert!((slipping.slip[k] + change - [0.05, 0.03][k]).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn an_open_contact_does_nothing_and_forgets() {
+        let open = response(&[0.05, 0.03, 1e-9], &[0.0, 0.0, -0.01], false);
+        assert_eq!((open.status, open.force, open.reaction.tangential), (Status::Free, [0.0; 3], [0.0; 3]));
+        let closed = respond(PENALTIES, 0.4, &frame(&[0.0; 3], false), &[0.0; 3], &[0.0; 3]);
+        assert_eq!(closed.status, Status::Stick);
+        assert_eq!(closed.stiffness[2][2], PENALTIES.normal);
+    }
+}

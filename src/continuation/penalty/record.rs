@@ -1,0 +1,72 @@
+//! Energies and modes.
+//!
+//! ```text
+//! ΔW = f_held·Δu + ½ (s₀ + s₁) f·Δu + ½ (R₀ + R₁)·Δu_support + ½ Σ (F₀ + F₁)·Δx_obstacle
+//! ΔD = -½ Σ (t₀ + t₁)·Δx_slip
+//! ```
+//!
+//! by the trapezoidal rule; `R` are the forces of supports, `F` those of obstacles on nodes. `strain` is the structure's
+//! alone: the elastic energy of the penalties is in none of the three, so that it shows in `energy_error`, as what it is.
+
+use crate::continuation::penalty::law::Response;
+use crate::continuation::penalty::system::{Point, System};
+use crate::mechanics::contact::Mode;
+use crate::mechanics::contact::vector::{add, dot, size};
+use crate::mechanics::problem::loading::of_node;
+use crate::result::increment::Status;
+
+/// `(ΔW, ΔD)` of an increment.
+pub fn work_and_dissipation(system: &System<'_>, from: &Point, to: &Point) -> (f64, f64) {
+    let loading = system.loading;
+    let mean_load = 0.5 * (from.state.load + to.state.load);
+    let mut work = 0.0;
+    let change: Vec<f64> =
+        to.state.displacement.iter().zip(&from.state.displacement).map(|(end, start)| end - start).collect();
+    for (freedom, change) in change.iter().enumerate() {
+        work += (loading.held.forces[freedom] + mean_load * loading.pattern.forces[freedom]) * change;
+    }
+    if loading.pattern.moves_boundary() {
+        let (start, end) = (system.evaluate(from, &from.state), system.evaluate(from, &to.state));
+        for (freedom, change) in change.iter().enumerate() {
+            if loading.structure.unknown_of[freedom].is_none() {
+                work += 0.5 * (start.unbalanced[freedom] + end.unbalanced[freedom]) * change;
+            }
+        }
+        for (index, (before, after)) in from.contacts.iter().zip(&to.contacts).enumerate() {
+            let moved = of_node(loading.structure.dimension, loading.contacts[index].node, &change);
+            let relative = add(&loading.relative(index, &to.state), -1.0, &loading.relative(index, &from.state));
+            let obstacle = add(&moved, -1.0, &relative);
+            work += 0.5 * dot(&add(&before.force, 1.0, &after.force), &obstacle);
+        }
+    }
+    let dissipated = from.contacts.iter().zip(&to.contacts).map(|(before, after)| dissipation(before, after)).sum();
+    (work, dissipated)
+}
+
+fn dissipation(before: &Response, after: &Response) -> f64 {
+    let (first, last) = (&before.reaction.tangential, &after.reaction.tangential);
+    let at_end = -dot(last, &after.slip);
+    // Slip that has just begun or turned round ran at the end's reaction, near enough.
+    let went_on = before.status == Status::Slip && dot(first, last) > 0.0;
+    if went_on { 0.5 * (at_end - dot(first, &after.slip)) } else { at_end }
+}
+
+/// How far the regularised law lets the contacts go where the exact one holds them: the largest penetration or elastic
+/// slip.
+pub fn give(system: &System<'_>, point: &Point) -> f64 {
+    let of_contact = |response: &Response| {
+        let tangential = size(&response.reaction.tangential) / system.penalties.tangential;
+        tangential.max(response.reaction.normal / system.penalties.normal)
+    };
+    point.contacts.iter().map(of_contact).fold(0.0, f64::max)
+}
+
+/// What held in the increment that led to the point.
+pub fn modes(point: &Point) -> Vec<Mode> {
+    let mode = |response: &Response| match response.status {
+        Status::Free => Mode::Free,
+        Status::Stick => Mode::Stick,
+        Status::Slip => Mode::Slip { direction: [0.0; 3] },
+    };
+    point.contacts.iter().map(mode).collect()
+}

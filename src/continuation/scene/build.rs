@@ -1,0 +1,321 @@
+//! From the request's names and units to numbers without.
+
+use crate::continuation::scene::{Reported, StageLoad};
+use crate::mechanics::contact::obstacle::Obstacle;
+use crate::mechanics::contact::vector::{Vector, size};
+use crate::mechanics::contact::{Contact, Sliding};
+use crate::mechanics::equations::stage_end::End;
+use crate::mechanics::problem::loading::LoadPattern;
+use crate::mechanics::problem::node_forces::Corner;
+use crate::mechanics::structure::Structure;
+use crate::mechanics::structure::elements::Element;
+use crate::mechanics::structure::elements::bar::Bar;
+use crate::mechanics::structure::elements::spring::Spring;
+use crate::model::input::limits::PENETRATION_TOLERANCE;
+use crate::model::request::{self, Analysis, Model, Side};
+use crate::resources::budget;
+use crate::result::plan::LeftOut;
+use indexmap::IndexMap;
+use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
+
+/// Euclidean norm: the scales must not depend on the axes.
+pub(super) fn norm(values: &[f64]) -> f64 {
+    values.iter().map(|value| value * value).sum::<f64>().sqrt()
+}
+
+/// `like`: a structure that may be the same but for its numbers.
+pub(super) fn build_structure(
+    model: &Model,
+    numbers: &HashMap<&str, usize>,
+    length: f64,
+    force: f64,
+    like: Option<&Structure>,
+) -> Structure {
+    let dimension = model.dimension;
+    let mut supported = vec![false; model.nodes.len() * dimension];
+    for (name, components) in &model.supports {
+        for component in components {
+            supported[numbers[name.as_str()] * dimension + component.index()] = true;
+        }
+    }
+    let elements = model
+        .elements
+        .iter()
+        .map(|element| match element {
+            request::Element::Bar { nodes, axial_stiffness, rest_length, prestress, strain } => {
+                let nodes = [numbers[nodes[0].as_str()], numbers[nodes[1].as_str()]];
+                let mut vector = [0.0; 3];
+                // A difference of places as given: a place far from the origin costs no digits.
+                (0..dimension).for_each(|k| vector[k] = (model.nodes[nodes[1]][k] - model.nodes[nodes[0]][k]) / length);
+                let apart = vector.iter().map(|value| value * value).sum::<f64>().sqrt();
+                Element::Bar(Bar {
+                    nodes,
+                    reference: vector,
+                    reference_length: apart,
+                    axial_stiffness: axial_stiffness / force,
+                    rest_length: rest_length.map_or(apart, |rest| rest / length),
+                    prestress: prestress / force,
+                    strain: *strain,
+                })
+            }
+            request::Element::Spring { nodes, stiffness } => {
+                let mut matrix = [[0.0; 3]; 3];
+                for (row, values) in stiffness.iter().enumerate() {
+                    for (column, value) in values.iter().enumerate() {
+                        matrix[row][column] = value / force * length;
+                    }
+                }
+                Element::Spring(Spring {
+                    node: numbers[nodes[0].as_str()],
+                    other: nodes.get(1).map(|name| numbers[name.as_str()]),
+                    stiffness: matrix,
+                })
+            }
+        })
+        .collect();
+    Structure::like(like, dimension, &supported, elements)
+}
+
+/// The contacts that are solved for, and those of the request.
+pub(super) struct Contacts {
+    pub contacts: Vec<Contact>,
+    pub contact_names: Vec<(Arc<str>, Arc<str>)>,
+    pub reported: Vec<Reported>,
+    pub corners: Vec<Corner>,
+}
+
+/// Planes whose normals and gaps (dimensionless) differ by less than this are one.
+const COINCIDENT: f64 = 1e-13;
+
+pub(super) fn build_contacts(
+    model: &Model,
+    numbers: &HashMap<&str, usize>,
+    length: f64,
+    structure: &Structure,
+    left_out: &mut Vec<LeftOut>,
+) -> Contacts {
+    let mut contacts: Vec<Contact> = Vec::new();
+    let mut contact_names: Vec<(Arc<str>, Arc<str>)> = Vec::new();
+    let mut reported: Vec<Reported> = Vec::new();
+    // Which contacts of the request each one stands for.
+    let mut members: Vec<Vec<usize>> = Vec::new();
+    let mut of_node: HashMap<usize, Vec<usize>> = HashMap::new();
+    // By node and gap, so that only those of nearly the same gap are compared.
+    let mut by_gap: HashMap<usize, BTreeMap<u64, Vec<usize>>> = HashMap::new();
+    for (index, contact) in model.contacts.iter().enumerate() {
+        budget::spend(1);
+        let built = build_contact(model, contact, numbers[contact.node.as_str()], length, structure);
+        if built.friction == 0.0 && contact.friction > 0.0 {
+            left_out.push(LeftOut {
+                what: format!("friction of {} on {}", contact.node, contact.obstacle),
+                why: "the node's supports leave it no motion along the obstacle".to_owned(),
+            });
+        }
+        let (node, obstacle) = (Arc::from(contact.node.as_str()), Arc::from(contact.obstacle.as_str()));
+        let moves_with = |other: &request::Contact| {
+            let motion = |stage: &request::Stage, name: &str| stage.obstacle_motion.get(name).cloned();
+            model.stages.iter().all(|stage| motion(stage, &contact.obstacle) == motion(stage, &other.obstacle))
+        };
+        let neighbours = of_node.entry(built.node).or_default();
+        let alike = by_gap.entry(built.node).or_default();
+        let (gap, near) = (built.initial_gap, COINCIDENT * (1.0 + built.initial_gap.abs()));
+        let twin = alike
+            .range(ordered(gap - near)..=ordered(gap + near))
+            .flat_map(|(_, others)| others.iter().copied())
+            .filter(|other| coincide(&contacts[*other], &built) && moves_with(&model.contacts[members[*other][0]]))
+            .min();
+        let place = twin.unwrap_or(contacts.len());
+        if twin.is_none() {
+            neighbours.push(place);
+            alike.entry(ordered(gap)).or_default().push(place);
+            contacts.push(built);
+            contact_names.push((Arc::clone(&node), Arc::clone(&obstacle)));
+            members.push(Vec::new());
+        }
+        members[place].push(index);
+        reported.push(Reported {
+            node,
+            obstacle,
+            contact: place,
+            normal_share: 1.0,
+            tangential_share: 1.0,
+            shared: false,
+        });
+    }
+    for (contact, members) in contacts.iter_mut().zip(&members).filter(|(_, members)| members.len() > 1) {
+        // Pressed equally, which is least; each carries of the traction what its friction bears.
+        let number = members.len() as f64;
+        let total: f64 = members.iter().map(|member| model.contacts[*member].friction).sum();
+        for member in members {
+            let part = if total > 0.0 { model.contacts[*member].friction / total } else { 1.0 / number };
+            let one = &mut reported[*member];
+            (one.normal_share, one.tangential_share, one.shared) = (1.0 / number, part, true);
+        }
+        if contact.sliding.directions() > 0 {
+            contact.friction = total / number;
+        }
+    }
+    // In the order of the contacts, so that the numbering does not depend on a hash.
+    let corners = contacts
+        .iter()
+        .enumerate()
+        .filter_map(|(index, contact)| of_node.get(&contact.node).filter(|all| all.len() > 1 && all[0] == index))
+        .map(|contacts| Corner { contacts: contacts.clone() })
+        .collect();
+    Contacts { contacts, contact_names, reported, corners }
+}
+
+/// The request's contact for which each one that is solved for is numbered: the first.
+pub(super) fn first_contacts(reported: &[Reported], count: usize) -> Vec<usize> {
+    let mut first: Vec<usize> = Vec::with_capacity(count);
+    for (index, one) in reported.iter().enumerate() {
+        if one.contact == first.len() {
+            first.push(index);
+        }
+    }
+    first
+}
+
+/// Numbers in the order of these.
+fn ordered(value: f64) -> u64 {
+    let bits = value.to_bits();
+    if value.is_sign_negative() { !bits } else { bits | (1 << 63) }
+}
+
+/// Whether two contacts are one: the same node before the same surface.
+fn coincide(first: &Contact, second: &Contact) -> bool {
+    let near = |a: &Vector, b: &Vector| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= COINCIDENT);
+    let surfaces = match (&first.obstacle, &second.obstacle) {
+        (Obstacle::Plane { normal: a }, Obstacle::Plane { normal: b }) => near(a, b),
+        (Obstacle::Ball { offset: a, side: x }, Obstacle::Ball { offset: b, side: y }) => near(a, b) && x == y,
+        (Obstacle::Plane { .. }, Obstacle::Ball { .. }) | (Obstacle::Ball { .. }, Obstacle::Plane { .. }) => false,
+    };
+    first.node == second.node && surfaces && (first.initial_gap - second.initial_gap).abs() <= COINCIDENT
+}
+
+fn build_contact(
+    model: &Model,
+    contact: &request::Contact,
+    node: usize,
+    length: f64,
+    structure: &Structure,
+) -> Contact {
+    let dimension = model.dimension;
+    let place = &model.nodes[&contact.node];
+    // What is within the round-off of the coordinates is contact.
+    let snapped = |gap: f64, reach: f64| {
+        let closed = gap.abs() <= PENETRATION_TOLERANCE * length + 4.0 * f64::EPSILON * reach;
+        if closed { 0.0 } else { gap / length }
+    };
+    let reach = |values: &[f64]| place.iter().chain(values).fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let (obstacle, initial_gap) = match &model.obstacles[&contact.obstacle] {
+        request::Obstacle::Ball { center, radius, side } => {
+            let mut offset = [0.0; 3];
+            (0..dimension).for_each(|k| offset[k] = (place[k] - center[k]) / length);
+            let side = match side {
+                Side::Outside => 1.0,
+                Side::Inside => -1.0,
+            };
+            let gap = side * (size(&offset) * length - radius);
+            (Obstacle::Ball { offset, side }, snapped(gap, reach(center).max(*radius)))
+        }
+        request::Obstacle::Plane { point, normal } => {
+            let largest = normal.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+            let size = norm(&normal.iter().map(|value| value / largest).collect::<Vec<f64>>()) * largest;
+            let mut unit = [0.0; 3];
+            normal.iter().enumerate().for_each(|(k, value)| unit[k] = value / size);
+            let gap: f64 = (0..dimension).map(|k| (place[k] - point[k]) * unit[k]).sum();
+            (Obstacle::Plane { normal: unit }, snapped(gap, reach(point)))
+        }
+    };
+    let sliding = sliding(structure, node);
+    let friction = if sliding.directions() == 0 { 0.0 } else { contact.friction };
+    Contact { node, obstacle, initial_gap, friction, sliding }
+}
+
+/// In which directions a node can slide, by its supports.
+fn sliding(structure: &Structure, node: usize) -> Sliding {
+    let dimension = structure.dimension;
+    let held: Vec<usize> = (0..dimension).filter(|k| structure.unknown_of[node * dimension + k].is_none()).collect();
+    match (dimension, held.as_slice()) {
+        (2, []) => Sliding::Line { across: [0.0, 0.0, 1.0] },
+        (3, []) => Sliding::Plane,
+        (3, [component]) => {
+            let mut across = [0.0; 3];
+            across[*component] = 1.0;
+            Sliding::Line { across }
+        }
+        _ => Sliding::None,
+    }
+}
+
+/// The model made dimensionless, as far as its stages need it.
+pub(super) struct Scaled<'a> {
+    pub model: &'a Model,
+    pub analysis: &'a Analysis,
+    pub numbers: &'a HashMap<&'a str, usize>,
+    pub structure: &'a Structure,
+    /// The request's contact of each contact that is solved for.
+    pub first_contacts: &'a [usize],
+    pub length: f64,
+    pub force: f64,
+    /// `ℓ` over what it would be if none were given.
+    pub stretched: f64,
+}
+
+/// `resistance` is the force that the load scale goes by.
+pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &Scaled<'_>) -> StageLoad {
+    let &Scaled { model, analysis, numbers, structure, first_contacts, length, force, stretched } = scaled;
+    let dimension = structure.dimension;
+    // Forces and motions of supports, and shifts of obstacles.
+    let held = budget::take::<f64>(2 * structure.freedoms() + 3 * first_contacts.len());
+    budget::spend(structure.freedoms());
+    let largest = |vectors: &IndexMap<String, Vec<f64>>| vectors.values().map(|v| norm(v)).fold(0.0_f64, f64::max);
+    let by_force = resistance / largest(&stage.forces);
+    let by_motion = length / largest(&stage.displacements).max(largest(&stage.obstacle_motion));
+    let natural = by_force.min(by_motion);
+    let natural = if natural.is_finite() { natural } else { 1.0 };
+    let load_scale = analysis.arc_length.load_scale.unwrap_or(natural);
+    let enlarged = stretched.max(load_scale / natural).max(1.0);
+    let over_freedoms = |vectors: &IndexMap<String, Vec<f64>>, unit: f64| {
+        let mut values = vec![0.0; structure.freedoms()];
+        for (name, vector) in vectors {
+            for (component, value) in vector.iter().enumerate() {
+                values[numbers[name.as_str()] * dimension + component] = value * load_scale / unit;
+            }
+        }
+        values
+    };
+    let shift = |contact: &request::Contact| {
+        let mut shift: Vector = [0.0; 3];
+        if let Some(motion) = stage.obstacle_motion.get(&contact.obstacle) {
+            motion.iter().enumerate().for_each(|(k, value)| shift[k] = value * load_scale / length);
+        }
+        shift
+    };
+    let supports_move = model.stages.iter().any(|stage| largest(&stage.displacements) > 0.0);
+    let pattern = LoadPattern {
+        forces: over_freedoms(&stage.forces, force),
+        supports: if supports_move { over_freedoms(&stage.displacements, length) } else { Vec::new() },
+        shifts: first_contacts.iter().map(|contact| shift(&model.contacts[*contact])).collect(),
+    };
+    let mut ends = Vec::new();
+    if let Some(until) = &stage.until {
+        let load = |bound: f64, sign: f64| End::Load { bound: bound / load_scale, sign };
+        ends.extend(until.load_above.map(|bound| load(bound, 1.0)));
+        ends.extend(until.load_below.map(|bound| load(bound, -1.0)));
+        if let Some(given) = &until.displacement {
+            let freedom = numbers[given.node.as_str()] * dimension + given.component.index();
+            let end = |bound: f64, sign: f64| End::Displacement { freedom, bound: bound / length, sign };
+            ends.extend(given.above.map(|bound| end(bound, 1.0)));
+            ends.extend(given.below.map(|bound| end(bound, -1.0)));
+        }
+        ends.extend(until.limit_points.map(End::LimitPoints));
+        ends.extend(until.contact_change.map(End::ContactChanges));
+        ends.extend(until.increments.map(End::Increments));
+    }
+    let loads = stage.until.as_ref().map(|until| [until.load_above, until.load_below]);
+    let given_loads = loads.into_iter().flatten().flatten().collect();
+    StageLoad { name: Arc::from(stage.name.as_str()), pattern, load_scale, enlarged, ends, given_loads, _held: held }
+}

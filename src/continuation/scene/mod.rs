@@ -1,0 +1,189 @@
+//! A request made ready for tracing: checked, numbered and dimensionless.
+//!
+//! Lengths are divided by `displacement_scale` `ℓ`, forces by `force_scale` `φ`, each stage's load factor by its
+//! `load_scale` `σ`; a pattern `f` becomes `f σ/φ`. By default `ℓ` is the longest bar and `φ` the smallest axial
+//! stiffness of those that resist the load; without bars, `φ` is the largest force of any stage at the load factor at which
+//! the stage is to end (1 where it names none), or the stiffness of the springs that resist the load (the largest Frobenius
+//! norm) times the largest prescribed motion if that is more, and `ℓ` that force over that stiffness. What resists is
+//! found by `resistance`; where the bars' stiffnesses differ by no more than a factor of two it need not be.
+//! `σ` is the smaller of `φ / max |f|`, with the `φ` of what resists the stage's own load, and `ℓ / max |motion|`. All follow
+//! the units of the input, so that a change of units changes nothing but round-off.
+
+pub(crate) mod build;
+pub(crate) mod plan;
+pub(crate) mod recorded_rows;
+pub(crate) mod refuse;
+pub(crate) mod resistance;
+pub(crate) mod scales;
+
+use crate::mechanics::contact::Contact;
+use crate::mechanics::equations::stage_end::End;
+use crate::mechanics::problem::loading::LoadPattern;
+use crate::mechanics::problem::node_forces::Corner;
+use crate::mechanics::structure::Structure;
+use crate::model::request::{Analysis, JobRequest};
+use crate::model::{InputError, InputErrors};
+use crate::resources::budget::{self, Breach, Budget, Taken};
+use crate::result::displacements::Displacements;
+use crate::result::plan::Plan;
+use build::{Contacts, Scaled, build_contacts, build_stage, build_structure, first_contacts};
+use scales::{Scales, scales};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Everything a path needs to know; shared by all who trace it.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    pub(crate) structure: Structure,
+    /// Contacts that are solved for; coincident ones of a node are one of them.
+    pub(crate) contacts: Vec<Contact>,
+    /// Names of their nodes and obstacles.
+    pub(crate) contact_names: Vec<(Arc<str>, Arc<str>)>,
+    /// The contacts of the request, in its order.
+    pub(crate) reported: Vec<Reported>,
+    /// Nodes with several contacts.
+    pub(crate) corners: Vec<Corner>,
+    /// Whose names those of each increment share.
+    pub(crate) no_displacements: Displacements,
+    pub(crate) stages: Vec<StageLoad>,
+    pub(crate) analysis: Analysis,
+    /// Which of the request's contacts have a row in every increment, in reach or not; `None`: all.
+    pub(crate) asked_rows: Option<Vec<usize>>,
+    /// Straight stretches are one increment.
+    pub(crate) jumps: bool,
+    plan: Plan,
+}
+
+/// A contact of the request and its part of the one that is solved for.
+#[derive(Debug, Clone)]
+pub(crate) struct Reported {
+    pub node: Arc<str>,
+    pub obstacle: Arc<str>,
+    /// Which of the scene's contacts.
+    pub contact: usize,
+    /// Shares of the reaction's parts; 1 but for coincident contacts.
+    pub normal_share: f64,
+    pub tangential_share: f64,
+    /// Others of the request share that contact.
+    pub shared: bool,
+}
+
+/// A stage's load pattern over all degrees of freedom and its ends, dimensionless.
+#[derive(Debug, Clone)]
+pub(crate) struct StageLoad {
+    pub name: Arc<str>,
+    pub pattern: LoadPattern,
+    pub load_scale: f64,
+    /// By how many times the scales that are given exceed those that would be if none were; no less than 1.
+    pub enlarged: f64,
+    pub ends: Vec<End>,
+    /// The loads at which the stage may end, in the user's units, in the order of those `ends`.
+    given_loads: Vec<f64>,
+    _held: Taken,
+}
+
+impl StageLoad {
+    /// A load in the user's units. At the bound of a stage it is the number that was given: dividing it by a scale and
+    /// multiplying again may not give it back.
+    pub fn load_factor(&self, load: f64) -> f64 {
+        let bounds =
+            self.ends.iter().filter_map(|end| if let End::Load { bound, .. } = end { Some(*bound) } else { None });
+        let given = bounds.zip(&self.given_loads).find(|(bound, _)| *bound == load);
+        given.map_or(load * self.load_scale, |(_, given)| *given)
+    }
+}
+
+impl Scene {
+    /// Checks the request as a whole and makes it dimensionless, within the budget of the solve under way.
+    ///
+    /// # Errors
+    /// What is wrong with the request, and a structure whose matrices are too large for that budget.
+    pub fn new(request: &JobRequest) -> Result<Self, InputErrors> {
+        Self::like(None, request)
+    }
+
+    /// As [`new`](Self::new), beside the scene of a request that may differ in numbers alone: what does not hang on them is
+    /// not made twice.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new).
+    pub fn like(other: Option<&Self>, request: &JobRequest) -> Result<Self, InputErrors> {
+        let other = other.map(|other| &other.structure);
+        Budget::under_way(budget::cancel_flag()).during(|| Self::built(request, other)).unwrap_or_else(|breach| {
+            let what = match breach {
+                Breach::Cancelled => budget::end(breach),
+                Breach::Memory { .. } => "the model is too large",
+                Breach::FactorEntries { .. } | Breach::FactorWork { .. } => {
+                    "the elements join too many nodes to too many others"
+                }
+            };
+            Err(InputErrors(vec![InputError::new("/model/elements", format!("{what}: {breach}"))]))
+        })
+    }
+
+    fn built(request: &JobRequest, like: Option<&Structure>) -> Result<Self, InputErrors> {
+        crate::model::check::check(request)?;
+        let model = &request.model;
+        let numbers: HashMap<&str, usize> =
+            model.nodes.keys().enumerate().map(|(number, name)| (name.as_str(), number)).collect();
+        let scales = scales(model, &request.analysis, &numbers, like);
+        let Scales { length, force, resistances, stretched, structure } = scales;
+        let structure = build_structure(model, &numbers, length, force, structure.as_ref().or(like));
+        let mut left_out = Vec::new();
+        let Contacts { contacts, contact_names, reported, corners } =
+            build_contacts(model, &numbers, length, &structure, &mut left_out);
+        let first_contacts = first_contacts(&reported, contacts.len());
+        let scaled = Scaled {
+            model,
+            analysis: &request.analysis,
+            numbers: &numbers,
+            structure: &structure,
+            first_contacts: &first_contacts,
+            length,
+            force,
+            stretched,
+        };
+        let stages: Vec<StageLoad> =
+            model.stages.iter().zip(&resistances).map(|(stage, force)| build_stage(stage, *force, &scaled)).collect();
+        let plan = Plan {
+            unknowns: structure.unknowns() as u64,
+            contacts: reported.len() as u64,
+            stages: stages.len() as u64,
+            displacement_scale: length,
+            force_scale: force,
+            load_scales: stages.iter().map(|stage| stage.load_scale).collect(),
+            left_out,
+        };
+        let no_displacements = Displacements::zero(model.nodes.keys().map(String::as_str), model.dimension);
+        let analysis = request.analysis.clone();
+        let asked_rows = crate::continuation::scene::recorded_rows::asked_rows(request);
+        let jumps = crate::continuation::scene::plan::jumps(&analysis, &structure);
+        let mut scene = Self {
+            structure,
+            contacts,
+            contact_names,
+            reported,
+            corners,
+            no_displacements,
+            stages,
+            analysis,
+            asked_rows,
+            jumps,
+            plan,
+        };
+        scene.plan.left_out.extend(crate::continuation::scene::plan::left_out(&scene));
+        scene.refuse_mechanism()?;
+        scene.refuse_imbalance()?;
+        scene.refuse_dragged_supports(model)?;
+        Ok(scene)
+    }
+
+    fn node_name(&self, node: usize) -> &str {
+        self.no_displacements.get_index(node).map_or("", |(name, _)| name)
+    }
+
+    /// What the scene needs and what is left out.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+}

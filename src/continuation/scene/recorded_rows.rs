@@ -1,0 +1,40 @@
+//! Which contacts have a row in every increment, and how fast their gaps can close.
+
+use crate::continuation::scene::Scene;
+use crate::mechanics::contact::vector::size;
+use crate::model::JobRequest;
+use crate::model::input::limits::MAX_ROWS_UNASKED;
+use crate::model::request::{ContactRange, Method, RecordedContacts};
+use std::collections::HashSet;
+
+/// A contact is in reach that this many steps could close: more than the one that is taken, so that what is tried past
+/// its end (the program of an increment looks three steps ahead) finds every contact it needs.
+pub(crate) const REACH: f64 = 4.0;
+
+/// How far a contact's gap may change by unit arc length, in any stage.
+pub(crate) fn fastest(scene: &Scene, contact: usize) -> f64 {
+    let shift = scene.stages.iter().fold(0.0_f64, |most, stage| most.max(size(&stage.pattern.shifts[contact])));
+    shift.hypot(1.0)
+}
+
+/// Which contacts of the request have a row in every increment, in reach or not; `None`: all.
+pub(crate) fn asked_rows(request: &JobRequest) -> Option<Vec<usize>> {
+    let (analysis, contacts) = (&request.analysis, &request.model.contacts);
+    if analysis.keep_all || analysis.method == Method::Regularised {
+        return None;
+    }
+    match analysis.record.as_ref().and_then(|record| record.contacts.as_ref()) {
+        None if contacts.len() <= MAX_ROWS_UNASKED => None,
+        Some(RecordedContacts::Range(ContactRange::All)) => None,
+        None | Some(RecordedContacts::Range(ContactRange::InReach)) => Some(Vec::new()),
+        Some(RecordedContacts::Named(named)) => {
+            let named: HashSet<(&str, &str)> =
+                named.iter().map(|one| (one.node.as_str(), one.obstacle.as_str())).collect();
+            let is_named = |index: &usize| {
+                let contact = &contacts[*index];
+                named.contains(&(contact.node.as_str(), contact.obstacle.as_str()))
+            };
+            Some((0..contacts.len()).filter(is_named).collect())
+        }
+    }
+}

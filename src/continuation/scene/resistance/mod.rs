@@ -1,0 +1,334 @@
+//! Which stiffness resists a stage's load: what the scales of force and load go by.
+//!
+//! An element that carries nothing must not set a scale, be it soft beside others (a tether) or stiff in line with them (a
+//! link). What an element carries shows in the strain energy that it stores when the load is put on: of a soft one beside
+//! others that goes with its stiffness `k`, of a stiff one in line with others with `1/k`, and the mean of the stiffnesses
+//!
+//! ```text
+//! k = exp(Σ w_e ln k_e / Σ w_e),      w_e the energy of the element e,
+//! ```
+//!
+//! hardly changes whatever they are. It does not depend on the order or the number of the elements that share the load.
+//!
+//! The motion is that of the undeformed structure, `K u = s p`, `p·u = 1` (regular as well where `K` is not and the load
+//! pushes what nothing holds), with the contacts that are closed held along their normals. Friction gives way
+//! where the load is large enough, and holds the rest: it is taken as springs of the usual stiffness. A structure that only
+//! a soft element holds at first order may be held by others at second (a bar loaded across): a motion of finite size,
+//! relaxed by Newton's method, tells, and closes contacts that it would pass through. The stiffest answer counts: a load
+//! scale that is too large costs next to nothing, the arc length being then that of the displacements.
+
+pub(crate) mod equations;
+
+use crate::mechanics::contact::Contact;
+use crate::mechanics::contact::vector::{Vector, add, dot, size};
+use crate::mechanics::problem::loading::{LoadPattern, of_node};
+use crate::mechanics::structure::elements::{Element, Stretching};
+use crate::mechanics::structure::{MOST_ANALYSED, Structure};
+use nalgebra::DVector;
+
+/// Gap (dimensionless) up to which a contact is closed.
+const CLOSED: f64 = 1e-10;
+/// Stiffness that holds a closed contact, over that of its node.
+const HELD_BY: f64 = 1e6;
+/// Energy of the elements over that of all, below which the load goes into what is held.
+const NOT_HELD: f64 = 1e-3;
+/// Size of the finite motion, over the longest bar; where Newton's method does not converge, the next.
+const FINITE: [f64; 2] = [0.05, 0.0125];
+/// Its iterations.
+const MOST_ITERATIONS: usize = 12;
+/// The last correction over the motion.
+const CONVERGED: f64 = 1e-9;
+/// Energy over that of the elements' stiffnesses and whole displacements, below which it is rounding.
+const ROUNDING: f64 = 1e-26;
+/// How often contacts that a motion passes through are closed.
+const MOST_CLOSINGS: usize = 2;
+
+/// The stiffness of the elements that resist a stage's pattern, as an axial stiffness, dimensionless; `None` where
+/// nothing that can move resists it.
+pub(super) fn resisting(structure: &Structure, contacts: &[Contact], pattern: &LoadPattern) -> Option<f64> {
+    let held = contacts.iter().map(|contact| contact.gap(&[0.0; 3]) <= CLOSED).collect();
+    let still = vec![0.0; structure.freedoms()];
+    let mut response = Response {
+        structure,
+        contacts,
+        pattern,
+        stiffness_at: stiffness_at(structure, &still),
+        usual: usual_stiffness(structure, &still),
+        held,
+    };
+    let mut stiffest: Option<f64> = None;
+    for _ in 0..=MOST_CLOSINGS {
+        let Some(first) = response.at_first_order(&still) else { break };
+        let finite = response.relaxed(&still, &first);
+        let of_finite = finite.as_ref().and_then(|finite| response.mean(finite, true));
+        for mean in [response.mean(&first, false), of_finite].into_iter().flatten() {
+            stiffest = Some(stiffest.map_or(mean, |known| known.max(mean)));
+        }
+        if !finite.is_some_and(|finite| response.close(&finite)) {
+            break;
+        }
+    }
+    stiffest
+}
+
+/// The mean diagonal entry of the tangent at each node, which does not hang on the axes.
+fn stiffness_at(structure: &Structure, still: &[f64]) -> Vec<f64> {
+    let mut diagonal = vec![0.0_f64; structure.freedoms()];
+    structure.each_stiffness(still, &mut |row, column, value| {
+        if row == column {
+            diagonal[row] += value;
+        }
+    });
+    let mean = |node: &[f64]| (node.iter().sum::<f64>() / node.len() as f64).abs();
+    diagonal.chunks(structure.dimension.max(1)).map(mean).collect()
+}
+
+/// The stiffness of which as many bars are stiffer as softer, or one more; of springs where there are only these. An element's
+/// is the sum of its diagonal entries at a node, a bar's own whatever the axes.
+fn usual_stiffness(structure: &Structure, still: &[f64]) -> f64 {
+    let of_element = |element: &Element| {
+        let mut sum = 0.0_f64;
+        element.add_stiffness(structure.dimension, still, &mut |row, column, value| {
+            if row == column {
+                sum += value;
+            }
+        });
+        sum.abs() / element.nodes().count() as f64
+    };
+    let has_bars = structure.elements.iter().any(|element| matches!(element, Element::Bar(_)));
+    let counts = |element: &&Element| !has_bars || matches!(element, Element::Bar(_));
+    let mut all: Vec<f64> = structure.elements.iter().filter(counts).map(of_element).collect();
+    all.sort_by(f64::total_cmp);
+    all.get(all.len().saturating_sub(1) / 2).copied().unwrap_or(0.0)
+}
+
+/// All degrees of freedom and the load.
+struct Motion {
+    displacement: Vec<f64>,
+    load: f64,
+}
+
+struct Response<'a> {
+    structure: &'a Structure,
+    contacts: &'a [Contact],
+    pattern: &'a LoadPattern,
+    /// Of each node.
+    stiffness_at: Vec<f64>,
+    /// With which friction holds.
+    usual: f64,
+    /// The contacts that are held.
+    held: Vec<bool>,
+}
+
+/// A stiffness against `c·u + b s`.
+struct Tie {
+    stretching: Stretching,
+    /// `b`
+    by_load: f64,
+}
+
+impl Tie {
+    fn stretch(&self, motion: &Motion) -> f64 {
+        let along = self.stretching.along.iter().map(|(freedom, value)| value * motion.displacement[*freedom]);
+        along.sum::<f64>() + self.by_load * motion.load
+    }
+
+    fn energy(&self, motion: &Motion) -> f64 {
+        self.stretching.stiffness.abs() * self.stretch(motion).powi(2)
+    }
+}
+
+impl Response<'_> {
+    /// Holds the contacts that a motion passes through; whether there are any.
+    fn close(&mut self, motion: &Motion) -> bool {
+        let mut closes = false;
+        for (index, contact) in self.contacts.iter().enumerate() {
+            let passes = !self.held[index] && contact.gap(&self.relative(index, motion)) < 0.0;
+            self.held[index] |= passes;
+            closes |= passes;
+        }
+        closes
+    }
+
+    /// Displacement of a contact's node less its obstacle's.
+    fn relative(&self, contact: usize, motion: &Motion) -> Vector {
+        let moved = of_node(self.structure.dimension, self.contacts[contact].node, &motion.displacement);
+        add(&moved, -motion.load, &self.pattern.shifts[contact])
+    }
+
+    fn support_rate(&self, freedom: usize) -> f64 {
+        self.pattern.supports.get(freedom).copied().unwrap_or(0.0)
+    }
+
+    /// What holds the nodes of the contacts that are held: first along the normals, then across them.
+    fn ties(&self) -> [Vec<Tie>; 2] {
+        let dimension = self.structure.dimension;
+        let mut ties = [Vec::new(), Vec::new()];
+        for (index, contact) in self.contacts.iter().enumerate().filter(|(index, _)| self.held[*index]) {
+            let frame = contact.frame(&[0.0; 3]);
+            let tie = |vector: &Vector, stiffness: f64| {
+                let component = |component: usize| (contact.node * dimension + component, vector[component]);
+                let along = (0..dimension).map(component).collect();
+                let by_load = -dot(vector, &self.pattern.shifts[index]);
+                (stiffness > 0.0).then_some(Tie { stretching: Stretching { stiffness, along }, by_load })
+            };
+            ties[0].extend(tie(&frame.normal, HELD_BY * self.stiffness_at[contact.node]));
+            let tangents = frame.tangents.iter().take(contact.tangents());
+            ties[1].extend(tangents.filter_map(|tangent| tie(tangent, self.usual)));
+        }
+        ties
+    }
+
+    fn all_ties(&self) -> Vec<Tie> {
+        self.ties().into_iter().flatten().collect()
+    }
+
+    /// The motion `K u = s p`, `p·u = 1`; `None` where the load moves nothing, or where it is not determined.
+    fn at_first_order(&self, still: &[f64]) -> Option<Motion> {
+        let ties = self.all_ties();
+        let pushed = self.pushed(still, &ties);
+        let size = pushed.iter().map(|value| value * value).sum::<f64>().sqrt();
+        if size <= 0.0 || !size.is_finite() {
+            return None;
+        }
+        let row: Vec<f64> = pushed.iter().map(|value| value / size).collect();
+        let mut values = DVector::zeros(row.len() + 1);
+        values[row.len()] = 1.0;
+        if !self.factorise(still, &ties, &row)?.solve(&mut values) {
+            return None;
+        }
+        let mut motion = self.motion(values.as_slice());
+        let of_nodes = motion.displacement.chunks(self.structure.dimension.max(1));
+        let largest =
+            of_nodes.map(|node| node.iter().map(|value| value * value).sum::<f64>().sqrt()).fold(0.0_f64, f64::max);
+        if largest <= 0.0 || !largest.is_finite() {
+            return None;
+        }
+        motion.displacement.iter_mut().for_each(|value| *value /= largest);
+        motion.load /= largest;
+        Some(motion)
+    }
+
+    /// All degrees of freedom of values of the unknowns and the load.
+    fn motion(&self, values: &[f64]) -> Motion {
+        let structure = self.structure;
+        let load = values[structure.unknowns()];
+        let displacement = structure
+            .unknown_of
+            .iter()
+            .enumerate()
+            .map(|(freedom, unknown)| unknown.map_or(load * self.support_rate(freedom), |unknown| values[unknown]))
+            .collect();
+        Motion { displacement, load }
+    }
+
+    /// The motion of a finite size along that of first order, relaxed; `None` where every element is linear, or Newton's
+    /// method does not find it.
+    fn relaxed(&self, still: &[f64], first: &Motion) -> Option<Motion> {
+        let structure = self.structure;
+        if structure.unknowns() > MOST_ANALYSED || structure.elements.iter().all(Element::is_linear) {
+            return None;
+        }
+        let along: Vec<f64> = structure.freedom_of.iter().map(|freedom| first.displacement[*freedom]).collect();
+        let squared: f64 = along.iter().map(|value| value * value).sum();
+        if squared <= 0.0 {
+            return None;
+        }
+        let row: Vec<f64> = along.iter().map(|value| value / squared).collect();
+        FINITE.iter().find_map(|size| self.relaxed_at(still, &along, first.load, &row, *size))
+    }
+
+    /// Of one size: `f(u) = s p`, `row·u = size`.
+    fn relaxed_at(&self, still: &[f64], along: &[f64], load: f64, row: &[f64], size: f64) -> Option<Motion> {
+        let structure = self.structure;
+        let (ties, unknowns) = (self.all_ties(), structure.unknowns());
+        let mut values: Vec<f64> = along.iter().map(|value| size * value).chain(std::iter::once(size * load)).collect();
+        let (mut rest, mut force) = (vec![0.0; structure.freedoms()], vec![0.0; structure.freedoms()]);
+        structure.internal_force(still, &mut rest);
+        for _ in 0..MOST_ITERATIONS {
+            let motion = self.motion(&values);
+            structure.internal_force(&motion.displacement, &mut force);
+            let mut left_over = DVector::zeros(unknowns + 1);
+            for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
+                left_over[unknown] = force[*freedom] - rest[*freedom] - motion.load * self.pattern.forces[*freedom];
+            }
+            for tie in &ties {
+                let pull = tie.stretching.stiffness * tie.stretch(&motion);
+                self.unknowns_of(&tie.stretching).iter().for_each(|(row, value)| left_over[*row] += pull * value);
+            }
+            left_over[unknowns] = row.iter().zip(&values).map(|(entry, value)| entry * value).sum::<f64>() - size;
+            if !self.factorise(&motion.displacement, &ties, row)?.solve(&mut left_over) {
+                return None;
+            }
+            values.iter_mut().zip(left_over.iter()).for_each(|(value, change)| *value -= change);
+            let correction = left_over.rows(0, unknowns).amax();
+            if !correction.is_finite() || correction > 1.0 {
+                return None;
+            }
+            if correction <= CONVERGED * size {
+                return Some(self.motion(&values));
+            }
+        }
+        None
+    }
+
+    /// The mean stiffness over the elements' energies in a motion, of finite size or at first order; `None` where the
+    /// elements store next to nothing of it.
+    fn mean(&self, motion: &Motion, is_finite: bool) -> Option<f64> {
+        let still = vec![0.0; motion.displacement.len()];
+        let (mut stored, mut logarithms, mut most) = (0.0, 0.0, 0.0);
+        for element in &self.structure.elements {
+            let energy = if is_finite {
+                2.0 * (element.energy(self.structure.dimension, &motion.displacement)
+                    - element.energy(self.structure.dimension, &still))
+                .abs()
+            } else {
+                self.energy_at_first_order(element, &still, motion)
+            };
+            let stiffness = self.stiffness(element, motion);
+            most += self.most_energy(element, &still, motion);
+            if energy > 0.0 && stiffness > 0.0 {
+                stored += energy;
+                logarithms += energy * stiffness.ln();
+            }
+        }
+        let [held, _] = self.ties();
+        let held: f64 = held.iter().map(|tie| tie.energy(motion)).sum();
+        (stored > NOT_HELD * held && stored > ROUNDING * most && stored.is_finite())
+            .then(|| (logarithms / stored).exp())
+    }
+
+    /// What an element would store if no displacement took any of another away.
+    fn most_energy(&self, element: &Element, still: &[f64], motion: &Motion) -> f64 {
+        let mut most = 0.0;
+        element.add_stiffness(self.structure.dimension, still, &mut |row, column, value| {
+            most += (motion.displacement[row] * value * motion.displacement[column]).abs();
+        });
+        most
+    }
+
+    /// `u·K_e u`
+    fn energy_at_first_order(&self, element: &Element, still: &[f64], motion: &Motion) -> f64 {
+        let of = |stretching: Stretching| Tie { stretching, by_load: 0.0 }.energy(motion);
+        let stretched: f64 = element.stretching(self.structure.dimension, still).into_iter().map(of).sum();
+        let mut across = 0.0;
+        element.add_stiffness_across(self.structure.dimension, still, &mut |row, column, value| {
+            across += motion.displacement[row] * value * motion.displacement[column];
+        });
+        stretched + across.abs()
+    }
+
+    /// An element's stiffness as an axial one: of a spring, against the motion.
+    fn stiffness(&self, element: &Element, motion: &Motion) -> f64 {
+        match element {
+            Element::Bar(bar) => bar.axial_stiffness,
+            Element::Spring(spring) => {
+                let at = |node: usize| of_node(self.structure.dimension, node, &motion.displacement);
+                let moved =
+                    spring.other.map_or_else(|| at(spring.node), |other| add(&at(spring.node), -1.0, &at(other)));
+                let force = spring.stiffness.map(|row| dot(&row, &moved));
+                if size(&moved) > 0.0 { size(&force) / size(&moved) } else { 0.0 }
+            }
+        }
+    }
+}

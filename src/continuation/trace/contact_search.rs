@@ -1,0 +1,247 @@
+//! Contacts out of reach, which take no part in the path's equations until it comes near them.
+//!
+//! Over an arc length `a` a contact's gap changes by at most `a √(1 + |d|²)`, `d` the translation of its obstacle per load
+//! factor: its node moves against the obstacle by `Δu - d Δs`, `‖(Δu, Δs)‖ <= a`, and a gap changes by no more than the
+//! motion (it is a signed distance). So a gap `g` cannot close before the path has gone on by `g/√(1 + |d|²)`, and is not
+//! looked at before then. A contact that could be reached within a few steps joins the others and stays with them. Which
+//! ones do follows from their gaps alone, not from when these were looked at.
+//!
+//! A contact that is out of reach is free, without reaction: the equations that the others have are those of the whole.
+
+use crate::continuation::scene::Scene;
+use crate::continuation::scene::recorded_rows::{REACH, fastest};
+use crate::continuation::trace::progress::Progress;
+use crate::mechanics::contact::Contact;
+use crate::mechanics::problem::loading::{LoadPattern, Loading};
+use crate::mechanics::problem::node_forces::Corner;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// What rounding may do to a bound.
+const ROUNDING: f64 = 1e-9;
+
+/// The contacts in reach, with the loading as it concerns them.
+#[derive(Debug, Clone)]
+pub(crate) struct Near {
+    contacts: Vec<Contact>,
+    corners: Vec<Corner>,
+    pattern: LoadPattern,
+    held: LoadPattern,
+    /// For each contact of the scene its place among those in reach.
+    places: Vec<Option<usize>>,
+    /// The request's contacts that have a row in the increments: those in reach and those that are asked for.
+    rows: Vec<usize>,
+}
+
+/// The contacts out of reach, the one that may be reached first on top.
+pub(crate) type FarContacts = BinaryHeap<Far>;
+
+/// A contact out of reach.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Far {
+    /// Arc length of the path before which its gap cannot close.
+    until: f64,
+    contact: usize,
+}
+
+/// The one that may be reached first is the greatest.
+impl Ord for Far {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.until.total_cmp(&self.until).then(other.contact.cmp(&self.contact))
+    }
+}
+
+impl PartialOrd for Far {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Far {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Far {}
+
+/// The loading of all contacts; a state's reactions are not to be read through it.
+pub(crate) fn whole<'a>(scene: &'a Scene, at: &'a Progress) -> Loading<'a> {
+    Loading {
+        structure: &scene.structure,
+        contacts: &scene.contacts,
+        corners: &scene.corners,
+        pattern: &scene.stages[at.stage].pattern,
+        held: &at.held,
+    }
+}
+
+/// The contacts that `at` has out of reach.
+pub(crate) fn far_contacts(scene: &Scene, at: &Progress) -> FarContacts {
+    let loading = whole(scene, at);
+    let far = |contact: &usize| at.near.binary_search(contact).is_err();
+    let waiting = |contact: usize| Far::at(scene, contact, loading.gap(contact, &at.here.state), at.totals.arc_length);
+    (0..scene.contacts.len()).filter(far).map(waiting).collect()
+}
+
+impl Far {
+    /// With this gap after the path has gone so far.
+    fn at(scene: &Scene, contact: usize, gap: f64, travelled: f64) -> Self {
+        let way = gap / fastest(scene, contact);
+        Self { until: travelled + way - ROUNDING * (travelled + way), contact }
+    }
+}
+
+impl Near {
+    /// The contacts that `at` has in reach.
+    pub fn of(scene: &Scene, at: &Progress) -> Self {
+        let mut places = vec![None; scene.contacts.len()];
+        for (place, contact) in at.near.iter().enumerate() {
+            places[*contact] = Some(place);
+        }
+        let stage = &scene.stages[at.stage].pattern;
+        let chosen = |pattern: &LoadPattern| LoadPattern {
+            forces: pattern.forces.clone(),
+            supports: pattern.supports.clone(),
+            shifts: at.near.iter().map(|contact| pattern.shifts[*contact]).collect(),
+        };
+        let corners = scene.corners.iter().filter_map(|corner| {
+            let contacts: Vec<usize> = corner.contacts.iter().filter_map(|contact| places[*contact]).collect();
+            (contacts.len() > 1).then_some(Corner { contacts })
+        });
+        let asked: Box<dyn Fn(usize) -> bool> = match &scene.asked_rows {
+            None => Box::new(|_| true),
+            Some(asked) => Box::new(|row| asked.binary_search(&row).is_ok()),
+        };
+        let has_row = |row: &usize| asked(*row) || places[scene.reported[*row].contact].is_some();
+        let rows = (0..scene.reported.len()).filter(has_row).collect();
+        Self {
+            contacts: at.near.iter().map(|contact| scene.contacts[*contact].clone()).collect(),
+            corners: corners.collect(),
+            pattern: chosen(stage),
+            held: chosen(&at.held),
+            places,
+            rows,
+        }
+    }
+
+    pub fn loading<'a>(&'a self, scene: &'a Scene) -> Loading<'a> {
+        Loading {
+            structure: &scene.structure,
+            contacts: &self.contacts,
+            corners: &self.corners,
+            pattern: &self.pattern,
+            held: &self.held,
+        }
+    }
+
+    /// For each contact of the scene its place among those in reach.
+    pub fn places(&self) -> &[Option<usize>] {
+        &self.places
+    }
+
+    /// The request's contacts that have a row in the increments, in its order.
+    pub fn rows(&self) -> &[usize] {
+        &self.rows
+    }
+}
+
+/// Takes the contacts out of those out of reach that could close within a few steps of this arc length.
+pub(crate) fn reached_within(scene: &Scene, at: &Progress, far: &mut FarContacts, step: f64) -> Vec<usize> {
+    let (reach, travelled) = (REACH * step, at.totals.arc_length);
+    let (mut reached, mut left) = (Vec::new(), Vec::new());
+    while far.peek().is_some_and(|next| next.until <= travelled + reach) {
+        let Some(Far { contact, .. }) = far.pop() else { break };
+        let gap = whole(scene, at).gap(contact, &at.here.state);
+        if gap / fastest(scene, contact) <= reach {
+            reached.push(contact);
+        } else {
+            left.push(Far::at(scene, contact, gap, travelled));
+        }
+    }
+    far.extend(left);
+    reached
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::continuation::path::iterator::Path;
+    use crate::model::JobRequest;
+    use crate::resources::cancel::CancelFlag;
+    use serde_json::{Value, json};
+
+    /// A node on springs over a floor, drawn towards a wall, with walls much farther away.
+    fn request(far: usize, keep_all: bool) -> JobRequest {
+        let mut obstacles = json!({
+            "floor": {"kind": "plane", "point": [0, 0], "normal": [0, 1]},
+            "wall": {"kind": "plane", "point": [2, 0], "normal": [-1, 0]},
+        });
+        let contact = |name: &str| json!({"node": "tip", "obstacle": name, "friction": 0.3});
+        let mut contacts: Vec<Value> = Vec::new();
+        for index in 0..far {
+            let name = format!("far{index}");
+            obstacles[&name] = json!({"kind": "ball", "center": [10 + index, 50], "radius": 5});
+            contacts.push(contact(&name));
+        }
+        contacts.extend([contact("floor"), contact("wall")]);
+        serde_json::from_value(json!({
+            "model": {
+                "dimension": 2, "nodes": {"tip": [0, 0]},
+                "elements": [{"kind": "spring", "nodes": ["tip"], "stiffness": [[1, 0.2], [0.2, 1]]}],
+                "obstacles": obstacles, "contacts": contacts,
+                "stages": [
+                    {"name": "press", "forces": {"tip": [0, -1]}, "until": {"load_above": 1}},
+                    {"name": "pull", "forces": {"tip": [1, 0]}, "until": {"load_above": 4}},
+                    {"name": "slide", "obstacle_motion": {"wall": [-1, 0]}, "until": {"load_above": 1}},
+                ],
+            },
+            "analysis": {"keep_all": keep_all, "arc_length": {"jump": false}},
+        }))
+        .expect("a request")
+    }
+
+    #[test]
+    fn only_what_can_be_reached_is_in_the_equations() {
+        let request = request(500, false);
+        let scene = Scene::new(&request).expect("a scene");
+        assert!(scene.plan().left_out.iter().any(|left| left.what.starts_with("501 of 502 contacts")));
+        let mut path = Path::new(&scene, CancelFlag::default());
+        let mut seen = Vec::new();
+        let mut looks = 0;
+        while path.next().is_some() {
+            if seen.last() != Some(&path.trace.at.near) {
+                seen.push(path.trace.at.near.clone());
+            }
+            looks += path.trace.far.iter().filter(|far| far.until <= path.trace.at.totals.arc_length).count();
+        }
+        assert_eq!(seen, [vec![500], vec![500, 501]], "the floor, then the wall too");
+        assert_eq!(looks, 0, "no far contact was looked at again");
+    }
+
+    #[test]
+    fn with_and_without_far_contacts_it_is_one_path_and_can_be_taken_up_anywhere() {
+        let rows = |far: usize, keep_all: bool| {
+            let scene = Scene::new(&request(far, keep_all)).expect("a scene");
+            let mut path = Path::new(&scene, CancelFlag::default());
+            let mut rows = Vec::new();
+            while let Some(row) = path.next() {
+                rows.push(row);
+                // Put down and taken up at every point.
+                path = Path::resume(&scene, path.checkpoint(), CancelFlag::default()).expect("a path");
+            }
+            rows
+        };
+        let none = rows(0, true);
+        assert!(none.len() > 10 && none.iter().any(|row| row.contacts[1].normal_reaction > 0.0));
+        for others in [rows(0, false), rows(30, false), rows(30, true)] {
+            assert_eq!(others.len(), none.len());
+            for (other, row) in others.iter().zip(&none) {
+                let far = other.contacts.len() - 2;
+                assert_eq!((other.load_factor, &other.displacements), (row.load_factor, &row.displacements));
+                assert_eq!((&other.contacts[far..], &other.point), (&row.contacts[..], &row.point));
+                assert!(other.contacts[..far].iter().all(|contact| contact.gap > 1.0));
+            }
+        }
+    }
+}

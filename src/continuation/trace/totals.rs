@@ -1,0 +1,112 @@
+//! What a path adds up from increment to increment, whichever method traces it.
+
+use crate::resources::budget::Breach;
+use crate::result::increment::{Energy, Increment};
+use crate::result::report::Report;
+use crate::result::stop_reason::StopReason;
+use crate::step::corrector::work::Work;
+use serde::{Deserialize, Serialize};
+
+/// Energies below this fraction of the force scale times the displacement scale are round-off.
+pub(crate) const NO_ENERGY: f64 = 1e-12;
+
+/// Sums and maxima from the start of the path, dimensionless.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Totals {
+    /// Of the present increment.
+    pub index: u64,
+    pub arc_length: f64,
+    pub energy: Energy,
+    /// Of any of the energies at any increment.
+    pub largest_energy: f64,
+    /// Largest force so far.
+    pub force_scale: f64,
+    pub work: Work,
+    /// Of the last program solved.
+    #[serde(default)]
+    pub last_relaxation: Option<f64>,
+    pub report: Report,
+}
+
+/// What one increment adds.
+pub(crate) struct Added {
+    pub step: f64,
+    pub external_work: f64,
+    pub dissipated: f64,
+    /// Total at its end.
+    pub strain: f64,
+    /// Largest force at its end.
+    pub force_scale: f64,
+}
+
+impl Totals {
+    /// Of a path without increments so far.
+    pub fn begun() -> Self {
+        Self {
+            index: 0,
+            arc_length: 0.0,
+            energy: Energy::default(),
+            largest_energy: 0.0,
+            force_scale: 0.0,
+            work: Work::default(),
+            last_relaxation: None,
+            report: Report::begun(),
+        }
+    }
+
+    pub fn add(&mut self, added: &Added) {
+        self.index += 1;
+        self.arc_length += added.step;
+        self.force_scale = self.force_scale.max(added.force_scale);
+        let energy = &mut self.energy;
+        energy.external_work += added.external_work;
+        energy.dissipated += added.dissipated;
+        energy.strain = added.strain;
+        for value in [energy.external_work, energy.strain, energy.dissipated] {
+            self.largest_energy = self.largest_energy.max(value.abs());
+        }
+    }
+
+    /// `|external work - strain - dissipated|` over the largest energy so far.
+    pub fn energy_error(&self) -> f64 {
+        let imbalance = (self.energy.external_work - self.energy.strain - self.energy.dissipated).abs();
+        let size = self.largest_energy.max(NO_ENERGY * self.force_scale);
+        if size > 0.0 { imbalance / size } else { 0.0 }
+    }
+
+    /// Takes a row that is given out into the report.
+    pub fn note(&mut self, row: &Increment) {
+        let (report, diagnostics) = (&mut self.report, &row.diagnostics);
+        report.increments = row.index;
+        report.largest_residual = report.largest_residual.max(diagnostics.residual);
+        report.largest_complementarity = report.largest_complementarity.max(diagnostics.complementarity);
+        report.largest_energy_error = report.largest_energy_error.max(diagnostics.energy_error);
+    }
+
+    /// Completes the report of a path that was ended within an increment.
+    pub fn break_off(&mut self, breach: Breach, elapsed_s: f64) {
+        match breach {
+            Breach::Cancelled => self.end(StopReason::Cancelled, elapsed_s),
+            Breach::Memory { .. } | Breach::FactorEntries { .. } | Breach::FactorWork { .. } => {
+                self.end(StopReason::MemoryLimit, elapsed_s);
+                self.report.sentence = format!("{}: {breach}", StopReason::MemoryLimit.sentence());
+            }
+        }
+    }
+
+    /// Completes the report.
+    pub fn end(&mut self, reason: StopReason, elapsed_s: f64) {
+        self.report.stop_reason = reason;
+        self.report.sentence = reason.sentence().to_owned();
+        self.report.elapsed_s = elapsed_s;
+        self.report.factorisations = self.work.factorisations;
+        self.report.bifurcation_factorisations = self.work.bifurcation_factorisations;
+        self.report.newton_iterations = self.work.newton_iterations;
+        self.report.qp_solves = self.work.qp_solves;
+        self.report.mpec_solves = self.work.mpec_solves;
+        self.report.sqp_iterations = self.work.sqp_iterations;
+        self.report.certificates = self.work.certificates;
+        self.report.mpec_fallbacks = self.work.mpec_fallbacks;
+    }
+}

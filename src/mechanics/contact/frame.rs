@@ -1,0 +1,85 @@
+//! The frame of a contact at a place: gap, normal, tangents, and how they turn.
+
+use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled, size, unit};
+
+/// In which directions a closed contact can slide.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Sliding {
+    /// The node's supports leave it none.
+    None,
+    /// Along the line perpendicular to the normal and to `across` (unit): everything in 2D, where `across` is the third
+    /// axis; a node in 3D with one component supported.
+    Line { across: Vector },
+    /// Along any tangent.
+    Plane,
+}
+
+impl Sliding {
+    /// Number of independent directions.
+    pub fn directions(self) -> usize {
+        match self {
+            Self::None => 0,
+            Self::Line { .. } => 1,
+            Self::Plane => 2,
+        }
+    }
+}
+
+/// Gap, unit normal into the free side and tangents.
+#[derive(Debug, Clone, Copy)]
+pub struct Frame {
+    pub gap: f64,
+    pub normal: Vector,
+    /// Orthonormal; as many as there are directions of sliding, the rest zero.
+    pub tangents: [Vector; 2],
+    /// `dn = κ (dx - n (n·dx))`; 0 for planes.
+    pub curvature: f64,
+    sliding: Sliding,
+}
+
+impl Frame {
+    #[inline(always)]
+    pub(super) fn new(gap: f64, normal: Vector, curvature: f64, sliding: Sliding) -> Self {
+        let tangents = match sliding {
+            Sliding::None => [[0.0; 3]; 2],
+            // In 2D the normal turned clockwise, exactly.
+            Sliding::Line { across } if across == [0.0, 0.0, 1.0] && normal[2] == 0.0 => {
+                [[normal[1], -normal[0], 0.0], [0.0; 3]]
+            }
+            Sliding::Line { across } => [unit(&cross(&normal, &across)), [0.0; 3]],
+            Sliding::Plane => tangents_in_space(&normal),
+        };
+        Self { gap, normal, tangents, curvature, sliding }
+    }
+
+    /// Change of the normal with a motion.
+    pub fn normal_change(&self, motion: &Vector) -> Vector {
+        scaled(&add(motion, -dot(motion, &self.normal), &self.normal), self.curvature)
+    }
+
+    /// Change of the first tangent with a motion, where sliding is along a line.
+    pub fn tangent_change(&self, motion: &Vector) -> Vector {
+        let Sliding::Line { across } = self.sliding else { return [0.0; 3] };
+        if self.curvature == 0.0 {
+            return [0.0; 3];
+        }
+        let turn = cross(&self.normal_change(motion), &across);
+        let tangent = &self.tangents[0];
+        scaled(&add(&turn, -dot(&turn, tangent), tangent), 1.0 / size(&cross(&self.normal, &across)))
+    }
+}
+
+/// Orthonormal tangents of a normal in space: the coordinate axis least aligned with the normal (the first of them, so
+/// that the choice is reproducible), made perpendicular to it, and `n` times that.
+pub fn tangents_in_space(normal: &Vector) -> [Vector; 2] {
+    let mut axis = 0;
+    for k in 1..3 {
+        if normal[k].abs() < normal[axis].abs() {
+            axis = k;
+        }
+    }
+    let mut along = [0.0; 3];
+    along[axis] = 1.0;
+    let first = unit(&add(&along, -normal[axis], normal));
+    [first, cross(normal, &first)]
+}

@@ -1,0 +1,129 @@
+//! Contact: a node against an obstacle, its kinematics, its state and its modes.
+//!
+//! ```text
+//! 0 <= g(u) ⊥ r_n >= 0,      |r_t| <= μ r_n,      Δu_t = -α r_t,  α >= 0
+//! ```
+//!
+//! Dimensionless. Tractions and slips are vectors in space, so that they mean the same wherever on a curved obstacle
+//! the node is; in 2D the third component is 0. Knows nothing of structures and paths.
+
+pub(crate) mod frame;
+pub mod obstacle;
+pub mod share;
+pub mod vector;
+
+pub use frame::{Frame, Sliding, tangents_in_space};
+use obstacle::Obstacle;
+use serde::{Deserialize, Serialize};
+use vector::{Vector, size};
+
+/// One node against one obstacle.
+#[derive(Debug, Clone)]
+pub struct Contact {
+    pub node: usize,
+    pub obstacle: Obstacle,
+    /// Gap of the undeformed structure; kept apart so that a place far from the origin costs no digits.
+    pub initial_gap: f64,
+    /// Coulomb's coefficient; 0 where friction can do nothing.
+    pub friction: f64,
+    pub sliding: Sliding,
+}
+
+/// What a contact does along a stretch of the path.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Mode {
+    /// Apart: no reaction.
+    Free,
+    /// Held: no motion against the obstacle.
+    Stick,
+    /// Sliding along `direction` (unit tangent at the present place, or zero without friction) with
+    /// `r_t = -μ r_n direction`.
+    Slip { direction: Vector },
+}
+
+impl Mode {
+    pub fn is_active(self) -> bool {
+        self != Self::Free
+    }
+
+    /// Whether two modes are the same stretch's: along a line, slip the same way; in a plane, slip whose direction
+    /// differs by less than a right angle, since it turns as the node goes.
+    pub fn continues(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::Slip { direction: a }, Self::Slip { direction: b }) => a == b || vector::dot(&a, &b) > 0.0,
+            (a, b) => a == b,
+        }
+    }
+}
+
+/// Whether all modes of two lists continue each other.
+pub fn all_continue(first: &[Mode], second: &[Mode]) -> bool {
+    first.len() == second.len() && first.iter().zip(second).all(|(a, b)| a.continues(*b))
+}
+
+/// The force of the obstacle on the node, or its rate.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Reaction {
+    pub normal: f64,
+    /// In space.
+    pub tangential: Vector,
+}
+
+impl Reaction {
+    /// A force taken apart along a normal and across it.
+    pub fn of(force: &Vector, normal: &Vector) -> Self {
+        let along = vector::dot(force, normal);
+        Self { normal: along, tangential: vector::add(force, -along, normal) }
+    }
+
+    /// The same where what is across the normal is rounding: there is no friction.
+    pub fn along(force: &Vector, normal: &Vector) -> Self {
+        Self { normal: vector::dot(force, normal), tangential: [0.0; 3] }
+    }
+
+    /// `|r_t|`
+    #[inline(always)]
+    pub fn tangential_size(&self) -> f64 {
+        size(&self.tangential)
+    }
+
+    #[inline(always)]
+    pub fn size(&self) -> f64 {
+        self.normal.abs().max(self.tangential_size())
+    }
+
+    /// Adds a multiple of another.
+    #[inline(always)]
+    pub fn add(&mut self, factor: f64, other: &Self) {
+        self.normal += factor * other.normal;
+        self.tangential = vector::add(&self.tangential, factor, &other.tangential);
+    }
+
+    /// The largest difference of normal parts and components.
+    pub fn difference(&self, other: &Self) -> f64 {
+        let tangential = vector::add(&self.tangential, -1.0, &other.tangential);
+        tangential.iter().fold((self.normal - other.normal).abs(), |largest, value| largest.max(value.abs()))
+    }
+}
+
+impl Contact {
+    /// Signed distance of the node from the obstacle, positive on the free side; `relative` is the node's displacement
+    /// less the obstacle's.
+    #[inline(always)]
+    pub fn gap(&self, relative: &Vector) -> f64 {
+        self.initial_gap + self.obstacle.distance(relative).0
+    }
+
+    /// Gap, normal and tangents.
+    #[inline(always)]
+    pub fn frame(&self, relative: &Vector) -> Frame {
+        let (change, normal, curvature) = self.obstacle.distance(relative);
+        Frame::new(self.initial_gap + change, normal, curvature, self.sliding)
+    }
+
+    /// Number of tangential reactions: 0 without friction.
+    #[inline(always)]
+    pub fn tangents(&self) -> usize {
+        if self.friction > 0.0 { self.sliding.directions() } else { 0 }
+    }
+}

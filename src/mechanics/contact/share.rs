@@ -1,0 +1,250 @@
+//! How the force on a node is shared by several obstacles: the reactions of least norm.
+//!
+//! ```text
+//! min ½ Σ |r_i|²   s.t.   Σ r_i = R,   r_i in the friction cone K_i
+//! ```
+//!
+//! Where a node is held by several obstacles at once, equilibrium gives only the sum of their reactions, of a guided node
+//! only what it is free to follow. The least ones
+//! are `r_i = P_i(y)`, projections on the cones of one vector `y` with `Σ P_i(y) = R`: the minimiser of the convex
+//! function `½ Σ |P_i(y)|² - R·y`, found by Newton's method (R. T. Rockafellar, *Convex Analysis*, Princeton 1970, §31;
+//! projection on the circular cone: H. H. Bauschke, *Projection algorithms and monotone operators*, 1996, thm 3.3.6).
+
+use crate::mechanics::contact::vector::{Vector, add, dot, scaled, size};
+
+/// A friction cone: axis (unit normal) and coefficient.
+#[derive(Debug, Clone, Copy)]
+pub struct Cone {
+    pub normal: Vector,
+    pub friction: f64,
+    /// The only line along which there is friction; without one the cone is circular.
+    pub line: Option<Vector>,
+}
+
+/// Newton iterations; a few are usual, since the function is piecewise quadratic in 2D.
+const ITERATIONS: usize = 200;
+/// The sum that is left over may be this large, over the largest of the force and the reactions: between cones that are
+/// nearly opposite these are far larger than the force.
+const LEFT_OVER: f64 = 1e-12;
+/// Part of the identity that makes Newton's matrix regular, over what is left over.
+const REGULAR: f64 = 1e-3;
+/// The function falls by at least this part of what its slope promises.
+const SUFFICIENT: f64 = 1e-4;
+/// Part of a step below which it is not shortened.
+const SHORTEST: f64 = 1e-15;
+
+impl Cone {
+    /// The nearest force of the cone, and the derivative of that applied to a vector.
+    fn project(&self, force: &Vector) -> (Vector, impl Fn(&Vector) -> Vector + use<>) {
+        let Self { normal, friction, line } = *self;
+        let along = dot(force, &normal);
+        let tangential = move |vector: &Vector| match line {
+            Some(line) => scaled(&line, dot(vector, &line)),
+            None => add(vector, -dot(vector, &normal), &normal),
+        };
+        let across = tangential(force);
+        let radius = size(&across);
+        let direction = if radius > 0.0 { scaled(&across, 1.0 / radius) } else { [0.0; 3] };
+        let place = if radius <= friction * along {
+            Place::Inside
+        } else if friction * radius <= -along {
+            Place::Apex
+        } else {
+            Place::Surface
+        };
+        let ray = add(&normal, friction, &direction);
+        let norm = 1.0 + friction * friction;
+        let inside = move |vector: &Vector| match line {
+            Some(_) => add(&tangential(vector), dot(vector, &normal), &normal),
+            None => *vector,
+        };
+        let projected = match place {
+            Place::Inside => inside(force),
+            Place::Apex => [0.0; 3],
+            Place::Surface => scaled(&ray, (along + friction * radius) / norm),
+        };
+        let derivative = move |change: &Vector| match place {
+            Place::Inside => inside(change),
+            Place::Apex => [0.0; 3],
+            Place::Surface => {
+                let stretched = scaled(&ray, dot(change, &ray) / norm);
+                let tangential = tangential(change);
+                let turning = add(&tangential, -dot(&tangential, &direction), &direction);
+                let turn = friction * (along + friction * radius) / (norm * radius);
+                add(&stretched, turn, &turning)
+            }
+        };
+        (projected, derivative)
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Place {
+    Inside,
+    Surface,
+    Apex,
+}
+
+/// The reactions of least norm that make up a force as far as orthonormal directions `free` hold it; `None` where the
+/// cones together do not hold it.
+pub fn least_reactions(cones: &[Cone], free: &[Vector], force: &Vector) -> Option<Vec<Vector>> {
+    let scale = size(force);
+    if scale == 0.0 {
+        return Some(vec![[0.0; 3]; cones.len()]);
+    }
+    let dual = Dual { cones, free, force: scaled(force, 1.0 / scale) };
+    let mut at = dual.at(scaled(&dual.force, 1.0 / cones.len() as f64));
+    for _ in 0..ITERATIONS {
+        if at.left_over <= f64::EPSILON {
+            break;
+        }
+        let Some(next) = dual.step(&at) else { break };
+        at = next;
+    }
+    let parts: Vec<Vector> = cones.iter().map(|cone| cone.project(&at.place).0).collect();
+    let largest = parts.iter().map(size).fold(1.0, f64::max);
+    (at.left_over <= LEFT_OVER * largest).then(|| parts.iter().map(|part| scaled(part, scale)).collect())
+}
+
+/// The convex function whose minimiser gives the reactions, for a force of unit size.
+struct Dual<'a> {
+    cones: &'a [Cone],
+    free: &'a [Vector],
+    force: Vector,
+}
+
+/// A place with what is there.
+struct At {
+    place: Vector,
+    value: f64,
+    /// Sum of the projections less the force: the gradient.
+    gradient: Vector,
+    left_over: f64,
+}
+
+impl Dual<'_> {
+    fn held(&self, vector: &Vector) -> Vector {
+        self.free.iter().fold([0.0; 3], |sum, one| add(&sum, dot(one, vector), one))
+    }
+
+    fn at(&self, place: Vector) -> At {
+        let (mut sum, mut squares) = ([0.0; 3], 0.0);
+        for cone in self.cones {
+            let part = cone.project(&place).0;
+            sum = add(&sum, 1.0, &part);
+            squares += dot(&part, &part);
+        }
+        let gradient = add(&self.held(&sum), -1.0, &self.force);
+        let value = 0.5 * squares - dot(&self.force, &place);
+        At { place, value, gradient, left_over: size(&gradient) }
+    }
+
+    /// Newton's step with a part of the identity that falls with the gradient, so that it is bounded wherever the second
+    /// derivative is singular and as good as Newton's in the end, shortened until the function falls (D. Li, M. Fukushima,
+    /// L. Qi, N. Yamashita, Comput. Optim. Appl. 28 (2004) 131). `None` where rounding lets it fall no more.
+    fn step(&self, at: &At) -> Option<At> {
+        let mut matrix = nalgebra::Matrix3::identity() * (REGULAR * at.left_over).max(f64::EPSILON);
+        for cone in self.cones {
+            let (_, derivative) = cone.project(&at.place);
+            for column in 0..3 {
+                let mut unit = [0.0; 3];
+                unit[column] = 1.0;
+                let change = self.held(&derivative(&self.held(&unit)));
+                (0..3).for_each(|row| matrix[(row, column)] += change[row]);
+            }
+        }
+        let step = matrix.lu().solve(&nalgebra::Vector3::from(at.gradient))?;
+        let step = [step[0], step[1], step[2]];
+        let slope = dot(&at.gradient, &step);
+        let mut length = 1.0;
+        while length > SHORTEST {
+            let next = self.at(add(&at.place, -length, &step));
+            let falls = next.value <= at.value - SUFFICIENT * length * slope;
+            // Near the end values differ by less than their rounding.
+            if (falls && next.left_over < f64::INFINITY) || next.left_over <= 0.5 * at.left_over {
+                return Some(next);
+            }
+            length *= 0.5;
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SPACE: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+    #[test]
+    fn a_guided_node_shares_what_it_is_free_to_follow() {
+        // Guided along y between y and (1, 1)/√2: parts in proportion to what of the normals is free.
+        let floor = Cone { normal: [0.0, 1.0, 0.0], friction: 0.0, line: None };
+        let half = 0.5_f64.sqrt();
+        let flank = Cone { normal: [half, half, 0.0], friction: 0.0, line: None };
+        let parts = least_reactions(&[floor, flank], &SPACE[1..2], &[0.0, 3.0, 0.0]).unwrap();
+        assert!((parts[0][1] - 2.0).abs() < 1e-12 && (dot(&parts[1], &flank.normal) - 2.0 * half).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_corner_shares_a_force() {
+        // Floor and wall, frictionless: each takes its own part.
+        let floor = Cone { normal: [0.0, 1.0, 0.0], friction: 0.0, line: None };
+        let wall = Cone { normal: [1.0, 0.0, 0.0], friction: 0.0, line: None };
+        let parts = least_reactions(&[floor, wall], &SPACE, &[2.0, 3.0, 0.0]).unwrap();
+        assert!((parts[0][1] - 3.0).abs() < 1e-12 && (parts[1][0] - 2.0).abs() < 1e-12);
+        assert!(least_reactions(&[floor, wall], &SPACE, &[-1.0, 3.0, 0.0]).is_none());
+    }
+
+    #[test]
+    fn coincident_obstacles_share_equally() {
+        let floor = Cone { normal: [0.0, 0.0, 1.0], friction: 0.5, line: None };
+        let parts = least_reactions(&[floor, floor], &SPACE, &[0.3, 0.2, 1.0]).unwrap();
+        for part in parts {
+            assert!((part[0] - 0.15).abs() < 1e-12 && (part[2] - 0.5).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn the_least_reactions_satisfy_the_conditions_of_optimality() {
+        let floor = Cone { normal: [0.0, 1.0, 0.0], friction: 0.3, line: None };
+        let wall = Cone { normal: [0.8, 0.6, 0.0], friction: 0.2, line: None };
+        let force = [0.6, 1.9, 0.0];
+        let parts = least_reactions(&[floor, wall], &SPACE, &force).unwrap();
+        let sum = add(&parts[0], 1.0, &parts[1]);
+        assert!(size(&add(&sum, -1.0, &force)) < 1e-11);
+        // No exchange between the two within their cones makes the sum of squares smaller.
+        let squares = |exchange: &Vector| {
+            let (first, second) = (add(&parts[0], 1.0, exchange), add(&parts[1], -1.0, exchange));
+            let inside = |cone: &Cone, part: &Vector| size(&add(part, -1.0, &cone.project(part).0)) < 1e-12;
+            (inside(&floor, &first) && inside(&wall, &second)).then(|| dot(&first, &first) + dot(&second, &second))
+        };
+        let least = dot(&parts[0], &parts[0]) + dot(&parts[1], &parts[1]);
+        for k in 0..720 {
+            let angle = f64::from(k) * std::f64::consts::PI / 360.0;
+            if let Some(other) = squares(&[1e-3 * angle.cos(), 1e-3 * angle.sin(), 0.0]) {
+                assert!(other >= least - 1e-12);
+            }
+        }
+    }
+
+    /// Two cones that together are all of space, one of them narrow: plain Newton's method does not settle everywhere.
+    #[test]
+    fn two_cones_that_are_all_of_space_share_any_force() {
+        let unit = |vector: [f64; 3]| scaled(&vector, 1.0 / size(&vector));
+        let first = Cone { normal: unit([-0.2297, 0.7365, -0.6362]), friction: 1.265, line: None };
+        let second = Cone { normal: unit([0.5639, -0.8116, -0.1529]), friction: 0.201, line: None };
+        for k in 0..2000 {
+            let angle = f64::from(k) * 2.399_963_229_728_653;
+            let height = 1.0 - (2.0 * f64::from(k) + 1.0) / 2000.0;
+            let across = (1.0 - height * height).sqrt();
+            let force = [across * angle.cos(), across * angle.sin(), height];
+            let parts = least_reactions(&[first, second], &SPACE, &force).expect("every force is held");
+            let sum = add(&parts[0], 1.0, &parts[1]);
+            assert!(size(&add(&sum, -1.0, &force)) <= 1e-12 * (1.0 + size(&parts[0])), "{force:?}");
+            for (part, cone) in parts.iter().zip([first, second]) {
+                assert!(size(&add(part, -1.0, &cone.project(part).0)) <= 1e-12 * (1.0 + size(part)), "{force:?}");
+            }
+        }
+    }
+}

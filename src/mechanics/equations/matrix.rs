@@ -1,0 +1,214 @@
+//! The matrix of the equations, dense and sparse.
+
+use crate::algebra::dense::sink::Sink;
+use crate::algebra::sparse::Bordered;
+use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled};
+use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role, Track, slip_integration};
+use crate::mechanics::problem::state::{Rate, State};
+use nalgebra::DMatrix;
+
+/// Where the elements' resistance to being stretched is.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Stretch {
+    Within,
+    Apart,
+}
+
+/// Friction force (dimensionless) below which Newton's matrix takes it as this.
+const LEAST_PRESSED: f64 = 1e-10;
+
+impl ModeSystem<'_> {
+    /// All rows but the last of the rate equations at a state, which is left zero for the bordering equation.
+    pub fn matrix(&self, state: &State) -> DMatrix<f64> {
+        self.assemble(&self.iterate(state.clone()), Kind::Rates)
+    }
+
+    /// All rows but the last.
+    pub(crate) fn assemble(&self, iterate: &Iterate, kind: Kind) -> DMatrix<f64> {
+        self.assemble_parts(iterate, kind, Stretch::Within)
+    }
+
+    pub(super) fn assemble_parts(&self, iterate: &Iterate, kind: Kind, stretch: Stretch) -> DMatrix<f64> {
+        let structure = self.loading.structure;
+        let (state, unknowns) = (&iterate.state, structure.unknowns());
+        let mut matrix = DMatrix::zeros(self.size, self.size);
+        let mut add = |row: usize, column: usize, value: f64| {
+            let Some(row) = structure.unknown_of[row] else { return };
+            match structure.unknown_of[column] {
+                Some(column) => matrix[(row, column)] += value,
+                None => matrix[(row, unknowns)] += value * self.loading.support_rate(column),
+            }
+        };
+        match stretch {
+            Stretch::Within => structure.each_stiffness(&state.displacement, &mut add),
+            Stretch::Apart => structure.each_stiffness_across(&state.displacement, &mut add),
+        }
+        self.add_loads_and_contacts(iterate, kind, &mut matrix);
+        self.add_still(&mut matrix);
+        matrix
+    }
+
+    /// The columns of the load and of the contacts, and the contacts' rows.
+    fn add_loads_and_contacts(&self, iterate: &Iterate, kind: Kind, matrix: &mut impl Sink) {
+        let structure = self.loading.structure;
+        for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
+            matrix.add(unknown, structure.unknowns(), -self.loading.pattern.forces[*freedom]);
+        }
+        for (contact, role) in self.roles.iter().enumerate() {
+            match role {
+                Role::Free | Role::HeldBy => {}
+                Role::Stick | Role::Held => self.add_stick(contact, matrix),
+                Role::Frictionless | Role::Line { .. } | Role::Edge { .. } | Role::Plane { .. } => {
+                    self.add_slip(contact, iterate, kind, matrix);
+                }
+            }
+        }
+    }
+
+    /// All rows but the last, sparse; `None` for a structure whose matrices are dense, and where motions are held.
+    pub(crate) fn assemble_sparse(&self, iterate: &Iterate, kind: Kind) -> Option<Bordered> {
+        let structure = self.loading.structure;
+        let layout = structure.layout().filter(|_| !self.holds_still())?;
+        let unknowns = structure.unknowns();
+        let mut matrix = Bordered::new(layout.pattern.clone(), self.size - unknowns);
+        let mut places = layout.places();
+        structure.each_stiffness(
+            &iterate.state.displacement,
+            &mut |row, column, value| match places.next().flatten() {
+                Some(place) => matrix.add_at(place, value),
+                None => {
+                    if let (Some(row), None) = (structure.unknown_of[row], structure.unknown_of[column]) {
+                        matrix.add(row, unknowns, value * self.loading.support_rate(column));
+                    }
+                }
+            },
+        );
+        self.add_loads_and_contacts(iterate, kind, &mut matrix);
+        Some(matrix)
+    }
+
+    /// A row `vector·(relative motion)`.
+    fn put_motion(&self, contact: usize, row: usize, vector: &Vector, matrix: &mut impl Sink) {
+        let structure = self.loading.structure;
+        let load = structure.unknowns();
+        let first = self.loading.contacts[contact].node * structure.dimension;
+        for (component, part) in vector.iter().enumerate().take(structure.dimension) {
+            match structure.unknown_of[first + component] {
+                Some(unknown) => matrix.add(row, unknown, *part),
+                None => matrix.add(row, load, part * self.loading.support_rate(first + component)),
+            }
+        }
+        matrix.add(row, load, -dot(vector, &self.loading.pattern.shifts[contact]));
+    }
+
+    /// A column of equilibrium: the negative of a force on the contact's node.
+    fn put_force(&self, contact: usize, column: usize, force: &Vector, matrix: &mut impl Sink) {
+        let structure = self.loading.structure;
+        let first = self.loading.contacts[contact].node * structure.dimension;
+        for (component, part) in force.iter().enumerate().take(structure.dimension) {
+            if let Some(unknown) = structure.unknown_of[first + component] {
+                matrix.add(unknown, column, -part);
+            }
+        }
+    }
+
+    fn add_stick(&self, contact: usize, matrix: &mut impl Sink) {
+        let (row, column) = (self.row_of(contact), self.column_of(contact));
+        for (k, direction) in self.held_directions(contact).iter().enumerate() {
+            self.put_force(contact, column + k, direction, matrix);
+            self.put_motion(contact, row + k, direction, matrix);
+        }
+    }
+
+    fn add_slip(&self, contact: usize, iterate: &Iterate, kind: Kind, matrix: &mut impl Sink) {
+        let structure = self.loading.structure;
+        let frame = self.loading.frame(contact, &iterate.state);
+        let (row, column) = (self.row_of(contact), self.column_of(contact));
+        let friction = self.loading.contacts[contact].friction;
+        let normal = iterate.state.reactions[contact].normal;
+        let direction = self.direction(contact, &frame, iterate);
+        self.put_force(contact, column, &add(&frame.normal, -friction, &direction), matrix);
+        self.put_motion(contact, row, &frame.normal, matrix);
+        if let Role::Plane { track } = self.roles[contact] {
+            let Track { start, turn } = &self.tracks[track];
+            let across = cross(&frame.normal, &direction);
+            match kind {
+                Kind::Rates => {
+                    // The unknown is μ r_n times the turn, so that a node that is hardly pressed makes nothing singular.
+                    self.put_force(contact, column + 1, &scaled(&across, -1.0), matrix);
+                    self.put_motion(contact, row + 1, &across, matrix);
+                }
+                Kind::Increment => {
+                    // Where the node is hardly pressed a turn changes nothing, and the equations would be singular.
+                    let pressed = friction * normal;
+                    let pressed = if pressed.abs() < LEAST_PRESSED { LEAST_PRESSED } else { pressed };
+                    self.put_force(contact, column + 1, &scaled(&across, -pressed), matrix);
+                    let chord = self.chord(contact, &iterate.state);
+                    let rule = slip_integration::Rule::new(&frame, start, turn, &direction, &chord);
+                    self.put_motion(contact, row + 1, &rule.across, matrix);
+                    matrix.add(row + 1, column + 1, rule.by_turn);
+                }
+            }
+        }
+        let turns_edge = |beside: usize| self.loading.contacts[beside].obstacle.is_curved();
+        let turns = matches!(self.roles[contact], Role::Edge { beside, .. } if turns_edge(beside));
+        if frame.curvature == 0.0 && !turns {
+            return;
+        }
+        // The reaction turns with the place on the obstacle.
+        let dimension = structure.dimension;
+        let first = self.loading.contacts[contact].node * dimension;
+        let change_with = |motion: &Vector| {
+            let drag = self.direction_change(contact, iterate, &direction, motion);
+            scaled(&add(&frame.normal_change(motion), -friction, &drag), normal)
+        };
+        for component in 0..dimension {
+            let mut motion = [0.0; 3];
+            motion[component] = 1.0;
+            let change = change_with(&motion);
+            match structure.unknown_of[first + component] {
+                Some(unknown) => self.put_force(contact, unknown, &change, matrix),
+                None => {
+                    let change = scaled(&change, self.loading.support_rate(first + component));
+                    self.put_force(contact, structure.unknowns(), &change, matrix);
+                }
+            }
+        }
+        let shifted = scaled(&change_with(&self.loading.pattern.shifts[contact]), -1.0);
+        self.put_force(contact, structure.unknowns(), &shifted, matrix);
+    }
+
+    /// Puts the bordering row of a rate into a matrix.
+    pub fn border(&self, matrix: &mut (impl Sink + ?Sized), rate: &Rate) {
+        self.border_along(matrix, |freedom| rate.displacement[freedom], rate.load);
+    }
+
+    /// The same of the rate of each degree of freedom and of the load.
+    pub(super) fn border_along(
+        &self,
+        matrix: &mut (impl Sink + ?Sized),
+        of_freedom: impl Fn(usize) -> f64,
+        of_load: f64,
+    ) {
+        self.border_row(self.size - 1, matrix, of_freedom, of_load);
+    }
+
+    /// The same in any row.
+    pub(crate) fn border_row(
+        &self,
+        row: usize,
+        matrix: &mut (impl Sink + ?Sized),
+        of_freedom: impl Fn(usize) -> f64,
+        of_load: f64,
+    ) {
+        let structure = self.loading.structure;
+        let load = structure.unknowns();
+        for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
+            matrix.add(row, unknown, of_freedom(*freedom));
+        }
+        // Supports that move with the load are part of the arc.
+        let supports = self.loading.pattern.supports.iter().enumerate();
+        let supports: f64 = supports.map(|(freedom, motion)| motion * of_freedom(freedom)).sum();
+        matrix.add(row, load, of_load + supports);
+    }
+}

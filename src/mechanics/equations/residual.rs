@@ -1,0 +1,112 @@
+//! What is left over of the equations, and states that fulfil exactly what can be.
+
+use crate::mechanics::contact::Reaction;
+use crate::mechanics::contact::vector::scaled;
+use crate::mechanics::equations::{Iterate, ModeSystem, Role, Track, slip_integration};
+use crate::mechanics::problem::natural_residual::ZERO;
+use crate::mechanics::problem::state::State;
+use nalgebra::DVector;
+
+/// A gap (dimensionless) up to this size is what rounding leaves of none.
+const ROUNDING: f64 = 1e-13;
+
+impl ModeSystem<'_> {
+    /// Equilibrium and contact equations; returns the largest equilibrium residual and the force scale.
+    pub(crate) fn residual(&self, iterate: &Iterate, values: &mut DVector<f64>, force: &mut [f64]) -> (f64, f64) {
+        let structure = self.loading.structure;
+        let (dimension, state) = (structure.dimension, &iterate.state);
+        let mut scale = structure.internal_force(&state.displacement, force);
+        let loads = self.loading.pattern.forces.iter().zip(&self.loading.held.forces);
+        for (value, (pattern, held)) in force.iter_mut().zip(loads) {
+            let load = state.load * pattern + held;
+            scale = scale.max(load.abs()).max(value.abs());
+            *value -= load;
+        }
+        values.fill(0.0);
+        for (contact, role) in self.roles.iter().enumerate() {
+            if matches!(role, Role::Free) {
+                continue;
+            }
+            let reaction = &state.reactions[contact];
+            scale = scale.max(reaction.size());
+            let frame = self.loading.frame(contact, state);
+            let first = self.loading.contacts[contact].node * dimension;
+            for component in 0..dimension {
+                force[first + component] -= reaction.normal * frame.normal[component] + reaction.tangential[component];
+            }
+            let row = self.row_of(contact);
+            match role {
+                // A sticking node is put in its place exactly: see `place_exactly`.
+                Role::Free | Role::Stick | Role::Held | Role::HeldBy => {}
+                Role::Frictionless | Role::Line { .. } | Role::Edge { .. } => {
+                    values[row] = frame.gap - self.left_open(contact);
+                }
+                Role::Plane { track } => {
+                    let Track { start, turn } = &self.tracks[*track];
+                    values[row] = frame.gap - self.left_open(contact);
+                    let chord = self.chord(contact, state);
+                    let rule = slip_integration::Rule::new(&frame, start, turn, &iterate.directions[contact], &chord);
+                    values[row + 1] = rule.left_over;
+                }
+            }
+        }
+        let mut largest = 0.0_f64;
+        for (value, freedom) in values.as_mut_slice().iter_mut().zip(&structure.freedom_of) {
+            *value = force[*freedom];
+            largest = largest.max(value.abs());
+        }
+        (largest, scale)
+    }
+
+    /// The gap that a contact keeps which closed where that was as good as none: where several touch at almost one place the
+    /// path goes on from there without a jump, however short the way to the next is.
+    fn left_open(&self, contact: usize) -> f64 {
+        let gap = self.loading.gap(contact, self.anchor);
+        if gap > ROUNDING && gap <= ZERO { gap } else { 0.0 }
+    }
+
+    /// Supports and sticking nodes are where they have to be.
+    pub(super) fn place_exactly(&self, state: &mut State) {
+        self.loading.place_supports(state);
+        let structure = self.loading.structure;
+        for (contact, role) in self.roles.iter().enumerate() {
+            if !matches!(role, Role::Stick | Role::Held) || !self.holds_node(contact) {
+                continue;
+            }
+            let shift = scaled(&self.loading.pattern.shifts[contact], state.load - self.anchor.load);
+            let first = self.loading.contacts[contact].node * structure.dimension;
+            for (freedom, shift) in (first..first + structure.dimension).zip(shift) {
+                if structure.unknown_of[freedom].is_some() {
+                    state.displacement[freedom] = self.anchor.displacement[freedom] + shift;
+                }
+            }
+        }
+    }
+
+    /// Whether sticking leaves the node no motion at all.
+    fn holds_node(&self, contact: usize) -> bool {
+        let structure = self.loading.structure;
+        let first = self.loading.contacts[contact].node * structure.dimension;
+        let free = (first..first + structure.dimension).filter(|freedom| structure.unknown_of[*freedom].is_some());
+        self.held_directions(contact).len() >= free.count()
+    }
+
+    /// Makes complementarity exact: no reaction on a free contact, no motion of a sticking node, friction of a slipping
+    /// contact on its cone.
+    pub(crate) fn make_consistent(&self, iterate: &mut Iterate) {
+        self.place_exactly(&mut iterate.state);
+        for (contact, role) in self.roles.iter().enumerate() {
+            match role {
+                Role::Free => iterate.state.reactions[contact] = Reaction::default(),
+                Role::Stick | Role::Held | Role::HeldBy => {}
+                Role::Frictionless => iterate.state.reactions[contact].tangential = [0.0; 3],
+                Role::Line { .. } | Role::Edge { .. } | Role::Plane { .. } => {
+                    let frame = self.loading.frame(contact, &iterate.state);
+                    let direction = self.direction(contact, &frame, iterate);
+                    let drag = -self.loading.contacts[contact].friction * iterate.state.reactions[contact].normal;
+                    iterate.state.reactions[contact].tangential = scaled(&direction, drag);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! How fast slips in planes turn, and by how much they have.
+
+use crate::mechanics::contact::Mode;
+use crate::mechanics::contact::vector::size;
+use crate::mechanics::equations::slip_integration::{self, Turn};
+use crate::mechanics::equations::solution::{Corrected, Tangent};
+use crate::mechanics::equations::{ModeSystem, Role};
+use crate::mechanics::problem::state::Rate;
+
+impl ModeSystem<'_> {
+    /// Sets how fast the slips in planes turn at the start, by the path's direction there, and for another solve at the
+    /// end. Whether some direction settles there is returned.
+    pub fn set_turns(&mut self, start: &Rate, end: &Corrected, tangent: &Tangent) -> bool {
+        let mut settles = false;
+        for index in 0..self.roles.len() {
+            let Role::Plane { track } = self.roles[index] else { continue };
+            let begun = self.tracks[track].start;
+            let Mode::Slip { direction } = end.modes[index] else { continue };
+            let at_start = slip_integration::turn_rate(self.loading, index, self.anchor, start, &begun.direction);
+            let at_end = slip_integration::turn_rate(self.loading, index, &end.state, &tangent.rate, &direction);
+            let settling = tangent.stiffness_across.get(index).copied().flatten().and_then(|stiffness| {
+                let chord = size(&self.chord(index, &end.state));
+                let here = (&end.state, &tangent.rate);
+                slip_integration::settling(self.loading, index, here, (&begun, &direction), (chord, stiffness))
+            });
+            settles |= settling.is_some_and(|settling| settling.share() > 0.0);
+            self.tracks[track].turn = Turn { at_start, at_end, settling };
+        }
+        settles
+    }
+
+    /// The largest angle (radians) by which the direction of a slip in a plane differs from that of another point, or
+    /// from that at the start; a node that is not pressed has none.
+    pub fn largest_turn(&self, corrected: &Corrected, other: Option<&Corrected>) -> f64 {
+        let of = |(index, role): (usize, &Role)| {
+            let (Role::Plane { track }, Mode::Slip { direction }) = (role, corrected.modes[index]) else {
+                return 0.0;
+            };
+            let start = &self.tracks[*track].start;
+            if corrected.state.reactions[index].normal <= 0.0 {
+                return 0.0;
+            }
+            let normal = self.loading.frame(index, &corrected.state).normal;
+            let from = match other.map(|other| other.modes[index]) {
+                Some(Mode::Slip { direction }) => direction,
+                Some(Mode::Free | Mode::Stick) | None => start.carried_to(&normal),
+            };
+            slip_integration::angle(&normal, &from, &direction).abs()
+        };
+        self.roles.iter().enumerate().map(of).fold(0.0, f64::max)
+    }
+
+    /// The largest angle (radians) by which turns move the chord of a track that does not settle.
+    pub fn largest_correction(&self, corrected: &Corrected) -> f64 {
+        let of = |(index, role): (usize, &Role)| {
+            let Role::Plane { track } = role else { return 0.0 };
+            let turn = &self.tracks[*track].turn;
+            let settles = turn.settling.is_some_and(|settling| settling.share() != 0.0);
+            if settles { 0.0 } else { turn.correction(size(&self.chord(index, &corrected.state))).abs() }
+        };
+        self.roles.iter().enumerate().map(of).fold(0.0, f64::max)
+    }
+}

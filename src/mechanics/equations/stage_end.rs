@@ -1,0 +1,57 @@
+//! The ways in which a stage ends.
+
+use crate::mechanics::equations::closing_equation::PrescribedValue;
+use crate::mechanics::problem::state::State;
+
+/// One way in which a stage ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum End {
+    /// `sign (s - bound) >= 0`
+    Load {
+        bound: f64,
+        sign: f64,
+    },
+    /// `sign (u - bound) >= 0`
+    Displacement {
+        freedom: usize,
+        bound: f64,
+        sign: f64,
+    },
+    LimitPoints(u64),
+    ContactChanges(u64),
+    Increments(u64),
+}
+
+impl End {
+    /// Whether it is a bound of the load or of a displacement, not a count.
+    pub fn is_bound(self) -> bool {
+        matches!(self, Self::Load { .. } | Self::Displacement { .. })
+    }
+
+    /// The equation of a bound; `None` of a count.
+    pub fn held(self) -> Option<PrescribedValue> {
+        match self {
+            Self::Load { bound, .. } => Some(PrescribedValue::Load(bound)),
+            Self::Displacement { freedom, bound, .. } => Some(PrescribedValue::Displacement { freedom, value: bound }),
+            Self::LimitPoints(_) | Self::ContactChanges(_) | Self::Increments(_) => None,
+        }
+    }
+
+    /// Whether a state meets a bound without even round-off.
+    pub fn is_met_exactly(self, state: &State) -> bool {
+        match self {
+            Self::Load { bound, .. } => state.load == bound,
+            Self::Displacement { freedom, bound, .. } => state.displacement[freedom] == bound,
+            Self::LimitPoints(_) | Self::ContactChanges(_) | Self::Increments(_) => false,
+        }
+    }
+
+    /// Puts a state that meets a bound to round-off exactly there.
+    pub fn make_exact(self, state: &mut State) {
+        match self {
+            Self::Load { bound, .. } => state.load = bound,
+            Self::Displacement { freedom, bound, .. } => state.displacement[freedom] = bound,
+            Self::LimitPoints(_) | Self::ContactChanges(_) | Self::Increments(_) => {}
+        }
+    }
+}

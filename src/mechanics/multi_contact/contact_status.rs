@@ -1,0 +1,119 @@
+//! Which contacts could change at a point, and between what.
+
+use crate::mechanics::contact::vector::{Vector, direction_of, dot, scaled, size};
+use crate::mechanics::contact::{Mode, Sliding};
+use crate::mechanics::multi_contact::moving_planes::Carried;
+use crate::mechanics::multi_contact::spatial::Pocket;
+use crate::mechanics::multi_contact::{determinacy, planar};
+use crate::mechanics::problem::loading::Loading;
+use crate::mechanics::problem::natural_residual::ZERO;
+use crate::mechanics::problem::node_forces;
+use crate::mechanics::problem::state::State;
+
+/// How a contact stands at a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Standing {
+    /// Strictly inside its mode: that mode is the only one near by.
+    Settled(Mode),
+    /// Pressed, with the traction on the cone: it sticks, or slips along `direction`.
+    OnCone { direction: Vector },
+    /// At zero gap with zero reaction: anything may follow.
+    Touching,
+    /// One of several closed contacts of a node whose force lies on a bound of what holds it, or is zero: the node may
+    /// slide along one of them or leave.
+    Cornered {
+        /// In the plane: which of the two bounds.
+        facets: [bool; 2],
+        unloaded: bool,
+        /// A force up to this size is none.
+        zero: f64,
+    },
+}
+
+/// A distance from the friction cone (over the force scale) that may be round-off: what an event's location leaves.
+const ROUND_OFF: f64 = 1e-12;
+
+impl Loading<'_> {
+    /// The distance from a contact's cone that counts as none, for a relative tolerance: by the friction bound `μ r_n`
+    /// itself, but no less than round-off and no more than by the forces at its node.
+    pub fn none_from_cone(&self, contact: usize, state: &State, tolerance: f64, force_scale: f64) -> f64 {
+        let reaction = &state.reactions[contact];
+        let bound = (self.contacts[contact].friction * reaction.normal).abs();
+        // The forces lie between the reaction and the force scale: often that tells.
+        let least = reaction.size().min(force_scale);
+        if bound <= least && tolerance * bound >= ROUND_OFF * force_scale {
+            return tolerance * bound;
+        }
+        let forces = self.force_scale_at(contact, state, force_scale);
+        (tolerance * bound.min(forces)).max(ROUND_OFF * forces)
+    }
+}
+
+/// Standing of every contact.
+pub fn standings(loading: Loading<'_>, state: &State, force_scale: f64) -> Vec<Standing> {
+    let mut standings: Vec<Standing> =
+        (0..loading.contacts.len()).map(|contact| standing(loading, state, contact, force_scale)).collect();
+    for corner in loading.corners {
+        let closed = corner.closed(loading, state);
+        if closed.len() > 1 && !determinacy::stand_alone(loading, &closed, state) {
+            let together = if node_forces::is_in_plane(loading, corner) {
+                standing_of_corner(loading, state, &closed, force_scale)
+            } else {
+                standing_in_pocket(loading, state, &closed, force_scale)
+            };
+            closed.iter().for_each(|contact| standings[*contact] = together);
+        }
+    }
+    standings
+}
+
+fn standing_in_pocket(loading: Loading<'_>, state: &State, closed: &[usize], force_scale: f64) -> Standing {
+    let pocket = Pocket::new(loading, closed, state);
+    let force = pocket.force(loading, state);
+    let zero = ZERO * force_scale;
+    let unloaded = size(&force) <= zero;
+    if unloaded || pocket.is_driven || !pocket.ready(&force, zero).is_empty() || pocket.is_at_bound(&force, zero) {
+        Standing::Cornered { facets: [true; 2], unloaded, zero }
+    } else {
+        Standing::Settled(Mode::Stick)
+    }
+}
+
+fn standing_of_corner(loading: Loading<'_>, state: &State, closed: &[usize], force_scale: f64) -> Standing {
+    let force = node_forces::total_force(loading, closed.iter().copied(), state);
+    let scale_at = |contact: &usize| loading.force_scale_at(*contact, state, force_scale);
+    let zero = ZERO * closed.iter().map(scale_at).fold(0.0, f64::max);
+    let unloaded = size(&force) <= zero;
+    if Carried::of(loading, closed, state).is_some() {
+        return Standing::Cornered { facets: [true; 2], unloaded, zero };
+    }
+    let inward = planar::sector(loading, closed, |_| Mode::Stick, state).inward;
+    let facets = inward.map_or([false; 2], |inward| inward.map(|inward| dot(&inward, &force) <= zero));
+    if unloaded || facets != [false; 2] {
+        Standing::Cornered { facets, unloaded, zero }
+    } else {
+        Standing::Settled(Mode::Stick)
+    }
+}
+
+fn standing(loading: Loading<'_>, state: &State, index: usize, force_scale: f64) -> Standing {
+    let (contact, reaction) = (&loading.contacts[index], &state.reactions[index]);
+    if reaction.normal <= 0.0 || loading.is_no_force(index, state, reaction.normal, ZERO, force_scale) {
+        return if loading.gap(index, state) <= ZERO { Standing::Touching } else { Standing::Settled(Mode::Free) };
+    }
+    if contact.tangents() == 0 {
+        return Standing::Settled(Mode::Slip { direction: [0.0; 3] });
+    }
+    let bound = contact.friction * reaction.normal;
+    if bound - reaction.tangential_size() > loading.none_from_cone(index, state, ZERO, force_scale) {
+        return Standing::Settled(Mode::Stick);
+    }
+    let direction = match contact.sliding {
+        Sliding::Plane => direction_of(&reaction.tangential, &[0.0; 3]),
+        Sliding::None | Sliding::Line { .. } => {
+            let tangent = loading.frame(index, state).tangents[0];
+            scaled(&tangent, if dot(&tangent, &reaction.tangential) > 0.0 { -1.0 } else { 1.0 })
+        }
+    };
+    Standing::OnCone { direction }
+}

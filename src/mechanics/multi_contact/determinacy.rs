@@ -1,0 +1,56 @@
+//! Whether equilibrium tells the reactions of several contacts of a node apart, and whether the bounds of their hold are known.
+
+use crate::mechanics::contact::vector::{Vector, add, dot, size, unit};
+use crate::mechanics::multi_contact::moving_planes::Carried;
+use crate::mechanics::multi_contact::spatial::Pocket;
+use crate::mechanics::problem::loading::Loading;
+use crate::mechanics::problem::node_forces::{is_driven, is_in_plane, move_apart};
+use crate::mechanics::problem::state::State;
+
+/// A normal is independent of others where more than this part of it (sine of an angle) is across them.
+pub(crate) const INDEPENDENT: f64 = 1e-6;
+
+/// Whether a node is closed against several obstacles in a way whose bounds are not known: where it is driven against
+/// them or they move against each other, with friction or with more reactions than equilibrium tells apart; and where more
+/// obstacles than an edge has bear a slide.
+pub fn is_not_available(loading: Loading<'_>, state: &State) -> bool {
+    loading.corners.iter().any(|corner| {
+        let closed = corner.closed(loading, state);
+        let is_known = || {
+            if is_in_plane(loading, corner) {
+                return !is_driven(loading, &closed) || Carried::of(loading, &closed, state).is_some();
+            }
+            Pocket::new(loading, &closed, state).is_determinate_when_sliding()
+        };
+        closed.len() > 1 && !are_determinate(loading, &closed, state) && !is_known()
+    })
+}
+
+/// Whether closed contacts of a node are best taken one by one: its equilibrium gives all reactions, and in the plane no
+/// hold together is at rest.
+pub fn stand_alone(loading: Loading<'_>, closed: &[usize], state: &State) -> bool {
+    let apart = loading.structure.dimension == 3 || move_apart(loading, closed);
+    apart && are_determinate(loading, closed, state)
+}
+
+/// Whether the reactions of some contacts of a node follow from its equilibrium: none has friction, and their normals
+/// are independent as far as the node is free to move.
+pub(crate) fn are_determinate(loading: Loading<'_>, contacts: &[usize], state: &State) -> bool {
+    let dimension = loading.structure.dimension;
+    let mut basis: Vec<Vector> = Vec::new();
+    contacts.iter().all(|contact| {
+        let data = &loading.contacts[*contact];
+        let mut rest = loading.frame(*contact, state).normal;
+        for (component, part) in rest.iter_mut().enumerate() {
+            let is_free =
+                component < dimension && loading.structure.unknown_of[data.node * dimension + component].is_some();
+            *part = if is_free { *part } else { 0.0 };
+        }
+        for known in &basis {
+            rest = add(&rest, -dot(&rest, known), known);
+        }
+        let is_independent = size(&rest) > INDEPENDENT;
+        basis.push(if is_independent { unit(&rest) } else { rest });
+        data.tangents() == 0 && is_independent
+    })
+}

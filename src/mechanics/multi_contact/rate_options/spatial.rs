@@ -1,0 +1,198 @@
+//! The ways on of a node in a pocket as options of the rate problem.
+
+use crate::complementarity::rates::rate_problem::{Choice, Entity, Signed};
+use crate::mechanics::contact::Mode;
+use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled};
+use crate::mechanics::multi_contact::rate_options::changeable::{Changeable, Forms, Outcome};
+use crate::mechanics::multi_contact::spatial::{Drive, Pocket, Slide};
+use crate::mechanics::problem::loading::Loading;
+
+/// The node is held, slides along one obstacle or an edge, or leaves. What keeps it held is no linear form: see
+/// `Pocket::margin_of_rate`; nor is a first slip along one rough obstacle in space: see `slip_onset_direction`.
+pub fn options(
+    entry: &Changeable,
+    pocket: &Pocket,
+    loading: Loading<'_>,
+    unloaded: bool,
+    zero: f64,
+    forms: &mut Forms<'_>,
+) -> (Entity, Vec<Outcome>) {
+    if pocket.is_driven {
+        return driven(entry, pocket, loading, unloaded, zero, forms);
+    }
+    let mut writer = Writer { entry, pocket, unloaded, zero, forms, options: Vec::new(), outcomes: Vec::new() };
+    let held = pocket.free.iter().map(|direction| writer.forms.velocity(entry, direction)).collect();
+    writer.option(held, Vec::new(), |_| Mode::Stick);
+    let slides: Vec<(Slide, Option<Drive>)> = if unloaded {
+        pocket.slides().into_iter().map(|slide| (slide, None)).collect()
+    } else {
+        pocket.ready(&entry.force, zero).into_iter().map(|(slide, drive)| (slide, Some(drive))).collect()
+    };
+    for (slide, drive) in slides {
+        match (slide, drive) {
+            (Slide::Edge { places, direction }, drive) => writer.edge(places, direction, drive),
+            (Slide::Face { place }, _) if pocket.frictions[place] == 0.0 => writer.smooth_face(place, drive),
+            (Slide::Face { place }, Some(drive)) => writer.face(place, &drive),
+            (Slide::Face { place }, None) if pocket.free.len() == 2 => writer.guided_face(place),
+            // Its direction is unknown.
+            (Slide::Face { .. }, None) => {}
+        }
+    }
+    if unloaded {
+        let apart = pocket.free.iter().map(|direction| writer.forms.force_along(entry, direction)).collect();
+        let gaps = writer.gaps(&[]);
+        writer.option(apart, gaps, |_| Mode::Free);
+    }
+    (Entity { options: writer.options, touching: None }, writer.outcomes)
+}
+
+/// Of a node that is driven against its obstacles and free in one direction alone: one of them holds it there, or none.
+fn driven(
+    entry: &Changeable,
+    pocket: &Pocket,
+    loading: Loading<'_>,
+    unloaded: bool,
+    zero: f64,
+    forms: &mut Forms<'_>,
+) -> (Entity, Vec<Outcome>) {
+    let places = 0..pocket.contacts.len();
+    let gap = |place: usize| {
+        let (contact, normal) = (pocket.contacts[place], pocket.frames[place].normal);
+        forms.motion(|rate| dot(&normal, &loading.relative_rate(contact, rate)))
+    };
+    let gaps: Vec<usize> = places.clone().map(gap).collect();
+    let (mut options, mut outcomes) = (Vec::new(), Vec::new());
+    let modes_with = |active: Option<usize>| {
+        let mode = |place: usize| if active == Some(place) { Mode::Slip { direction: [0.0; 3] } } else { Mode::Free };
+        Outcome { modes: places.clone().map(|place| (pocket.contacts[place], mode(place))).collect() }
+    };
+    for place in places.clone() {
+        let form = pocket.face_form(place);
+        if !unloaded && dot(&form, &entry.force) <= zero {
+            continue;
+        }
+        let others = places.clone().filter(|other| *other != place);
+        let mut nonnegative: Vec<Signed> = others.map(|other| Signed::plus(gaps[other])).collect();
+        if unloaded {
+            nonnegative.push(Signed::plus(forms.force_along(entry, &form)));
+        }
+        options.push(Choice { zero: vec![gaps[place]], nonnegative, implied: Vec::new() });
+        outcomes.push(modes_with(Some(place)));
+    }
+    if unloaded {
+        let apart = pocket.free.iter().map(|direction| forms.force_along(entry, direction)).collect();
+        let nonnegative = gaps.iter().map(|gap| Signed::plus(*gap)).collect();
+        options.push(Choice { zero: apart, nonnegative, implied: Vec::new() });
+        outcomes.push(modes_with(None));
+    }
+    (Entity { options, touching: None }, outcomes)
+}
+
+struct Writer<'a, 'f> {
+    entry: &'a Changeable,
+    pocket: &'a Pocket,
+    unloaded: bool,
+    zero: f64,
+    forms: &'a mut Forms<'f>,
+    options: Vec<Choice>,
+    outcomes: Vec<Outcome>,
+}
+
+impl Writer<'_, '_> {
+    fn option(&mut self, zero: Vec<usize>, nonnegative: Vec<Signed>, mode: impl Fn(usize) -> Mode) {
+        self.options.push(Choice { zero, nonnegative, implied: Vec::new() });
+        let modes = self.pocket.contacts.iter().enumerate().map(|(place, contact)| (*contact, mode(place))).collect();
+        self.outcomes.push(Outcome { modes });
+    }
+
+    /// The others open.
+    fn gaps(&mut self, but: &[usize]) -> Vec<Signed> {
+        let others = (0..self.pocket.contacts.len()).filter(|place| !but.contains(place));
+        let normals: Vec<Vector> = others.map(|place| self.pocket.frames[place].normal).collect();
+        normals.iter().map(|normal| Signed::plus(self.forms.velocity(self.entry, normal))).collect()
+    }
+
+    fn along(&mut self, direction: &Vector) -> usize {
+        self.forms.velocity(self.entry, direction)
+    }
+
+    fn normal_of(&mut self, place: usize) -> usize {
+        let normal = self.pocket.frames[place].normal;
+        self.along(&normal)
+    }
+
+    /// The form of the rate of force less what the turning of the present reactions makes of it.
+    fn off(&mut self, form: &Vector, places: &[usize], direction: &Vector, normals: &[f64]) -> usize {
+        let mut row = self.forms.force_rate(self.entry, form);
+        for (column, motion) in &self.entry.velocities {
+            let turning = self.pocket.turning(places, direction, normals, motion);
+            row[*column] -= turning.iter().map(|turned| dot(form, turned)).sum::<f64>();
+        }
+        self.forms.force(row)
+    }
+
+    fn edge(&mut self, places: [usize; 2], direction: Vector, drive: Option<Drive>) {
+        let normals = drive.map_or([0.0; 2], |drive| drive.normals);
+        let drag = self.pocket.edge_drive(places, &direction);
+        let zero =
+            vec![self.normal_of(places[0]), self.normal_of(places[1]), self.off(&drag, &places, &direction, &normals)];
+        let mut nonnegative = vec![Signed::plus(self.along(&direction))];
+        for (form, normal) in self.pocket.edge_forms(places, &direction).iter().zip(normals) {
+            if self.unloaded || normal <= self.zero {
+                nonnegative.push(Signed::plus(self.forms.force_along(self.entry, form)));
+            }
+        }
+        let frictions = self.pocket.frictions.clone();
+        self.option(zero, nonnegative, |place| {
+            let rubs = if frictions[place] > 0.0 { direction } else { [0.0; 3] };
+            if places.contains(&place) { Mode::Slip { direction: rubs } } else { Mode::Free }
+        });
+    }
+
+    fn face(&mut self, place: usize, drive: &Drive) {
+        let (pocket, direction) = (self.pocket, drive.direction);
+        let friction = pocket.frictions[place];
+        let slack = add(&direction, friction, &pocket.face_form(place));
+        let mut zero = vec![self.normal_of(place), self.off(&slack, &[place], &direction, &drive.normals[..1])];
+        if pocket.free.len() == 3 {
+            let across = cross(&pocket.frames[place].normal, &direction);
+            zero.push(self.along(&across));
+        }
+        let mut nonnegative = vec![Signed::plus(self.along(&direction))];
+        for form in pocket.turns_off(place, &direction) {
+            nonnegative.push(Signed::plus(self.forms.force_along(self.entry, &form)));
+        }
+        self.option(zero, nonnegative, |other| if other == place { Mode::Slip { direction } } else { Mode::Free });
+    }
+
+    /// Of a node that is guided in a plane, without force.
+    fn guided_face(&mut self, place: usize) {
+        let pocket = self.pocket;
+        let normal = pocket.face_form(place);
+        for sense in [1.0, -1.0] {
+            let direction = scaled(&pocket.frames[place].tangents[0], sense);
+            let slack = add(&direction, pocket.frictions[place], &normal);
+            let zero = vec![self.normal_of(place), self.forms.force_along(self.entry, &slack)];
+            let mut nonnegative = self.gaps(&[place]);
+            nonnegative.push(Signed::plus(self.along(&direction)));
+            nonnegative.push(Signed::plus(self.forms.force_along(self.entry, &normal)));
+            self.option(zero, nonnegative, |other| if other == place { Mode::Slip { direction } } else { Mode::Free });
+        }
+    }
+
+    fn smooth_face(&mut self, place: usize, drive: Option<Drive>) {
+        let pocket = self.pocket;
+        let normals = drive.map_or([0.0], |drive| [drive.normals[0]]);
+        let tangents = pocket.frames[place].tangents;
+        let mut zero = vec![self.normal_of(place)];
+        for tangent in tangents.iter().take(pocket.free.len() - 1) {
+            zero.push(self.off(tangent, &[place], &[0.0; 3], &normals));
+        }
+        let mut nonnegative = self.gaps(&[place]);
+        if self.unloaded {
+            nonnegative.push(Signed::plus(self.forms.force_along(self.entry, &pocket.face_form(place))));
+        }
+        let slip = Mode::Slip { direction: [0.0; 3] };
+        self.option(zero, nonnegative, |other| if other == place { slip } else { Mode::Free });
+    }
+}

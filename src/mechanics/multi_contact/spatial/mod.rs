@@ -1,0 +1,409 @@
+//! A node that several obstacles hold at once where it is free in space, or guided by supports.
+//!
+//! Equilibrium gives only the sum `R` of the obstacles' forces. Let `V = {v : n_k·v >= 0}` be the motions that the
+//! obstacles leave, `v₀` the projection of `-R` on it, and `A` the obstacles along which that motion slides:
+//!
+//! ```text
+//! R = Σ N_i n_i - v₀,     N_i >= 0,     N_i n_i·v₀ = 0
+//! ```
+//!
+//! (J. J. Moreau, C. R. Acad. Sci. 255 (1962) 238). Without friction the node goes along `v₀`. With friction it slides
+//! that way, along one obstacle or along the edge of two, where `R = Σ N_i (n_i - μ_i d)`, `d` along `v₀`: so it is held as
+//! long as
+//!
+//! ```text
+//! |v₀| <= Σ μ_i N_i
+//! ```
+//!
+//! There it slides, although obstacles that press it against each other could hold more: that takes reactions which nothing
+//! has brought about. A node that comes from one obstacle with a force beyond this bound, and within the sum of the friction
+//! cones, is held, since no slide has such a force: where it comes back within the bound the node may slide again, and where
+//! it leaves the sum no motion has it. Where the cones together are all of space the node is jammed and stays, as in the
+//! plane.
+//! What is not free of the node (supported components) is left out of `R` and of the normals.
+//!
+//! `hold` has what the cones hold together, `sliding` what follows of a node that slides out, `options` its ways as parts of
+//! the rate problem.
+
+pub(crate) mod hold;
+pub(crate) mod sliding;
+
+use crate::mechanics::problem::node_forces::free_directions;
+pub use sliding::{Edge, beside, taken_over};
+
+use crate::mechanics::contact::Frame;
+use crate::mechanics::contact::share::{Cone, least_reactions};
+use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled, size, unit};
+use crate::mechanics::problem::loading::Loading;
+use crate::mechanics::problem::node_forces::{is_driven, reaction_in_space, total_force};
+use crate::mechanics::problem::state::{Rate, State};
+use crate::resources::budget;
+
+/// The closed obstacles of a node.
+pub struct Pocket {
+    pub contacts: Vec<usize>,
+    pub frames: Vec<Frame>,
+    pub frictions: Vec<f64>,
+    /// The normals as far as the node is free.
+    normals: Vec<Vector>,
+    /// Orthonormal directions in which the node is free.
+    pub free: Vec<Vector>,
+    /// The running stage drives the node against the obstacles, or them against each other.
+    pub is_driven: bool,
+}
+
+/// A way out of the pocket.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Slide {
+    /// Along the edge of two obstacles, places in the pocket.
+    Edge { places: [usize; 2], direction: Vector },
+    /// Along one obstacle, the others opening.
+    Face { place: usize },
+}
+
+/// What a force on the node says of a slide.
+#[derive(Debug, Clone, Copy)]
+pub struct Drive {
+    pub direction: Vector,
+    /// Normal reactions of the obstacles along which the node slides; the second is 0 for a face.
+    pub normals: [f64; 2],
+    /// What drives the node less the friction.
+    pub excess: f64,
+}
+
+/// Sine of an angle below which directions are one, and cosine below which they are across each other.
+const SAME: f64 = 1e-9;
+/// Normals are independent where the sine of the angle between them is above this.
+const INDEPENDENT: f64 = 1e-6;
+/// Cones closer to all of space than this (angle) are taken as not quite.
+const FLAT: f64 = 1e-12;
+/// A force is at a bound within this part of it ...
+const AT_BOUND: f64 = 1e-9;
+/// ... or of the forces that meet at the node, whose rounding it may be.
+const ROUND_OFF: f64 = 1e-12;
+/// Parts of a force below this part of it are none.
+const NONE: f64 = 1e-12;
+
+impl Pocket {
+    pub fn new(loading: Loading<'_>, contacts: &[usize], state: &State) -> Self {
+        let free = free_directions(loading, loading.contacts[contacts[0]].node);
+        let frames: Vec<Frame> = contacts.iter().map(|contact| loading.frame(*contact, state)).collect();
+        let friction = |contact: &usize| {
+            let data = &loading.contacts[*contact];
+            if data.tangents() > 0 { data.friction } else { 0.0 }
+        };
+        let frictions = contacts.iter().map(friction).collect();
+        let normals = frames.iter().map(|frame| along(&free, &frame.normal)).collect();
+        let is_driven = is_driven(loading, contacts);
+        Self { contacts: contacts.to_vec(), frames, frictions, normals, free, is_driven }
+    }
+
+    /// Sum of the forces of the obstacles as far as the node is free.
+    pub fn force(&self, loading: Loading<'_>, state: &State) -> Vector {
+        along(&self.free, &total_force(loading, self.contacts.iter().copied(), state))
+    }
+
+    /// A vector as far as the node is free.
+    pub fn free_part(&self, vector: &Vector) -> Vector {
+        along(&self.free, vector)
+    }
+
+    /// Whether every way of sliding out gives the reactions: no two obstacles face the same way, and no edge with friction
+    /// is one of three.
+    pub fn is_determinate_when_sliding(&self) -> bool {
+        if self.is_driven {
+            return self.free.len() == 1;
+        }
+        if self.free.len() < 2 {
+            return true;
+        }
+        self.pairs().all(|[first, second]| {
+            let across = cross(&unit(&self.normals[first]), &unit(&self.normals[second]));
+            let edge = unit(&across);
+            let on_edge = |place: &usize| dot(&unit(&self.normals[*place]), &edge).abs() <= INDEPENDENT;
+            let of_edge = || (0..self.contacts.len()).filter(on_edge);
+            let rough = of_edge().any(|place| self.frictions[place] > 0.0);
+            size(&across) > INDEPENDENT && (self.free.len() < 3 || !rough || of_edge().count() == 2)
+        })
+    }
+
+    fn pairs(&self) -> impl Iterator<Item = [usize; 2]> + use<> {
+        let count = self.contacts.len();
+        let all = (0..count).flat_map(move |first| (first + 1..count).map(move |second| [first, second]));
+        // Whoever takes a pair looks at all obstacles of the node.
+        all.inspect(move |_| budget::spend(count))
+    }
+
+    /// Every way of sliding out; of edges those that lead away from the other obstacles.
+    pub fn slides(&self) -> Vec<Slide> {
+        let mut slides = Vec::new();
+        if self.free.len() == 3 {
+            for places in self.pairs() {
+                let edge = unit(&cross(&self.normals[places[0]], &self.normals[places[1]]));
+                for direction in [edge, scaled(&edge, -1.0)] {
+                    if self.opens(&direction, &places) {
+                        slides.push(Slide::Edge { places, direction });
+                    }
+                }
+            }
+        }
+        if self.free.len() > 1 {
+            slides.extend((0..self.contacts.len()).map(|place| Slide::Face { place }));
+        }
+        slides
+    }
+
+    /// Whether a direction leads into no obstacle other than those in some places.
+    pub fn opens(&self, direction: &Vector, but: &[usize]) -> bool {
+        (0..self.contacts.len())
+            .all(|place| but.contains(&place) || dot(&self.frames[place].normal, direction) >= -SAME)
+    }
+
+    /// Linear forms of a force: the normal reactions along an edge.
+    pub fn edge_forms(&self, places: [usize; 2], direction: &Vector) -> [Vector; 2] {
+        let [first, second] = places.map(|place| self.normals[place]);
+        let of = |normal: &Vector, other: &Vector| {
+            let across = cross(other, direction);
+            scaled(&across, 1.0 / dot(normal, &across))
+        };
+        [of(&first, &second), of(&second, &first)]
+    }
+
+    /// The linear form of a force that drives a node along an edge against its friction.
+    pub fn edge_drive(&self, places: [usize; 2], direction: &Vector) -> Vector {
+        let forms = self.edge_forms(places, direction);
+        let drag = add(&scaled(&forms[0], self.frictions[places[0]]), self.frictions[places[1]], &forms[1]);
+        scaled(&add(direction, 1.0, &drag), -1.0)
+    }
+
+    /// The linear form that gives the normal reaction of one obstacle alone.
+    pub fn face_form(&self, place: usize) -> Vector {
+        let normal = &self.normals[place];
+        scaled(normal, 1.0 / dot(normal, normal))
+    }
+
+    /// What a force says of a slide; `None` where it does not press the node that way.
+    pub fn drive(&self, slide: &Slide, force: &Vector) -> Option<Drive> {
+        let zero = NONE * size(force);
+        match *slide {
+            Slide::Edge { places, direction } => {
+                let normals = self.edge_forms(places, &direction).map(|form| dot(&form, force));
+                let excess = dot(&self.edge_drive(places, &direction), force);
+                normals.iter().all(|normal| *normal >= -zero).then_some(Drive { direction, normals, excess })
+            }
+            Slide::Face { place } => {
+                let normal = dot(&self.face_form(place), force);
+                let across = add(force, -normal, &self.normals[place]);
+                let driving = size(&across);
+                let excess = driving - self.frictions[place] * normal;
+                let direction = if driving > zero { scaled(&across, -1.0 / driving) } else { [0.0; 3] };
+                let fits = normal >= -zero && self.opens(&direction, &[place]);
+                fits.then_some(Drive { direction, normals: [normal, 0.0], excess })
+            }
+        }
+    }
+
+    /// How far a force is from making the node slide or leave; negative where it would.
+    pub fn margin(&self, force: &Vector) -> f64 {
+        if self.is_jammed() {
+            return f64::INFINITY;
+        }
+        if self.opens(&scaled(&unit(force), -1.0), &[]) {
+            return -size(force);
+        }
+        let drives = self.slides().into_iter().filter_map(|slide| self.drive(&slide, force));
+        drives.map(|drive| -drive.excess).fold(size(force), f64::min)
+    }
+
+    /// The derivative of the margin along a rate of the force.
+    pub fn margin_slope(&self, force: &Vector, rate: &Vector) -> f64 {
+        if self.is_jammed() {
+            return 0.0;
+        }
+        if self.opens(&scaled(&unit(force), -1.0), &[]) {
+            return -dot(&unit(force), rate);
+        }
+        let drives = self.slides().into_iter().filter_map(|slide| Some((slide, self.drive(&slide, force)?)));
+        let nearest = drives.max_by(|a, b| a.1.excess.total_cmp(&b.1.excess));
+        match nearest {
+            Some((_, drive)) if -drive.excess > size(force) => dot(&unit(force), rate),
+            Some((Slide::Edge { places, direction }, _)) => -dot(&self.edge_drive(places, &direction), rate),
+            Some((Slide::Face { place }, drive)) => {
+                dot(&add(&drive.direction, self.frictions[place], &self.face_form(place)), rate)
+            }
+            None => dot(&unit(force), rate),
+        }
+    }
+
+    /// Rate of the whole force, as far as the node is free.
+    pub fn force_rate(&self, loading: Loading<'_>, state: &State, rate: &Rate) -> Vector {
+        let parts = self.contacts.iter().map(|contact| reaction_in_space(loading, *contact, (state, rate)).1);
+        self.free_part(&parts.fold([0.0; 3], |sum, part| add(&sum, 1.0, &part)))
+    }
+
+    /// Whether the node is on its way within what holds it without wedging, so that it slides where that ends. A node that
+    /// arrives from one obstacle may be held beyond: no slide can begin there.
+    pub fn keeps(&self, loading: Loading<'_>, state: &State, rate: &Rate) -> bool {
+        let (force, change) = (self.force(loading, state), self.force_rate(loading, state, rate));
+        let meeting = self.contacts.iter().map(|contact| loading.forces_meeting_at(*contact, state));
+        let round_off = ROUND_OFF * meeting.fold(0.0, f64::max);
+        let zero = round_off.max(AT_BOUND * size(&force));
+        let unloaded = size(&force) <= round_off;
+        let margin = self.margin(&force);
+        if !unloaded && margin.abs() > zero {
+            return margin > 0.0;
+        }
+        let slides = if unloaded { Vec::new() } else { self.ready(&force, zero) };
+        self.margin_of_slides(&slides, unloaded, zero, &change) >= -AT_BOUND * size(&change)
+    }
+
+    /// The slides that a force is just enough for.
+    pub fn ready(&self, force: &Vector, zero: f64) -> Vec<(Slide, Drive)> {
+        if self.is_jammed() {
+            return Vec::new();
+        }
+        let pressed = |drive: &Drive| drive.normals[0].max(drive.normals[1]) > zero;
+        let ready = |slide: Slide| {
+            // What the location of a zero left over presses nothing.
+            let drive = self.drive(&slide, force).or_else(|| self.drive_within(&slide, force, zero))?;
+            (drive.excess.abs() <= zero && pressed(&drive)).then_some((slide, drive))
+        };
+        self.slides().into_iter().filter_map(ready).collect()
+    }
+
+    /// The same where normal reactions are zero within a tolerance.
+    fn drive_within(&self, slide: &Slide, force: &Vector, zero: f64) -> Option<Drive> {
+        match *slide {
+            Slide::Edge { places, direction } => {
+                let normals = self.edge_forms(places, &direction).map(|form| dot(&form, force));
+                let excess = dot(&self.edge_drive(places, &direction), force);
+                normals.iter().all(|normal| *normal >= -zero).then_some(Drive { direction, normals, excess })
+            }
+            Slide::Face { place } => {
+                let normal = dot(&self.face_form(place), force);
+                let driving = size(&add(force, -normal, &self.normals[place]));
+                let excess = driving - self.frictions[place] * normal;
+                (driving <= zero).then_some(Drive { direction: [0.0; 3], normals: [normal, 0.0], excess })
+            }
+        }
+    }
+
+    /// How far a rate of the force is from making the node slide or leave, or from what no motion has.
+    pub fn margin_of_rate(&self, force: &Vector, unloaded: bool, zero: f64, rate: &Vector) -> f64 {
+        let slides = if unloaded { Vec::new() } else { self.ready(force, zero) };
+        let margin = self.margin_of_slides(&slides, unloaded, zero, rate);
+        if unloaded { margin } else { margin.min(self.slope_at_bound(force, zero, rate)) }
+    }
+
+    /// How far a rate of force is from making the node slide or leave, where `ready` slides are at their limit; without a
+    /// force all are.
+    fn margin_of_slides(&self, ready: &[(Slide, Drive)], unloaded: bool, zero: f64, rate: &Vector) -> f64 {
+        if unloaded {
+            return self.margin(rate);
+        }
+        let small = NONE * size(rate);
+        let drives = |(slide, drive): &(Slide, Drive)| match *slide {
+            Slide::Edge { places, direction } => {
+                let forms = self.edge_forms(places, &direction);
+                let lifts = (0..2).any(|k| drive.normals[k] <= zero && dot(&forms[k], rate) < -small);
+                (!lifts).then(|| dot(&self.edge_drive(places, &direction), rate))
+            }
+            Slide::Face { place } => {
+                let normal = dot(&self.face_form(place), rate);
+                let across = add(rate, -normal, &self.normals[place]);
+                if self.frictions[place] == 0.0 {
+                    let direction = scaled(&unit(&across), -1.0);
+                    return self.opens(&direction, &[place]).then(|| size(&across));
+                }
+                let fits = self.turns_off(place, &drive.direction).iter().all(|form| dot(form, rate) >= -small);
+                fits.then(|| -self.frictions[place] * normal - dot(&drive.direction, rate))
+            }
+        };
+        ready.iter().filter_map(drives).map(|excess| -excess).fold(size(rate), f64::min)
+    }
+
+    /// Forms of the rate of force that are not negative where a slide that begins along other obstacles turns off them.
+    pub fn turns_off(&self, place: usize, direction: &Vector) -> Vec<Vector> {
+        let across = cross(&self.frames[place].normal, direction);
+        let grazes = |other: &usize| {
+            *other != place && self.free.len() == 3 && dot(&self.frames[*other].normal, direction).abs() <= SAME
+        };
+        let form = |other: usize| scaled(&across, -dot(&self.frames[other].normal, &across));
+        (0..self.contacts.len()).filter(grazes).map(form).collect()
+    }
+
+    /// The cones of the obstacles as their reactions are shared.
+    fn cones(&self) -> Vec<Cone> {
+        let of = |(frame, friction): (&Frame, &f64)| Cone {
+            normal: frame.normal,
+            friction: *friction,
+            line: (self.free.len() == 2).then_some(frame.tangents[0]),
+        };
+        self.frames.iter().zip(&self.frictions).map(of).collect()
+    }
+
+    /// Reactions of least norm that make up a force; where they are not found, just at the end of what holds it or at a
+    /// slide, those that are left there.
+    pub fn share(&self, force: &Vector) -> Option<Vec<Vector>> {
+        least_reactions(&self.cones(), &self.free, force)
+            .or_else(|| self.at_bound(force))
+            .or_else(|| self.resting(force))
+            .or_else(|| self.parts(force))
+    }
+
+    /// Normal reactions of three obstacles that make up a force in space.
+    fn resting(&self, force: &Vector) -> Option<Vec<Vector>> {
+        let count = if self.free.len() == 3 { self.contacts.len() } else { 0 };
+        let triples = (0..count).flat_map(|a| (a + 1..count).flat_map(move |b| (b + 1..count).map(move |c| [a, b, c])));
+        triples.into_iter().find_map(|places| {
+            let [a, b, c] = places.map(|place| self.normals[place]);
+            let across = [cross(&b, &c), cross(&c, &a), cross(&a, &b)];
+            let determinant = dot(&a, &across[0]);
+            let normals = across.map(|across| dot(&across, force) / determinant);
+            let fits = determinant.abs() > INDEPENDENT && normals.iter().all(|normal| *normal >= -NONE * size(force));
+            fits.then(|| {
+                let mut parts = vec![[0.0; 3]; count];
+                for (place, normal) in places.into_iter().zip(normals) {
+                    parts[place] = scaled(&self.normals[place], normal.max(0.0));
+                }
+                parts
+            })
+        })
+    }
+
+    /// Reactions without wedging.
+    fn parts(&self, force: &Vector) -> Option<Vec<Vector>> {
+        let drives = |slide: Slide| Some((slide, self.drive(&slide, force)?));
+        let driven = |(_, drive): &(Slide, Drive)| dot(&drive.direction, force) <= 0.0;
+        let (slide, drive) = self
+            .slides()
+            .into_iter()
+            .filter_map(drives)
+            .filter(driven)
+            .max_by(|a, b| a.1.excess.total_cmp(&b.1.excess))?;
+        let places = match slide {
+            Slide::Edge { places, .. } => places.to_vec(),
+            Slide::Face { place } => vec![place],
+        };
+        let drag: f64 = places.iter().zip(drive.normals).map(|(place, normal)| self.frictions[*place] * normal).sum();
+        let driving = -dot(&drive.direction, force);
+        if driving > drag + FLAT * size(force) {
+            return None;
+        }
+        let part = if drag > 0.0 { (driving / drag).min(1.0) } else { 0.0 };
+        let mut parts = vec![[0.0; 3]; self.contacts.len()];
+        for (place, normal) in places.into_iter().zip(drive.normals) {
+            let ray = add(&self.frames[place].normal, -part * self.frictions[place], &drive.direction);
+            parts[place] = scaled(&ray, normal.max(0.0));
+        }
+        Some(parts)
+    }
+}
+
+/// A vector as far as some orthonormal directions hold it.
+fn along(directions: &[Vector], vector: &Vector) -> Vector {
+    if directions.len() == 3 {
+        return *vector;
+    }
+    directions.iter().fold([0.0; 3], |sum, direction| add(&sum, dot(direction, vector), direction))
+}

@@ -1,0 +1,180 @@
+//! A node that slides out of a pocket: its reactions and their rates.
+
+use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled, size, unit};
+use crate::mechanics::contact::{Frame, Mode, Reaction};
+use crate::mechanics::multi_contact::spatial::Pocket;
+use crate::mechanics::problem::loading::Loading;
+use crate::mechanics::problem::node_forces::Corner;
+use crate::mechanics::problem::state::State;
+
+/// The other of two obstacles along whose edge a node in space slides in these modes, if that is what it does.
+pub fn beside(loading: Loading<'_>, modes: &[Mode], contact: usize) -> Option<usize> {
+    if loading.structure.dimension != 3 {
+        return None;
+    }
+    let corner = loading.corners.iter().find(|corner| corner.contacts.contains(&contact))?;
+    let mut others = corner.contacts.iter().copied().filter(|other| *other != contact && modes[*other].is_active());
+    match (others.next(), others.next()) {
+        (Some(other), None) => Some(other),
+        _ => None,
+    }
+}
+
+/// The edge of two obstacles at a node, in the order of their numbers.
+pub struct Edge {
+    /// Unit vector along it.
+    pub direction: Vector,
+    frames: [Frame; 2],
+    /// Sine of the angle between the normals.
+    sine: f64,
+}
+
+impl Edge {
+    pub fn new(loading: Loading<'_>, mut contacts: [usize; 2], state: &State) -> Self {
+        contacts.sort_unstable();
+        Self::of(contacts.map(|contact| loading.frame(contact, state)))
+    }
+
+    fn of(frames: [Frame; 2]) -> Self {
+        let across = cross(&frames[0].normal, &frames[1].normal);
+        Self { direction: unit(&across), frames, sine: size(&across) }
+    }
+
+    /// How a direction along the edge turns with a motion of the node.
+    pub fn change_along(&self, direction: &Vector, motion: &Vector) -> Vector {
+        let sign = if dot(direction, &self.direction) < 0.0 { -1.0 } else { 1.0 };
+        scaled(&self.change(motion), sign)
+    }
+
+    /// How the edge turns with a motion of the node.
+    pub fn change(&self, motion: &Vector) -> Vector {
+        let [first, second] = &self.frames;
+        let turned = add(
+            &cross(&first.normal_change(motion), &second.normal),
+            1.0,
+            &cross(&first.normal, &second.normal_change(motion)),
+        );
+        scaled(&add(&turned, -dot(&turned, &self.direction), &self.direction), 1.0 / self.sine)
+    }
+}
+
+/// A node on its way along one obstacle or the edge of two.
+struct Sliding {
+    /// Places in the pocket.
+    places: Vec<usize>,
+    /// Zero where nothing rubs.
+    direction: Vector,
+    /// Linear forms of the force that give the normal reactions, one a place.
+    forms: Vec<Vector>,
+}
+
+impl Pocket {
+    /// How the node slides in these modes of all contacts, if it does.
+    fn sliding(&self, modes: &[Mode]) -> Option<Sliding> {
+        let active = |place: &usize| modes[self.contacts[*place]].is_active();
+        let places: Vec<usize> = (0..self.contacts.len()).filter(active).collect();
+        let mut direction = [0.0; 3];
+        for place in &places {
+            match modes[self.contacts[*place]] {
+                Mode::Slip { direction: along } if along != [0.0; 3] => direction = along,
+                Mode::Slip { .. } => {}
+                Mode::Free | Mode::Stick => return None,
+            }
+        }
+        let forms = match places[..] {
+            [place] => vec![self.face_form(place)],
+            [first, second] if self.free.len() == 3 => {
+                let edge = unit(&cross(&self.normals[first], &self.normals[second]));
+                let along = if direction == [0.0; 3] { edge } else { direction };
+                self.edge_forms([first, second], &along).to_vec()
+            }
+            _ => return None,
+        };
+        Some(Sliding { places, direction, forms })
+    }
+
+    /// The drag on the node in these modes under a force.
+    pub fn drag_in(&self, modes: &[Mode], force: &Vector) -> f64 {
+        let Some(Sliding { places, forms, .. }) = self.sliding(modes) else { return 0.0 };
+        places.iter().zip(&forms).map(|(place, form)| self.frictions[*place] * dot(form, force)).sum()
+    }
+
+    /// How the forces of the obstacles along which the node slides turn with a motion, present normal reactions given.
+    pub(crate) fn turning(
+        &self,
+        places: &[usize],
+        direction: &Vector,
+        normals: &[f64],
+        motion: &Vector,
+    ) -> Vec<Vector> {
+        let turned = |place: usize| self.frames[place].normal_change(motion);
+        let direction_turned = match places[..] {
+            [place] => scaled(&self.frames[place].normal, -dot(&turned(place), direction)),
+            [first, second] => {
+                let frames = [first, second].map(|place| self.frames[place]);
+                Edge::of(frames).change_along(direction, motion)
+            }
+            _ => [0.0; 3],
+        };
+        let of = |(place, normal): (&usize, &f64)| {
+            scaled(&add(&turned(*place), -self.frictions[*place], &direction_turned), *normal)
+        };
+        places.iter().zip(normals).map(of).collect()
+    }
+
+    /// Rates of the reactions of the obstacles along which the node slides, from that of their sum; none where it does not
+    /// slide.
+    pub fn rates_in(&self, modes: &[Mode], force: &Vector, rate: &Vector, motion: &Vector) -> Vec<(usize, Reaction)> {
+        let Some(Sliding { places, direction, forms }) = self.sliding(modes) else { return Vec::new() };
+        let normals: Vec<f64> = forms.iter().map(|form| dot(form, force)).collect();
+        let turning = self.turning(&places, &direction, &normals, motion);
+        let rest = turning.iter().fold(self.free_part(rate), |rest, turned| add(&rest, -1.0, &self.free_part(turned)));
+        let growing: Vec<f64> = forms.iter().map(|form| dot(form, &rest)).collect();
+        let mut parts = Vec::new();
+        for (k, place) in places.iter().enumerate() {
+            let normal_turned = scaled(&self.frames[*place].normal_change(motion), normals[k]);
+            let tangential = add(&turning[k], -1.0, &normal_turned);
+            let drag = -self.frictions[*place] * growing[k];
+            let tangential = add(&tangential, drag, &direction);
+            parts.push((self.contacts[*place], Reaction { normal: growing[k], tangential }));
+        }
+        if let [(_, only)] = &mut parts[..] {
+            // What is across the direction turns it.
+            let normal = &self.frames[places[0]].normal;
+            let pressed = scaled(&self.normals[places[0]], only.normal);
+            let across = add(&add(&rest, -1.0, &pressed), -dot(&rest, &direction), &direction);
+            if self.frictions[places[0]] > 0.0 {
+                only.tangential = add(&only.tangential, 1.0, &add(&across, -dot(&across, normal), normal));
+            }
+        }
+        parts
+    }
+}
+
+/// Reactions of the obstacles along which alone a node goes on, where those of others become theirs; none where there is
+/// nothing to take over.
+pub fn taken_over(loading: Loading<'_>, corner: &Corner, modes: &[Mode], state: &State) -> Vec<(usize, Reaction)> {
+    let pocket = Pocket::new(loading, &corner.contacts, state);
+    let Some(Sliding { places, direction, forms }) = pocket.sliding(modes) else { return Vec::new() };
+    let slides_alone = |place: usize| places.contains(&place);
+    let had = |place: usize| state.reactions[corner.contacts[place]] != Reaction::default();
+    let rough = places.iter().any(|place| pocket.frictions[*place] > 0.0);
+    let takes_over = (0..corner.contacts.len()).any(|place| had(place) && !slides_alone(place));
+    if !takes_over && (!rough || places.len() == 1) {
+        return Vec::new();
+    }
+    let force = pocket.force(loading, state);
+    let mut rest = force;
+    let mut parts = Vec::new();
+    for (place, form) in places.iter().zip(&forms) {
+        let normal = dot(form, &force);
+        let tangential = scaled(&direction, -pocket.frictions[*place] * normal);
+        rest = add(&add(&rest, -normal, &pocket.normals[*place]), -1.0, &tangential);
+        parts.push((*place, Reaction { normal, tangential }));
+    }
+    // What is left is what the location of the event left over; the sum stays.
+    if let Some((_, part)) = parts.iter_mut().find(|(place, _)| pocket.frictions[*place] > 0.0) {
+        part.tangential = add(&part.tangential, 1.0, &rest);
+    }
+    parts.into_iter().map(|(place, part)| (corner.contacts[place], part)).collect()
+}

@@ -1,0 +1,19 @@
+//! Whether nothing bends the path: linear elements, planes, and slip along lines.
+
+use crate::mechanics::contact::obstacle::Obstacle;
+use crate::mechanics::contact::{Contact, Sliding};
+use crate::mechanics::problem::loading::Loading;
+use crate::mechanics::structure::elements::Element;
+
+/// Whether nothing about a contact bends a path of linear elements.
+pub(crate) fn is_straight(contact: &Contact) -> bool {
+    let plane = matches!(contact.obstacle, Obstacle::Plane { .. });
+    plane && (contact.friction == 0.0 || contact.sliding != Sliding::Plane)
+}
+
+/// Whether every direction of first order holds exactly over some way: nothing bends it.
+pub(crate) fn is_linear(loading: Loading<'_>) -> bool {
+    loading.corners.is_empty()
+        && loading.contacts.iter().all(is_straight)
+        && loading.structure.elements.iter().all(Element::is_linear)
+}

@@ -1,0 +1,126 @@
+//! The forces of all contacts on one node, and where the node is free.
+
+use crate::mechanics::contact::vector::{Vector, add, scaled, size};
+use crate::mechanics::contact::{Frame, Mode, Reaction, Sliding};
+use crate::mechanics::problem::energy::Placed;
+use crate::mechanics::problem::loading::Loading;
+use crate::mechanics::problem::natural_residual::ZERO;
+use crate::mechanics::problem::state::{Rate, State};
+
+/// A node with several contacts.
+#[derive(Debug, Clone)]
+pub struct Corner {
+    pub contacts: Vec<usize>,
+}
+
+impl Corner {
+    /// The contacts without a gap.
+    pub fn closed(&self, loading: Loading<'_>, state: &State) -> Vec<usize> {
+        self.contacts.iter().copied().filter(|contact| loading.gap(*contact, state) <= ZERO).collect()
+    }
+
+    /// The contacts that hold the node together in these modes, one that sticks first; none where fewer than two do. A node
+    /// that sticks to an obstacle may be carried along others, against which it slips.
+    pub fn holding<'a>(&'a self, modes: &'a [Mode]) -> impl Iterator<Item = usize> + 'a {
+        let sticks = move |contact: &&usize| modes[**contact] == Mode::Stick;
+        let slips = move |contact: &&usize| matches!(modes[**contact], Mode::Slip { .. });
+        let active = self.contacts.iter().filter(|contact| modes[**contact].is_active()).count();
+        let together = active >= 2 && self.contacts.iter().any(|contact| sticks(&contact));
+        let sticking = self.contacts.iter().filter(move |contact| together && sticks(contact));
+        sticking.chain(self.contacts.iter().filter(move |contact| together && slips(contact))).copied()
+    }
+}
+
+/// Rays closer to opposite than this (angle) are opposite. A force that is taken as held then lies outside the true cone
+/// by no more than this part of its size.
+pub(crate) const FLAT: f64 = 1e-12;
+
+/// Whether a node is free in the plane, so that the sum of its friction cones is a sector.
+pub fn is_in_plane(loading: Loading<'_>, corner: &Corner) -> bool {
+    loading.structure.dimension == 2
+        && corner.contacts.iter().all(|contact| loading.contacts[*contact].sliding != Sliding::None)
+}
+
+/// Whether the running stage drives a node against some closed obstacles by its supports, or them against each other.
+pub fn is_driven(loading: Loading<'_>, closed: &[usize]) -> bool {
+    let dimension = loading.structure.dimension;
+    let first = loading.contacts[closed[0]].node * dimension;
+    let shift = &loading.pattern.shifts[closed[0]];
+    let by_support = |component: usize| {
+        let freedom = first + component;
+        loading.structure.unknown_of[freedom].is_none() && loading.support_rate(freedom) != shift[component]
+    };
+    move_apart(loading, closed) || (0..dimension).any(by_support)
+}
+
+/// Whether the running stage moves the obstacles of some contacts against each other.
+pub(crate) fn move_apart(loading: Loading<'_>, contacts: &[usize]) -> bool {
+    let shifts = &loading.pattern.shifts;
+    contacts.iter().skip(1).any(|other| shifts[contacts[0]] != shifts[*other])
+}
+
+/// The whole force of an obstacle on its node.
+pub fn force(frame: &Frame, reaction: &Reaction) -> Vector {
+    add(&reaction.tangential, reaction.normal, &frame.normal)
+}
+
+/// Rates of the forces of the contacts on their nodes; for a node with several the sum, with the first of them: how it is
+/// shared is not part of a motion.
+pub fn whole_rates(loading: Loading<'_>, state: &State, rate: &Rate) -> Vec<Vector> {
+    let mut rates: Vec<Vector> =
+        (0..loading.contacts.len()).map(|contact| reaction_in_space(loading, contact, (state, rate)).1).collect();
+    for corner in loading.corners {
+        if let [first, others @ ..] = &corner.contacts[..] {
+            for other in others {
+                let part = std::mem::take(&mut rates[*other]);
+                rates[*first] = add(&rates[*first], 1.0, &part);
+            }
+        }
+    }
+    rates
+}
+
+/// Sum of the forces of some contacts on their node.
+pub fn total_force(loading: Loading<'_>, contacts: impl Iterator<Item = usize>, state: &State) -> Vector {
+    contacts.fold([0.0; 3], |sum, contact| {
+        add(&sum, 1.0, &force(&loading.frame(contact, state), &state.reactions[contact]))
+    })
+}
+
+/// Normal and tangential parts of a force in the cone of a contact. With much friction the normal part may be lost in the
+/// rounding of the whole: it is then what the cone makes of the tangential one.
+pub fn taken_apart(force: &Vector, frame: &Frame, friction: f64) -> Reaction {
+    if friction == 0.0 {
+        return Reaction::along(force, &frame.normal);
+    }
+    let Reaction { normal, tangential } = Reaction::of(force, &frame.normal);
+    // A little more, so that the cone holds in spite of rounding, however large the force.
+    let least = size(&tangential) / friction * (1.0 + 4.0 * f64::EPSILON);
+    let is_round_off = least - normal <= FLAT * size(force);
+    Reaction { normal: if is_round_off { normal.max(least) } else { normal }, tangential }
+}
+
+/// The whole force of an obstacle on its node, and its derivative by arc length.
+pub fn reaction_in_space(loading: Loading<'_>, contact: usize, at: Placed<'_>) -> (Vector, Vector) {
+    let (reaction, change) = (&at.0.reactions[contact], &at.1.reactions[contact]);
+    if *reaction == Default::default() && *change == Default::default() {
+        return Default::default();
+    }
+    let frame = loading.frame(contact, at.0);
+    let turn = frame.normal_change(&loading.relative_rate(contact, at.1));
+    let force = add(&reaction.tangential, reaction.normal, &frame.normal);
+    let rate = add(&add(&change.tangential, change.normal, &frame.normal), 1.0, &scaled(&turn, reaction.normal));
+    (force, rate)
+}
+
+/// Orthonormal directions in which a node is free.
+pub fn free_directions(loading: Loading<'_>, node: usize) -> Vec<Vector> {
+    let dimension = loading.structure.dimension;
+    let is_free = |component: &usize| loading.structure.unknown_of[node * dimension + component].is_some();
+    let along = |component: usize| {
+        let mut direction = [0.0; 3];
+        direction[component] = 1.0;
+        direction
+    };
+    (0..dimension).filter(is_free).map(along).collect()
+}

@@ -1,0 +1,63 @@
+//! Sizes and magnitudes that a request must keep to; a breach is an error that names the limit.
+
+/// Bytes of one JSON document.
+pub const MAX_TEXT_BYTES: usize = 16 * 1024 * 1024;
+/// Values (numbers, strings, arrays, objects) in one JSON document: what bounds the memory that reading takes.
+pub const MAX_VALUES: usize = 4_000_000;
+/// Mistakes listed for one document; a last entry says how many more there are.
+pub const MAX_LISTED_MISTAKES: usize = 100;
+/// Bytes of the name of a model, node, obstacle or stage.
+pub const MAX_NAME_BYTES: usize = 200;
+
+/// Nodes of a model; as many may be named in `supports`.
+pub const MAX_NODES: usize = 100_000;
+/// Elements of a model.
+pub const MAX_ELEMENTS: usize = 250_000;
+/// Obstacles of a model.
+pub const MAX_OBSTACLES: usize = 20_000;
+/// Contacts of a model.
+pub const MAX_CONTACTS: usize = 20_000;
+/// Contacts up to which every increment has a row of each; of more, those out of reach have none unless asked for.
+pub const MAX_ROWS_UNASKED: usize = 100;
+/// Stages of a model.
+pub const MAX_STAGES: usize = 1_000;
+/// Free displacement components. From some hundred on matrices are sparse.
+pub const MAX_UNKNOWNS: usize = 150_000;
+/// Free displacement components for the methods `mpec` and `regularised`, whose matrices are dense: memory goes with the
+/// square and time with the cube.
+pub const MAX_DENSE_UNKNOWNS: usize = crate::mechanics::structure::MOST_ANALYSED;
+/// Upper bound of `analysis.max_increments`.
+pub const MAX_INCREMENTS: u64 = 10_000_000;
+/// Upper bound of `analysis.max_modes`.
+pub const MAX_MODES: u64 = 10_000_000;
+/// Upper bound of `analysis.explore.depth`.
+pub const MAX_EXPLORE_DEPTH: u64 = 100;
+/// Upper bound of `analysis.explore.max_jobs`: all of them may be queued at one time.
+pub const MAX_EXPLORE_JOBS: u64 = 10_000;
+/// Upper bound of `analysis.regularised.desired_iterations`.
+pub const MAX_DESIRED_ITERATIONS: u64 = 1_000;
+
+/// Values that a study varies its parameter over.
+pub const MAX_STUDY_RUNGS: usize = 20;
+/// Upper bound of `study.repeats`.
+pub const MAX_STUDY_REPEATS: u64 = 101;
+/// Upper bound of `study.refinement`.
+pub const MAX_STUDY_REFINEMENT: u64 = 16;
+/// Displacement components of all points of one path of a study: they are held in memory to be compared.
+pub const MAX_STUDY_VALUES: f64 = 5e7;
+
+/// Runs of a sweep.
+pub const MAX_SWEEP_RUNS: u64 = 100_000;
+
+/// Numbers of a request are zero or lie between this and [`MAX_MAGNITUDE`] in absolute value, so that neither a ratio
+/// of two of them nor its square can overflow or vanish.
+pub const MIN_MAGNITUDE: f64 = 1e-75;
+/// See [`MIN_MAGNITUDE`].
+pub const MAX_MAGNITUDE: f64 = 1e75;
+
+/// A node may lie this much behind an obstacle at the start, in units of the model's size: what rounding leaves.
+pub const PENETRATION_TOLERANCE: f64 = 1e-12;
+/// Two nodes closer than this, in units of their coordinates, are at the same place.
+pub const COINCIDENCE_TOLERANCE: f64 = 1e-12;
+/// A stiffness matrix may be this unsymmetric, in units of its largest entry.
+pub const SYMMETRY_TOLERANCE: f64 = 1e-12;

@@ -1,0 +1,101 @@
+//! Names in error messages: shortened, listed, and the nearest known one to an unknown one.
+
+/// Names that are listed in one message; the rest is counted.
+const LISTED: usize = 12;
+/// Candidates that are compared, and the longest ones: comparing takes time with the product of the lengths, and a
+/// hostile document has many long names.
+const COMPARED: usize = 2_000;
+const COMPARED_CHARACTERS: usize = 32;
+/// One letter in two may be wrong.
+const LIKENESS: f64 = 0.5;
+/// Characters of a text that are shown.
+const SHOWN: usize = 60;
+
+/// The text in quotes, cut where it is long, control characters escaped.
+pub(crate) fn quoted(text: &str) -> String {
+    let mut shown: String = text.chars().take(SHOWN).flat_map(char::escape_debug).collect();
+    if text.chars().nth(SHOWN).is_some() {
+        shown.push('…');
+    }
+    format!("`{shown}`")
+}
+
+/// `; did you mean `tip`? Known: `pin`, `tip``, or what there is to say of that.
+pub(crate) fn suggestion<'a>(unknown: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
+    suggestion_among(unknown, known, LISTED)
+}
+
+/// The same with every name, of lists that are the program's own.
+#[cfg(feature = "server")]
+pub(crate) fn suggestion_of_all<'a>(unknown: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
+    suggestion_among(unknown, known, usize::MAX)
+}
+
+fn suggestion_among<'a>(unknown: &str, known: impl Iterator<Item = &'a str> + Clone, most: usize) -> String {
+    let known_list = listed_up_to(known.clone(), most);
+    match nearest(unknown, known) {
+        Some(name) => format!("; did you mean {}? Known: {known_list}", quoted(name)),
+        None => format!("; known: {known_list}"),
+    }
+}
+
+/// The names in quotes with commas between; `none` where there are none.
+pub(crate) fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    listed_up_to(names, LISTED)
+}
+
+fn listed_up_to<'a>(names: impl Iterator<Item = &'a str>, most: usize) -> String {
+    let mut shown = Vec::new();
+    let mut more = 0;
+    for name in names {
+        if shown.len() < most {
+            shown.push(quoted(name));
+        } else {
+            more += 1;
+        }
+    }
+    match (shown.is_empty(), more) {
+        (true, _) => "none".to_owned(),
+        (false, 0) => shown.join(", "),
+        (false, more) => format!("{} and {more} more", shown.join(", ")),
+    }
+}
+
+/// The most alike name (letter case aside), the first among equals; none if nothing is like it.
+fn nearest<'a>(unknown: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    let short = |text: &str| text.chars().nth(COMPARED_CHARACTERS).is_none();
+    if !short(unknown) {
+        return None;
+    }
+    let unknown = unknown.to_lowercase();
+    let mut best: Option<(&str, f64)> = None;
+    for name in known.take(COMPARED).filter(|name| short(name)) {
+        let likeness = strsim::normalized_damerau_levenshtein(&unknown, &name.to_lowercase());
+        if likeness >= LIKENESS && best.is_none_or(|(_, found)| likeness > found) {
+            best = Some((name, likeness));
+        }
+    }
+    best.map(|(name, _)| name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_name_is_suggested() {
+        let known = ["ball", "plane", "box"];
+        assert_eq!(nearest("plain", known.into_iter()), Some("plane"));
+        assert_eq!(nearest("PLANE", known.into_iter()), Some("plane"));
+        assert_eq!(nearest("wedge", known.into_iter()), None);
+        assert_eq!(suggestion("x", [].into_iter()), "; known: none");
+    }
+
+    #[test]
+    fn long_texts_are_cut_and_control_characters_escaped() {
+        assert_eq!(quoted("a\nb"), "`a\\nb`");
+        assert!(quoted(&"long".repeat(1000)).chars().count() < SHOWN + 4);
+        let many: Vec<String> = (0..100).map(|index| format!("n{index}")).collect();
+        assert!(listed(many.iter().map(String::as_str)).ends_with("and 88 more"));
+    }
+}

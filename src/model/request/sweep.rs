@@ -1,0 +1,88 @@
+//! A sweep: one model, and values put in places of it, a job each, as `POST /v1/sweeps` and `arcslip sweep` take it.
+
+use crate::model::request::{Analysis, Model};
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// A model, how to trace it, and what is put in its places. Members in whose place something is put may be left out.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct SweepRequest {
+    pub model: Model,
+    #[serde(default)]
+    pub analysis: Analysis,
+    pub sweep: Replacements,
+}
+
+/// What is put where.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Replacements {
+    /// JSON pointers (RFC 6901) into this document, below `/model` or `/analysis`, each with the values to put there, such as
+    /// `{"/model/contacts/0/friction": [0.1, 0.2]}`.
+    pub replace: IndexMap<String, Vec<Value>>,
+    #[serde(default)]
+    pub combine: Combine,
+}
+
+/// How values of several places meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Combine {
+    /// Each with each; those of the last place change fastest.
+    #[default]
+    Grid,
+    /// The first of each, then the second of each and so on: all lists are equally long.
+    List,
+}
+
+/// One place and what is put there.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[cfg_attr(feature = "server", schema(as = SweepParameter))]
+pub struct Parameter {
+    /// JSON pointer into the request.
+    pub pointer: String,
+    pub values: Vec<Value>,
+}
+
+/// What is varied, and how.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Variation {
+    /// In the order of the request.
+    pub parameters: Vec<Parameter>,
+    pub combine: Combine,
+}
+
+impl Variation {
+    /// Which of its values each parameter has in a run.
+    pub(crate) fn choices(&self, run: u64) -> Vec<usize> {
+        let mut left = usize::try_from(run).unwrap_or(usize::MAX);
+        let mut choices: Vec<usize> = self
+            .parameters
+            .iter()
+            .rev()
+            .map(|parameter| match self.combine {
+                Combine::List => left,
+                Combine::Grid => {
+                    let choice = left % parameter.values.len().max(1);
+                    left /= parameter.values.len().max(1);
+                    choice
+                }
+            })
+            .collect();
+        choices.reverse();
+        choices
+    }
+
+    /// The values of a run, in the order of the parameters.
+    pub fn values(&self, run: u64) -> Vec<Value> {
+        let chosen = self.parameters.iter().zip(self.choices(run));
+        chosen.map(|(parameter, choice)| parameter.values.get(choice).cloned().unwrap_or_default()).collect()
+    }
+}

@@ -1,0 +1,263 @@
+//! The runs of a sweep: made one by one from its text, and what is wrong with one told at its place in the sweep.
+
+use crate::model::input::error::{InputError, InputErrors};
+use crate::model::input::limits::{MAX_NAME_BYTES, MAX_SWEEP_RUNS};
+use crate::model::request::JobRequest;
+use crate::model::request::sweep::{Combine, Parameter, Variation};
+use crate::model::template::{Template, item};
+use crate::model::{check, decode};
+use serde_json::Value;
+
+/// A sweep that has been read: its runs can be made, and have still to be checked one by one.
+#[derive(Debug, Clone)]
+pub struct Sweep {
+    pub name: Option<String>,
+    pub variation: Variation,
+    runs: u64,
+    template: Template,
+}
+
+/// One run of a sweep.
+#[derive(Debug, Clone)]
+pub struct Run {
+    /// A job request as it would be posted.
+    pub text: String,
+    pub request: JobRequest,
+}
+
+impl Sweep {
+    /// Reads a sweep; what its runs are is checked in [`run`](Self::run).
+    ///
+    /// # Errors
+    /// As for [`decode::decode`], places that the document cannot have, and too many runs.
+    pub fn read(text: &[u8]) -> Result<Self, InputErrors> {
+        let form = decode::replacements(text)?;
+        let wrong = |error: serde_json::Error| InputErrors(vec![InputError::new("", error.to_string())]);
+        let mut base: Value = serde_json::from_slice(text).map_err(wrong)?;
+        let name = base.pointer("/model/name").and_then(Value::as_str);
+        // Where other names are put in its place, nothing else checks this one.
+        let name = name.filter(|name| name.len() <= MAX_NAME_BYTES).map(str::to_owned);
+        let posted = base.as_object_mut().and_then(|members| members.remove("sweep")).unwrap_or_default();
+        let mut mistakes = Vec::new();
+        let mut parameters = Vec::with_capacity(form.replace.len());
+        for pointer in form.replace {
+            let values = posted.get("replace").and_then(|replace| replace.get(&pointer)).and_then(Value::as_array);
+            if let Err(detail) = can_hold(&base, &pointer) {
+                mistakes.push(InputError::new(place_of(&pointer), detail));
+            }
+            parameters.push(Parameter { pointer, values: values.cloned().unwrap_or_default() });
+        }
+        mistakes.extend(within_another(&parameters));
+        let runs = match count(form.combine, &parameters) {
+            Ok(runs) => runs,
+            Err(mistake) => {
+                mistakes.push(mistake);
+                0
+            }
+        };
+        if mistakes.is_empty() {
+            let variation = Variation { parameters, combine: form.combine };
+            let pointers: Vec<&str> = variation.parameters.iter().map(|parameter| parameter.pointer.as_str()).collect();
+            let template = Template::new(base, &pointers, &variation.values(0));
+            Ok(Self { name, variation, runs, template })
+        } else {
+            Err(InputErrors(mistakes))
+        }
+    }
+
+    /// How many there are, 1 at the least.
+    pub fn runs(&self) -> u64 {
+        self.runs
+    }
+
+    /// A run, read and checked.
+    ///
+    /// # Errors
+    /// What is wrong with it, each with its place in the sweep.
+    pub fn run(&self, run: u64) -> Result<Run, InputErrors> {
+        let (text, request) = self.template.fill(&self.variation.values(run));
+        let request = request.map_err(|errors| self.located(run, errors))?;
+        check::check(&request).map_err(|errors| self.located(run, errors))?;
+        if request.analysis.explore.is_some() {
+            let detail = "a sweep follows no other directions; leave it out";
+            return Err(self.located(run, InputErrors(vec![InputError::new("/analysis/explore", detail)])));
+        }
+        Ok(Run { text, request })
+    }
+
+    /// In how many of so many runs, from the first, the value at that place of the sweep is put; `None` where none is.
+    pub fn runs_at(&self, pointer: &str, runs: u64) -> Option<u64> {
+        let (parameter, choice) = pointer.rsplit_once('/')?;
+        let choice: usize = choice.parse().ok()?;
+        let place = self.variation.parameters.iter().position(|one| place_of(&one.pointer) == parameter)?;
+        let has_it = |run: &u64| self.variation.choices(*run).get(place) == Some(&choice);
+        Some((0..runs).filter(has_it).count() as u64)
+    }
+
+    /// Mistakes in a run as mistakes in the sweep: those at or about a value that was put there are that value's.
+    pub fn located(&self, run: u64, errors: InputErrors) -> InputErrors {
+        let (parameters, choices) = (&self.variation.parameters, self.variation.choices(run));
+        let located = errors.0.into_iter().map(|error| {
+            let about = |parameter: &&Parameter| {
+                is_within(&error.pointer, &parameter.pointer) || is_within(&parameter.pointer, &error.pointer)
+            };
+            // The mistake of a whole object may be anybody's.
+            let found = parameters.iter().position(|parameter| about(&parameter));
+            match found.filter(|_| error.pointer.len() > 1) {
+                Some(place) => {
+                    let parameter = &parameters[place];
+                    let at = format!("{}/{}", place_of(&parameter.pointer), choices[place]);
+                    InputError::new(at, format!("{}: {}", error.place(), error.detail))
+                }
+                None => error,
+            }
+        });
+        InputErrors(located.collect())
+    }
+}
+
+/// Where a pointer stands in the sweep's own document.
+fn place_of(pointer: &str) -> String {
+    format!("/sweep/replace/{}", pointer.replace('~', "~0").replace('/', "~1"))
+}
+
+/// Whether a pointer is another or below it.
+fn is_within(pointer: &str, other: &str) -> bool {
+    pointer.strip_prefix(other).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+}
+
+fn within_another(parameters: &[Parameter]) -> Option<InputError> {
+    parameters.iter().enumerate().find_map(|(place, one)| {
+        let others = parameters.iter().enumerate().filter(|(other, _)| *other != place);
+        let outer = others.map(|(_, other)| other).find(|other| is_within(&one.pointer, &other.pointer))?;
+        let detail = format!("it lies within `{}`, which is replaced as a whole; leave one of them out", outer.pointer);
+        Some(InputError::new(place_of(&one.pointer), detail))
+    })
+}
+
+fn count(combine: Combine, parameters: &[Parameter]) -> Result<u64, InputError> {
+    if let Some(empty) = parameters.iter().find(|parameter| parameter.values.is_empty()) {
+        return Err(InputError::new(place_of(&empty.pointer), "there is no value; at least one is expected"));
+    }
+    let lengths = || parameters.iter().map(|parameter| parameter.values.len() as u64);
+    let runs = match combine {
+        Combine::Grid => lengths().try_fold(1_u64, u64::checked_mul).unwrap_or(u64::MAX),
+        Combine::List => {
+            let first = lengths().next().unwrap_or_default();
+            if let Some(other) = parameters.iter().find(|parameter| parameter.values.len() as u64 != first) {
+                let found = other.values.len();
+                let detail =
+                    format!("found {found} values; as many as of the first place, {first}, are expected of a list");
+                return Err(InputError::new(place_of(&other.pointer), detail));
+            }
+            first
+        }
+    };
+    if runs > MAX_SWEEP_RUNS {
+        let detail = format!("these are {runs} runs; at most {MAX_SWEEP_RUNS} are taken");
+        return Err(InputError::new("/sweep/replace", detail));
+    }
+    Ok(runs)
+}
+
+/// Whether something can be put there: members of objects may be missing, items of arrays not.
+fn can_hold(document: &Value, pointer: &str) -> Result<(), String> {
+    if !["/model/", "/analysis/"].iter().any(|root| pointer.starts_with(root)) {
+        return Err("a JSON pointer that begins with `/model/` or `/analysis/` is expected".to_owned());
+    }
+    let mut at = document;
+    let mut walked = String::new();
+    for step in pointer.split('/').skip(1) {
+        let name = step.replace("~1", "/").replace("~0", "~");
+        at = match at {
+            Value::Object(members) => match members.get(&name) {
+                Some(value) => value,
+                None => return Ok(()),
+            },
+            Value::Array(items) => {
+                let item = item(&name).and_then(|index| items.get(index));
+                item.ok_or_else(|| format!("`{walked}` has {} items, and none `{name}`", items.len()))?
+            }
+            Value::Null => return Ok(()),
+            _ => return Err(format!("`{walked}` is neither an object nor an array")),
+        };
+        walked.push('/');
+        walked.push_str(step);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check::scenes;
+    use serde_json::json;
+
+    fn sweep(replace: Value, combine: &str) -> Result<Sweep, Vec<(String, String)>> {
+        let mut document: Value = serde_json::from_str(scenes::find("one-bar-truss").unwrap().request).unwrap();
+        document["sweep"] = json!({"replace": replace, "combine": combine});
+        let told = |errors: InputErrors| errors.0.into_iter().map(|error| (error.pointer, error.detail)).collect();
+        Sweep::read(document.to_string().as_bytes()).map_err(told)
+    }
+
+    const FRICTION: &str = "/model/contacts/0/friction";
+    const LONGEST: &str = "/analysis/arc_length/max";
+
+    #[test]
+    fn a_grid_has_every_pair_and_a_list_those_that_stand_together() {
+        let values = json!({FRICTION: [0.1, 0.2], LONGEST: [0.5, 0.25, 0.125]});
+        let grid = sweep(values, "grid").unwrap();
+        assert_eq!(grid.runs(), 6);
+        let pairs: Vec<Vec<Value>> = (0..6).map(|run| grid.variation.values(run)).collect();
+        assert_eq!(pairs[0], [json!(0.1), json!(0.5)]);
+        assert_eq!(pairs[1], [json!(0.1), json!(0.25)]);
+        assert_eq!(pairs[5], [json!(0.2), json!(0.125)]);
+        let run = grid.run(4).unwrap().request;
+        assert_eq!((run.model.contacts[0].friction, run.analysis.arc_length.max), (0.2, 0.25));
+        let list = sweep(json!({FRICTION: [0.1, 0.2], LONGEST: [0.5, 0.25]}), "list").unwrap();
+        assert_eq!(list.runs(), 2);
+        assert_eq!(list.variation.values(1), [json!(0.2), json!(0.25)]);
+    }
+
+    #[test]
+    fn what_is_not_said_can_be_replaced_and_the_rest_stays_as_it_was_posted() {
+        let sweep = sweep(json!({"/analysis/max_modes": [7]}), "grid").unwrap();
+        let run = sweep.run(0).unwrap();
+        assert_eq!(run.request.analysis.max_modes, 7);
+        let mut posted: Value = serde_json::from_str(scenes::find("one-bar-truss").unwrap().request).unwrap();
+        posted["analysis"]["max_modes"] = json!(7);
+        let order = |text: &str| serde_json::from_str::<Value>(text).unwrap().to_string();
+        assert_eq!(order(&run.text), posted.to_string(), "the order of nodes is part of a model");
+    }
+
+    #[test]
+    fn mistakes_are_told_at_their_place_in_the_sweep() {
+        let refused = |replace, combine| sweep(replace, combine).unwrap_err();
+        let one = |found: Vec<(String, String)>| found.into_iter().next().unwrap();
+        let (at, detail) = one(refused(json!({"/model/contacts/7/friction": [0.1]}), "grid"));
+        assert_eq!(at, "/sweep/replace/~1model~1contacts~17~1friction");
+        assert!(detail.contains("items, and none `7`"), "{detail}");
+        assert!(one(refused(json!({"/sweep": [1]}), "grid")).1.contains("`/model/`"));
+        assert!(one(refused(json!({"/model/name/x": [1]}), "grid")).1.contains("neither an object"));
+        assert!(one(refused(json!({FRICTION: []}), "grid")).1.contains("at least one"));
+        assert!(one(refused(json!({FRICTION: [0.1], LONGEST: [1, 2]}), "list")).1.contains("a list"));
+        assert!(one(refused(json!({FRICTION: [0.1], "/model/contacts/0": [{}]}), "grid")).1.contains("within"));
+        let many: Vec<f64> = (1..2_000).map(f64::from).collect();
+        assert!(one(refused(json!({FRICTION: many, LONGEST: many}), "grid")).1.contains("at most"));
+        for name in ["00", "+0", "-", "", "1"] {
+            let pointer = format!("/model/contacts/{name}/friction");
+            assert!(one(refused(json!({pointer: [0.1]}), "grid")).1.contains("and none"), "{name}");
+        }
+        assert!(one(refused(json!({}), "grid")).1.contains("at least one"));
+        assert!(one(refused(json!([1]), "grid")).1.contains("an object"));
+        assert!(one(refused(json!({FRICTION: [0.1]}), "all")).1.contains("`all` is not"));
+
+        let sweep = sweep(json!({FRICTION: [0.1, -0.5]}), "grid").unwrap();
+        assert!(sweep.run(0).is_ok());
+        let wrong = sweep.run(1).unwrap_err().0;
+        assert_eq!(wrong[0].pointer, "/sweep/replace/~1model~1contacts~10~1friction/1");
+        assert!(wrong[0].detail.starts_with("model.contacts[0].friction: "), "{}", wrong[0].detail);
+        let explore = self::sweep(json!({"/analysis/explore": [{}]}), "grid").unwrap();
+        assert_eq!(explore.run(0).unwrap_err().0[0].pointer, "/sweep/replace/~1analysis~1explore/0");
+    }
+}

@@ -1,0 +1,181 @@
+//! One accepted point of the path, as it is streamed and stored: in the user's units, under the user's names.
+
+use crate::result::displacements::Displacements;
+use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
+use std::sync::Arc;
+
+/// An increment: what `arcslip solve` prints as a line, a stream sends as an event and the store keeps as a row.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Increment {
+    /// 0 for the start of the path.
+    pub index: u64,
+    pub stage: Arc<str>,
+    /// Multiplier of the running stage's pattern.
+    pub load_factor: f64,
+    /// Dimensionless, from the start of the path.
+    pub arc_length: f64,
+    /// Dimensionless arc length of this increment: 0 where a stage begins, and where a contact change is found at the very
+    /// point before.
+    pub step: f64,
+    /// Node name to displacement (length); the nodes that `analysis.record` asks for.
+    #[cfg_attr(feature = "server", schema(value_type = indexmap::IndexMap<String, Vec<f64>>))]
+    pub displacements: Displacements,
+    /// In the model's order; those that `analysis.record` asks for.
+    pub contacts: Vec<ContactState>,
+    pub point: Point,
+    /// Feasible one-sided directions, the one taken among them; present where there is a choice.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub directions: Option<Vec<Direction>>,
+    pub energy: Energy,
+    pub diagnostics: Diagnostics,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct ContactState {
+    pub node: Arc<str>,
+    pub obstacle: Arc<str>,
+    pub status: Status,
+    /// Distance to the obstacle (length).
+    pub gap: f64,
+    /// Force, 0 or more.
+    pub normal_reaction: f64,
+    /// Force on the node along the obstacle's tangents at the node's place (`dimension - 1` of them): in 2D the normal `n`
+    /// turned clockwise; in 3D the coordinate axis least aligned with `n` (the first of them) made perpendicular to it
+    /// and of unit length, `t`, and `n × t`.
+    #[cfg_attr(feature = "server", schema(value_type = Vec<f64>))]
+    pub tangential_reaction: Tangential,
+    /// Motion against the obstacle in this increment along the same tangents (length).
+    #[cfg_attr(feature = "server", schema(value_type = Vec<f64>))]
+    pub slip: Tangential,
+    /// Equilibrium does not tell this contact's reaction from those of others that hold the same node: the reactions of
+    /// least norm are given.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub indeterminate: bool,
+}
+
+/// Components along an obstacle's tangents.
+pub type Tangential = SmallVec<[f64; 2]>;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    Free,
+    Stick,
+    Slip,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Point {
+    pub kind: PointKind,
+    /// Two or more feasible directions share the sign of the load rate.
+    pub bifurcation: bool,
+    /// What happens here, in words; null at regular points.
+    pub event: Option<String>,
+    /// A listed direction dissipates more than the one the path keeps.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub better_direction: bool,
+    /// Contact modes that were not examined because `max_modes` was reached.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub unexplored_modes: u64,
+    /// The number of directions found is odd, or their set has more than one dimension: the list may be incomplete.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub degenerate: bool,
+}
+
+impl Point {
+    /// A point with one way on.
+    pub fn plain(kind: PointKind, event: Option<String>) -> Self {
+        Self { kind, bifurcation: false, event, better_direction: false, unexplored_modes: 0, degenerate: false }
+    }
+}
+
+fn is_zero(count: &u64) -> bool {
+    *count == 0
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum PointKind {
+    Start,
+    Regular,
+    SmoothLimit,
+    NonsmoothLimit,
+    SmoothBifurcation,
+    ContactChange,
+    End,
+}
+
+/// A feasible one-sided direction of the path.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Direction {
+    /// Status along the direction, one a contact, as in the increment's `contacts`.
+    pub contacts: Vec<Status>,
+    /// Load factor per arc length.
+    pub load_rate: f64,
+    /// Energy per arc length.
+    pub dissipation_rate: f64,
+    pub taken: bool,
+    /// The way the path came from; never taken.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub retrace: bool,
+    /// A motion that no element resists: a path cannot go this way.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub mechanism: bool,
+}
+
+/// Totals from the start of the path.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Energy {
+    pub external_work: f64,
+    pub strain: f64,
+    pub dissipated: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Diagnostics {
+    /// Solver time since the job began; the only figure here that differs from run to run.
+    pub elapsed_s: f64,
+    /// Largest equilibrium residual over the force scale.
+    pub residual: f64,
+    /// Largest violation of contact and friction, dimensionless.
+    pub complementarity: f64,
+    /// `|external work - strain - dissipated|` over the largest energy so far.
+    pub energy_error: f64,
+    /// Estimated error of this point (dimensionless displacement).
+    pub error_estimate: f64,
+    pub factorisations: u64,
+    /// Of the factorisations those that smooth bifurcation points took: to locate them and to list the directions there.
+    #[serde(default)]
+    pub bifurcation_factorisations: u64,
+    pub newton_iterations: u64,
+    pub qp_solves: u64,
+    /// Programs of increments that were solved; a certificate is not one.
+    pub mpec_solves: u64,
+    /// Steps of sequential quadratic programming.
+    #[serde(default)]
+    pub sqp_iterations: u64,
+    /// Points shown to solve their increment's program without solving it.
+    #[serde(default)]
+    pub certificates: u64,
+    /// Increments whose end the program alone did not find (`mpec.certificate: "skip"`): they stand as the contact mode's
+    /// own equations gave them.
+    #[serde(default)]
+    pub mpec_fallbacks: u64,
+    /// The last bound `ε` on the products of complementary quantities, of the last program that was solved; absent before
+    /// the first, and where no program needed one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub last_relaxation: Option<f64>,
+    /// With `method: "mpec"`: whether the program named the mode of this increment. Where it did not (it is solved
+    /// locally, and a contact just at the end of its mode is a coin's edge), the mode was kept by continuity.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mode_named_by_mpec: Option<bool>,
+}

@@ -1,0 +1,29 @@
+//! What a scene needs and what is left out, said before anything is solved.
+
+use serde::{Deserialize, Serialize};
+
+/// The plan of a job.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Plan {
+    /// Free displacement components.
+    pub unknowns: u64,
+    pub contacts: u64,
+    pub stages: u64,
+    /// Length that makes displacements dimensionless.
+    pub displacement_scale: f64,
+    /// Force that makes forces dimensionless.
+    pub force_scale: f64,
+    /// Load factor that makes the load dimensionless, one a stage.
+    pub load_scales: Vec<f64>,
+    /// What this scene does not need, and why.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// Something that is not done, and the reason.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct LeftOut {
+    pub what: String,
+    pub why: String,
+}

@@ -1,0 +1,18 @@
+//! The built-in scenes as jobs, for a first look at the service.
+
+use crate::check::scenes;
+use crate::service::jobs::{Caller, Jobs, JobsError};
+
+/// Queues every built-in scene once; a database that has them already gets no second set.
+pub async fn queue_scenes(jobs: &Jobs) -> Result<(), JobsError> {
+    for scene in scenes::ALL {
+        let key = format!("demonstration/{}", scene.name);
+        match jobs.submit(&Caller::Anyone, scene.request.as_bytes().to_vec(), Some(key)).await {
+            Ok(_) => {}
+            // Queued from another version of the scene: its job stands.
+            Err(JobsError::KeyReused) => tracing::info!(scene = scene.name, "already queued from an earlier version"),
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(())
+}

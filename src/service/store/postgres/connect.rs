@@ -1,0 +1,123 @@
+//! How a process connects, and what it makes sure of before it begins.
+
+use crate::service::store::StoreError;
+use crate::service::store::contract::error::Result;
+use crate::service::store::contract::location::Url;
+use sqlx::migrate::Migrator;
+use sqlx::postgres::{PgConnectOptions, PgConnection, PgSslMode};
+use sqlx::{ConnectOptions, Connection};
+use std::str::FromStr;
+use std::time::Duration;
+use tokio::time::timeout;
+
+static MIGRATIONS: Migrator = sqlx::migrate!("./migrations/postgres");
+
+/// As `server_version_num` has it.
+const OLDEST_SERVER: i32 = 140_000;
+const TO_CONNECT: Duration = Duration::from_secs(15);
+
+/// What a URL may say besides who and where.
+const PARAMETERS: [&str; 10] = [
+    "application_name",
+    "dbname",
+    "host",
+    "hostaddr",
+    "options",
+    "password",
+    "port",
+    "sslmode",
+    "statement-cache-capacity",
+    "user",
+];
+
+/// What the server does for a process that is cut off or stands still: what it holds is let go.
+const SERVER_SETTINGS: [(&str, &str); 6] = [
+    ("idle_in_transaction_session_timeout", "10s"),
+    ("lock_timeout", "15s"),
+    ("statement_timeout", "100s"),
+    ("tcp_keepalives_idle", "10"),
+    ("tcp_keepalives_interval", "5"),
+    ("tcp_keepalives_count", "3"),
+];
+
+/// # Errors
+/// A URL that is none; the error holds nothing of it, because that may be a password.
+pub(super) fn options(url: &Url) -> Result<PgConnectOptions> {
+    let bad = |why: String| StoreError::Open(why.into());
+    let text = url.with_password();
+    let query = text.split_once('?').map_or("", |(_, query)| query);
+    for name in query.split('&').filter_map(|pair| pair.split('=').next()).filter(|name| !name.is_empty()) {
+        if !PARAMETERS.contains(&name) {
+            let known = PARAMETERS.join(", ");
+            return Err(bad(format!("there is a parameter that is not known; known are {known}")));
+        }
+    }
+    // What it says of the mistake may repeat a part of the URL.
+    let options = PgConnectOptions::from_str(text).map_err(|_| {
+        bad("this is no URL of a PostgreSQL database; postgres://USER@HOST:PORT/DATABASE is one, where characters such as / @ \
+             : ? # % in a password are written %2F %40 %3A %3F %23 %25"
+            .to_owned())
+    })?;
+    match options.get_ssl_mode() {
+        PgSslMode::Disable | PgSslMode::Allow | PgSslMode::Prefer => {}
+        PgSslMode::Require | PgSslMode::VerifyCa | PgSslMode::VerifyFull => {
+            return Err(bad(
+                "this program does not encrypt connections of the database by itself; a private network, a \
+                            tunnel or a proxy beside it does, without sslmode"
+                    .to_owned(),
+            ));
+        }
+    }
+    // An address of version 6 stands in brackets in a URL, and nowhere else.
+    let bare = options.get_host().strip_prefix('[').and_then(|host| host.strip_suffix(']')).map(str::to_owned);
+    let options = match bare {
+        Some(host) => options.host(&host),
+        None => options,
+    };
+    let named = options.get_application_name().is_some();
+    let options = if named { options } else { options.application_name("arcslip") };
+    Ok(options.ssl_mode(PgSslMode::Disable).options(SERVER_SETTINGS))
+}
+
+/// Makes the tables, or brings them up to what this program knows; one process after the other, whoever begins first.
+pub(super) async fn prepare(options: &PgConnectOptions) -> Result<()> {
+    let open = |error: sqlx::Error| StoreError::Open(Box::new(error));
+    // A change of a large table may take its time, and others wait for it here.
+    let patient = options.clone().options([("lock_timeout", "0"), ("statement_timeout", "0")]);
+    let mut connection = timeout(TO_CONNECT, patient.connect())
+        .await
+        .map_err(|_| StoreError::Open("the server does not answer".into()))?
+        .map_err(open)?;
+    let prepared = migrate(&mut connection).await.map_err(StoreError::Open);
+    // Closing lets go of the lock, however it ended.
+    connection.close().await.map_err(open)?;
+    prepared
+}
+
+async fn migrate(connection: &mut PgConnection) -> std::result::Result<(), Box<dyn std::error::Error + Send + Sync>> {
+    let (version, encoding): (i32, String) =
+        sqlx::query_as("SELECT current_setting('server_version_num')::int, current_setting('server_encoding')")
+            .fetch_one(&mut *connection)
+            .await?;
+    if version < OLDEST_SERVER {
+        return Err(format!("the server is PostgreSQL {}; 14 or newer would do", version / 10_000).into());
+    }
+    if encoding != "UTF8" {
+        return Err(format!("the database's encoding is {encoding}; one made with ENCODING 'UTF8' would do").into());
+    }
+    let mut migrations = Migrator::with_migrations(MIGRATIONS.iter().cloned().collect());
+    // Of a later version of this program, which have only added to what this one knows, unless it says otherwise below.
+    migrations.set_ignore_missing(true);
+    migrations.run(&mut *connection).await?;
+    let least: i64 =
+        sqlx::query_scalar("SELECT max(least_version) FROM compatibility").fetch_one(&mut *connection).await?;
+    let known = MIGRATIONS.iter().map(|one| one.version).max().unwrap_or(0);
+    if least > known {
+        return Err(format!(
+            "the database was changed by a later version of this program so that this one cannot use it: it asks for \
+             schema {least}, and this one knows {known}; the later version would do"
+        )
+        .into());
+    }
+    Ok(())
+}

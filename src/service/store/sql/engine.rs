@@ -1,0 +1,59 @@
+//! What the store asks of an engine that speaks SQL.
+
+use crate::service::store::contract::error::Result;
+use crate::service::store::contract::signals::Signals;
+use crate::service::store::sql::dialect::Dialect;
+use crate::service::store::{NewJob, Submitted};
+use async_trait::async_trait;
+use sqlx::pool::PoolConnection;
+use sqlx::{Pool, Transaction};
+use std::time::Duration;
+
+/// Connections, and what is not said in SQL.
+#[async_trait]
+pub(crate) trait Engine: Send + Sync + 'static {
+    type Dialect: Dialect;
+
+    /// A call that takes longer has met a database that does not answer; none where a call may take any time.
+    const PATIENCE: Option<Duration>;
+
+    fn readers(&self) -> &Pool<Self::Dialect>;
+
+    fn writers(&self) -> &Pool<Self::Dialect>;
+
+    fn signals(&self) -> &Signals;
+
+    /// # Errors
+    /// Why nothing may be written.
+    fn allow(&self) -> Result<()>;
+
+    async fn submit(&self, job: NewJob) -> Result<Submitted>;
+
+    async fn shrink(&self) -> Result<bool>;
+
+    async fn check(&self) -> Result<()>;
+
+    async fn close(&self);
+}
+
+pub(super) type Of<E> = <E as Engine>::Dialect;
+
+pub(super) async fn reader<E: Engine>(engine: &E) -> sqlx::Result<PoolConnection<E::Dialect>> {
+    engine.readers().acquire().await
+}
+
+pub(super) async fn writer<E: Engine>(engine: &E) -> sqlx::Result<PoolConnection<E::Dialect>> {
+    engine.writers().acquire().await
+}
+
+pub(super) async fn begin<E: Engine>(engine: &E) -> sqlx::Result<Transaction<'static, E::Dialect>> {
+    engine.writers().begin().await
+}
+
+/// Rolls a transaction back whose end is decided already. Where that fails there is nothing of it any more, and why it was
+/// given up is what counts: SQLite rolls back by itself on a full disk, and a connection that is lost takes it along.
+pub(super) async fn give_up<D: Dialect>(transaction: Transaction<'static, D>) {
+    if let Err(error) = transaction.rollback().await {
+        tracing::debug!(%error, "nothing was left to be rolled back");
+    }
+}

@@ -1,0 +1,67 @@
+//! Factorisations that are left over.
+//!
+//! Where nothing bends the path the equations at the start of a step are those at its end: the factorisation that found the
+//! direction serves along it. What is at hand then is what would be made anew without it, to the last bit: a path that is
+//! taken up from a checkpoint has none, makes it, and is the same. Elsewhere that which led to a contact change serves to
+//! find the directions there, within the same increment.
+
+use crate::algebra::SystemFactorisation;
+use crate::algebra::sparse::SparseFactorisation;
+use crate::mechanics::equations::ModeSystem;
+use crate::mechanics::problem::linearity;
+use crate::mechanics::problem::loading::Loading;
+use crate::mechanics::problem::state::Rate;
+use std::sync::Arc;
+
+/// The equations of some modes at a point or near it, with any border, if they are at hand; copies have none, so that no
+/// more memory is held than is of use.
+#[derive(Default)]
+pub struct AtHand(Option<Arc<SparseFactorisation>>);
+
+impl AtHand {
+    /// One that serves on, shared.
+    pub(crate) fn shared(serving: Option<&SystemFactorisation>) -> Self {
+        match serving {
+            Some(SystemFactorisation::Sparse(sparse)) => Self(Some(Arc::clone(sparse))),
+            Some(SystemFactorisation::Dense(_)) | None => Self(None),
+        }
+    }
+
+    /// What is worth keeping of a factorisation for the step along a direction.
+    pub(crate) fn of(loading: Loading<'_>, factorisation: SystemFactorisation) -> Self {
+        match factorisation {
+            SystemFactorisation::Sparse(sparse) if linearity::is_linear(loading) => Self(Some(sparse)),
+            SystemFactorisation::Sparse(_) | SystemFactorisation::Dense(_) => Self(None),
+        }
+    }
+
+    pub(crate) fn is_one(&self) -> bool {
+        self.0.is_some()
+    }
+
+    pub(crate) fn sparse(&self) -> Option<&SparseFactorisation> {
+        self.0.as_deref()
+    }
+
+    /// The equations of a system at its anchor, bordered by the direction; made where they are no longer at hand.
+    pub(crate) fn along(self, system: &ModeSystem<'_>, rate: &Rate) -> Option<SystemFactorisation> {
+        let is_its_own = |sparse: &SparseFactorisation| sparse.size() == system.size();
+        let bordered = self.0.and_then(Arc::into_inner).filter(is_its_own).and_then(|sparse| {
+            let sparse = sparse.with_last_row(|matrix| system.border(matrix, rate))?;
+            system.is_kept(&sparse).then(|| SystemFactorisation::Sparse(Arc::new(sparse)))
+        });
+        bordered.or_else(|| system.bordered(&system.iterate(system.anchor.clone()), rate))
+    }
+}
+
+impl Clone for AtHand {
+    fn clone(&self) -> Self {
+        Self(None)
+    }
+}
+
+impl std::fmt::Debug for AtHand {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        out.write_str(if self.0.is_some() { "AtHand(one)" } else { "AtHand(none)" })
+    }
+}

@@ -1,0 +1,19 @@
+//! From a predictor to a point of the path: Newton's method on the equations of one contact mode.
+//!
+//! | file | what it does |
+//! |---|---|
+//! | `newton` | the iteration |
+//! | `tangent` | the direction of the path at the point found, and an estimate of its error |
+//! | `single_iteration` | one iteration, to see where it leads |
+//! | `cached_factorisation` | factorisations that an earlier solve leaves for the next |
+//! | `slip_error` | the error of curved slip, carried along the path |
+//! | `work` | counts of work |
+//! | `tolerances` | when a determinant has a sign |
+
+pub(crate) mod cached_factorisation;
+pub(crate) mod newton;
+pub(crate) mod single_iteration;
+pub(crate) mod slip_error;
+pub(crate) mod tangent;
+pub(crate) mod tolerances;
+pub(crate) mod work;

@@ -1,0 +1,368 @@
+//! What is watched along a mode: quantities that must not become negative while the mode lasts, and ends of the stage.
+//!
+//! ```text
+//! free: g      stick: μ r_n ± r_t, or μ r_n - |r_t|      slip: r_n and d·ẋ_t      load rate's sign      bounds of a stage
+//! ```
+//!
+//! Between two points each quantity is also followed by its cubic Hermite interpolant, so that a dip inside the step
+//! is seen.
+
+use crate::algebra::dense::sink::Sink;
+use crate::mechanics::contact::vector::{Vector, add, direction_of, dot, scaled};
+use crate::mechanics::contact::{Mode, Sliding};
+use crate::mechanics::equations::ModeSystem;
+use crate::mechanics::equations::closing_equation::ClosingEquation;
+use crate::mechanics::equations::stage_end::End;
+use crate::mechanics::multi_contact::planar;
+use crate::mechanics::multi_contact::spatial::Pocket;
+use crate::mechanics::problem::loading::Loading;
+use crate::mechanics::problem::node_forces;
+use crate::mechanics::problem::state::{Rate, State};
+
+/// A quantity that is watched; negative means that it was passed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Watch {
+    Gap(usize),
+    Normal(usize),
+    /// `μ r_n + side r_t` along a line, `μ r_n - |r_t|` in a plane (side 0).
+    Cone {
+        contact: usize,
+        side: f64,
+    },
+    Sliding(usize),
+    /// The force on a node that several contacts hold in the plane, off a bound of the sum of their cones.
+    Facet {
+        corner: usize,
+        side: usize,
+    },
+    /// The same in space, or guided, off all bounds at which a slide begins.
+    Slide {
+        corner: usize,
+    },
+    /// The force on such a node that is held beyond any slide, off the end of what the cones hold together ...
+    Hold {
+        corner: usize,
+    },
+    /// ... and off the forces that a slide may have.
+    Return {
+        corner: usize,
+    },
+    LoadRate {
+        sign: f64,
+    },
+    End(End),
+}
+
+/// Everything that ends a mode which goes on from a state along a rate.
+pub fn of_mode(loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate) -> Vec<Watch> {
+    // Of each contact, of the load and of the stage's ends.
+    let mut watches = Vec::with_capacity(2 * modes.len() + 2);
+    let mut together = Vec::new();
+    for (corner, data) in loading.corners.iter().enumerate() {
+        let before = together.len();
+        together.extend(data.holding(modes));
+        if together.len() > before {
+            if node_forces::is_in_plane(loading, data) {
+                watches.extend([0, 1].map(|side| Watch::Facet { corner, side }));
+            } else if Pocket::new(loading, &together[before..], state).keeps(loading, state, rate) {
+                watches.push(Watch::Slide { corner });
+            } else {
+                watches.extend([Watch::Hold { corner }, Watch::Return { corner }]);
+            }
+        }
+    }
+    for (contact, mode) in modes.iter().enumerate() {
+        match mode {
+            Mode::Stick if together.contains(&contact) => {}
+            Mode::Free => watches.push(Watch::Gap(contact)),
+            Mode::Stick if loading.contacts[contact].sliding == Sliding::Plane => {
+                watches.push(Watch::Cone { contact, side: 0.0 });
+            }
+            Mode::Stick => watches.extend([1.0, -1.0].map(|side| Watch::Cone { contact, side })),
+            Mode::Slip { .. } => {
+                // Of a node that sticks to another obstacle it is a share of the whole.
+                if !together.contains(&contact) {
+                    watches.push(Watch::Normal(contact));
+                }
+                if loading.contacts[contact].tangents() > 0 {
+                    watches.push(Watch::Sliding(contact));
+                }
+            }
+        }
+    }
+    watches
+}
+
+impl Watch {
+    /// Whether a contact's mode ends where the quantity is zero.
+    pub fn is_of_contact(self) -> bool {
+        match self {
+            Self::Gap(_) | Self::Normal(_) | Self::Cone { .. } | Self::Sliding(_) | Self::Facet { .. } => true,
+            Self::Slide { .. } | Self::Hold { .. } => true,
+            Self::Return { .. } | Self::LoadRate { .. } | Self::End(_) => false,
+        }
+    }
+
+    /// Whether the quantity is a force.
+    pub fn is_of_forces(self) -> bool {
+        match self {
+            Self::Normal(_) | Self::Cone { .. } | Self::Facet { .. } => true,
+            Self::Slide { .. } | Self::Hold { .. } | Self::Return { .. } => true,
+            Self::Gap(_) | Self::Sliding(_) | Self::LoadRate { .. } | Self::End(_) => false,
+        }
+    }
+
+    /// The quantity at a point with its direction.
+    pub fn value(self, loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate) -> f64 {
+        match self {
+            Self::Gap(contact) => loading.gap(contact, state),
+            Self::Normal(contact) => state.reactions[contact].normal,
+            Self::Cone { contact, side } => {
+                let reaction = &state.reactions[contact];
+                let traction = if side == 0.0 {
+                    -reaction.tangential_size()
+                } else {
+                    side * dot(&reaction.tangential, &loading.frame(contact, state).tangents[0])
+                };
+                loading.contacts[contact].friction * reaction.normal + traction
+            }
+            Self::Sliding(contact) => {
+                dot(&direction(loading, modes, contact, state), &loading.relative_rate(contact, rate))
+            }
+            Self::Facet { corner, side } => {
+                let holding: Vec<usize> = loading.corners[corner].holding(modes).collect();
+                // No bound: the node is jammed.
+                let Some(inward) = planar::sector(loading, &holding, |contact| modes[contact], state).inward else {
+                    return f64::INFINITY;
+                };
+                dot(&inward[side], &node_forces::total_force(loading, holding.into_iter(), state))
+            }
+            Self::Slide { corner } | Self::Hold { corner } | Self::Return { corner } => {
+                let pocket = pocket(loading, corner, modes, state);
+                let force = pocket.force(loading, state);
+                match self {
+                    Self::Hold { .. } => pocket.hold(&force),
+                    Self::Return { .. } => -pocket.margin(&force),
+                    _ => pocket.margin(&force),
+                }
+            }
+            Self::LoadRate { sign } => sign * rate.load,
+            Self::End(End::Load { bound, sign }) => sign * (bound - state.load),
+            Self::End(End::Displacement { freedom, bound, sign }) => sign * (bound - state.displacement[freedom]),
+            Self::End(End::LimitPoints(_) | End::ContactChanges(_) | End::Increments(_)) => f64::INFINITY,
+        }
+    }
+
+    /// Derivative by arc length; `None` for quantities that are themselves rates.
+    pub fn slope(self, loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate) -> Option<f64> {
+        match self {
+            Self::Gap(contact) => {
+                Some(dot(&loading.frame(contact, state).normal, &loading.relative_rate(contact, rate)))
+            }
+            Self::Normal(contact) => Some(rate.reactions[contact].normal),
+            Self::Cone { contact, side } => {
+                let (reaction, change) = (&state.reactions[contact], &rate.reactions[contact]);
+                let traction = if side == 0.0 {
+                    dot(&direction_of(&reaction.tangential, &[0.0; 3]), &change.tangential)
+                } else {
+                    side * dot(&change.tangential, &loading.frame(contact, state).tangents[0])
+                };
+                Some(loading.contacts[contact].friction * change.normal + traction)
+            }
+            Self::Slide { corner } | Self::Hold { corner } | Self::Return { corner } => {
+                let pocket = pocket(loading, corner, modes, state);
+                let (force, change) = (pocket.force(loading, state), pocket.force_rate(loading, state, rate));
+                Some(match self {
+                    Self::Hold { .. } => pocket.hold_slope(&force, &change),
+                    Self::Return { .. } => -pocket.margin_slope(&force, &change),
+                    _ => pocket.margin_slope(&force, &change),
+                })
+            }
+            Self::Sliding(_) | Self::LoadRate { .. } | Self::Facet { .. } => None,
+            Self::End(End::Load { sign, .. }) => Some(-sign * rate.load),
+            Self::End(End::Displacement { freedom, sign, .. }) => Some(-sign * rate.displacement[freedom]),
+            Self::End(End::LimitPoints(_) | End::ContactChanges(_) | End::Increments(_)) => None,
+        }
+    }
+
+    /// Change over an increment of what a rate is the rate of: `s`, or the way slid.
+    fn change(self, loading: Loading<'_>, modes: &[Mode], start: &State, end: &State) -> Option<f64> {
+        match self {
+            Self::Sliding(contact) => {
+                let chord = add(&loading.relative(contact, end), -1.0, &loading.relative(contact, start));
+                let directions =
+                    add(&direction(loading, modes, contact, start), 1.0, &direction(loading, modes, contact, end));
+                Some(dot(&scaled(&directions, 0.5), &chord))
+            }
+            Self::LoadRate { sign } => Some(sign * (end.load - start.load)),
+            Self::Gap(_) | Self::Normal(_) | Self::Cone { .. } | Self::Facet { .. } | Self::End(_) => None,
+            Self::Slide { .. } | Self::Hold { .. } | Self::Return { .. } => None,
+        }
+    }
+
+    /// Of a quantity that is a rate, what it is the rate of, since the start; `None` where that is no simple difference.
+    pub fn whole(self, loading: Loading<'_>, modes: &[Mode], start: &State, state: &State) -> Option<f64> {
+        if let Self::Sliding(contact) = self {
+            let contact = &loading.contacts[contact];
+            if contact.sliding == Sliding::Plane || contact.obstacle.is_curved() {
+                return None;
+            }
+        }
+        self.change(loading, modes, start, state)
+    }
+
+    /// The size against which the quantity is zero at a state; `force_scale` is the largest force of the path.
+    pub fn scale(self, loading: Loading<'_>, state: &State, force_scale: f64) -> f64 {
+        match self {
+            Self::Normal(contact) | Self::Cone { contact, .. } => loading.force_scale_at(contact, state, force_scale),
+            Self::Facet { corner, .. } | Self::Slide { corner } | Self::Hold { corner } | Self::Return { corner } => {
+                let of = |contact: &usize| loading.force_scale_at(*contact, state, force_scale);
+                loading.corners[corner].contacts.iter().map(of).fold(0.0, f64::max)
+            }
+            Self::Gap(_) | Self::Sliding(_) | Self::LoadRate { .. } | Self::End(_) => 1.0,
+        }
+    }
+
+    /// Whether a value of the quantity is above a tolerance times its scale.
+    pub fn is_above(self, loading: Loading<'_>, state: &State, value: f64, tolerance: f64, force_scale: f64) -> bool {
+        // No scale of forces is larger than that of the path, which often tells.
+        let most = if self.is_of_forces() { force_scale } else { 1.0 };
+        value > tolerance * most || value > tolerance * self.scale(loading, state, force_scale)
+    }
+
+    /// Whether a value is above [`Self::zero_within`], with a tolerance above the rounding of forces.
+    pub fn is_above_zero(
+        self,
+        loading: Loading<'_>,
+        state: &State,
+        value: f64,
+        tolerance: f64,
+        force_scale: f64,
+    ) -> bool {
+        let most = if self.is_of_forces() { force_scale } else { 1.0 };
+        value > tolerance * most || value > self.zero_within(loading, state, tolerance, force_scale)
+    }
+
+    /// The value at a state that is zero as far as a relative tolerance tells.
+    pub fn zero_within(self, loading: Loading<'_>, state: &State, tolerance: f64, force_scale: f64) -> f64 {
+        match self {
+            Self::Cone { contact, .. } => loading.none_from_cone(contact, state, tolerance, force_scale),
+            _ => tolerance * self.scale(loading, state, force_scale),
+        }
+    }
+
+    /// A place inside `(0, step)` where the Hermite interpolant of the quantity is least, if that is below `-zero`.
+    pub fn dip(
+        self,
+        loading: Loading<'_>,
+        modes: &[Mode],
+        start: (&State, &Rate),
+        end: (&State, &Rate),
+        step: f64,
+        zero: f64,
+    ) -> Option<f64> {
+        let ends = || (self.value(loading, modes, start.0, start.1), self.value(loading, modes, end.0, end.1));
+        let slopes = (self.slope(loading, modes, start.0, start.1), self.slope(loading, modes, end.0, end.1));
+        if let (Some(first_slope), Some(last_slope)) = slopes {
+            if first_slope >= 0.0 || last_slope <= 0.0 {
+                return None;
+            }
+            let (first, last) = ends();
+            return dip_of_cubic(first, first_slope * step, last, last_slope * step, zero).map(|place| place * step);
+        }
+        let change = self.change(loading, modes, start.0, end.0)?;
+        let (first, last) = ends();
+        dip_of_slope(change / step, first, last, zero).map(|place| place * step)
+    }
+}
+
+/// Where an event function that has a slope is zero, over its scale.
+#[derive(Debug, Clone, Copy)]
+pub struct EventZero<'a> {
+    pub watch: Watch,
+    pub scale: f64,
+    /// About the direction of the path.
+    pub towards: &'a Rate,
+}
+
+impl ClosingEquation for EventZero<'_> {
+    fn value(&self, system: &ModeSystem<'_>, state: &State) -> f64 {
+        self.watch.value(system.loading, system.modes, state, self.towards) / self.scale
+    }
+
+    fn write_gradient(&self, system: &ModeSystem<'_>, _state: &State, matrix: &mut dyn Sink) {
+        system.border(matrix, self.towards);
+    }
+
+    fn slope_beside_row(&self, system: &ModeSystem<'_>, state: &State, rate: &Rate) -> Option<f64> {
+        self.watch.slope(system.loading, system.modes, state, rate).map(|slope| slope / self.scale)
+    }
+
+    fn has_slope_beside_row(&self) -> bool {
+        true
+    }
+}
+
+/// The obstacles that hold a node in space, or a guided one, in these modes.
+fn pocket(loading: Loading<'_>, corner: usize, modes: &[Mode], state: &State) -> Pocket {
+    let holding: Vec<usize> = loading.corners[corner].holding(modes).collect();
+    Pocket::new(loading, &holding, state)
+}
+
+/// The direction of a slip at a state.
+fn direction(loading: Loading<'_>, modes: &[Mode], contact: usize, state: &State) -> Vector {
+    let Mode::Slip { direction } = modes[contact] else { return [0.0; 3] };
+    let data = &loading.contacts[contact];
+    if data.sliding == Sliding::Plane {
+        // Past the end of contact the traction points the other way.
+        let reaction = &state.reactions[contact];
+        return if reaction.normal > 0.0 { direction_of(&reaction.tangential, &direction) } else { direction };
+    }
+    if !data.obstacle.is_curved() {
+        return direction;
+    }
+    let tangent = loading.frame(contact, state).tangents[0];
+    if dot(&direction, &tangent) < 0.0 { scaled(&tangent, -1.0) } else { tangent }
+}
+
+/// Where on `(0, 1)` the cubic with these end values and slopes has a minimum below `-zero`.
+fn dip_of_cubic(first: f64, first_slope: f64, last: f64, last_slope: f64, zero: f64) -> Option<f64> {
+    if first_slope >= 0.0 || last_slope <= 0.0 {
+        return None;
+    }
+    // p(x) = first + first_slope x + b x² + a x³
+    let a = 2.0 * (first - last) + first_slope + last_slope;
+    let b = 3.0 * (last - first) - 2.0 * first_slope - last_slope;
+    let root = (b * b - 3.0 * a * first_slope).max(0.0).sqrt();
+    let place = if b > 0.0 { -first_slope / (b + root) } else { (root - b) / (3.0 * a) };
+    let value = first + place * (first_slope + place * (b + place * a));
+    (place > 0.0 && place < 1.0 && value < -zero).then_some(place)
+}
+
+/// Where on `(0, 1)` the quadratic with these end values and this mean is least, if below `-zero` there.
+fn dip_of_slope(mean: f64, first: f64, last: f64, zero: f64) -> Option<f64> {
+    // q(x) = first + b x + a x²
+    let a = 3.0 * (first + last - 2.0 * mean);
+    let b = 6.0 * mean - 4.0 * first - 2.0 * last;
+    if a <= 0.0 {
+        return None;
+    }
+    let place = -b / (2.0 * a);
+    let value = first - b * b / (4.0 * a);
+    (place > 0.0 && place < 1.0 && value < -zero).then_some(place)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{dip_of_cubic, dip_of_slope};
+
+    #[test]
+    fn a_dip_between_two_positive_ends_is_seen() {
+        // (x - 0.4)(x - 0.6) has its least value at 0.5.
+        let place = dip_of_cubic(0.24, -1.0, 0.24, 1.0, 0.0).unwrap();
+        assert!((place - 0.5).abs() < 1e-12);
+        assert!(dip_of_cubic(0.3, -1.0, 0.3, 1.0, 0.0).is_none());
+        let mean = 1.0 / 3.0 - 0.5 + 0.24;
+        assert!((dip_of_slope(mean, 0.24, 0.24, 0.0).unwrap() - 0.5).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,271 @@
+//! A point that the path has reached already, shown to solve the increment's program.
+//!
+//! Where at a feasible point one member of every pair is positive, the feasible points nearby are those of one
+//! contact mode, and where the equations of that mode are regular these are a curve. Along it, with
+//! `τ = ‖(Δu, Δs)‖/S` for parameter and `y = (Δu, Δs)/S`, the objective is
+//!
+//! ```text
+//! φ(τ) = ℓ·y(τ) - ½ γ1 τ²,        ℓ·v = -r_t⁽ᵏ⁾·v_t/F + γ2 d·v
+//! ```
+//!
+//! and the point at `τ = 1` is a strict local solution where `φ'(1) = 0` and `φ''(1) < 0`. `γ1` is what is adapted until
+//! the increment has the arc length sought: `φ'(1) = 0` gives it at once, `γ1 = ℓ·y'(1)`, and it has to be positive. `y'(1)`
+//! is the path's direction there over its cosine with `y`; `y''(1)` is that of the cubic through both ends with their
+//! directions. With the gradients of the mode's equations independent, `φ'(1) = 0` is the same as the existence of
+//! multipliers, and with no pair biactive the point is strongly stationary, hence B-stationary: H. Scheel and S. Scholtes,
+//! Math. Oper. Res. 25 (2000), doi:10.1287/moor.25.1.1.15213.
+//!
+//! A member is positive where it is so by more than what the point leaves violated and rounding could make of zero. A
+//! smaller one is if it was not negative at the start, falls at neither end and rises at one: rates are known to more
+//! digits than the difference of two nearly equal states. One that falls to zero at the end itself was positive just
+//! before: what is shown then holds of every increment a little shorter, since all else is strict.
+//!
+//! The two parts of the slip of a contact that is apart are no matter: there is no force, and only their difference counts.
+//!
+//! Nothing is claimed where any of this fails or is not clear, where a cone is circular (there the path's rule is of higher
+//! order than the program's) or where two contacts press one node (their reactions need not be unique): then the program
+//! is solved.
+
+use crate::complementarity::mpec::{Activities, PairActivity, Problem, Settings};
+use crate::mechanics::contact::vector::{Vector, add, dot};
+use crate::mechanics::contact::{Frame, Mode};
+use crate::mechanics::problem::state::{Rate, State};
+use crate::step::increment_mpec::{Foreseen, InReach, IncrementProgram, LOOSEST, Named, frame};
+use nalgebra::DVector;
+
+/// Least member that is positive by itself, and how much larger it is than what the point leaves violated.
+const CLEAR: f64 = 1e-9;
+const LEEWAY: f64 = 10.0;
+/// Rounding of rates: of velocities, and of forces relative to the largest.
+const ROUNDING_OF_RATES: f64 = 1e-12;
+/// Least cosine between the chord of the increment and the direction at its end.
+const FORWARD: f64 = 0.5;
+
+/// A point of the path with its direction.
+#[derive(Clone, Copy)]
+pub struct Arrived<'s> {
+    pub state: &'s State,
+    /// Of unit arc length, in the mode that led there.
+    pub rate: &'s Rate,
+    /// Distance to the mode's curve (dimensionless).
+    pub error: f64,
+}
+
+/// One member of a pair along the increment.
+#[derive(Debug, Clone, Copy)]
+struct Member {
+    start: f64,
+    end: f64,
+    /// Rates at both ends, by the arc length over the one sought.
+    rates: [f64; 2],
+    /// Of the rates.
+    rounding: f64,
+    /// A slip, which starts at zero and may turn on the way.
+    is_slip: bool,
+}
+
+impl Member {
+    fn is_positive(&self, clear: f64) -> bool {
+        let [first, last] = self.rates;
+        let is_small = self.end.abs() <= clear;
+        let rises = self.start >= -clear && first.min(last) >= -self.rounding && first.max(last) > self.rounding;
+        let arrives = self.start > clear && last < -self.rounding;
+        self.end > clear || is_small && (rises || arrives)
+    }
+
+    /// Its value at the end; of a slip the part that has this sense.
+    fn part(&self) -> f64 {
+        if self.is_slip { self.end.max(0.0) } else { self.end }
+    }
+
+    /// The part of the way after which it is negative, where it is at the end: by the parabola through both ends that
+    /// leaves as it does; of a slip, where it turns, by the line through both rates.
+    fn ends_after(&self) -> f64 {
+        let [first, last] = self.rates;
+        let part = if self.is_slip {
+            first / (first - last)
+        } else {
+            let bend = self.end - self.start - first;
+            2.0 * self.start / ((first * first - 4.0 * bend * self.start).max(0.0).sqrt() - first)
+        };
+        // One that leaves from zero comes back where the rest of the parabola is zero.
+        let back = if self.start > 0.0 || self.is_slip { part } else { first / (first - self.end + self.start) };
+        if back.is_finite() { back.clamp(0.0, 1.0) } else { 0.0 }
+    }
+}
+
+impl IncrementProgram<'_> {
+    /// What is shown of an increment of the arc length sought that ends at a point: [`Foreseen::Named`] where it solves the
+    /// program with `γ1` adapted to it, [`Foreseen::EndsAfter`] where it lies past the end of its mode,
+    /// [`Foreseen::Unclear`] where nothing is.
+    ///
+    /// `forward` is the direction at the start in the mode that leads to the end, and the equations of that mode are
+    /// regular at the end.
+    pub fn solved_at(&mut self, end: Arrived<'_>, present: &[Mode]) -> Foreseen {
+        if self.reach.iter().any(|entry| entry.tangents == 2) || self.is_any_node_pressed_twice(end.state) {
+            return Foreseen::Unclear;
+        }
+        let frames: Vec<Frame> = self.reach.iter().map(|entry| self.loading.frame(entry.contact, end.state)).collect();
+        let x = self.variables_of(end.state, &frames);
+        if !x.iter().all(|value| value.is_finite()) {
+            return Foreseen::Unclear;
+        }
+        match self.clear_activities(&x, end, &frames) {
+            Ok(activities) if self.is_strict_solution(&x, end) => {
+                Foreseen::Named(Named::of(&self.read(&x, &activities, present)))
+            }
+            Ok(_) => Foreseen::Unclear,
+            Err(refused) => refused,
+        }
+    }
+
+    /// The variables of the program at a state where the contacts in reach have these frames.
+    pub(super) fn variables_of(&self, state: &State, frames: &[Frame]) -> DVector<f64> {
+        let structure = self.loading.structure;
+        let mut x = DVector::zeros(self.variables);
+        for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
+            x[unknown] = (state.displacement[*freedom] - self.base.displacement[*freedom]) / self.step;
+        }
+        x[structure.unknowns()] = (state.load - self.base.load) / self.step;
+        for (entry, here) in self.reach.iter().zip(frames) {
+            let reaction = &state.reactions[entry.contact];
+            x[entry.normal()] = reaction.normal / self.force;
+            if entry.tangents == 1 {
+                x[entry.tangential(0)] = frame::components(here, &reaction.tangential)[0] / self.force;
+                let slip = frame::components(&entry.frame, &self.chord(entry, state))[0] / self.step;
+                for (part, side) in entry.parts() {
+                    x[part] = (side * slip).max(0.0);
+                }
+            }
+        }
+        x
+    }
+
+    /// The way of a contact's node against its obstacle.
+    fn chord(&self, entry: &InReach, state: &State) -> Vector {
+        let before = self.loading.relative(entry.contact, self.base);
+        add(&self.loading.relative(entry.contact, state), -1.0, &before)
+    }
+
+    /// Which member of each pair is zero, where the variables are feasible and that is certain.
+    fn clear_activities(&self, x: &DVector<f64>, end: Arrived<'_>, frames: &[Frame]) -> Result<Activities, Foreseen> {
+        let mut equality = DVector::zeros(self.equalities());
+        self.equality_values(x, &mut equality);
+        // Not `max`, which passes over what is not a number.
+        let larger = |most: f64, value: f64| if most.is_nan() || value.abs() <= most { most } else { value.abs() };
+        let members = self.members(x, end, frames);
+        let rounding = self.rounding(x);
+        let left = equality.iter().copied().fold(0.0, larger);
+        let clear = CLEAR.max(LEEWAY * left.max(rounding).max(end.error / self.step));
+        let smaller = members.iter().map(|[first, second]| first.end.min(second.part()));
+        let feasible = Settings::warm().tolerance.max(rounding).min(LOOSEST);
+        let is_feasible = smaller.fold(left, larger) <= feasible;
+        let is_near = end.error <= LOOSEST * self.step;
+        if !is_feasible || !is_near {
+            // Where there is no force against a slip, it may have either sense.
+            let is_broken = |[first, second]: &[Member; 2]| {
+                let turns = second.is_slip && first.end.abs() <= feasible;
+                [first.end < -feasible, second.end < -feasible && (turns || !second.is_slip)]
+            };
+            let broken = members.iter().flat_map(|pair| pair.iter().zip(is_broken(pair)));
+            let parts = broken.filter(|(_, is_broken)| *is_broken).map(|(member, _)| member.ends_after());
+            let part = parts.fold(f64::INFINITY, f64::min);
+            let is_past = is_near && left <= feasible && part > 0.0 && part < 1.0;
+            return Err(if is_past { Foreseen::EndsAfter(part) } else { Foreseen::Unclear });
+        }
+        let activity = |[first, second]: &[Member; 2]| match (first.is_positive(clear), second.is_positive(clear)) {
+            (true, false) => PairActivity::SecondZero,
+            (false, true) => PairActivity::FirstZero,
+            (false, false) => PairActivity::BothZero,
+            (true, true) => PairActivity::NeitherZero,
+        };
+        let pairs: Vec<PairActivity> = members.iter().map(activity).collect();
+        let is_clear = |pair: &PairActivity| matches!(pair, PairActivity::FirstZero | PairActivity::SecondZero);
+        let mut rest = &pairs[..];
+        for entry in &self.reach {
+            let (own, others) = rest.split_at(1 + 2 * entry.tangents);
+            rest = others;
+            let is_apart = own[0] == PairActivity::SecondZero;
+            if !is_clear(&own[0]) || !is_apart && !own.iter().all(is_clear) {
+                return Err(Foreseen::Unclear);
+            }
+        }
+        Ok(Activities { pairs, cones: Vec::new() })
+    }
+
+    /// Both members of every pair, in the order of [`Problem::pair_values`].
+    fn members(&self, x: &DVector<f64>, end: Arrived<'_>, frames: &[Frame]) -> Vec<[Member; 2]> {
+        let per_force = self.step / self.force;
+        let of_forces = self.forward.largest_reaction().max(end.rate.largest_reaction()) * per_force;
+        let member = |start: f64, end: f64, rates: [f64; 2], rounding: f64, is_slip: bool| Member {
+            start,
+            end,
+            rates,
+            rounding: ROUNDING_OF_RATES * rounding,
+            is_slip,
+        };
+        let mut members = Vec::with_capacity(self.pairs());
+        for (entry, here) in self.reach.iter().zip(frames) {
+            let (contact, friction) = (entry.contact, entry.friction);
+            let ends = [(self.forward, &entry.frame), (end.rate, here)];
+            let velocities = ends.map(|(rate, frame)| dot(&frame.normal, &self.loading.relative_rate(contact, rate)));
+            let pressed = self.base.reactions[contact].normal / self.force;
+            let pressed_rates = ends.map(|(rate, _)| rate.reactions[contact].normal * per_force);
+            members.push([
+                member(entry.frame.gap / self.step, here.gap / self.step, velocities, 1.0, false),
+                member(pressed, x[entry.normal()], pressed_rates, of_forces, false),
+            ]);
+            if entry.tangents == 0 {
+                continue;
+            }
+            let traction_rates =
+                ends.map(|(rate, frame)| frame::components(frame, &rate.reactions[contact].tangential)[0] * per_force);
+            let slip_rates = ends.map(|(rate, _)| self.motion(entry, rate)[0]);
+            let slipped: f64 = entry.parts().map(|(part, side)| side * x[part]).iter().sum();
+            for (_, side) in entry.parts() {
+                let off_cone = |normal: f64, traction: f64| (friction * normal + side * traction) / (1.0 + friction);
+                let ends = (off_cone(pressed, entry.traction[0]), off_cone(x[entry.normal()], x[entry.tangential(0)]));
+                let rates = [0, 1].map(|k| off_cone(pressed_rates[k], traction_rates[k]));
+                members.push([
+                    member(ends.0, ends.1, rates, of_forces, false),
+                    member(0.0, side * slipped, slip_rates.map(|rate| side * rate), 1.0, true),
+                ]);
+            }
+        }
+        members
+    }
+
+    /// Whether the objective has a strict maximum along the curve at its end, with `γ1` adapted to it.
+    fn is_strict_solution(&mut self, x: &DVector<f64>, end: Arrived<'_>) -> bool {
+        let load = self.loading.structure.unknowns();
+        let (mut along_forward, mut along_end) = (x[load] * self.forward.load, x[load] * end.rate.load);
+        for (unknown, freedom) in self.loading.structure.freedom_of.iter().enumerate() {
+            along_forward += x[unknown] * self.forward.displacement[*freedom];
+            along_end += x[unknown] * end.rate.displacement[*freedom];
+        }
+        if along_end.is_nan() || along_end < FORWARD {
+            return false;
+        }
+        let linear = |rate: &Rate| self.dissipation_along(rate) + self.forward_weight * self.forward.product(rate);
+        let at_start = linear(self.forward);
+        let at_end = linear(end.rate) / along_end;
+        let dissipated: f64 = self.reach.iter().map(|entry| self.dissipated(entry, x)).sum();
+        let of_chord = dissipated + self.forward_weight * along_forward;
+        // γ1 > 0, φ'' < 0, and more is gained than by staying.
+        let (arc_weight, curvature) = (at_end, 2.0 * at_start + 3.0 * at_end - 6.0 * of_chord);
+        let is_strict = arc_weight > 0.0 && curvature < 0.0 && of_chord > 0.5 * arc_weight;
+        if is_strict {
+            self.arc_weight = arc_weight;
+        }
+        is_strict
+    }
+
+    fn dissipated(&self, entry: &InReach, x: &DVector<f64>) -> f64 {
+        if entry.tangents == 0 { 0.0 } else { -self.dissipation_of(entry, x) }
+    }
+
+    /// Whether some node is closed against two obstacles.
+    fn is_any_node_pressed_twice(&self, state: &State) -> bool {
+        self.loading.corners.iter().any(|corner| corner.closed(self.loading, state).len() >= 2)
+    }
+}

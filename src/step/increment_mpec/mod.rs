@@ -1,0 +1,438 @@
+//! The increment of Kanno and Martins as a mathematical program with complementarity constraints.
+//!
+//! ```text
+//! max  -r_t⁽ᵏ⁾·Δu_t - ½ γ1 ‖(Δu, Δs)‖² + γ2 (u̇, ṡ)⁽ᵏ⁾·(Δu, Δs)
+//! s.t. f_int(u) - s f - f_held - Σ (n r_n + t r_t) = 0,      t·Δx = a⁺ - a⁻
+//!      0 <= g ⊥ r_n >= 0,   0 <= μ r_n + r_t ⊥ a⁺ >= 0,   0 <= μ r_n - r_t ⊥ a⁻ >= 0
+//! ```
+//!
+//! (Y. Kanno, J. A. C. Martins, J. Optim. Theory Appl. 131 (2006), doi:10.1007/s10957-006-9137-4; the split of the slip
+//! into two parts is the polyhedral form of the cone in 2D.) In 3D the last line's friction and the slip are
+//!
+//! ```text
+//! t_k·Δx = a_k, k = 1, 2,       K ∋ (μ r_n, r_t)  ⊥  (λ, a) ∈ K,       K the second-order cone
+//! ```
+//!
+//! Variables are scaled: `y = (Δu, Δs)/S`, `ρ = r/F`,
+//! `α = a/S`, with `S` the arc length sought and `F` the force scale, so that all are of order one whatever the step.
+//!
+//! `γ1` follows from `S`: along a unit direction `e` with dissipation `D` per arc the objective is
+//! `(D + γ2 d·e) α - ½ γ1 α²`, largest at `α = 1` for `γ1 = D + γ2 d·e`. Where the program leaves the direction that
+//! was expected, `γ1` is adapted until `‖y‖` is near 1. `γ2` is a fraction of the dissipation (or 1 where there is
+//! none), so that the branch does not depend on the step.
+//!
+//! A point that the path has reached in a mode is first held against the conditions under which it solves the program
+//! (`certificate`); the search is for where they do not settle it.
+
+pub(crate) mod certificate;
+pub(crate) mod end;
+pub(crate) mod frame;
+pub(crate) mod functions;
+pub(crate) mod search;
+#[cfg(test)]
+mod tests;
+#[cfg(test)]
+mod tests_in_space;
+#[cfg(test)]
+mod tests_of_certificate;
+#[cfg(test)]
+mod tests_of_chains;
+
+use crate::complementarity::mpec::{self, Finish, PairActivity, Settings, Solution, StationarityKind};
+use crate::mechanics::contact::vector::{Vector, dot, scaled};
+use crate::mechanics::contact::{Frame, Mode};
+use crate::mechanics::equations::slip_integration::Start;
+use crate::mechanics::problem::loading::Loading;
+use crate::mechanics::problem::state::{Rate, State};
+use crate::resources::cancel::CancelFlag;
+pub use certificate::Arrived;
+use frame::Components;
+use nalgebra::DVector;
+pub use search::{End, Searched};
+
+/// Contacts whose gap is beyond this many arc lengths cannot close in the increment and are left out.
+const REACH: f64 = 3.0;
+/// The forward term's share of the dissipation.
+const FORWARD_SHARE: f64 = 0.1;
+/// Dissipation per arc below which it is round-off of a motion that sticks.
+const LEAST_DISSIPATION: f64 = 1e-12;
+/// Multiple of the bound on rounding within which what is left over of equilibrium counts as rounding, and the largest
+/// tolerance that a mode is named by.
+const ROOM: f64 = 8.0;
+const LOOSEST: f64 = 1e-3;
+/// Solves with `γ1` adapted before the last one is taken as it is.
+const MOST_ADAPTATIONS: usize = 6;
+
+/// One increment's program.
+pub struct IncrementProgram<'a> {
+    loading: Loading<'a>,
+    base: &'a State,
+    /// The arc length sought.
+    pub step: f64,
+    /// The direction that the forward term rewards; unit arc length.
+    forward: &'a Rate,
+    force: f64,
+    pub arc_weight: f64,
+    pub forward_weight: f64,
+    reach: Vec<InReach>,
+    variables: usize,
+    /// Bound on each displacement and on the load, over the arc length sought; infinite where there is none.
+    most_motion: f64,
+}
+
+/// A contact of the program and its first variable: `ρ_n`, then with friction in 2D `ρ_t`, `α⁺`, `α⁻`, in 3D `ρ_t`
+/// (two), `λ/S`, `α` (two).
+struct InReach {
+    contact: usize,
+    first: usize,
+    friction: f64,
+    /// Number of tangents with friction: 0, 1 (a polyhedral cone) or 2 (a circular one).
+    tangents: usize,
+    /// Frame at the start of the increment, along which slip is counted.
+    frame: Frame,
+    /// `r_t⁽ᵏ⁾/F` along the tangents; with circular cones divided by what the objective is divided by.
+    traction: Components,
+}
+
+impl InReach {
+    fn normal(&self) -> usize {
+        self.first
+    }
+
+    fn tangential(&self, tangent: usize) -> usize {
+        self.first + 1 + tangent
+    }
+
+    /// In 2D: the parts of the slip and their signs.
+    fn parts(&self) -> [(usize, f64); 2] {
+        [(self.first + 2, 1.0), (self.first + 3, -1.0)]
+    }
+
+    /// In 3D: the bound on the slip.
+    fn bound(&self) -> usize {
+        self.first + 3
+    }
+
+    /// In 3D: the slip.
+    fn slip(&self, tangent: usize) -> usize {
+        self.first + 4 + tangent
+    }
+
+    /// In 3D: `(μ ρ_n, ρ_t)/(1 + μ)` and `(λ, a)/S`.
+    fn cone_members(&self, x: &DVector<f64>) -> ([f64; 3], [f64; 3]) {
+        let of_force = [self.friction * x[self.normal()], x[self.tangential(0)], x[self.tangential(1)]];
+        (of_force.map(|value| value / (1.0 + self.friction)), [x[self.bound()], x[self.slip(0)], x[self.slip(1)]])
+    }
+}
+
+/// What the program says of an increment.
+#[derive(Debug, Clone)]
+pub struct Named {
+    /// The contact modes at the end of the increment.
+    pub modes: Vec<Mode>,
+    /// In 3D, where some contact has friction: the state there, with the arc length exactly the one sought and residuals at
+    /// round-off. `None` where the semismooth method did not get there.
+    #[cfg(test)]
+    pub end: Option<State>,
+}
+
+impl Named {
+    /// Modes that there is nothing to decide about.
+    pub fn of(modes: &[Mode]) -> Self {
+        Self {
+            modes: modes.to_vec(),
+            #[cfg(test)]
+            end: None,
+        }
+    }
+}
+
+/// What the modes of a start lead to.
+#[derive(Debug, Clone)]
+pub enum Foreseen {
+    /// A solution, with contacts that are not about to change.
+    Named(Named),
+    /// Some contact changes after this part of the arc length.
+    EndsAfter(f64),
+    /// They hold, but a contact is so near to a change all along that another mode may be better.
+    Untold,
+    /// No solution was found.
+    Unclear,
+}
+
+/// Work of the programs solved.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Counts {
+    pub qp_solves: u64,
+    pub mpec_solves: u64,
+    pub sqp_iterations: u64,
+    /// The last bound on products that was visited; `None` where the start's own branch was enough.
+    pub last_relaxation: Option<f64>,
+}
+
+impl Counts {
+    fn add(&mut self, solution: &Solution) {
+        self.qp_solves += solution.counts.qp_solves as u64;
+        self.mpec_solves += 1;
+        self.sqp_iterations += solution.counts.sqp_iterations as u64;
+        self.last_relaxation = solution.last_relaxation.or(self.last_relaxation);
+    }
+}
+
+impl<'a> IncrementProgram<'a> {
+    /// `forward` is the direction in which the increment is to go; `γ1` is set for it.
+    pub fn new(loading: Loading<'a>, base: &'a State, forward: &'a Rate, step: f64, force: f64) -> Self {
+        let structure = loading.structure;
+        let mut next = structure.unknowns() + 1;
+        let mut reach = Vec::new();
+        for (contact, data) in loading.contacts.iter().enumerate() {
+            let frame = loading.frame(contact, base);
+            if frame.gap > REACH * step {
+                continue;
+            }
+            let tangents = data.tangents();
+            let friction = if tangents > 0 { data.friction } else { 0.0 };
+            let traction = frame::components(&frame, &base.reactions[contact].tangential);
+            let traction = traction.map(|component| component / force);
+            reach.push(InReach { contact, first: next, friction, tangents, frame, traction });
+            next += match tangents {
+                0 => 1,
+                1 => 4,
+                _ => 6,
+            };
+        }
+        let (arc_weight, forward_weight, most_motion) = (1.0, 1.0, f64::INFINITY);
+        let variables = next;
+        let mut program =
+            Self { loading, base, step, forward, force, arc_weight, forward_weight, reach, variables, most_motion };
+        let dissipation = program.dissipation_along(forward);
+        if dissipation > LEAST_DISSIPATION {
+            program.forward_weight = FORWARD_SHARE * dissipation;
+        }
+        program.arc_weight = dissipation + program.forward_weight;
+        if program.reach.iter().any(|entry| entry.tangents == 2) && program.arc_weight > 0.0 {
+            program.divide_objective(program.arc_weight);
+        }
+        program
+    }
+
+    /// Brings the objective to numbers near one, whatever the friction, so that tolerances mean the same.
+    fn divide_objective(&mut self, scale: f64) {
+        self.arc_weight /= scale;
+        self.forward_weight /= scale;
+        for entry in &mut self.reach {
+            entry.traction.iter_mut().for_each(|component| *component /= scale);
+        }
+    }
+
+    /// `-r_t⁽ᵏ⁾·u̇_t / F`
+    fn dissipation_along(&self, rate: &Rate) -> f64 {
+        let of = |entry: &InReach| {
+            let motion = self.motion(entry, rate);
+            (0..entry.tangents).map(|k| -entry.traction[k] * motion[k]).sum::<f64>()
+        };
+        self.reach.iter().map(of).sum()
+    }
+
+    /// `r_t⁽ᵏ⁾·Δu_t / (F S)` of the variables: the objective's dissipation.
+    fn dissipation_of(&self, entry: &InReach, x: &DVector<f64>) -> f64 {
+        if entry.tangents == 2 {
+            return (0..2).map(|k| entry.traction[k] * x[entry.slip(k)]).sum();
+        }
+        let [(forward, _), (backward, _)] = entry.parts();
+        entry.traction[0] * (x[forward] - x[backward])
+    }
+
+    fn motion(&self, entry: &InReach, rate: &Rate) -> Components {
+        frame::components(&entry.frame, &self.loading.relative_rate(entry.contact, rate))
+    }
+
+    /// The variables of a state on the way, for a start.
+    pub fn variables_at(&self, rate: &Rate) -> DVector<f64> {
+        let structure = self.loading.structure;
+        let mut x = DVector::zeros(self.variables);
+        for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
+            x[unknown] = rate.displacement[*freedom];
+        }
+        x[structure.unknowns()] = rate.load;
+        for entry in &self.reach {
+            let (reaction, change) = (self.base.reactions[entry.contact], rate.reactions[entry.contact]);
+            x[entry.normal()] = (reaction.normal + self.step * change.normal) / self.force;
+            if entry.friction == 0.0 {
+                continue;
+            }
+            let components = |vector: &Vector| frame::components(&entry.frame, vector);
+            let (traction, change) = (components(&reaction.tangential), components(&change.tangential));
+            for k in 0..entry.tangents {
+                x[entry.tangential(k)] = (traction[k] + self.step * change[k]) / self.force;
+            }
+            let slip = self.motion(entry, rate);
+            if entry.tangents == 2 {
+                x[entry.slip(0)] = slip[0];
+                x[entry.slip(1)] = slip[1];
+                x[entry.bound()] = self.bound_at(entry, &x, slip);
+            } else {
+                for (part, side) in entry.parts() {
+                    x[part] = (side * slip[0]).max(0.0);
+                }
+            }
+        }
+        x
+    }
+
+    /// A bound on the slip that tells the start's branch: above it for a contact that stays apart, below it for one that
+    /// is about to close, so that it is taken to slip.
+    fn bound_at(&self, entry: &InReach, x: &DVector<f64>, slip: Components) -> f64 {
+        let size = slip[0].hypot(slip[1]);
+        if x[entry.normal()] > 0.0 {
+            return size;
+        }
+        let gap = self.loading.gap(entry.contact, &self.state(x));
+        if gap > 0.0 { 1.0 + size } else { 0.5 * size }
+    }
+
+    fn state(&self, x: &DVector<f64>) -> State {
+        let structure = self.loading.structure;
+        let mut state = self.base.clone();
+        for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
+            state.displacement[*freedom] += self.step * x[unknown];
+        }
+        state.load += self.step * x[structure.unknowns()];
+        self.loading.place_supports(&mut state);
+        state
+    }
+
+    /// Solves from a start and reads the contact modes off the solution; `None` where no solution was found.
+    ///
+    /// `present` decides where a pair is biactive.
+    pub fn name(&mut self, start: &DVector<f64>, present: &[Mode], cancel: &CancelFlag) -> (Option<Named>, Counts) {
+        match self.solve(start, present, None, cancel) {
+            (Foreseen::Named(named), counts) => (Some(named), counts),
+            (Foreseen::EndsAfter(_) | Foreseen::Untold | Foreseen::Unclear, counts) => (None, counts),
+        }
+    }
+
+    /// The same in the branch of the modes `present` alone: whether they hold for an increment of this length.
+    pub fn foresee(&mut self, start: &DVector<f64>, present: &[Mode], cancel: &CancelFlag) -> (Foreseen, Counts) {
+        let members = self.zero_members(present, start);
+        self.solve(start, present, Some(&members), cancel)
+    }
+
+    fn solve(
+        &mut self,
+        start: &DVector<f64>,
+        present: &[Mode],
+        branch: Option<&[PairActivity]>,
+        cancel: &CancelFlag,
+    ) -> (Foreseen, Counts) {
+        // The start is a predictor in a mode that is likely right: where no solution lies near it, a shorter increment
+        // helps more than a longer search.
+        let warm = Settings::warm();
+        let settings = Settings {
+            finish: Finish::PatternSettled,
+            restarts: 0,
+            iteration_limit: 20,
+            enumeration_limit: 3,
+            // The arc length bounds every increment.
+            looks_beyond: false,
+            tolerance: warm.tolerance.max(self.rounding(start)).min(LOOSEST),
+            ..warm
+        };
+        let mut counts = Counts::default();
+        let mut start = start.clone();
+        for _ in 0..MOST_ADAPTATIONS {
+            let solution = match branch {
+                None => mpec::solve(self, &start, &settings, cancel),
+                Some(members) => mpec::follow_branch(self, &start, members, &settings, cancel),
+            };
+            let Ok(solution) = solution else { break };
+            counts.add(&solution);
+            let size = solution.x.rows(0, self.loading.structure.unknowns() + 1).norm();
+            match solution.status {
+                mpec::Status::Feasible if branch.is_some() => return (Foreseen::EndsAfter(size), counts),
+                mpec::Status::Solved if solution.stationarity == StationarityKind::OneBranch && branch.is_some() => {
+                    return (Foreseen::Untold, counts);
+                }
+                mpec::Status::Solved | mpec::Status::PatternSettled | mpec::Status::Feasible => {}
+                _ => break,
+            }
+            if (0.5..=2.0).contains(&size) {
+                return (Foreseen::Named(self.end(solution, present, cancel)), counts);
+            }
+            self.arc_weight *= size.clamp(0.02, 50.0);
+            start = solution.x;
+        }
+        (Foreseen::Unclear, counts)
+    }
+
+    /// The members of the pairs that are zero in given modes.
+    fn zero_members(&self, modes: &[Mode], x: &DVector<f64>) -> Vec<PairActivity> {
+        let zero = |first: bool| if first { PairActivity::FirstZero } else { PairActivity::SecondZero };
+        let mut members = Vec::new();
+        for entry in &self.reach {
+            let mode = modes[entry.contact];
+            members.push(zero(mode.is_active()));
+            if entry.tangents != 1 {
+                continue;
+            }
+            let [(forward, _), (backward, _)] = entry.parts();
+            // Where the contact is free, there is no force either way; one part of the slip is left to take what it is.
+            let sliding = match mode {
+                Mode::Stick => [false, false],
+                Mode::Slip { direction } => {
+                    let is_forward = dot(&entry.frame.tangents[0], &direction) > 0.0;
+                    [is_forward, !is_forward]
+                }
+                Mode::Free => [x[forward] >= x[backward], x[forward] < x[backward]],
+            };
+            members.extend(sliding.map(zero));
+        }
+        members
+    }
+
+    /// What the rounding of displacements leaves of equilibrium: next to stiff elements no program can do better.
+    fn rounding(&self, x: &DVector<f64>) -> f64 {
+        let rounding = self.loading.structure.rounding(&self.state(x).displacement);
+        ROOM * rounding.into_iter().fold(0.0, f64::max) / self.force
+    }
+
+    /// Unknowns of the contact's node with their components.
+    fn node_of(&self, entry: &InReach) -> impl Iterator<Item = (usize, usize)> {
+        let structure = self.loading.structure;
+        let first = self.loading.contacts[entry.contact].node * structure.dimension;
+        (0..structure.dimension).filter_map(move |k| structure.unknown_of[first + k].map(|unknown| (unknown, k)))
+    }
+
+    /// How fast a contact's node moves against its obstacle with the load factor alone: by what drives the supports and
+    /// the obstacle.
+    fn driven(&self, entry: &InReach) -> Vector {
+        let structure = self.loading.structure;
+        let first = self.loading.contacts[entry.contact].node * structure.dimension;
+        let mut motion = scaled(&self.loading.pattern.shifts[entry.contact], -1.0);
+        for (k, component) in motion.iter_mut().enumerate().take(structure.dimension) {
+            if structure.unknown_of[first + k].is_none() {
+                *component += self.loading.support_rate(first + k);
+            }
+        }
+        motion
+    }
+}
+
+impl InReach {
+    /// The tangents at another place on the obstacle.
+    fn tangents_at(&self, frame: &Frame) -> [Vector; 2] {
+        if self.tangents < 2 || frame.curvature == 0.0 {
+            return if self.tangents < 2 { frame.tangents } else { self.frame.tangents };
+        }
+        let normal = self.frame.normal;
+        self.frame.tangents.map(|direction| Start { direction, normal }.carried_to(&frame.normal))
+    }
+
+    /// How one of them turns with a motion.
+    fn tangent_change(&self, frame: &Frame, tangent: &Vector, motion: &Vector) -> Vector {
+        if self.tangents < 2 {
+            return frame.tangent_change(motion);
+        }
+        scaled(&frame.normal, -dot(&frame.normal_change(motion), tangent))
+    }
+}

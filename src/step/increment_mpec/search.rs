@@ -1,0 +1,149 @@
+//! The program solved by itself, with nothing known of its end: the products relaxed to `ε`, `ε` falling to its last value,
+//! each relaxed program by sequential quadratic programming, each quadratic program by the interior-point method.
+
+use crate::complementarity::mpec::{self, Finish, Iterate, Settings, Status};
+use crate::mechanics::contact::Mode;
+use crate::mechanics::problem::state::State;
+use crate::resources::cancel::CancelFlag;
+use crate::step::increment_mpec::{Counts, InReach, IncrementProgram, LOOSEST};
+use nalgebra::DVector;
+
+/// The largest first bound on the products, the factor from one to the next, and the last.
+const FIRST: f64 = 1e-2;
+const FACTOR: f64 = 1e-2;
+const LAST: f64 = 1e-8;
+/// Most of each displacement and of the load in an increment, over the arc length sought.
+const MOST_MOTION: f64 = 2.0;
+/// Iterations of one sequence.
+const MOST_ITERATIONS: usize = 40;
+/// Biactive pairs whose branches are enumerated.
+const ENUMERATED: usize = 6;
+
+/// Where the program ends.
+#[derive(Debug, Clone)]
+pub struct End {
+    /// The contact modes at the end of the increment.
+    pub modes: Vec<Mode>,
+    /// The state there, as exact as the program is.
+    pub state: State,
+    /// Its variables, from which the next search may start.
+    pub variables: DVector<f64>,
+    /// Its arc length over the one sought.
+    pub size: f64,
+}
+
+/// One search.
+pub struct Searched {
+    /// `None` where no stationary point was found.
+    pub end: Option<End>,
+    pub counts: Counts,
+    /// Where they are kept.
+    pub iterates: Vec<Iterate>,
+}
+
+/// One contact at an iterate, dimensionless.
+#[derive(Debug, Clone, Copy)]
+pub struct ContactAt {
+    pub contact: usize,
+    pub gap: f64,
+    pub normal: f64,
+    /// `μ r_n - |r_t|`
+    pub within_cone: f64,
+    /// `|Δu_t|`
+    pub slip: f64,
+}
+
+impl IncrementProgram<'_> {
+    /// Keeps searches from going to solutions far away, of which the arc length cannot become the one sought.
+    pub fn stay_near(&mut self) {
+        self.most_motion = MOST_MOTION;
+    }
+
+    /// The contacts in reach, and the state, at variables of the program.
+    pub fn contacts_at(&self, variables: &DVector<f64>) -> (State, Vec<ContactAt>) {
+        let state = self.end_state(variables);
+        let of = |entry: &InReach| {
+            let reaction = state.reactions[entry.contact];
+            let slip = match entry.tangents {
+                0 => 0.0,
+                1 => entry.parts().map(|(part, side)| side * variables[part]).iter().sum::<f64>().abs(),
+                _ => variables[entry.slip(0)].hypot(variables[entry.slip(1)]),
+            };
+            ContactAt {
+                contact: entry.contact,
+                gap: self.loading.gap(entry.contact, &state),
+                normal: reaction.normal,
+                within_cone: entry.friction * reaction.normal - reaction.tangential_size(),
+                slip: self.step * slip,
+            }
+        };
+        let contacts = self.reach.iter().map(of).collect();
+        (state, contacts)
+    }
+
+    /// The arc length at variables of the program over the one sought.
+    pub fn size(&self, variables: &DVector<f64>) -> f64 {
+        variables.rows(0, self.loading.structure.unknowns() + 1).norm()
+    }
+
+    /// The first bound on the products. A bound `ε` lets a contact within its cone slip by about `ε` over its distance from
+    /// it and dissipate without having to: that has to be little beside what the objective gains along the path.
+    pub fn first_relaxation(&self) -> f64 {
+        let tractions = self.reach.iter().flat_map(|entry| &entry.traction[..entry.tangents]);
+        let largest = tractions.fold(0.0_f64, |largest, traction| largest.max(traction.abs()));
+        (FIRST * (self.arc_weight / largest).min(1.0)).max(LAST)
+    }
+
+    /// Solves from a start, `γ1` and `γ2` as they are; `present` decides where a pair is biactive.
+    pub fn search(
+        &self,
+        start: &DVector<f64>,
+        first_relaxation: f64,
+        present: &[Mode],
+        keep_iterates: bool,
+        cancel: &CancelFlag,
+    ) -> Searched {
+        let default = Settings::default();
+        let settings = Settings {
+            first_relaxation,
+            relaxation_factor: FACTOR,
+            last_relaxation: LAST,
+            tolerance: default.tolerance.max(self.rounding(start)).min(LOOSEST),
+            iteration_limit: MOST_ITERATIONS,
+            finish: Finish::PatternSettled,
+            restarts: 0,
+            enumeration_limit: ENUMERATED,
+            looks_beyond: false,
+            whole_sequence: true,
+            interior_only: true,
+            keep_iterates,
+            ..default
+        };
+        let Ok(solution) = mpec::solve(self, start, &settings, cancel) else {
+            return Searched { end: None, counts: Counts::default(), iterates: Vec::new() };
+        };
+        let mut counts = Counts::default();
+        counts.add(&solution);
+        let iterates = solution.iterates.clone();
+        let is_found = matches!(solution.status, Status::Solved | Status::PatternSettled | Status::Feasible);
+        let end = is_found.then(|| {
+            let variables = solution.x.clone();
+            let size = self.size(&variables);
+            let state = self.end_state(&variables);
+            let modes = self.end(solution, present, cancel).modes;
+            End { modes, state, variables, size }
+        });
+        Searched { end, counts, iterates }
+    }
+
+    /// The next smaller first bound; `None` past the last.
+    pub fn tighter(relaxation: f64) -> Option<f64> {
+        (relaxation > LAST).then(|| (FACTOR * relaxation).max(LAST))
+    }
+
+    /// Adapts `γ1` to a solution whose arc length is not the one sought: along a straight direction the arc length is
+    /// inversely proportional to it.
+    pub fn adapt(&mut self, size: f64) {
+        self.arc_weight *= size.clamp(0.02, 50.0);
+    }
+}

@@ -1,0 +1,19 @@
+//! One step of the path along one contact mode.
+//!
+//! | file or room | what it does |
+//! |---|---|
+//! | [`corrector`] | Newton's method, the direction at its end, and the factorisations that they share |
+//! | `segment` | a step along the mode, ended early by the first event |
+//! | `event_functions` | quantities that must not become negative while the mode lasts |
+//! | `event_location` | where one of them falls to zero |
+//! | `interpolation` | between points of a step that are reached already |
+//! | `past_fold` | steps from a point at which the equations have another null vector |
+//! | `increment_mpec` | the mathematical program of one increment (Kanno and Martins), and its certificate |
+
+pub mod corrector;
+pub(crate) mod event_functions;
+pub(crate) mod event_location;
+pub(crate) mod increment_mpec;
+pub(crate) mod interpolation;
+pub(crate) mod past_fold;
+pub(crate) mod segment;

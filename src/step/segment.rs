@@ -1,0 +1,487 @@
+//! One step along the current mode, ended early by the first event.
+
+use crate::algebra::SystemFactorisation;
+use crate::mechanics::contact::Mode;
+use crate::mechanics::equations::ModeSystem;
+use crate::mechanics::equations::closing_equation::{ArcLengthEquation, ClosingEquation};
+use crate::mechanics::equations::solution::{Corrected, Failure, Tangent};
+use crate::mechanics::equations::stage_end::End;
+use crate::mechanics::problem::loading::Loading;
+use crate::mechanics::problem::state::{Rate, State};
+use crate::step::corrector::cached_factorisation::AtHand;
+use crate::step::corrector::slip_error::Pointed;
+use crate::step::corrector::work::Work;
+use crate::step::event_functions::{self, Watch};
+use crate::step::event_location::Stretch;
+use crate::step::interpolation::Placed;
+
+/// Where a step starts.
+#[derive(Clone, Copy)]
+pub struct Start<'a> {
+    pub loading: Loading<'a>,
+    pub state: &'a State,
+    /// The direction in `modes`.
+    pub rate: &'a Rate,
+    pub modes: &'a [Mode],
+    /// Error of the path so far, where it has one.
+    pub drift: Option<&'a Rate>,
+    pub force_scale: f64,
+    /// The equations have another null vector besides the direction: see `past_fold`.
+    pub is_singular: bool,
+    /// How far the path is then off the direction: see `choice::Choice`.
+    pub beside: Option<&'a Rate>,
+}
+
+/// A point reached.
+#[derive(Debug, Clone)]
+pub struct Reached {
+    pub corrected: Corrected,
+    /// The path's direction there, in the mode that led to it.
+    pub rate: Rate,
+    pub step: f64,
+    /// Distance to the path (dimensionless).
+    pub error_estimate: f64,
+    /// Error of the path up to here, where it has one.
+    pub drift: Option<Rate>,
+    /// What ended the step early.
+    pub event: Option<Watch>,
+    /// Sign of the bordered determinant there, where it is certain.
+    pub determinant: Option<f64>,
+    /// The contact at which the step ends because its slip does, where its speed is seen to fall through zero.
+    pub stopped: Option<usize>,
+    /// A factorisation of the equations nearby.
+    pub nearby: AtHand,
+    /// Motions that have the limit point in common, where they are several; else 0.
+    pub motions: usize,
+}
+
+impl Reached {
+    /// A point without event. In a box, since it goes through many hands.
+    pub(crate) fn new(corrected: Corrected, rate: Rate, step: f64, error_estimate: f64) -> Box<Self> {
+        let (drift, event, determinant, stopped, nearby) = (None, None, None, None, AtHand::default());
+        let motions = 0;
+        Box::new(Self { corrected, rate, step, error_estimate, drift, event, determinant, stopped, nearby, motions })
+    }
+}
+
+/// Locates a limit point at which the equations of the mode are singular, from the point past it.
+pub type LocateSingularLimit = fn(&Start<'_>, Watch, &Reached, &mut Work) -> Option<Box<Reached>>;
+
+/// A step that is tried, and what is watched along it.
+pub(crate) struct Attempt {
+    /// The farthest point, where some quantities may be negative.
+    pub reached: Box<Reached>,
+    pub watches: Vec<Watch>,
+    /// Those that are.
+    pub passed: Vec<Watch>,
+    /// The points that it is made of, where something is passed.
+    pub stretch: Option<Box<Stretch>>,
+    /// What is zero at the farthest point, where that was solved for.
+    pub met: Option<Watch>,
+}
+
+/// Why a step has to be shorter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Refused {
+    Newton(Failure),
+    /// The direction turned by this angle (radians).
+    Turned(f64),
+    /// An event lies at the start itself.
+    AtStart(Watch),
+    /// The point reached breaks the laws of contact and friction.
+    Unlawful,
+    /// A bar would shrink to a point.
+    Collapsed,
+    /// The signs of the equations changed, and no bifurcation point could be made out.
+    Unresolved,
+    /// Contact changes that were to be taken together cannot be.
+    Apart,
+}
+
+/// The direction may turn by this much in a step.
+const MOST_TURN: f64 = 0.6;
+/// Its cosine.
+const LEAST_COSINE: f64 = 0.825_335_614_909_678_3;
+/// The turns at the ends of a step may move the chord of a slip by this angle (radians).
+const MOST_CORRECTION: f64 = 0.1;
+/// Solves of an increment in which directions of slip settle.
+const MOST_PASSES: u64 = 12;
+/// Change of their angles (radians) from which they have settled.
+const SETTLED: f64 = 1e-10;
+/// How far a watched quantity may be negative before it counts as passed.
+pub(crate) const PASSED: f64 = 1e-13;
+/// A bound of the stage (dimensionless) within this is reached.
+pub const AT_END: f64 = 1e-12;
+/// Zeros and dips that are located in one step, each nearer than the one before.
+const MOST_LOOKS: usize = 32;
+/// Two quantities that are zero within this are zero together.
+pub(crate) const COINCIDING: f64 = 1e-10;
+
+/// Refuses a turn by more than [`MOST_TURN`].
+pub(crate) fn may_turn(cosine: f64) -> Result<(), Refused> {
+    if cosine < LEAST_COSINE { Err(Refused::Turned(cosine.clamp(-1.0, 1.0).acos())) } else { Ok(()) }
+}
+
+impl Start<'_> {
+    /// The point at an arc length, with its direction.
+    pub fn reach(&self, step: f64, work: &mut Work) -> Result<Box<Reached>, Refused> {
+        self.reach_near(self.state.advanced(self.rate, step), step, work)
+    }
+
+    /// The point at an arc length, from a guess.
+    pub fn reach_near(&self, guess: State, step: f64, work: &mut Work) -> Result<Box<Reached>, Refused> {
+        self.reach_by(guess, step, &mut None, work)
+    }
+
+    /// The same with a factorisation of the equations nearby, if there is one; the last one takes its place.
+    pub(crate) fn reach_by(
+        &self,
+        guess: State,
+        step: f64,
+        serving: &mut Option<SystemFactorisation>,
+        work: &mut Work,
+    ) -> Result<Box<Reached>, Refused> {
+        let system = ModeSystem::new(self.loading, self.modes, self.state);
+        self.settle_by(system, guess, &ArcLengthEquation { from: self.state, step }, serving, work)
+    }
+
+    pub(crate) fn settle(
+        &self,
+        system: ModeSystem<'_>,
+        guess: State,
+        closing: &dyn ClosingEquation,
+        work: &mut Work,
+    ) -> Result<Box<Reached>, Refused> {
+        self.settle_by(system, guess, closing, &mut None, work)
+    }
+
+    pub(crate) fn settle_by(
+        &self,
+        system: ModeSystem<'_>,
+        guess: State,
+        closing: &dyn ClosingEquation,
+        serving: &mut Option<SystemFactorisation>,
+        work: &mut Work,
+    ) -> Result<Box<Reached>, Refused> {
+        if let Some(reached) = self.held_straight(&system, closing) {
+            return Ok(reached);
+        }
+        if let Some(reached) = self.held_across(&guess, closing, work) {
+            return Ok(reached);
+        }
+        let guess = self.guess_beside(closing).unwrap_or(guess);
+        let corrected = system
+            .correct_from(system.iterate(guess), closing, self.force_scale, serving, work)
+            .map_err(Refused::Newton)?;
+        self.directed(system, corrected, closing, serving, work)
+    }
+
+    /// A converged point with the path's direction there.
+    pub(crate) fn directed(
+        &self,
+        mut system: ModeSystem<'_>,
+        mut corrected: Corrected,
+        closing: &dyn ClosingEquation,
+        serving: &mut Option<SystemFactorisation>,
+        work: &mut Work,
+    ) -> Result<Box<Reached>, Refused> {
+        let singular = Refused::Newton(Failure::Singular);
+        let mut tangent =
+            system.tangent_and_error(&corrected, self.rate, serving, &mut work.factorisations).ok_or(singular)?;
+        if system.has_tracks() {
+            // Once more, now that the turn of the slips at the end is known; where directions settle, until they do.
+            for pass in 1.. {
+                let settles = system.set_turns(self.rate, &corrected, &tangent);
+                let again = system
+                    .correct_from(system.iterate_of(&corrected), closing, self.force_scale, &mut None, work)
+                    .map_err(Refused::Newton)?;
+                // How hard the increment is shows in the first solve.
+                let hardness = corrected.iterations_to_small;
+                let change = system.largest_turn(&again, Some(&corrected));
+                corrected = again;
+                corrected.iterations_to_small = hardness;
+                let factorisations = &mut work.factorisations;
+                tangent = system.tangent_and_error(&corrected, self.rate, &mut None, factorisations).ok_or(singular)?;
+                if !settles || change <= SETTLED {
+                    break;
+                }
+                if pass == MOST_PASSES {
+                    return Err(Refused::Newton(Failure::NotConverged));
+                }
+            }
+            let turn = system.largest_turn(&corrected, None);
+            if turn > MOST_TURN {
+                return Err(Refused::Turned(turn));
+            }
+            // The series has ended to say anything where the turn changes much within the step.
+            let correction = system.largest_correction(&corrected);
+            if correction > MOST_CORRECTION {
+                return Err(Refused::Turned(correction));
+            }
+        }
+        let Tangent { rate, error: error_estimate, determinant, .. } = tangent;
+        let step = corrected.state.distance(self.state);
+        // The sphere around the start meets the path behind, too, and may meet other branches: the chord has to go the
+        // way of both directions.
+        let cosine = |rate: &Rate| self.state.cosine_of_chord(&corrected.state, step, rate);
+        may_turn(cosine(self.rate).min(cosine(&rate)))?;
+        let mut reached = Reached::new(corrected, rate, step, error_estimate);
+        reached.determinant = determinant;
+        reached.nearby = AtHand::shared(serving.as_ref());
+        Ok(reached)
+    }
+
+    /// A converged point of a straight path, which keeps its direction.
+    pub(crate) fn straight_on(&self, corrected: Corrected, error_estimate: f64) -> Box<Reached> {
+        let (rate, step) = (self.rate.clone(), corrected.state.distance(self.state));
+        Reached::new(corrected, rate, step, error_estimate)
+    }
+
+    /// A step of an arc length, or to the first event before.
+    ///
+    /// `ends` are those of the stage; `load_sign` is the sign of the load rate along the path just now; `singular_limit`
+    /// locates limit points at which the equations are singular.
+    pub fn advance(
+        &self,
+        step: f64,
+        ends: &[End],
+        load_sign: f64,
+        singular_limit: LocateSingularLimit,
+        work: &mut Work,
+    ) -> Result<Box<Reached>, Refused> {
+        let tried = self.attempt(step, None, None, ends, load_sign, work)?;
+        self.stop_at_event(tried, ends, singular_limit, work)
+    }
+
+    /// A step of an arc length, with what it passes. `before` is the point before the start in the same modes, if there is
+    /// one, and `serving` a factorisation of the equations nearby.
+    pub(crate) fn attempt(
+        &self,
+        step: f64,
+        before: Option<&Placed>,
+        mut serving: Option<SystemFactorisation>,
+        ends: &[End],
+        load_sign: f64,
+        work: &mut Work,
+    ) -> Result<Attempt, Refused> {
+        let foreseen = before.and_then(|before| before.foresee(self.state, self.rate, step));
+        let guess = foreseen.unwrap_or_else(|| self.state.advanced(self.rate, step));
+        let mut system = ModeSystem::new(self.loading, self.modes, self.state);
+        system.may_be_shorter = true;
+        let closing = ArcLengthEquation { from: self.state, step };
+        let mut reached = self.settle_by(system, guess, &closing, &mut serving, work)?;
+        may_turn(self.rate.product(&reached.rate))?;
+        let watches = self.watches(ends, load_sign);
+        let mut passed = self.passed(&watches, &reached);
+        let mut stretch = (!passed.is_empty()).then(|| Box::new(Stretch::new(self, &reached, serving.take())));
+        if stretch.is_none() {
+            (passed, stretch) = self.dips(&watches, &mut reached, serving, work)?;
+        }
+        Ok(Attempt { reached, watches, passed, stretch, met: None })
+    }
+
+    /// What may end a step.
+    pub(crate) fn watches(&self, ends: &[End], load_sign: f64) -> Vec<Watch> {
+        let mut watches = event_functions::of_mode(self.loading, self.modes, self.state, self.rate);
+        if load_sign != 0.0 {
+            watches.push(Watch::LoadRate { sign: load_sign });
+        }
+        watches.extend(ends.iter().map(|end| Watch::End(*end)));
+        watches
+    }
+
+    /// Ends a step at the first event in it.
+    pub(crate) fn stop_at_event(
+        &self,
+        tried: Attempt,
+        ends: &[End],
+        singular_limit: LocateSingularLimit,
+        work: &mut Work,
+    ) -> Result<Box<Reached>, Refused> {
+        let Attempt { mut reached, watches, mut passed, mut stretch, met } = tried;
+        // How hard the step is shows in its first solve.
+        let hardness = reached.corrected.iterations_to_small;
+        // Each round finds the first zero of one quantity; whatever else is negative there came before it.
+        let mut event = met;
+        let mut looks = 0..MOST_LOOKS;
+        // What is solved for has been looked through on its way.
+        let mut is_clear = met.is_some() && passed.is_empty();
+        while !is_clear {
+            while let Some(stretch) = &mut stretch
+                && let Some(&watch) = self.earliest(&passed, stretch, |watch| self.zero(watch, &reached))
+            {
+                // Quantities that are nothing but rounding would come by turns.
+                looks.next().ok_or(Refused::Newton(Failure::NotConverged))?;
+                let located = self.locate(watch, stretch, self.zero(watch, &reached), work);
+                reached = match watch {
+                    Watch::LoadRate { .. } => self.alone_or_common(located, watch, &reached, singular_limit, work)?,
+                    _ => located?,
+                };
+                event = Some(watch);
+                passed = self.passed(&watches, &reached);
+                passed.retain(|other| *other != watch);
+            }
+            // What was negative for a while, and is so no more where another quantity falls to zero, came before that. Over a
+            // short way changes of what rates are rates of are rounding.
+            let Some(found) = event.filter(|_| reached.step.powi(3) > f64::EPSILON) else { break };
+            let others: Vec<Watch> = watches.iter().copied().filter(|other| *other != found).collect();
+            let (dipped, inside) = self.dips(&others, &mut reached, None, work)?;
+            is_clear = dipped.is_empty();
+            if !is_clear {
+                looks.next().ok_or(Refused::Newton(Failure::NotConverged))?;
+                (passed, stretch) = (dipped, inside);
+            }
+        }
+        if event.is_none() {
+            // A step may end exactly where the stage does.
+            event = ends
+                .iter()
+                .map(|end| Watch::End(*end))
+                .find(|watch| self.value(*watch, &reached.corrected.state, &reached.rate) <= AT_END);
+        }
+        if matches!(event, None | Some(Watch::LoadRate { .. })) {
+            // A contact may reach the end of its mode just where the step ends, or at the limit point itself: the change
+            // is what matters.
+            event = self.coinciding(&watches, &reached).or(event);
+        }
+        if let Some(Watch::End(end)) = event {
+            reached = self.hold_exactly(end, reached, work)?;
+        }
+        reached.event = event;
+        reached.stopped = match (event, &stretch) {
+            (Some(watch @ Watch::Sliding(contact)), Some(stretch)) => {
+                self.falls_through(watch, stretch, &reached).then_some(contact)
+            }
+            _ => None,
+        };
+        reached.corrected.iterations_to_small = hardness;
+        reached.drift = self.drift_at(&reached, work);
+        reached.error_estimate += reached.drift.as_ref().map_or(0.0, Rate::size);
+        Ok(reached)
+    }
+
+    /// A limit point as it was located; where its equations are singular, as several motions have it in common.
+    fn alone_or_common(
+        &self,
+        located: Result<Box<Reached>, Refused>,
+        watch: Watch,
+        end: &Reached,
+        singular_limit: LocateSingularLimit,
+        work: &mut Work,
+    ) -> Result<Box<Reached>, Refused> {
+        let is_regular = located.as_ref().is_ok_and(|located| located.determinant.is_some());
+        let common = if is_regular { None } else { singular_limit(self, watch, end, work) };
+        common.map_or(located, Ok)
+    }
+
+    /// The path's error at a point reached, where it has one.
+    fn drift_at(&self, reached: &Reached, work: &mut Work) -> Option<Rate> {
+        let mut modes = self.modes.iter().zip(self.loading.contacts);
+        if self.drift.is_none() && !modes.any(|(mode, contact)| mode.is_active() && contact.tangents() > 1) {
+            return None;
+        }
+        let mut system = ModeSystem::new(self.loading, self.modes, self.state);
+        if self.drift.is_none() && !system.has_tracks() {
+            return None;
+        }
+        let end = Pointed { corrected: &reached.corrected, rate: &reached.rate };
+        let before = self.drift;
+        let drift = if system.has_tracks() {
+            let factorisations = &mut work.factorisations;
+            let tangent = system.tangent_and_error(&reached.corrected, self.rate, &mut None, factorisations)?;
+            system.set_turns(self.rate, &reached.corrected, &tangent);
+            let middle = self.reach(0.5 * reached.step, work).ok()?;
+            system.drift(self.rate, before, Pointed { corrected: &middle.corrected, rate: &middle.rate }, end)
+        } else {
+            system.drift(self.rate, before, end, end)
+        };
+        work.factorisations += 1;
+        drift.or_else(|| before.cloned())
+    }
+
+    pub(crate) fn value(&self, watch: Watch, state: &State, rate: &Rate) -> f64 {
+        watch.value(self.loading, self.modes, state, rate)
+    }
+
+    pub(crate) fn zero(&self, watch: Watch, reached: &Reached) -> f64 {
+        PASSED * self.scale(watch, reached)
+    }
+
+    fn scale(&self, watch: Watch, reached: &Reached) -> f64 {
+        let force_scale = self.force_scale.max(reached.corrected.force_scale);
+        watch.scale(self.loading, &reached.corrected.state, force_scale)
+    }
+
+    pub(crate) fn passed(&self, watches: &[Watch], reached: &Reached) -> Vec<Watch> {
+        let negative = |watch: &Watch| {
+            let value = self.value(*watch, &reached.corrected.state, &reached.rate);
+            value < 0.0 && value < -self.zero(*watch, reached)
+        };
+        watches.iter().copied().filter(negative).collect()
+    }
+
+    /// A contact quantity that has fallen to zero at the point reached.
+    fn coinciding(&self, watches: &[Watch], reached: &Reached) -> Option<Watch> {
+        watches.iter().copied().filter(|watch| watch.is_of_contact()).find(|watch| {
+            let forces = self.force_scale.max(reached.corrected.force_scale);
+            let state = &reached.corrected.state;
+            let last = self.value(*watch, state, &reached.rate);
+            !watch.is_above_zero(self.loading, state, last, COINCIDING, forces)
+                && self.value(*watch, self.state, self.rate)
+                    > watch.zero_within(self.loading, state, COINCIDING, forces)
+        })
+    }
+
+    /// Looks where a quantity may have dipped inside the step; shortens the step to that place if it did, and answers what
+    /// is negative there with the points reached.
+    pub(crate) fn dips(
+        &self,
+        watches: &[Watch],
+        reached: &mut Reached,
+        mut serving: Option<SystemFactorisation>,
+        work: &mut Work,
+    ) -> Result<(Vec<Watch>, Option<Box<Stretch>>), Refused> {
+        let step = reached.step;
+        let mut stretch = None;
+        for watch in watches {
+            let end = (&reached.corrected.state, &reached.rate);
+            let start = (self.state, self.rate);
+            if watch.dip(self.loading, self.modes, start, end, step, 0.0).is_none() {
+                continue;
+            }
+            let zero = self.zero(*watch, reached);
+            let Some(place) = watch.dip(self.loading, self.modes, start, end, step, zero) else { continue };
+            let points = stretch.get_or_insert_with(|| Box::new(Stretch::new(self, reached, serving.take())));
+            let inside = points.reach(self, place, work)?;
+            let passed = self.passed(watches, &inside);
+            if !passed.is_empty() {
+                *reached = *inside;
+                return Ok((passed, stretch));
+            }
+        }
+        Ok((Vec::new(), None))
+    }
+
+    /// Solves once more with the end of the stage as an equation, so that a load of 1 is exactly 1.
+    fn hold_exactly(&self, end: End, reached: Box<Reached>, work: &mut Work) -> Result<Box<Reached>, Refused> {
+        let Some(bound) = end.held().filter(|_| !end.is_met_exactly(&reached.corrected.state)) else {
+            return Ok(reached);
+        };
+        let system = ModeSystem::new(self.loading, self.modes, self.state);
+        let mut exact = self.settle(system, reached.corrected.state, &bound, work)?;
+        end.make_exact(&mut exact.corrected.state);
+        Ok(exact)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LEAST_COSINE, MOST_TURN, may_turn};
+
+    #[test]
+    fn the_least_cosine_is_that_of_the_most_turn() {
+        // To a rounding: cosines differ in it from library to library.
+        assert!((LEAST_COSINE - MOST_TURN.cos()).abs() < 1e-15);
+        assert!(may_turn(0.99 * LEAST_COSINE).is_err() && may_turn(1.01 * LEAST_COSINE).is_ok());
+    }
+}

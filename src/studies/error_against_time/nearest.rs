@@ -1,0 +1,62 @@
+//! The distance of a point from a segment of a curve.
+
+use crate::studies::error_against_time::curve::Curve;
+use crate::studies::error_against_time::trace::distance;
+
+/// Steps of the descent; each but the last few gains digits.
+const MOST_STEPS: usize = 30;
+/// Halvings of a step that does not descend.
+const HALVINGS: usize = 6;
+/// Half the interval of a difference quotient, in parts of the segment.
+const DIFFERENCE: f64 = 1e-4;
+
+/// Least distance, by Gauss's and Newton's method on the part of the way from where the chord is nearest; where the curve
+/// itself is near, an error in the part counts only by its square. Any place tried bounds it from above. Only parts of
+/// the segment from the first to the second of `within` are looked at.
+pub(super) fn distance_from_segment(curve: &Curve, segment: usize, within: (f64, f64), point: &[f64]) -> f64 {
+    let bounded = |part: f64| part.max(within.0).min(within.1);
+    let mut part = bounded(chord(&curve.vertices[segment], &curve.vertices[segment + 1], point).1);
+    let mut here = curve.at(segment, part);
+    let mut least = distance(&here, point);
+    for _ in 0..MOST_STEPS {
+        let (before, after) = ((part - DIFFERENCE).max(0.0), (part + DIFFERENCE).min(1.0));
+        let (from, to) = (curve.at(segment, before), curve.at(segment, after));
+        let (mut along, mut squared) = (0.0, 0.0);
+        for (((from, to), here), point) in from.iter().zip(&to).zip(&here).zip(point) {
+            let slope = (to - from) / (after - before);
+            along += (point - here) * slope;
+            squared += slope * slope;
+        }
+        if squared == 0.0 {
+            break;
+        }
+        let mut step = along / squared;
+        let mut descended = false;
+        for _ in 0..HALVINGS {
+            let tried = bounded(part + step);
+            let place = curve.at(segment, tried);
+            let found = distance(&place, point);
+            if found < least {
+                (part, here, least, descended) = (tried, place, found, true);
+                break;
+            }
+            step *= 0.5;
+        }
+        if !descended {
+            break;
+        }
+    }
+    least
+}
+
+/// Distance of a point from the chord between two, and the part of the way there.
+pub(super) fn chord(from: &[f64], to: &[f64], point: &[f64]) -> (f64, f64) {
+    let (mut along, mut squared) = (0.0, 0.0);
+    for ((from, to), point) in from.iter().zip(to).zip(point) {
+        along += (point - from) * (to - from);
+        squared += (to - from) * (to - from);
+    }
+    let part = if squared > 0.0 { (along / squared).clamp(0.0, 1.0) } else { 0.0 };
+    let nearest = from.iter().zip(to).zip(point).map(|((from, to), point)| from + part * (to - from) - point);
+    (nearest.map(|value| value * value).sum::<f64>().sqrt(), part)
+}

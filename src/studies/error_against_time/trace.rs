@@ -1,0 +1,92 @@
+//! A path as points of one dimensionless space.
+
+use crate::model::Model;
+use crate::result::increment::{Increment, PointKind};
+use crate::result::plan::Plan;
+
+/// Displacement components over their scale, then the load factor over its stage's.
+pub(super) type Point = Vec<f64>;
+
+/// What makes points dimensionless.
+#[derive(Debug, Clone)]
+pub(super) struct Scales {
+    pub displacement: f64,
+    /// Stage names and load scales.
+    loads: Vec<(String, f64)>,
+}
+
+/// A path's points, stage by stage.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Trace {
+    pub stages: Vec<TracedStage>,
+}
+
+#[derive(Debug, Clone)]
+pub(super) struct TracedStage {
+    /// Place among the model's stages.
+    pub stage: usize,
+    /// The first is where the stage begins, at no load.
+    pub points: Vec<Point>,
+    pub events: Vec<Event>,
+}
+
+/// Something that happens at a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Event {
+    pub kind: PointKind,
+    /// Which point of the stage.
+    pub point: usize,
+}
+
+impl Scales {
+    pub fn new(model: &Model, plan: &Plan) -> Self {
+        let names = model.stages.iter().map(|stage| stage.name.clone());
+        Self { displacement: plan.displacement_scale, loads: names.zip(plan.load_scales.iter().copied()).collect() }
+    }
+
+    pub fn load(&self, stage: usize) -> f64 {
+        self.loads[stage].1
+    }
+
+    pub fn point(&self, stage: usize, displacements: impl Iterator<Item = f64>, load: f64) -> Point {
+        displacements.map(|value| value / self.displacement).chain([load / self.load(stage)]).collect()
+    }
+}
+
+impl Trace {
+    pub fn add(&mut self, scales: &Scales, increment: &Increment) {
+        let known = self.stages.last().map(|last| last.stage);
+        let same = known.is_some_and(|stage| *scales.loads[stage].0 == *increment.stage);
+        if !same {
+            let Some(stage) = scales.loads.iter().position(|(name, _)| **name == *increment.stage) else { return };
+            // A stage begins where the one before it ended; no increment of its own says so.
+            let begins = self.stages.last().and_then(|last| last.points.last()).map(|last| {
+                let mut begins = last.clone();
+                begins.last_mut().into_iter().for_each(|load| *load = 0.0);
+                begins
+            });
+            self.stages.push(TracedStage { stage, points: begins.into_iter().collect(), events: Vec::new() });
+        }
+        let Some(stage) = self.stages.last_mut() else { return };
+        let displacements = increment.displacements.values().flatten().copied();
+        stage.points.push(scales.point(stage.stage, displacements, increment.load_factor));
+        match increment.point.kind {
+            PointKind::Start | PointKind::Regular => {}
+            kind => stage.events.push(Event { kind, point: stage.points.len() - 1 }),
+        }
+    }
+
+    /// Largest scaled displacement component of all stages, and largest scaled load of each.
+    pub fn largest(&self) -> (f64, f64) {
+        let points = self.stages.iter().flat_map(|stage| &stage.points);
+        points.fold((0.0, 0.0), |(most, most_load), point| {
+            let (load, displacements) = point.split_last().unwrap_or((&0.0, &[]));
+            let largest = displacements.iter().fold(most, |most: f64, value| most.max(value.abs()));
+            (largest, f64::max(most_load, load.abs()))
+        })
+    }
+}
+
+pub(super) fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
+}

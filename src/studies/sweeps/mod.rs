@@ -1,0 +1,21 @@
+//! Sweeps: one model with other values put in its places, and the first limit load of each.
+//!
+//! | file | what it does |
+//! |---|---|
+//! | `limit_load` | the load of a limit point |
+//! | `found` | what is found of the runs, row by row |
+//! | `table` | that as text |
+//! | `run` | all runs on the cores of this machine |
+//!
+//! What is replaced is read by [`model::sweep`](crate::model::request::sweep). Called by `jobs`, `http`, `picture` and `command`;
+//! knows `model`, `judged` and `path`.
+
+pub(crate) mod found;
+pub(crate) mod limit_load;
+pub(crate) mod run;
+pub(crate) mod table;
+
+pub use found::{Found, Row};
+pub use limit_load::LimitLoad;
+pub use run::run;
+pub use table::shown;

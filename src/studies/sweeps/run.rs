@@ -1,0 +1,136 @@
+//! All runs of a sweep on the cores of this machine.
+
+use crate::check::judged::{JudgedIncrement, JudgedPath};
+use crate::continuation::scene::Scene;
+use crate::model::{InputErrors, RunMistakes, Sweep};
+use crate::output::columns::name_of;
+use crate::resources::budget::{self, Budget};
+use crate::resources::cancel::CancelFlag;
+use crate::resources::panics;
+use crate::result::stop_reason::Outcome;
+use crate::studies::sweeps::{LimitLoad, Row};
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+/// As large as the main thread's, with which the solver is tested.
+const STACK_BYTES: usize = 8 << 20;
+
+/// Takes the increments of the runs, from several threads; those of one run in order. Breaks where no more are wanted.
+pub type Accept<'a> = &'a (dyn Fn(u64, &JudgedIncrement) -> ControlFlow<()> + Sync);
+
+/// Traces every run, as many at a time as there are threads; what is found does not depend on their number. `done` hears of
+/// each that has ended.
+///
+/// # Errors
+/// Runs that are not accepted, all of them checked before the first one is traced.
+pub fn run(
+    sweep: &Sweep,
+    threads: NonZeroUsize,
+    accept: Accept<'_>,
+    done: &(dyn Fn(&Row) + Sync),
+) -> Result<Vec<Row>, InputErrors> {
+    check(sweep, threads)?;
+    let rows = on_threads(sweep.runs(), threads, |run| {
+        let traced = catch_unwind(AssertUnwindSafe(|| trace(sweep, run, accept)));
+        let row = traced.unwrap_or_else(|panic| Ok(panicked(sweep, run, &panics::text(panic.as_ref()))))?;
+        done(&row);
+        Ok(row)
+    });
+    rows.into_iter().collect()
+}
+
+/// Checks every run.
+fn check(sweep: &Sweep, threads: NonZeroUsize) -> Result<(), InputErrors> {
+    let checked = on_threads(sweep.runs(), threads, |run| {
+        let request = sweep.run(run)?.request;
+        Scene::new(&request).map_err(|errors| sweep.located(run, errors)).map(|_| ())
+    });
+    let mut mistakes = RunMistakes::default();
+    for (run, checked) in (0..).zip(checked) {
+        mistakes.note(run, checked.err());
+    }
+    mistakes.result(sweep)
+}
+
+fn trace(sweep: &Sweep, run: u64, accept: Accept<'_>) -> Result<Row, InputErrors> {
+    let request = sweep.run(run)?.request;
+    let scene = Scene::new(&request).map_err(|errors| sweep.located(run, errors))?;
+    let cancel = CancelFlag::default();
+    let mut path = JudgedPath::new(&request, &scene, cancel.clone());
+    let (mut first_limit, mut last_index) = (None, None);
+    for judged in path.by_ref() {
+        if first_limit.is_none() {
+            first_limit = LimitLoad::at(&judged.increment);
+        }
+        last_index = Some(judged.increment.index);
+        if accept(run, &judged).is_break() {
+            cancel.cancel();
+        }
+    }
+    let reason = path.report().map(|judged| judged.report.stop_reason);
+    let (status, error) = match reason.map(|reason| reason.outcome()) {
+        Some(Outcome::Completed) => ("completed", None),
+        Some(Outcome::Stopped) => ("stopped", None),
+        Some(Outcome::Cancelled) => ("cancelled", None),
+        None => ("failed", Some("the path ended without a report, which is a defect".to_owned())),
+    };
+    Ok(Row {
+        run,
+        job: None,
+        values: sweep.variation.values(run),
+        status: status.to_owned(),
+        stop_reason: reason.and_then(|reason| name_of(&reason).ok()),
+        error,
+        last_index,
+        first_limit,
+    })
+}
+
+/// A panic is the mishap of one run.
+fn panicked(sweep: &Sweep, run: u64, text: &str) -> Row {
+    Row {
+        run,
+        job: None,
+        values: sweep.variation.values(run),
+        status: "failed".to_owned(),
+        stop_reason: None,
+        error: Some(format!("the solver panicked: {text}")),
+        last_index: None,
+        first_limit: None,
+    }
+}
+
+/// Calls `work` for each number below `count` on so many threads; the results are in order.
+fn on_threads<T: Send>(count: u64, threads: NonZeroUsize, work: impl Fn(u64) -> T + Sync) -> Vec<T> {
+    // Each has these for itself.
+    let bounds = budget::bounds();
+    let next = AtomicU64::new(0);
+    let results = Mutex::new(Vec::new());
+    let take_part = || {
+        loop {
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            if number >= count {
+                return;
+            }
+            let budget = Budget::new(CancelFlag::default(), bounds);
+            let result = budget.during(|| work(number)).unwrap_or_else(|breach| budget::end(breach));
+            results.lock().unwrap_or_else(PoisonError::into_inner).push((number, result));
+        }
+    };
+    std::thread::scope(|scope| {
+        let others = threads.get().min(usize::try_from(count).unwrap_or(usize::MAX)) - 1;
+        for _ in 0..others {
+            // Where there can be no more threads, there are fewer.
+            if std::thread::Builder::new().stack_size(STACK_BYTES).spawn_scoped(scope, take_part).is_err() {
+                break;
+            }
+        }
+        take_part();
+    });
+    let mut results = results.into_inner().unwrap_or_else(PoisonError::into_inner);
+    results.sort_by_key(|(number, _)| *number);
+    results.into_iter().map(|(_, result)| result).collect()
+}

@@ -1,0 +1,103 @@
+//! What is found of a sweep as text: CSV, and columns for a reader.
+
+use crate::model::InputError;
+use crate::output::columns::{name_of, push_columns};
+use crate::output::csv::CsvRow;
+use crate::studies::sweeps::{Found, Row};
+use serde_json::Value;
+use std::fmt::Write;
+
+const COLUMNS: [&str; 9] = [
+    "status",
+    "stop_reason",
+    "last_index",
+    "limit_load",
+    "limit_kind",
+    "limit_stage",
+    "limit_increment",
+    "limit_arc_length",
+    "error",
+];
+
+impl Found {
+    /// One line a run: its number, its job at a service, its values under their pointers, and what was found. What is null
+    /// in JSON is an empty cell.
+    ///
+    /// # Errors
+    /// None in practice: names of the contract that cannot be written are a defect.
+    pub fn csv(&self) -> serde_json::Result<String> {
+        let mut header = CsvRow::default();
+        ["run", "job"].iter().for_each(|name| header.raw(name));
+        self.variation.parameters.iter().for_each(|parameter| header.text(&parameter.pointer));
+        COLUMNS.iter().for_each(|name| header.raw(name));
+        let mut text = header.end();
+        for row in &self.rows {
+            text.push_str(&csv_row(row)?);
+        }
+        Ok(text)
+    }
+
+    /// Columns for a reader.
+    ///
+    /// # Errors
+    /// As for [`csv`](Self::csv).
+    pub fn text(&self) -> serde_json::Result<String> {
+        let mut text = String::new();
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "{}\n", self.name.as_deref().unwrap_or("sweep"));
+        let mut header = vec!["run".to_owned()];
+        header.extend(self.variation.parameters.iter().map(|one| InputError::new(one.pointer.as_str(), "").place()));
+        header.extend(["limit load", "kind", "at increment", "end"].map(str::to_owned));
+        let mut cells = vec![header];
+        for row in &self.rows {
+            cells.push(text_row(row)?);
+        }
+        push_columns(&mut text, &cells);
+        Ok(text)
+    }
+}
+
+fn csv_row(row: &Row) -> serde_json::Result<String> {
+    let mut line = CsvRow::default();
+    line.raw(&row.run.to_string());
+    line.raw(row.job.as_deref().unwrap_or_default());
+    for value in &row.values {
+        match value {
+            Value::Number(number) => line.raw(&number.to_string()),
+            other => line.text(&shown(other)),
+        }
+    }
+    line.raw(&row.status);
+    line.raw(row.stop_reason.as_deref().unwrap_or_default());
+    line.raw(&row.last_index.map(|index| index.to_string()).unwrap_or_default());
+    match &row.first_limit {
+        Some(limit) => {
+            line.number(limit.load_factor);
+            line.raw(&name_of(&limit.kind)?);
+            line.text(&limit.stage);
+            line.raw(&limit.increment.to_string());
+            line.number(limit.arc_length);
+        }
+        None => (0..5).for_each(|_| line.raw("")),
+    }
+    line.text(row.error.as_deref().unwrap_or_default());
+    Ok(line.end())
+}
+
+fn text_row(row: &Row) -> serde_json::Result<Vec<String>> {
+    let mut cells = vec![row.run.to_string()];
+    cells.extend(row.values.iter().map(shown));
+    match &row.first_limit {
+        Some(limit) => {
+            cells.extend([format!("{:.9e}", limit.load_factor), name_of(&limit.kind)?, limit.increment.to_string()])
+        }
+        None => cells.extend(["-", "-", "-"].map(str::to_owned)),
+    }
+    cells.push(row.stop_reason.clone().unwrap_or_else(|| row.status.clone()));
+    Ok(cells)
+}
+
+/// A text without its quotes; anything else as JSON.
+pub fn shown(value: &Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+}
