@@ -2,13 +2,14 @@
 //! above; calls nothing.
 
 pub mod dense;
+pub(crate) mod scalar_root;
 pub mod sparse;
 
 use crate::resources::budget;
-pub use dense::counted::{factorisations, solves};
+pub use dense::assembly::Sink;
 pub use dense::factorisation::{Factorisation, Stiffener};
 pub use dense::inertia::{Inertia, inertia};
-pub use dense::sink::Sink;
+pub use dense::solve_counters::{factorisations, solves};
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
 
@@ -69,7 +70,7 @@ pub fn determinant(matrix: DMatrix<f64>) -> Option<Determinant> {
     }
     let size = matrix.nrows();
     let (pivots, mut sign): (DVector<f64>, f64) = if size > dense::factorisation::MOST_AT_ONCE {
-        let lu = dense::large::LargeLu::new(matrix, DVector::zeros(0));
+        let lu = dense::interruptible_lu::LargeLu::new(matrix, DVector::zeros(0));
         (DVector::from_iterator(size, lu.pivots()), lu.exchange_sign())
     } else {
         let lu = matrix.lu();

@@ -2,7 +2,7 @@
 
 use crate::command::outcome::Failure;
 use crate::command::written::{one_on_standard_output, write};
-use crate::output::picture::findings::Findings;
+use crate::studies::picture::findings::Findings;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};

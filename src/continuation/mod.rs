@@ -10,15 +10,15 @@
 //! | [`contact_changes`] | contact changes that are foreseen, taken together, or jumped to |
 //! | [`path`] | the loop of an increment: stages, step control, trial, acceptance, classification, checkpoints |
 //! | [`penalty`] | the conventional method with penalties, for comparison |
-//! | [`traced`] | the path by whichever method the analysis names |
+//! | [`method_dispatch`] | the path by whichever method the analysis names |
 
 pub mod contact_changes;
-#[cfg(test)]
-mod exhaustive;
+pub mod method_dispatch;
 pub mod path;
 pub mod penalty;
 pub mod scene;
 #[cfg(test)]
+mod tests_of_exhaustive;
+#[cfg(test)]
 mod tests_of_lattice;
 pub(crate) mod trace;
-pub mod traced;

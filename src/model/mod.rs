@@ -1,6 +1,6 @@
 //! What a user posts, decoded from JSON and checked.
 //!
-//! [`request`], [`study`] and [`sweep`] hold the types of the contract, [`mod@decode`] reads them from JSON text and says where each mistake is,
+//! [`request`], [`study`](request::study) and [`sweep`](request::sweep) hold the types of the contract, [`mod@decode`] reads them from JSON text and says where each mistake is,
 //! [`runs`] makes the runs of a sweep, [`mod@check`] looks at what can only be judged on the whole (unknown names, zero lengths, penetration). Nothing here
 //! knows how a path is traced. [`read`] does both.
 

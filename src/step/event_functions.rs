@@ -7,12 +7,12 @@
 //! Between two points each quantity is also followed by its cubic Hermite interpolant, so that a dip inside the step
 //! is seen.
 
-use crate::algebra::dense::sink::Sink;
+use crate::algebra::dense::assembly::Sink;
 use crate::mechanics::contact::vector::{Vector, add, direction_of, dot, scaled};
 use crate::mechanics::contact::{Mode, Sliding};
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::closing_equation::ClosingEquation;
-use crate::mechanics::equations::stage_end::End;
+use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::multi_contact::planar;
 use crate::mechanics::multi_contact::spatial::Pocket;
 use crate::mechanics::problem::loading::Loading;

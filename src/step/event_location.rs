@@ -6,13 +6,13 @@
 //! square of itself and more. Where it does not fall the bracket is halved.
 
 use crate::algebra::SystemFactorisation;
-use crate::algebra::dense::root::find_root;
+use crate::algebra::scalar_root::find_root;
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::solution::Failure;
-use crate::mechanics::equations::stage_end::End;
+use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::state::State;
+use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton::ACCEPTED_RESIDUAL;
-use crate::step::corrector::work::Work;
 use crate::step::event_functions::Watch;
 use crate::step::interpolation::{Knot, Placed, Polynomial, between, placed, unit};
 use crate::step::segment::{PASSED, Reached, Refused, Start};

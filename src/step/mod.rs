@@ -7,7 +7,7 @@
 //! | `event_functions` | quantities that must not become negative while the mode lasts |
 //! | `event_location` | where one of them falls to zero |
 //! | `interpolation` | between points of a step that are reached already |
-//! | `past_fold` | steps from a point at which the equations have another null vector |
+//! | `singular_step` | steps from a point at which the equations have another null vector |
 //! | `increment_mpec` | the mathematical program of one increment (Kanno and Martins), and its certificate |
 
 pub mod corrector;
@@ -15,5 +15,5 @@ pub(crate) mod event_functions;
 pub(crate) mod event_location;
 pub(crate) mod increment_mpec;
 pub(crate) mod interpolation;
-pub(crate) mod past_fold;
 pub(crate) mod segment;
+pub(crate) mod singular_step;

@@ -5,12 +5,12 @@ use crate::mechanics::contact::Mode;
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::closing_equation::{ArcLengthEquation, ClosingEquation};
 use crate::mechanics::equations::solution::{Corrected, Failure, Tangent};
-use crate::mechanics::equations::stage_end::End;
+use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cached_factorisation::AtHand;
+use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::slip_error::Pointed;
-use crate::step::corrector::work::Work;
 use crate::step::event_functions::{self, Watch};
 use crate::step::event_location::Stretch;
 use crate::step::interpolation::Placed;
@@ -26,7 +26,7 @@ pub struct Start<'a> {
     /// Error of the path so far, where it has one.
     pub drift: Option<&'a Rate>,
     pub force_scale: f64,
-    /// The equations have another null vector besides the direction: see `past_fold`.
+    /// The equations have another null vector besides the direction: see `singular_step`.
     pub is_singular: bool,
     /// How far the path is then off the direction: see `choice::Choice`.
     pub beside: Option<&'a Rate>,

@@ -2,8 +2,8 @@
 //!
 //! `cargo bench --bench rivals`
 
+use arcslip::continuation::method_dispatch::TracedPath;
 use arcslip::continuation::scene::Scene;
-use arcslip::continuation::traced::TracedPath;
 use arcslip::model::JobRequest;
 use arcslip::model::request::{Method, Regularised};
 use arcslip::resources::cancel::CancelFlag;

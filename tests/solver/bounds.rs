@@ -1,9 +1,9 @@
 //! Solves that are cancelled, or that would take too much: they end where they are, and what they gave stands.
 
 use arcslip::algebra::solves;
+use arcslip::continuation::method_dispatch::TracedPath;
 use arcslip::continuation::path::iterator::Path;
 use arcslip::continuation::scene::Scene;
-use arcslip::continuation::traced::TracedPath;
 use arcslip::model::{JobRequest, decode};
 use arcslip::resources::budget::{self, Bounds, Breach, Budget};
 use arcslip::resources::cancel::CancelFlag;

@@ -2,8 +2,8 @@
 
 use crate::common::paths::{request, trace};
 use arcslip::check::cases::cases;
+use arcslip::continuation::method_dispatch::TracedPath;
 use arcslip::continuation::scene::Scene;
-use arcslip::continuation::traced::TracedPath;
 use arcslip::model::JobRequest;
 use arcslip::model::request::{Analysis, ArcLength, Element, Method, Regularised, Strain, Until};
 use arcslip::resources::cancel::CancelFlag;

@@ -1,8 +1,8 @@
 //! The regularised method: right in the limit of stiff penalties and short steps, and no nearer than that.
 
 use crate::common::paths::{judge, request, scene, scene_file};
+use arcslip::continuation::method_dispatch::TracedPath;
 use arcslip::continuation::scene::Scene;
-use arcslip::continuation::traced::TracedPath;
 use arcslip::model::JobRequest;
 use arcslip::model::request::{LoadSign, Method, Regularised};
 use arcslip::resources::cancel::CancelFlag;

@@ -2,9 +2,9 @@
 
 use crate::common::generators::slider_chain;
 use crate::common::paths::{request, scene, trace};
+use arcslip::continuation::method_dispatch::TracedPath;
 use arcslip::continuation::path::iterator::Path;
 use arcslip::continuation::scene::Scene;
-use arcslip::continuation::traced::TracedPath;
 use arcslip::model::JobRequest;
 use arcslip::model::request::{Component, DisplacementBound, Method, Until};
 use arcslip::resources::cancel::CancelFlag;

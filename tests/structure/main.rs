@@ -116,6 +116,47 @@ fn source_keeps_its_structure() {
     assert!(exceeded.is_empty(), "\n{}", exceeded.join("\n"));
 }
 
+/// The rooms at the first level of `src`, each after all that it may import.
+const ROOMS: [&str; 14] = [
+    "resources",
+    "algebra",
+    "complementarity",
+    "mechanics",
+    "result",
+    "step",
+    "branching",
+    "model",
+    "continuation",
+    "check",
+    "output",
+    "studies",
+    "service",
+    "command",
+];
+
+#[test]
+fn rooms_import_only_rooms_above_them() {
+    let sources = Sources::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
+    // `lib.rs` and `main.rs` stand in no room.
+    let floor = |file: usize| {
+        let room = sources.files[file].path.split('/').nth(1).unwrap_or_default();
+        ROOMS.iter().position(|other| *other == room)
+    };
+    let rises = |edge: &&(usize, usize)| floor(edge.0).zip(floor(edge.1)).is_some_and(|(from, to)| to > from);
+    let edges = imports::edges(&sources);
+    let told = |edge: &(usize, usize)| format!("{} -> {}", sources.files[edge.0].path, sources.files[edge.1].path);
+    let wrong: Vec<String> = edges.keys().filter(rises).map(told).collect();
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+    let strange = |file: &&sources::File| {
+        file.path.matches('/').count() > 1 && {
+            let room = file.path.split('/').nth(1).unwrap_or_default();
+            !ROOMS.contains(&room)
+        }
+    };
+    let strange: Vec<&str> = sources.files.iter().filter(strange).map(|file| file.path.as_str()).collect();
+    assert!(strange.is_empty(), "in no room that is listed: {}", strange.join(", "));
+}
+
 #[test]
 fn limits_come_down_to_their_aims() {
     for limit in &LIMITS {

@@ -1,9 +1,9 @@
 //! Dense LU factorisations with partial pivoting. The few equations of a small scene are factorised by code for just
 //! their number, which spends nothing on loops.
 
-use crate::algebra::dense::counted::count_solves;
-use crate::algebra::dense::factors::Factors;
-use crate::algebra::dense::large::LargeLu;
+use crate::algebra::dense::interruptible_lu::LargeLu;
+use crate::algebra::dense::lu_factors::Factors;
+use crate::algebra::dense::solve_counters::count_solves;
 use crate::resources::budget;
 use nalgebra::allocator::Allocator;
 use nalgebra::constraint::{SameNumberOfRows, ShapeConstraint};

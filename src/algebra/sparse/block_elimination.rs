@@ -1,19 +1,19 @@
 //! A bordered system taken apart: nodes that borders hold, a factorised interior, and what is left of the borders.
 //!
-//! With the held unknowns `H` eliminated at their nodes (`held`) and `T` the rest, of `[[K, B], [C, D]]` there remains
+//! With the held unknowns `H` eliminated at their nodes (`nodal_elimination`) and `T` the rest, of `[[K, B], [C, D]]` there remains
 //!
 //! ```text
 //! [[K_TT, B_T + K_TH S], [C_T, D + C_H S]],      S = -M⁻¹ d
 //! ```
 //!
 //! with the motions `S` of the held unknowns by the borders that are kept; reactions that are kept (`Friction::Bordered`)
-//! have the equilibrium along `H` for their rows. Its solution by the complement `D - C K⁻¹ B` is `reduced` (mixed block
+//! have the equilibrium along `H` for their rows. Its solution by the complement `D - C K⁻¹ B` is `border_schur` (mixed block
 //! elimination: W. Govaerts, J. D. Pryce, IMA J. Numer. Anal. 13 (1993) 161, doi:10.1093/imanum/13.2.161). Another border
 //! row changes a row of the complement and nothing else.
 
-use crate::algebra::dense::counted::count_solves;
+use crate::algebra::dense::solve_counters::count_solves;
 use crate::algebra::sparse::border_schur::{Factor, Reduced};
-use crate::algebra::sparse::factors::bordered::Bordered;
+use crate::algebra::sparse::factors::bordered_matrix::Bordered;
 use crate::algebra::sparse::factors::entries::Entries;
 use crate::algebra::sparse::factors::ldl::SymmetricFactor;
 use crate::algebra::sparse::factors::static_pivot_lu::UnsymmetricFactor;

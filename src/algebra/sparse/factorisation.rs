@@ -7,14 +7,14 @@
 //! where that fails, a sparse LU factorisation of the whole takes over.
 
 use crate::algebra::Inertia;
-use crate::algebra::dense::counted::count_factorisation;
-use crate::algebra::dense::sink::Sink;
+use crate::algebra::dense::assembly::Sink;
+use crate::algebra::dense::solve_counters::count_factorisation;
 use crate::algebra::sparse::block_elimination::Blocks;
-use crate::algebra::sparse::factors::bordered::Bordered;
+use crate::algebra::sparse::factors::bordered_matrix::Bordered;
 use crate::algebra::sparse::factors::entries::Entries;
 use crate::algebra::sparse::factors::ldl::SymmetricFactor;
+use crate::algebra::sparse::fallback_lu::WholeLu;
 use crate::algebra::sparse::nodal_elimination::{Elimination, Friction, Holdings};
-use crate::algebra::sparse::whole_lu::WholeLu;
 use nalgebra::DVector;
 use std::sync::{Arc, OnceLock};
 

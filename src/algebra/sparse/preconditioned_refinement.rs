@@ -5,7 +5,7 @@
 //! of `G`: where that is small no eigenvalue changes sign between the two, and the determinants have one sign.
 
 use crate::algebra::sparse::factorisation::{SparseFactorisation, backward_error};
-use crate::algebra::sparse::factors::bordered::Bordered;
+use crate::algebra::sparse::factors::bordered_matrix::Bordered;
 use nalgebra::DVector;
 
 /// The first contraction may be this.

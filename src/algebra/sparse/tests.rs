@@ -1,6 +1,6 @@
 //! The sparse factorisation against the dense one, on systems that look random, the same each time.
 
-use crate::algebra::dense::sink::Sink;
+use crate::algebra::dense::assembly::Sink;
 use crate::algebra::sparse::factors::entries::Entries;
 use crate::algebra::sparse::factors::ldl::SymmetricFactor;
 use crate::algebra::sparse::nodal_elimination::Friction;
@@ -311,7 +311,7 @@ fn the_whole_may_be_factorised() {
         let Some(known) = Factorisation::new(dense) else { continue };
         let right = DVector::from_fn(sparse.size(), |_, _| random.next());
         let (mut expected, mut solution) = (right.clone(), right);
-        let whole = crate::algebra::sparse::whole_lu::WholeLu::new(&sparse).expect("regular");
+        let whole = crate::algebra::sparse::fallback_lu::WholeLu::new(&sparse).expect("regular");
         assert!(known.solve(&mut expected) && whole.solve(solution.as_mut_slice()));
         assert!((&solution - &expected).amax() <= 1e-10 * expected.amax());
     }

@@ -81,7 +81,7 @@ mod tests {
     use super::Incoming;
     use crate::branching::directions::choice::Before;
     use crate::branching::selection::decision::list;
-    use crate::branching::selection::listing::directions;
+    use crate::branching::selection::enumeration::directions;
     use crate::check::scenes::of_any_size::row_of_bars;
     use crate::continuation::path::iterator::Path;
     use crate::continuation::scene::Scene;

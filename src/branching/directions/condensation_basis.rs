@@ -8,14 +8,14 @@
 //! none is, and the incoming direction `t`. The rates that obey equilibrium with these forces free are the same space, so
 //! `[Z z₀] = [X t] G⁻¹`, `G` the velocities and the load rate of `[X t]`.
 
-use crate::algebra::dense::sink::Sink;
+use crate::algebra::dense::assembly::Sink;
 use crate::algebra::{Factorisation, SystemFactorisation, null_space};
 use crate::branching::directions::arrival_tangent::Incoming;
 use crate::mechanics::contact::Reaction;
 use crate::mechanics::contact::vector::{Vector, dot};
 use crate::mechanics::equations::scaled_rows::RANK;
 use crate::mechanics::equations::{Kind, ModeSystem, Role};
-use crate::mechanics::multi_contact::rate_options::changeable::Changeable;
+use crate::mechanics::multi_contact::rate_options::contact_options::Changeable;
 use crate::mechanics::problem::state::Rate;
 use crate::resources::budget;
 use nalgebra::{DMatrix, DVector};
@@ -213,7 +213,7 @@ mod tests {
     use crate::mechanics::multi_contact::contact_status::Standing;
     use crate::resources::cancel::CancelFlag;
     use crate::step::corrector::cached_factorisation::AtHand;
-    use crate::step::corrector::work::Work;
+    use crate::step::corrector::cost_counters::Work;
     use crate::step::segment::Start;
 
     /// At the changes of an arch that lands, the factorisation that led there gives the columns as one of the held

@@ -2,7 +2,7 @@
 //!
 //! With `v` the velocities of those contacts and `τ` the coordinate along the held structure's own direction `z₀`,
 //! `(u̇, ṡ, ṙ) = Z v + z₀ τ`; a mode picks one linear equation for each velocity and leaves a line, taken in both senses.
-//! The inequalities are those listed in `directions`; `rate_options` writes them down, `rates` finds the rays.
+//! The inequalities are those listed in `selection::enumeration`; `rate_options` writes them down, `rates` finds the rays.
 
 use crate::branching::directions::arrival_tangent::Incoming;
 use crate::branching::directions::candidate::{Alternative, Candidate, Found, WEAK, is_mechanism, merge, sort};
@@ -15,7 +15,7 @@ use crate::mechanics::contact::vector::{Vector, add, dot, scaled};
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::multi_contact::contact_status::Standing;
-use crate::mechanics::multi_contact::rate_options::changeable::{Changeable, Forms, Outcome};
+use crate::mechanics::multi_contact::rate_options::contact_options::{Changeable, Forms, Outcome};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_forces::whole_rates;
 use crate::mechanics::problem::state::{Rate, State};

@@ -18,7 +18,7 @@ use crate::mechanics::equations::solution::Corrected;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::budget::{self, Taken};
-use crate::step::corrector::work::Work;
+use crate::step::corrector::cost_counters::Work;
 use crate::step::event_functions::{self, Watch};
 use crate::step::segment::may_turn;
 use nalgebra::DVector;

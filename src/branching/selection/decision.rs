@@ -14,7 +14,7 @@ use crate::branching::bifurcation::branch_directions::{Here, Told};
 use crate::branching::directions::candidate::{Found, is_mechanism};
 use crate::branching::directions::choice::{Before, Choice, Rules, Selection, mark_retrace, potential_rate, sign_of};
 use crate::branching::directions::trial_step::confirm;
-use crate::branching::selection::listing::directions;
+use crate::branching::selection::enumeration::directions;
 use crate::branching::selection::second_order;
 use crate::mechanics::multi_contact::contact_status::Standing;
 use crate::mechanics::problem::linearity;

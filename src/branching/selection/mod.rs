@@ -2,10 +2,10 @@
 //!
 //! | file | what it does |
 //! |---|---|
-//! | `listing` | every direction of first order |
+//! | `enumeration` | every direction of first order |
 //! | `second_order` | where first order does not tell, second order is asked |
 //! | `decision` | the selection rule: largest dissipation, least potential energy, or straightest |
 
 pub(crate) mod decision;
-pub(crate) mod listing;
+pub(crate) mod enumeration;
 pub(crate) mod second_order;

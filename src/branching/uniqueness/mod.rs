@@ -2,8 +2,8 @@
 //!
 //! | room | what it proves |
 //! |---|---|
-//! | `two_directions` | within a mode: the way on and the stuck direction are all there is |
-//! | `one_direction` | for many contacts that can change: one direction for each sign of the load rate, without condensation |
+//! | `all_slipping` | within a mode: the way on and the stuck direction are all there is |
+//! | `sparse_uniqueness` | for many contacts that can change: one direction for each sign of the load rate, without condensation |
 
-pub(crate) mod one_direction;
-pub(crate) mod two_directions;
+pub(crate) mod all_slipping;
+pub(crate) mod sparse_uniqueness;

@@ -1,12 +1,12 @@
 //! The path as it leaves the solver: every increment with what the measure says of it, the report with the maxima.
 //!
-//! Solver and measure meet here and nowhere else: [`path`](crate::continuation) does not know that it is judged, and
+//! Solver and measure meet here and nowhere else: [`continuation`](crate::continuation) does not know that it is judged, and
 //! [`measure`](crate::check::measure) reads increments as anybody may. Whatever prints, stores or streams increments takes them
 //! from a [`JudgedPath`].
 //!
 //! | file | what it does |
 //! |---|---|
-//! | `path` | step by step, or as an iterator of what is recorded: traces, judges, goes on from a checkpoint |
+//! | `continuation` | step by step, or as an iterator of what is recorded: traces, judges, goes on from a checkpoint |
 //! | `increment`, `report` | what it gives |
 //! | `record` | what of an increment is kept, after it has been judged |
 //! | `alternatives` | which directions are new at an increment |

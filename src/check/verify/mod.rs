@@ -4,7 +4,7 @@
 //! increments is judged by [`measure`](crate::check::measure), which shares no code with the solver, and the whole path by the
 //! case itself. `published` holds the built-in scenes and published problems, `check::extreme` families of
 //! cases over decades; `make` builds requests, `compare` compares numbers. Called by `command` and by tests; knows
-//! `model`, `path`, `measure` and `scenes`, and neither HTTP nor SQL.
+//! `model`, `continuation`, `measure` and `scenes`, and neither HTTP nor SQL.
 
 pub(crate) mod case;
 pub(crate) mod compare;

@@ -256,7 +256,7 @@ fn star_dome() -> JobRequest {
 }
 
 /// First limit load and drop by minimising the two-parameter symmetric problem in 20-digit arithmetic, double bifurcation
-/// by bisection on the tangent's smallest eigenvalue (see `tests/published.rs`).
+/// by bisection on the tangent's smallest eigenvalue (see `tests/solver/published.rs`).
 fn dome(path: &[Increment]) -> f64 {
     let at = |point: Option<&Increment>, load: f64, drop: f64| {
         let Some(point) = point else { return f64::INFINITY };

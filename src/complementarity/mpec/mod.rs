@@ -16,24 +16,18 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`problem`] | what a problem has to tell |
-//! | [`settings`], [`result`] | what the caller chooses and gets |
+//! | [`program`] | what a problem has to tell, its values at one point, the second-order cone |
+//! | [`settings`], [`result`], `input_validation` | what the caller chooses, gets, and got wrong |
 //! | `solver` | the sequence of regularised problems, restarts |
-//! | `branch` | one pattern of zero members after another |
+//! | `piecewise_descent` | one pattern of zero members after another |
 //! | `stationarity` | how stationary a point is |
-//! | `sqp`, `secant` | one smooth program |
-//! | `pattern`, `relaxed` | the smooth program's rows and their linearisation |
-//! | `growth` | iterates on their way to infinity |
-//! | `evaluation`, `input` | the problem at one point; what the caller got wrong |
-//! | `elastic`, `line`, `active_set`, `active_cones`, [`quadratic`] | one quadratic program |
-//! | `sparse_rows`, `system` | matrices and linear systems by their entries |
-//! | [`cone`], `cone_rows` | the second-order cone, and how a cone pair enters the smooth program |
-//! | `activity` | which members are zero |
+//! | `unboundedness` | iterates on their way to infinity |
+//! | [`smooth_program`] | the smooth program that stands for it, by sequential quadratic programming |
+//! | [`quadratic_program`] | one quadratic program |
 //! | [`semismooth`] | Newton's method on the complementarity system itself |
 
-pub(crate) mod branch;
-pub(crate) mod growth;
-pub(crate) mod input;
+pub(crate) mod input_validation;
+pub(crate) mod piecewise_descent;
 pub mod program;
 pub mod quadratic_program;
 pub mod result;
@@ -42,6 +36,7 @@ pub mod settings;
 pub mod smooth_program;
 pub(crate) mod solver;
 pub(crate) mod stationarity;
+pub(crate) mod unboundedness;
 
 pub use crate::complementarity::mpec::program::counts::{Counts, Iterate};
 pub use program::activity::Activities;

@@ -14,9 +14,8 @@
 
 use nalgebra::DVector;
 
-use crate::complementarity::mpec::branch::{self, Candidate};
-use crate::complementarity::mpec::growth;
-use crate::complementarity::mpec::input::check_input;
+use crate::complementarity::mpec::input_validation::check_input;
+use crate::complementarity::mpec::piecewise_descent::{self, Candidate};
 use crate::complementarity::mpec::program::activity::{Activities, PairActivity};
 use crate::complementarity::mpec::program::cone::ConeActivity;
 use crate::complementarity::mpec::program::evaluation::{Evaluation, Quantity};
@@ -24,9 +23,10 @@ use crate::complementarity::mpec::program::problem::Problem;
 use crate::complementarity::mpec::quadratic_program::driver::StepSolver;
 use crate::complementarity::mpec::result::{InputError, Solution, StationarityKind, Status};
 use crate::complementarity::mpec::settings::Settings;
-use crate::complementarity::mpec::smooth_program::pattern::Pattern;
+use crate::complementarity::mpec::smooth_program::pair_treatment::Pattern;
 use crate::complementarity::mpec::smooth_program::relaxation::Rows;
 use crate::complementarity::mpec::smooth_program::sqp::{self, SqpEnd, SqpSettings};
+use crate::complementarity::mpec::unboundedness;
 use crate::resources::cancel::CancelFlag;
 
 /// Factor on `ε` from one restart to the next.
@@ -69,9 +69,9 @@ pub fn follow_branch<P: Problem + ?Sized>(
 ) -> Result<Solution, InputError> {
     solve_by(problem, start, settings, cancel, |run, at| {
         run.steps.is_elastic = false;
-        let pattern = branch::nearest_pattern(at).with_zeros(zero_members);
+        let pattern = piecewise_descent::nearest_pattern(at).with_zeros(zero_members);
         let (steps, bounds) = (&mut run.steps, &run.bounds);
-        let candidate = branch::follow(problem, bounds, start, &pattern, settings, steps, cancel);
+        let candidate = piecewise_descent::follow(problem, bounds, start, &pattern, settings, steps, cancel);
         run.accept(candidate).and_then(Over::reason)
     })
 }
@@ -125,7 +125,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
     /// Runs to the end; the reason where it was stopped before its time.
     fn go(&mut self, start: &DVector<f64>, at: &Evaluation) -> Option<Status> {
         let unpaired = self.problem.pairs() == 0 && at.cones.count() == 0;
-        let may_search = self.settings.warm_start && !self.settings.whole_sequence && branch::is_clear(at);
+        let may_search = self.settings.warm_start && !self.settings.whole_sequence && piecewise_descent::is_clear(at);
         if (unpaired || may_search)
             && let Some(end) = self.search(start, at)
         {
@@ -150,7 +150,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
     fn try_other_branches(&mut self) -> Option<Status> {
         let best = self.best.as_ref().filter(|best| !best.is_feasible(self.settings.tolerance))?;
         let x = best.x.clone();
-        for pattern in branch::patterns_around(&best.at, self.settings.enumeration_limit) {
+        for pattern in piecewise_descent::patterns_around(&best.at, self.settings.enumeration_limit) {
             if let Some(over) = self.search_from(&x, pattern) {
                 return over.reason();
             }
@@ -189,10 +189,10 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             }
             x = outcome.x;
             let is_last = relaxation <= self.settings.last_relaxation;
-            let pattern = branch::nearest_pattern(&outcome.at);
+            let pattern = piecewise_descent::nearest_pattern(&outcome.at);
             let same = last_pattern.as_ref() == Some(&pattern);
             let hopeless = outcome.end == SqpEnd::Infeasible;
-            let is_certain = !self.settings.whole_sequence && (branch::is_clear(&outcome.at) || same);
+            let is_certain = !self.settings.whole_sequence && (piecewise_descent::is_clear(&outcome.at) || same);
             let worth_a_search = is_certain || is_last || hopeless;
             if worth_a_search && last_searched.as_ref() != Some(&pattern) {
                 if let Some(over) = self.search(&x, &outcome.at) {
@@ -212,13 +212,20 @@ impl<P: Problem + ?Sized> Run<'_, P> {
 
     /// Descends from the branch nearest to `x`; an end where the point is final or the solve has to stop.
     fn search(&mut self, x: &DVector<f64>, at: &Evaluation) -> Option<Over> {
-        self.search_from(x, branch::nearest_pattern(at))
+        self.search_from(x, piecewise_descent::nearest_pattern(at))
     }
 
-    /// Descends from the branch `pattern`.
+    /// Descends from the branch `pair_treatment`.
     fn search_from(&mut self, x: &DVector<f64>, pattern: Pattern) -> Option<Over> {
-        let candidate =
-            branch::descend(self.problem, &self.bounds, x, pattern, self.settings, &mut self.steps, self.cancel);
+        let candidate = piecewise_descent::descend(
+            self.problem,
+            &self.bounds,
+            x,
+            pattern,
+            self.settings,
+            &mut self.steps,
+            self.cancel,
+        );
         self.accept(candidate)
     }
 
@@ -280,7 +287,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
                 (true, _) if !self.settings.looks_beyond => Status::Solved,
                 (true, _) => {
                     let (problem, bounds, steps) = (self.problem, &self.bounds, &mut self.steps);
-                    growth::without_end(problem, bounds, &candidate, self.settings, steps, self.cancel)
+                    unboundedness::without_end(problem, bounds, &candidate, self.settings, steps, self.cancel)
                         .map_or(Status::Solved, Status::UnboundedIterates)
                 }
             },

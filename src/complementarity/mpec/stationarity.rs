@@ -32,7 +32,7 @@ use crate::complementarity::mpec::quadratic_program::interior_point::{QuadraticF
 use crate::complementarity::mpec::result::StationarityKind;
 use crate::complementarity::mpec::settings::Settings;
 use crate::complementarity::mpec::smooth_program::cone_rows::ConeTreatment;
-use crate::complementarity::mpec::smooth_program::pattern::{PairTreatment, Pattern};
+use crate::complementarity::mpec::smooth_program::pair_treatment::{PairTreatment, Pattern};
 use crate::complementarity::mpec::smooth_program::relaxation::{Multipliers, Rows};
 use crate::resources::cancel::CancelFlag;
 
@@ -141,7 +141,7 @@ struct Projection {
     multipliers: Multipliers,
 }
 
-/// Classifies the feasible point `x` of the branch `pattern`. The branch program's multipliers,
+/// Classifies the feasible point `x` of the branch `pair_treatment`. The branch program's multipliers,
 /// where it converged, may settle the matter without a further program.
 ///
 /// # Errors

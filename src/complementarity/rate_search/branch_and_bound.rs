@@ -7,9 +7,9 @@
 //! on the sign of the load rate. Every ray comes from the exact equations of its combination, so that the search decides
 //! only where to look.
 
-use crate::complementarity::rates::dictionary::{Dictionary, Feasibility};
 use crate::complementarity::rates::lemke::lemke;
 use crate::complementarity::rates::rate_problem::{Choice, Entity, RateProblem, Signed};
+use crate::complementarity::rates::simplex_dictionary::{Dictionary, Feasibility};
 use crate::resources::budget::{self, Taken};
 use crate::resources::cancel::CancelFlag;
 use nalgebra::{DMatrix, DVector};

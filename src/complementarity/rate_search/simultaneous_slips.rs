@@ -15,7 +15,7 @@
 //! claimed.
 
 use crate::algebra::Factorisation;
-use crate::algebra::dense::root::find_root;
+use crate::algebra::scalar_root::find_root;
 use crate::complementarity::rate_search::branch_and_bound::Ray;
 use crate::complementarity::rate_search::slip_onset_direction::{SECTORS, Touch, Turning};
 use crate::complementarity::rates::combinations::{combinations, count};

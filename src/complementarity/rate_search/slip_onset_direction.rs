@@ -12,7 +12,7 @@
 //! comes down almost along the obstacle is hardly pressed). With one such node this finds every slip that a scan of the circle tells apart. Of several, each is taken here to begin to
 //! slip while the others stick or leave; `simultaneous_slips` finds those that begin at once.
 
-use crate::algebra::dense::root::find_root;
+use crate::algebra::scalar_root::find_root;
 use crate::complementarity::rate_search::branch_and_bound::{Effort, Ray, explore};
 use crate::complementarity::rates::gauss_seidel::own_column;
 use crate::complementarity::rates::rate_problem::{Choice, Entity, RateProblem};

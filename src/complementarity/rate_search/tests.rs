@@ -4,7 +4,7 @@ use crate::complementarity::rate_search::branch_and_bound::{Effort, Findings, Ra
 use crate::complementarity::rates::combinations::combinations;
 use crate::complementarity::rates::rate_problem::{Entity, RateProblem, Touching};
 use crate::complementarity::rates::ray::Line;
-use crate::complementarity::rates::{lemke, p_matrix, parametric};
+use crate::complementarity::rates::{lemke, p_matrix, parametric_lcp};
 use crate::resources::cancel::CancelFlag;
 use nalgebra::{DMatrix, DVector};
 
@@ -288,7 +288,7 @@ fn one_pair_in_the_way_of_a_p_matrix_as_by_enumeration() {
         let matrix = DMatrix::from_fn(count, count, |row, column| problem.forms[(2 * row + 1, column)]);
         let load = DVector::from_fn(count, |row, _| problem.forms[(2 * row + 1, count)]);
         let is_settled = p_matrix::Certified::new(matrix.clone(), load.clone()).is_none()
-            && parametric::solutions(&matrix, &load).is_some();
+            && parametric_lcp::solutions(&matrix, &load).is_some();
         settled += usize::from(is_settled);
         let exact = every_combination(&problem);
         let found = explore(&problem, Vec::new, effort(1_000_000, &CancelFlag::default()));
@@ -308,7 +308,7 @@ fn equal_contacts_with_one_soft_direction_as_by_enumeration() {
                 (if row == column { 1.0 } else { 0.0 }) - (1.0 + softness) / count as f64
             });
             let load = DVector::from_element(count, -1.0);
-            settled += usize::from(parametric::solutions(&matrix, &load).is_some());
+            settled += usize::from(parametric_lcp::solutions(&matrix, &load).is_some());
             let mut problem = random_problem(&mut Random::new(1), &vec![false; count], Numbers::Real);
             for row in 0..count {
                 for column in 0..count {

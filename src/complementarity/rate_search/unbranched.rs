@@ -3,7 +3,7 @@
 
 use crate::complementarity::rate_search::branch_and_bound::{FITS, Node, Ray, Search};
 use crate::complementarity::rates::p_matrix::{is_monotone, options_of, reduce};
-use crate::complementarity::rates::parametric::all_solutions;
+use crate::complementarity::rates::parametric_lcp::all_solutions;
 use crate::complementarity::rates::rate_problem::{Entity, Signed};
 use crate::resources::budget;
 use nalgebra::{DMatrix, DVector};

@@ -186,7 +186,7 @@ mod tests {
     use crate::mechanics::equations::closing_equation::ArcLengthEquation;
     use crate::mechanics::problem::state::State;
     use crate::resources::cancel::CancelFlag;
-    use crate::step::corrector::work::Work;
+    use crate::step::corrector::cost_counters::Work;
     use crate::step::segment::Start;
     use std::collections::BTreeSet;
 

@@ -8,7 +8,7 @@
 
 use crate::continuation::contact_changes::prediction::Foreseen;
 use crate::continuation::trace::trace::Trace;
-use crate::mechanics::equations::stage_end::End;
+use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::linearity::is_straight;
 use crate::mechanics::problem::node_forces;
 use crate::step::event_functions::{self, Watch};

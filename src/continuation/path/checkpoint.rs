@@ -1,5 +1,5 @@
 //! A path put down at a point: everything that decides how it goes on, so that it can be taken up there again with the
-//! same bits, or followed along another of the directions listed there (`follow`).
+//! same bits, or followed along another of the directions listed there (`branch_switching`).
 //!
 //! Written as JSON, a checkpoint reads back to the same bits: serde_json writes the shortest digits that do, and reads
 //! them exactly (`float_roundtrip`). What a scene says (structure, loads, settings) is not in it: a checkpoint is taken

@@ -1,13 +1,13 @@
 //! What a point turned out to be, and how the path goes on from it.
 
 use crate::branching::bifurcation::locate::Crossing;
-use crate::branching::bifurcation::{branch_directions, common_limit};
+use crate::branching::bifurcation::{branch_directions, simultaneous_limit_points};
 use crate::branching::directions::arrival_tangent::Incoming;
 use crate::branching::directions::candidate::Found;
 use crate::branching::directions::choice::{self, Before, Choice};
 use crate::branching::directions::trial_step::later_sign;
 use crate::branching::selection::{decision, second_order};
-use crate::branching::uniqueness::two_directions::directions_going_on;
+use crate::branching::uniqueness::all_slipping::directions_going_on;
 use crate::continuation::path::mpec_verification;
 use crate::continuation::trace::event_names::describe_change;
 use crate::continuation::trace::tolerances::{ROUND_OFF, SAME_STATE};
@@ -153,7 +153,7 @@ fn common_limit(trace: &Trace<'_>, what: &str, sign: f64, came: &Came) -> Arriva
     let standings = trace.standings(state);
     let at = branch_directions::Here { loading, state, standings: &standings, force_scale: rules.force_scale };
     let most = rules.effort.most_modes;
-    let found = common_limit::directions(at, &here.modes, incoming, came.motions, most)
+    let found = simultaneous_limit_points::directions(at, &here.modes, incoming, came.motions, most)
         .unwrap_or_else(|| branch_directions::branches(at, &here.modes, incoming, came.motions - 1, None));
     let branch_directions::Branches { mut options, mut degenerate, mut unexplored } = found;
     if !standings.iter().all(|standing| matches!(standing, Standing::Settled(_))) {

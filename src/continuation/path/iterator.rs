@@ -4,7 +4,7 @@
 //! directions are listed and one is taken. The step follows the turn of the path and the work of Newton's method.
 
 use crate::continuation::path::checkpoint::{self, Checkpoint, CheckpointError};
-use crate::continuation::path::{acceptance, follow, stages, step_control};
+use crate::continuation::path::{acceptance, branch_switching, stages, step_control};
 use crate::continuation::scene::Scene;
 use crate::continuation::trace::progress::{Phase, Progress};
 use crate::continuation::trace::trace::Trace;
@@ -87,12 +87,12 @@ impl<'a> Path<'a> {
         cancel: CancelFlag,
     ) -> Result<Self, CheckpointError> {
         let trace = checkpoint::take_up(scene, checkpoint, cancel)?;
-        follow::along(trace, direction, event).map(Self::along)
+        branch_switching::along(trace, direction, event).map(Self::along)
     }
 
     /// Whether a path goes along this one of the directions listed at the present point.
     pub fn can_be_followed(&self, direction: usize) -> bool {
-        follow::counts_along(&self.trace, direction).is_ok()
+        branch_switching::counts_along(&self.trace, direction).is_ok()
     }
 }
 
@@ -116,7 +116,7 @@ fn increment(trace: &mut Trace<'_>) -> Option<Increment> {
         Phase::NotStarted => {
             budget::spend(0);
             return Some(match trace.at.followed.take() {
-                Some(followed) => follow::first_increment(trace, followed),
+                Some(followed) => branch_switching::first_increment(trace, followed),
                 None => stages::begin_stage(trace),
             });
         }

@@ -7,7 +7,7 @@ use crate::branching::directions::choice::Choice;
 use crate::complementarity::mpec::Problem;
 use crate::continuation::trace::trace::Trace;
 use crate::mechanics::contact::Mode;
-use crate::mechanics::multi_contact::sharing::agree;
+use crate::mechanics::multi_contact::reaction_split::agree;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::natural_residual::ZERO;
 use crate::mechanics::problem::state::{Rate, State};

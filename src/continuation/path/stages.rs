@@ -7,7 +7,7 @@ use crate::continuation::trace::progress::{Phase, StageCounts};
 use crate::continuation::trace::trace::{Emitted, Trace};
 use crate::continuation::trace::visited_states::History;
 use crate::mechanics::equations::ModeSystem;
-use crate::mechanics::equations::stage_end::End;
+use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::state::Rate;
 use crate::result::increment::{Increment, Point, PointKind};
 use crate::result::stop_reason::StopReason;

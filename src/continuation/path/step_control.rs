@@ -1,6 +1,6 @@
 //! Choosing the step: by the path's turn, by Newton's work and by the energy balance of the increment.
 
-use crate::algebra::dense::root::find_root;
+use crate::algebra::scalar_root::find_root;
 use crate::branching::bifurcation::locate::Crossing;
 use crate::branching::bifurcation::singularity::test_functions::Signature;
 use crate::branching::directions::arrival_tangent::Incoming;
@@ -9,7 +9,7 @@ use crate::branching::selection::decision;
 use crate::continuation::contact_changes::piecewise_linear;
 use crate::continuation::contact_changes::prediction::{self, Foreseen};
 use crate::continuation::contact_changes::simultaneous::may_join_at;
-use crate::continuation::path::trial::{self, Sought, Tried, Tries};
+use crate::continuation::path::step_attempt::{self, Sought, Tried, Tries};
 use crate::continuation::path::{mpec_increments, mpec_verification};
 use crate::continuation::trace::step_quantum::quantised;
 use crate::continuation::trace::tolerances::SAME_STATE;
@@ -17,14 +17,14 @@ use crate::continuation::trace::totals::{Added, NO_ENERGY};
 use crate::continuation::trace::trace::Trace;
 use crate::mechanics::contact::all_continue;
 use crate::mechanics::equations::ModeSystem;
-use crate::mechanics::equations::stage_end::End;
+use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::energy;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::mechanics::structure::elements::bar::COLLAPSED;
 use crate::model::request::{Events, Method};
 use crate::result::increment::Energy;
 use crate::result::stop_reason::StopReason;
-use crate::step::corrector::work::Work;
+use crate::step::corrector::cost_counters::Work;
 use crate::step::event_functions::Watch;
 use crate::step::interpolation::unit;
 use crate::step::segment::{Reached, Refused, Start};
@@ -111,7 +111,7 @@ fn step_along(trace: &mut Trace<'_>, rate: &Rate, sought: &mut Sought) -> Result
             return Err(StopReason::Cancelled);
         }
         let mut work = trace.at.totals.work;
-        let outcome = trial::try_step(trace, rate, step, sought, &mut tries, &mut work);
+        let outcome = step_attempt::try_step(trace, rate, step, sought, &mut tries, &mut work);
         trace.at.totals.work = work;
         if let Some(joined) = tries.joined.take() {
             trace.at.waiting.note(joined);

@@ -5,7 +5,7 @@ use crate::algebra::Factorisation;
 use crate::continuation::penalty::system::{Point, System};
 use crate::mechanics::problem::state::State;
 use crate::resources::cancel::CancelFlag;
-use crate::step::corrector::work::Work;
+use crate::step::corrector::cost_counters::Work;
 use nalgebra::DVector;
 
 /// Difference of the roots' products with the displacements before, over the square of the arc length, that is none.

@@ -25,17 +25,17 @@
 //! | `law` | one contact: reaction and its derivative |
 //! | `system` | residual and tangent of the whole structure |
 //! | `increment` | predictor and corrector of one increment |
-//! | `stepping` | step lengths, and the increment that ends a stage |
-//! | `tracer` | the iterator: points accepted, stages, rows |
+//! | `step_control` | step lengths, and the increment that ends a stage |
+//! | `iterator` | the iterator: points accepted, stages, rows |
 //! | `record` | energies and rows |
 
 pub(crate) mod increment;
+pub(crate) mod iterator;
 pub(crate) mod law;
 pub(crate) mod record;
-pub(crate) mod stepping;
+pub(crate) mod step_control;
 pub(crate) mod system;
 #[cfg(test)]
 mod tests;
-pub(crate) mod tracer;
 
-pub use tracer::RegularisedPath;
+pub use iterator::RegularisedPath;

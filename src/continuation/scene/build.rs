@@ -4,7 +4,7 @@ use crate::continuation::scene::{Reported, StageLoad};
 use crate::mechanics::contact::obstacle::Obstacle;
 use crate::mechanics::contact::vector::{Vector, size};
 use crate::mechanics::contact::{Contact, Sliding};
-use crate::mechanics::equations::stage_end::End;
+use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::loading::LoadPattern;
 use crate::mechanics::problem::node_forces::Corner;
 use crate::mechanics::structure::Structure;
@@ -264,7 +264,7 @@ pub(super) struct Scaled<'a> {
     pub stretched: f64,
 }
 
-/// `resistance` is the force that the load scale goes by.
+/// `characteristic_stiffness` is the force that the load scale goes by.
 pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &Scaled<'_>) -> StageLoad {
     let &Scaled { model, analysis, numbers, structure, first_contacts, length, force, stretched } = scaled;
     let dimension = structure.dimension;

@@ -5,19 +5,19 @@
 //! stiffness of those that resist the load; without bars, `φ` is the largest force of any stage at the load factor at which
 //! the stage is to end (1 where it names none), or the stiffness of the springs that resist the load (the largest Frobenius
 //! norm) times the largest prescribed motion if that is more, and `ℓ` that force over that stiffness. What resists is
-//! found by `resistance`; where the bars' stiffnesses differ by no more than a factor of two it need not be.
+//! found by `characteristic_stiffness`; where the bars' stiffnesses differ by no more than a factor of two it need not be.
 //! `σ` is the smaller of `φ / max |f|`, with the `φ` of what resists the stage's own load, and `ℓ / max |motion|`. All follow
 //! the units of the input, so that a change of units changes nothing but round-off.
 
+pub(crate) mod admissibility;
 pub(crate) mod build;
+pub(crate) mod characteristic_stiffness;
 pub(crate) mod plan;
 pub(crate) mod recorded_rows;
-pub(crate) mod refuse;
-pub(crate) mod resistance;
 pub(crate) mod scales;
 
 use crate::mechanics::contact::Contact;
-use crate::mechanics::equations::stage_end::End;
+use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::loading::LoadPattern;
 use crate::mechanics::problem::node_forces::Corner;
 use crate::mechanics::structure::Structure;

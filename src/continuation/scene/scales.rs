@@ -3,7 +3,7 @@
 use crate::continuation::scene::build::{
     Contacts, Scaled, build_contacts, build_stage, build_structure, first_contacts, norm,
 };
-use crate::continuation::scene::resistance::resisting;
+use crate::continuation::scene::characteristic_stiffness::resisting;
 use crate::mechanics::structure::Structure;
 use crate::model::request::{self, Analysis, Model};
 use std::collections::HashMap;

@@ -6,11 +6,12 @@
 //! | `progress` | what decides how the path goes on: the content of a checkpoint |
 //! | `contact_search` | which contacts are in reach |
 //! | `visited_states` | states that the path has left, for telling a cycle |
-//! | `waiting` | when contact changes are to be taken together again |
+//! | `backoff` | when contact changes are to be taken together again |
 //! | `totals` | sums and maxima along the path |
 //! | `record`, `event_names` | the row of a point in the user's units and names; events in words |
 //! | `step_quantum`, `tolerances` | steps in eighths of an octave; when states are one |
 
+pub(crate) mod backoff;
 pub(crate) mod contact_search;
 pub(crate) mod event_names;
 pub(crate) mod progress;
@@ -20,4 +21,3 @@ pub(crate) mod tolerances;
 pub(crate) mod totals;
 pub(crate) mod trace;
 pub(crate) mod visited_states;
-pub(crate) mod waiting;

@@ -3,11 +3,11 @@
 use crate::branching::bifurcation::singularity::test_functions::Signature;
 use crate::branching::directions::choice::Choice;
 use crate::continuation::scene::Scene;
+use crate::continuation::trace::backoff::Waiting;
 use crate::continuation::trace::totals::Totals;
 use crate::continuation::trace::visited_states::History;
-use crate::continuation::trace::waiting::Waiting;
 use crate::mechanics::contact::{Mode, Reaction};
-use crate::mechanics::equations::stage_end::End;
+use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::loading::LoadPattern;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::result::increment::Point;

@@ -4,7 +4,7 @@ use crate::resources::budget::Breach;
 use crate::result::increment::{Energy, Increment};
 use crate::result::report::Report;
 use crate::result::stop_reason::StopReason;
-use crate::step::corrector::work::Work;
+use crate::step::corrector::cost_counters::Work;
 use serde::{Deserialize, Serialize};
 
 /// Energies below this fraction of the force scale times the displacement scale are round-off.

@@ -8,8 +8,8 @@
 //! the node is; in 2D the third component is 0. Knows nothing of structures and paths.
 
 pub(crate) mod frame;
+pub mod least_norm_reactions;
 pub mod obstacle;
-pub mod share;
 pub mod vector;
 
 pub use frame::{Frame, Sliding, tangents_in_space};

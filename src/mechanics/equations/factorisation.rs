@@ -1,6 +1,6 @@
 //! Factorisations of the equations, and what contacts hold at their nodes in them.
 
-use crate::algebra::dense::sink::Sink;
+use crate::algebra::dense::assembly::Sink;
 use crate::algebra::sparse::{Holding, Holdings, SparseFactorisation};
 use crate::algebra::{Factorisation, Stiffener, SystemFactorisation};
 use crate::mechanics::equations::matrix::Stretch;

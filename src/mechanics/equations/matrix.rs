@@ -1,6 +1,6 @@
 //! The matrix of the equations, dense and sparse.
 
-use crate::algebra::dense::sink::Sink;
+use crate::algebra::dense::assembly::Sink;
 use crate::algebra::sparse::Bordered;
 use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled};
 use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role, Track, slip_integration};

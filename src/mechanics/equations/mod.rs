@@ -14,23 +14,23 @@
 //! (E. Riks, Int. J. Solids Struct. 15 (1979) 529, doi:10.1016/0020-7683(79)90081-7).
 
 pub mod closing_equation;
-pub(crate) mod direction;
+pub(crate) mod deflation;
 pub(crate) mod factorisation;
 pub(crate) mod matrix;
+pub(crate) mod rate_recovery;
 pub(crate) mod residual;
 pub(crate) mod scaled_rows;
 pub(crate) mod slip_integration;
 pub(crate) mod slip_turning;
 pub(crate) mod solution;
-pub(crate) mod stage_end;
-pub(crate) mod still;
+pub(crate) mod stage_criteria;
 
 use crate::algebra::sparse::Holdings;
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled};
 use crate::mechanics::contact::{Frame, Mode, Reaction};
 use crate::mechanics::equations::slip_integration::{Start, Turn};
 use crate::mechanics::equations::solution::Corrected;
-use crate::mechanics::multi_contact::sharing;
+use crate::mechanics::multi_contact::reaction_split;
 use crate::mechanics::multi_contact::spatial::{Edge, beside};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_forces::{free_directions, total_force};
@@ -117,8 +117,8 @@ pub struct ModeSystem<'a> {
     pub(crate) size: usize,
     /// What is asked for is a step that can as well be shorter.
     pub(crate) may_be_shorter: bool,
-    /// Motions that are held: see `still`.
-    still: Vec<still::Still>,
+    /// Motions that are held: see `deflation`.
+    still: Vec<deflation::Still>,
     /// Made when first needed.
     holdings: OnceCell<Holdings>,
     /// See [`Self::held_directions`]; made when first needed.
@@ -256,7 +256,7 @@ impl<'a> ModeSystem<'a> {
 
     /// Where several contacts hold a node together, their reactions become those of least norm.
     pub(crate) fn share(&self, state: &mut State) {
-        sharing::share(self.loading, self.loading.corners, self.modes, state);
+        reaction_split::share(self.loading, self.loading.corners, self.modes, state);
     }
 
     /// Orthonormal directions in which a sticking contact holds its node, along which it has a force: the normal and the

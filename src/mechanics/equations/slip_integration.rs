@@ -111,7 +111,7 @@ impl Settling {
 }
 
 impl Rule {
-    /// `direction` is that at the end, `chord` the motion relative to the obstacle.
+    /// `rate_recovery` is that at the end, `chord` the motion relative to the obstacle.
     pub fn new(frame: &Frame, start: &Start, turn: &Turn, direction: &Vector, chord: &Vector) -> Self {
         let carried = start.carried_to(&frame.normal);
         if let Some(settling) = turn.settling.filter(|settling| settling.share() > 0.0) {

@@ -5,7 +5,7 @@
 //! | `planar` | the sum of friction cones in the plane |
 //! | `spatial` | nodes that are free in space, or guided by supports |
 //! | `moving_planes` | a node in the plane between two planes that move against each other |
-//! | `sharing` | the reactions of least norm that make up a node's force |
+//! | `reaction_split` | the reactions of least norm that make up a node's force |
 //! | `determinacy` | whether equilibrium tells the reactions apart |
 //! | `contact_status` | which contacts can change at a point, and between what |
 //! | `rate_options` | what contacts may do next, as options of the rate problem |
@@ -15,5 +15,5 @@ pub(crate) mod determinacy;
 pub(crate) mod moving_planes;
 pub(crate) mod planar;
 pub mod rate_options;
-pub(crate) mod sharing;
+pub(crate) mod reaction_split;
 pub(crate) mod spatial;

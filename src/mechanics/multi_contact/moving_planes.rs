@@ -17,7 +17,7 @@
 use crate::mechanics::contact::obstacle::Obstacle;
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled, size, unit};
 use crate::mechanics::contact::{Frame, Mode, Reaction};
-use crate::mechanics::multi_contact::sharing;
+use crate::mechanics::multi_contact::reaction_split;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_forces::Corner;
 use crate::mechanics::problem::state::{Rate, State};
@@ -102,7 +102,7 @@ impl Carried {
                 let holder = usize::from(own[0] != Mode::Stick);
                 self.contacts.iter().for_each(|contact| shared.reactions[*contact] = Reaction::default());
                 shared.reactions[self.contacts[holder]] = whole(holder);
-                sharing::share(loading, &[Corner { contacts: self.contacts.to_vec() }], modes, &mut shared);
+                reaction_split::share(loading, &[Corner { contacts: self.contacts.to_vec() }], modes, &mut shared);
                 self.contacts.map(|contact| shared.reactions[contact])
             }
         }

@@ -1,4 +1,4 @@
-//! Nodes that several obstacles hold at once.
+//! Nodes that several obstacles hold at once in the plane.
 //!
 //! In 2D a node pressed by two obstacles that are not parallel cannot move: equilibrium gives only the sum `R` of their
 //! reactions, and the node is held as long as `R` lies in the sum of their friction cones. That is a cone itself, between

@@ -1,11 +1,11 @@
 //! What studies and sweeps have found, as tables and as a picture.
 
-use crate::output::picture::PlotError;
-use crate::output::picture::findings::Findings;
 use crate::service::http::answer::problem::{Kind, Problem};
 use crate::service::http::answer::tag;
 use crate::service::http::tasks::{Asked, Resource};
 use crate::service::store::Task;
+use crate::studies::picture::PlotError;
+use crate::studies::picture::findings::Findings;
 use axum::http::{HeaderMap, header};
 use axum::response::Response;
 use uuid::Uuid;

@@ -1,8 +1,8 @@
 //! The service's HTTP face; version 1 of the interface.
 //!
-//! [`listen`] takes connections, [`access`] says who may call, [`problem`] is the one edge where errors become answers,
+//! [`listen`] takes connections, [`access`] says who may call, [`problem`](answer::problem) is the one edge where errors become answers,
 //! [`extract`], [`parameters`] and [`accept`] read requests, [`bodies`] makes room for their bodies, [`aside`] is where large answers are made, [`view`], [`view_study`] and [`view_sweep`] hold what is
-//! answered, [`tag`] spares it to those who have it, [`tasks`] and [`findings`] are what several calls share; [`jobs`],
+//! answered, [`tag`](answer::tag) spares it to those who have it, [`tasks`] and [`findings`] are what several calls share; [`jobs`],
 //! [`request`], [`follow`], [`increments`], [`columns`], [`exact`], [`stream`], [`csv`], [`studies`], [`sweeps`], [`scenes`],
 //! [`probes`], [`metrics`] and [`pages`] are the calls, [`dashboard`] what a browser sees, [`document`] their OpenAPI
 //! description, [`request_id`] what names each request, [`server`] all of it, and going down in good order.

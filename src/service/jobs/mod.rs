@@ -7,7 +7,7 @@
 //! [`limits`] what is taken and how much a job may use, [`retention`] what is kept of ended jobs;
 //! [`trail`] how the states that it has passed are stored once; [`crew`] all workers of a process, [`demonstration`] the built-in scenes as jobs; [`follow`] jobs that follow a direction
 //! of another, [`branches`] the points they begin from, [`explore`] which of them are queued unasked; [`studies`] are jobs of
-//! another task, [`sweeps`] stand for many. Called by `http` and `command`; knows `store`, `judged`, `studies`, `path`, `model`
+//! another task, [`sweeps`] stand for many. Called by `http` and `command`; knows `store`, `judged`, `studies`, `continuation`, `model`
 //! and, for what is counted and timed, `metrics`.
 
 pub mod batch;

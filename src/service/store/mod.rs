@@ -1,9 +1,9 @@
 //! What is kept: jobs, their increments, and who is working on what.
 //!
 //! [`Store`] is the whole boundary: above it nobody knows SQL, below it nobody knows HTTP or how a path is traced.
-//! [`record`] holds what goes in and out, [`signals`] wakes those who wait for a change, [`announcements`] is what other
+//! [`record`](contract::record) holds what goes in and out, [`signals`](contract::signals) wakes those who wait for a change, `announcements` is what other
 //! processes are told of them; [`sql`] is what is said to both engines, [`sqlite`] (a file of this machine) and [`postgres`]
-//! (a server that many machines share); [`location`] says which, [`faults`] what their errors mean. Called by `jobs` (which writes) and by `http` (which reads).
+//! (a server that many machines share); [`location`](contract::location) says which, [`faults`] what their errors mean. Called by `jobs` (which writes) and by `http` (which reads).
 
 pub mod contract;
 pub(crate) mod faults;

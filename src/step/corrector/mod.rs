@@ -7,13 +7,13 @@
 //! | `single_iteration` | one iteration, to see where it leads |
 //! | `cached_factorisation` | factorisations that an earlier solve leaves for the next |
 //! | `slip_error` | the error of curved slip, carried along the path |
-//! | `work` | counts of work |
-//! | `tolerances` | when a determinant has a sign |
+//! | `cost_counters` | counts of work |
+//! | `determinant_sign` | when a determinant has a sign |
 
 pub(crate) mod cached_factorisation;
+pub(crate) mod cost_counters;
+pub(crate) mod determinant_sign;
 pub(crate) mod newton;
 pub(crate) mod single_iteration;
 pub(crate) mod slip_error;
 pub(crate) mod tangent;
-pub(crate) mod tolerances;
-pub(crate) mod work;

@@ -1,7 +1,7 @@
 //! Newton's method on the equations of a mode.
 
 use crate::algebra::SystemFactorisation;
-use crate::algebra::dense::sink::Sink;
+use crate::algebra::dense::assembly::Sink;
 use crate::mechanics::contact::vector::{self, add, dot};
 use crate::mechanics::equations::closing_equation::ClosingEquation;
 use crate::mechanics::equations::solution::{Corrected, Failure};
@@ -9,7 +9,7 @@ use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role};
 use crate::mechanics::problem::loading::USUAL;
 use crate::mechanics::problem::natural_residual::NO_FORCE;
 use crate::mechanics::problem::state::State;
-use crate::step::corrector::work::Work;
+use crate::step::corrector::cost_counters::Work;
 use nalgebra::DVector;
 
 /// Newton iterations before a step is given up.

@@ -2,11 +2,11 @@
 //! how far the guess was.
 
 use crate::algebra::SystemFactorisation;
-use crate::algebra::dense::sink::Sink;
+use crate::algebra::dense::assembly::Sink;
 use crate::mechanics::equations::closing_equation::ClosingEquation;
 use crate::mechanics::equations::{Kind, ModeSystem};
 use crate::mechanics::problem::state::{Rate, State};
-use crate::step::corrector::work::Work;
+use crate::step::corrector::cost_counters::Work;
 use nalgebra::DVector;
 
 impl ModeSystem<'_> {

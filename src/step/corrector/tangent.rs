@@ -5,8 +5,8 @@ use crate::algebra::sparse::SparseFactorisation;
 use crate::mechanics::equations::solution::{Corrected, Tangent};
 use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role};
 use crate::mechanics::problem::state::Rate;
+use crate::step::corrector::determinant_sign::UNCERTAIN;
 use crate::step::corrector::newton::REGULAR;
-use crate::step::corrector::tolerances::UNCERTAIN;
 
 impl ModeSystem<'_> {
     /// The path's direction at a converged point, and an estimate of the point's error: the size of one more Newton

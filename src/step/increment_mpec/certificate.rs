@@ -30,7 +30,7 @@ use crate::complementarity::mpec::{Activities, PairActivity, Problem, Settings};
 use crate::mechanics::contact::vector::{Vector, add, dot};
 use crate::mechanics::contact::{Frame, Mode};
 use crate::mechanics::problem::state::{Rate, State};
-use crate::step::increment_mpec::{Foreseen, InReach, IncrementProgram, LOOSEST, Named, frame};
+use crate::step::increment_mpec::{Foreseen, InReach, IncrementProgram, LOOSEST, Named, tangent_components};
 use nalgebra::DVector;
 
 /// Least member that is positive by itself, and how much larger it is than what the point leaves violated.
@@ -131,8 +131,8 @@ impl IncrementProgram<'_> {
             let reaction = &state.reactions[entry.contact];
             x[entry.normal()] = reaction.normal / self.force;
             if entry.tangents == 1 {
-                x[entry.tangential(0)] = frame::components(here, &reaction.tangential)[0] / self.force;
-                let slip = frame::components(&entry.frame, &self.chord(entry, state))[0] / self.step;
+                x[entry.tangential(0)] = tangent_components::components(here, &reaction.tangential)[0] / self.force;
+                let slip = tangent_components::components(&entry.frame, &self.chord(entry, state))[0] / self.step;
                 for (part, side) in entry.parts() {
                     x[part] = (side * slip).max(0.0);
                 }
@@ -218,8 +218,9 @@ impl IncrementProgram<'_> {
             if entry.tangents == 0 {
                 continue;
             }
-            let traction_rates =
-                ends.map(|(rate, frame)| frame::components(frame, &rate.reactions[contact].tangential)[0] * per_force);
+            let traction_rates = ends.map(|(rate, frame)| {
+                tangent_components::components(frame, &rate.reactions[contact].tangential)[0] * per_force
+            });
             let slip_rates = ends.map(|(rate, _)| self.motion(entry, rate)[0]);
             let slipped: f64 = entry.parts().map(|(part, side)| side * x[part]).iter().sum();
             for (_, side) in entry.parts() {

@@ -3,7 +3,7 @@
 use crate::complementarity::mpec::{Problem, SparseRows};
 use crate::mechanics::contact::Frame;
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled};
-use crate::step::increment_mpec::{InReach, IncrementProgram, frame};
+use crate::step::increment_mpec::{InReach, IncrementProgram, tangent_components};
 use nalgebra::{DMatrix, DVector};
 
 impl IncrementProgram<'_> {
@@ -121,7 +121,8 @@ impl Problem for IncrementProgram<'_> {
         for entry in &self.reach {
             let frame = self.loading.frame(entry.contact, &state);
             let tangents = entry.tangents_at(&frame);
-            let mut motion = frame::components(&entry.frame, &self.driven(entry)).map(|part| part * x[load]);
+            let mut motion =
+                tangent_components::components(&entry.frame, &self.driven(entry)).map(|part| part * x[load]);
             for (unknown, k) in self.node_of(entry) {
                 values[unknown] -= x[entry.normal()] * frame.normal[k];
                 for t in 0..entry.tangents {
@@ -159,7 +160,7 @@ impl Problem for IncrementProgram<'_> {
         for entry in &self.reach {
             let frame = self.loading.frame(entry.contact, &state);
             let tangents = entry.tangents_at(&frame);
-            let driven = frame::components(&entry.frame, &self.driven(entry));
+            let driven = tangent_components::components(&entry.frame, &self.driven(entry));
             for (unknown, k) in self.node_of(entry) {
                 put(jacobian, (unknown, entry.normal()), -frame.normal[k]);
                 for (t, (here, held)) in tangents.iter().zip(&entry.frame.tangents).enumerate().take(entry.tangents) {

@@ -25,10 +25,10 @@
 //! (`certificate`); the search is for where they do not settle it.
 
 pub(crate) mod certificate;
-pub(crate) mod end;
-pub(crate) mod frame;
 pub(crate) mod functions;
 pub(crate) mod search;
+pub(crate) mod solution_extraction;
+pub(crate) mod tangent_components;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
@@ -46,9 +46,9 @@ use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::cancel::CancelFlag;
 pub use certificate::Arrived;
-use frame::Components;
 use nalgebra::DVector;
 pub use search::{End, Searched};
+use tangent_components::Components;
 
 /// Contacts whose gap is beyond this many arc lengths cannot close in the increment and are left out.
 const REACH: f64 = 3.0;
@@ -192,7 +192,7 @@ impl<'a> IncrementProgram<'a> {
             }
             let tangents = data.tangents();
             let friction = if tangents > 0 { data.friction } else { 0.0 };
-            let traction = frame::components(&frame, &base.reactions[contact].tangential);
+            let traction = tangent_components::components(&frame, &base.reactions[contact].tangential);
             let traction = traction.map(|component| component / force);
             reach.push(InReach { contact, first: next, friction, tangents, frame, traction });
             next += match tangents {
@@ -244,7 +244,7 @@ impl<'a> IncrementProgram<'a> {
     }
 
     fn motion(&self, entry: &InReach, rate: &Rate) -> Components {
-        frame::components(&entry.frame, &self.loading.relative_rate(entry.contact, rate))
+        tangent_components::components(&entry.frame, &self.loading.relative_rate(entry.contact, rate))
     }
 
     /// The variables of a state on the way, for a start.
@@ -261,7 +261,7 @@ impl<'a> IncrementProgram<'a> {
             if entry.friction == 0.0 {
                 continue;
             }
-            let components = |vector: &Vector| frame::components(&entry.frame, vector);
+            let components = |vector: &Vector| tangent_components::components(&entry.frame, vector);
             let (traction, change) = (components(&reaction.tangential), components(&change.tangential));
             for k in 0..entry.tangents {
                 x[entry.tangential(k)] = (traction[k] + self.step * change[k]) / self.force;

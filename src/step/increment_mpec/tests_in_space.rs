@@ -23,7 +23,7 @@ pub(super) fn in_plane(reaction: &Reaction) -> Components {
 
 /// A reaction of the floor.
 pub(super) fn on_floor(normal: f64, tangential: Components) -> Reaction {
-    frame::reaction(&tangents_in_space(&FLOOR), normal, tangential)
+    tangent_components::reaction(&tangents_in_space(&FLOOR), normal, tangential)
 }
 
 /// A pattern of forces alone.
@@ -232,7 +232,7 @@ fn the_direction_of_the_first_slip_is_found() {
     let named = named.expect("named");
     let end = named.end.expect("an exact end");
     let traction = in_plane(&end.reactions[0]);
-    let slip = slip_in_plane(frame::slip(&tangents_in_space(&FLOOR), [-traction[0], -traction[1]]));
+    let slip = slip_in_plane(tangent_components::slip(&tangents_in_space(&FLOOR), [-traction[0], -traction[1]]));
     let c: f64 = friction * h;
     let exact = [(c * c - b * b).sqrt() / c, -b / c, 0.0];
     let miss = (0..3).fold(0.0_f64, |miss, k| miss.max((slip[k] - exact[k]).abs()));

@@ -6,7 +6,7 @@ use crate::continuation::path::iterator::Path;
 use crate::continuation::path::mpec_verification;
 use crate::continuation::scene::Scene;
 use crate::result::increment::Increment;
-use crate::step::corrector::work::Work;
+use crate::step::corrector::cost_counters::Work;
 use crate::step::increment_mpec::*;
 use crate::step::segment::{Reached, Start as Beginning};
 use serde_json::{Map, json};

@@ -36,7 +36,7 @@
 //! | `row`, `report`, `table` | what is found, as values and as text |
 //! | `plan`, `run` | the ladder, planned and run |
 //!
-//! Called by `jobs` and `command`; knows `model`, `path` and `scenes`.
+//! Called by `jobs` and `command`; knows `model`, `continuation` and `scenes`.
 
 pub(crate) mod curve;
 pub(crate) mod events;

@@ -7,7 +7,7 @@ use crate::model::{InputErrors, check};
 use crate::studies::error_against_time::reference::{ReferenceKind, describe_exact, describe_fine, exact_of};
 use serde::{Deserialize, Serialize};
 
-/// The ladder and what it is measured against.
+/// What a study is going to do.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[cfg_attr(feature = "server", schema(as = StudyPlan))]

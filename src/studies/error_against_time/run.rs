@@ -1,7 +1,7 @@
 //! The ladder, run.
 
+use crate::continuation::method_dispatch::TracedPath;
 use crate::continuation::scene::Scene;
-use crate::continuation::traced::TracedPath;
 use crate::model::InputErrors;
 use crate::model::request::Method;
 use crate::model::request::study::{Parameter, StudyRequest};

@@ -8,7 +8,7 @@
 //! | `run` | all runs on the cores of this machine |
 //!
 //! What is replaced is read by [`model::sweep`](crate::model::request::sweep). Called by `jobs`, `http`, `picture` and `command`;
-//! knows `model`, `judged` and `path`.
+//! knows `model`, `judged` and `continuation`.
 
 pub(crate) mod found;
 pub(crate) mod limit_load;

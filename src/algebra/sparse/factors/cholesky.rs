@@ -1,7 +1,7 @@
 //! Sparse symmetric matrices that are positive definite, by their Cholesky factorisation.
 
-use crate::algebra::dense::counted::count_solves;
-use crate::algebra::sparse::factors::panels;
+use crate::algebra::dense::solve_counters::count_solves;
+use crate::algebra::sparse::factors::supernodal_ldl;
 use crate::algebra::sparse::factors::symbolic::Symbolic;
 use crate::resources::budget::{self, Taken};
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -74,7 +74,7 @@ impl Definite {
                     value.into_iter().for_each(|value| each(place_of[*row], *value));
                 }
             };
-            panels::factorise(blocks, &mut self.values, &each_below, 0.0);
+            supernodal_ldl::factorise(blocks, &mut self.values, &each_below, 0.0);
             let pivots = (0..blocks.n_supernodes()).flat_map(|block| {
                 let columns = blocks.supernode_end()[block] - blocks.supernode_begin()[block];
                 let rows = columns + blocks.supernode(block).pattern().len();

@@ -6,8 +6,8 @@
 //! never near singular, however many eigenvalues of `K` are zero.
 
 use crate::algebra::dense::inertia::{Inertia, inertia};
-use crate::algebra::sparse::factors::panels;
 use crate::algebra::sparse::factors::pattern::Pattern;
+use crate::algebra::sparse::factors::supernodal_ldl;
 use crate::resources::budget::{self, Taken};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::{LdltError, LdltRegularization};
@@ -111,7 +111,7 @@ impl SymmetricFactor {
                     }
                 }
             };
-            panels::factorise(blocks, &mut self.values, &each_below, ZERO);
+            supernodal_ldl::factorise(blocks, &mut self.values, &each_below, ZERO);
             return Ok(());
         }
         budget::spend(usize::try_from(symbolic.fill.multiplications).unwrap_or(usize::MAX));

@@ -1,8 +1,8 @@
 //! Where a symmetric sparse matrix may have entries, and the order in which it is eliminated.
 
+use crate::algebra::sparse::constrained_nodes::node_cache::LastNodes;
 use crate::algebra::sparse::factors::lu_pattern::LuPattern;
 use crate::algebra::sparse::factors::symbolic::Symbolic;
-use crate::algebra::sparse::nodal::last_nodes::LastNodes;
 use crate::resources::budget::{self, Taken};
 use faer::sparse::SymbolicSparseColMatRef;
 use std::sync::OnceLock;

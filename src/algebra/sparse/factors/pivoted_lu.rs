@@ -1,6 +1,6 @@
 //! Sparse LU factorisation of any square matrix, by its entries.
 
-use crate::algebra::dense::counted::count_solves;
+use crate::algebra::dense::solve_counters::count_solves;
 use crate::algebra::sparse::factors::symbolic::allow_factor;
 use crate::resources::budget;
 use faer::MatMut;

@@ -12,16 +12,16 @@
 //! its rows, so that the matrix stays symmetric; or the equations `H` times `F R⁻¹` are taken from the equations `T`, which
 //! makes it unsymmetric, and `r` follows in the end, too.
 
-pub(crate) mod making;
+pub(crate) mod constrained_node_basis;
 pub(crate) mod nodes;
 
-pub(super) use crate::algebra::sparse::nodal::held_node::{Coupling, HeldNode, Matrices, gathered, times};
-pub(super) use crate::algebra::sparse::nodal::holdings::Friction;
-pub use crate::algebra::sparse::nodal::holdings::{Holding, Holdings, Places};
+pub(super) use crate::algebra::sparse::constrained_nodes::held_node::{Coupling, HeldNode, Matrices, gathered, times};
+pub(super) use crate::algebra::sparse::constrained_nodes::nodal_constraints::Friction;
+pub use crate::algebra::sparse::constrained_nodes::nodal_constraints::{Holding, Holdings, Places};
 
-use crate::algebra::sparse::factors::bordered::Bordered;
+use crate::algebra::sparse::constrained_nodes::node_cache::Nodes;
+use crate::algebra::sparse::factors::bordered_matrix::Bordered;
 use crate::algebra::sparse::factors::entries::Entries;
-use crate::algebra::sparse::nodal::last_nodes::Nodes;
 use smallvec::SmallVec;
 use std::sync::Arc;
 

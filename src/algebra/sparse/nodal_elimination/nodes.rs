@@ -1,10 +1,10 @@
 //! All held nodes of a matrix, kept as long as they stay the same.
 
-use crate::algebra::sparse::factors::bordered::Bordered;
+use crate::algebra::sparse::constrained_nodes::held_node::HeldNode;
+use crate::algebra::sparse::constrained_nodes::nodal_constraints::{Friction, Holdings};
+use crate::algebra::sparse::constrained_nodes::node_cache::Nodes;
+use crate::algebra::sparse::factors::bordered_matrix::Bordered;
 use crate::algebra::sparse::factors::entries::Entries;
-use crate::algebra::sparse::nodal::held_node::HeldNode;
-use crate::algebra::sparse::nodal::holdings::{Friction, Holdings};
-use crate::algebra::sparse::nodal::last_nodes::Nodes;
 use std::sync::Arc;
 
 /// Numbers of a node, and entries of its borders, as they mostly are in the plane.

@@ -29,7 +29,7 @@
 //! which leave in one sense of `f` or none do.
 
 use crate::algebra::{nearest_null_space, null_space_as_scaled};
-use crate::branching::bifurcation::branch_directions::null::Derivative;
+use crate::branching::bifurcation::branch_directions::null_derivatives::Derivative;
 use crate::branching::bifurcation::branch_directions::{MOST_MODES, NO_CURVATURE, Null, Point};
 use crate::complementarity::rates::combinations::combinations;
 use crate::mechanics::equations::scaled_rows::{RANK, scaled_rows};

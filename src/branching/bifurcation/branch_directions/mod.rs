@@ -14,24 +14,24 @@
 //! directions spread over their plane. Those found are branches; that they are all is not claimed. For three and more
 //! the list is marked `degenerate`, and so is a plane with more directions than the equations have isolated roots: a
 //! continuum of branches, of which the list holds samples. For many unknowns, where the null vectors come with the point,
-//! these points are not sought: the equations that are left in the null vectors are solved (`reduced`).
+//! these points are not sought: the equations that are left in the null vectors are solved (`lyapunov_schmidt`).
 //!
 //! Where a direction leaves a contact's inequalities at equality (on the cone: the load rate along a branch is zero at first
 //! order, and its sign at second order decides whether the contact slips on or sticks) a small step tells its mode.
 //! Every direction that is listed was tried with a small step.
 //!
 //! Other modes of contacts that can change have branches of their own here where their equations are singular, too:
-//! `in_other_modes`; `each_mode` tells them at second order where first order leaves no way on.
+//! `in_other_modes`; `second_order_by_mode` tells them at second order where first order leaves no way on.
 
-pub(crate) mod each_mode;
 pub(crate) mod fold;
-pub(crate) mod null;
+pub(crate) mod lyapunov_schmidt;
+pub(crate) mod null_derivatives;
 pub(crate) mod other_modes;
-pub(crate) mod reduced;
+pub(crate) mod second_order_by_mode;
 #[cfg(test)]
 mod tests;
 
-pub use each_mode::{Told, in_each_mode};
+pub use second_order_by_mode::{Told, in_each_mode};
 
 use crate::algebra::{nearest_null_space, null_space_as_scaled};
 use crate::branching::bifurcation::singularity::null_vectors::{NullVectors, SINGULAR};
@@ -47,9 +47,9 @@ use crate::mechanics::multi_contact::contact_status::Standing;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cached_factorisation::AtHand;
+use lyapunov_schmidt::Reduced;
 use nalgebra::{DMatrix, DVector};
-use null::{Derivative, Null};
-use reduced::Reduced;
+use null_derivatives::{Derivative, Null};
 
 pub use other_modes::{are_singular_in_all_modes, in_other_modes};
 

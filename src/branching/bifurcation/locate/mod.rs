@@ -6,13 +6,13 @@
 //! with the fourth power of their distance; the residual of the point found is judged like any other's.
 //!
 //! So it is done with dense matrices. For many unknowns the equations are bordered, so that they are regular at the point
-//! (`sparse`); where that leads to none, as where a crossing is not transversal, the dense way is taken.
+//! (`bordered_newton`); where that leads to none, as where a crossing is not transversal, the dense way is taken.
 
+pub(crate) mod bordered_newton;
 pub(crate) mod folded_singularity;
-pub(crate) mod sparse;
 
-use crate::algebra::dense::root::find_root;
 use crate::algebra::null_space_as_scaled;
+use crate::algebra::scalar_root::find_root;
 use crate::branching::bifurcation::singularity::null_vectors::{NullVectors, SINGULAR};
 use crate::branching::bifurcation::singularity::test_functions::{
     Change, Signature, bordered_determinant, counted_tangent,
@@ -20,8 +20,8 @@ use crate::branching::bifurcation::singularity::test_functions::{
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::scaled_rows::scaled_rows;
 use crate::mechanics::problem::state::{Rate, State};
+use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton::ACCEPTED_RESIDUAL;
-use crate::step::corrector::work::Work;
 use crate::step::interpolation::{Placed, between, placed, unit};
 use crate::step::segment::{Reached, Start};
 use std::sync::Arc;
@@ -102,7 +102,7 @@ fn find(start: &Start<'_>, before: Signature, change: Change, reached: &Reached,
         return Some(Located { point, crossing, between: None });
     }
     if start.loading.structure.layout().is_some() && !system.has_tracks() {
-        let located = sparse::locate(start, before, change, reached);
+        let located = bordered_newton::locate(start, before, change, reached);
         if located.is_some() {
             return located;
         }

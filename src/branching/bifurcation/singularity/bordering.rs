@@ -12,7 +12,7 @@
 //! doi:10.1093/imanum/4.4.493; W. Govaerts, *Numerical Methods for Bifurcations of Dynamical Equilibria*, SIAM 2000,
 //! chapter 3). Two sparse factorisations give all of it: one of the matrix, one of its transpose.
 
-use crate::algebra::dense::sink::Sink;
+use crate::algebra::dense::assembly::Sink;
 use crate::algebra::sparse::{Bordered, SparseFactorisation};
 use crate::branching::bifurcation::singularity::null_vectors::NullVectors;
 use crate::mechanics::equations::{Kind, ModeSystem};

@@ -11,7 +11,7 @@
 //! nonnegative (a Karush-Kuhn-Tucker point of a convex program is a solution). Otherwise violated rows enter the set
 //! and rows with a negative multiplier leave it, a bounded number of times: the primal-dual active set method of
 //! M. Hintermüller, K. Ito and K. Kunisch, SIAM J. Optim. 13 (2002), doi:10.1137/S1052623401383558. Second-order cones
-//! take part in it (`mpec::active_cones`). It may fail, and then the interior-point method answers; what it does return is exact to round-off and costs microseconds.
+//! take part in it (`quadratic_program::active_cones`). It may fail, and then the interior-point method answers; what it does return is exact to round-off and costs microseconds.
 
 use nalgebra::DVector;
 

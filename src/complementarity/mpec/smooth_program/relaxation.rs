@@ -25,7 +25,7 @@ use crate::complementarity::mpec::program::evaluation::{ConeMembers, Evaluation}
 use crate::complementarity::mpec::program::sparse_rows::SparseRows;
 use crate::complementarity::mpec::quadratic_program::interior_point::{ConeRows, QuadraticProgram, QuadraticSolution};
 use crate::complementarity::mpec::smooth_program::cone_rows::{ConeRow, ConeTreatment, Member};
-use crate::complementarity::mpec::smooth_program::pattern::{PairTreatment, Pattern};
+use crate::complementarity::mpec::smooth_program::pair_treatment::{PairTreatment, Pattern};
 
 /// What a row of the smooth program belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,7 +39,7 @@ pub enum Row {
     Cone(usize, ConeRow),
 }
 
-/// Multipliers in the problem's own terms; signs as in `mpec::quadratic`.
+/// Multipliers in the problem's own terms; signs as in `quadratic_program::interior_point`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Multipliers {
     /// One an equality, free in sign.

@@ -23,8 +23,8 @@ use crate::complementarity::mpec::program::problem::Problem;
 use crate::complementarity::mpec::program::sparse_rows::SparseRows;
 use crate::complementarity::mpec::quadratic_program::driver::{Step, StepSolver};
 use crate::complementarity::mpec::quadratic_program::interior_point::{QuadraticFailure, QuadraticProgram};
+use crate::complementarity::mpec::smooth_program::damped_bfgs::Secant;
 use crate::complementarity::mpec::smooth_program::relaxation::{Multipliers, Rows};
-use crate::complementarity::mpec::smooth_program::secant::Secant;
 use crate::resources::cancel::CancelFlag;
 
 /// Part of the predicted decrease that a step has to reach.

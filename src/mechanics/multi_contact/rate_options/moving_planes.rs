@@ -5,7 +5,7 @@ use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled, size};
 use crate::mechanics::multi_contact::moving_planes::{Carried, STILL};
 use crate::mechanics::multi_contact::planar;
-use crate::mechanics::multi_contact::rate_options::changeable::{Changeable, Forms, Outcome};
+use crate::mechanics::multi_contact::rate_options::contact_options::{Changeable, Forms, Outcome};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::State;
 

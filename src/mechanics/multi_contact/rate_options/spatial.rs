@@ -3,7 +3,7 @@
 use crate::complementarity::rates::rate_problem::{Choice, Entity, Signed};
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled};
-use crate::mechanics::multi_contact::rate_options::changeable::{Changeable, Forms, Outcome};
+use crate::mechanics::multi_contact::rate_options::contact_options::{Changeable, Forms, Outcome};
 use crate::mechanics::multi_contact::spatial::{Drive, Pocket, Slide};
 use crate::mechanics::problem::loading::Loading;
 

@@ -22,17 +22,17 @@
 //! plane.
 //! What is not free of the node (supported components) is left out of `R` and of the normals.
 //!
-//! `hold` has what the cones hold together, `sliding` what follows of a node that slides out, `options` its ways as parts of
+//! `cone_sum` has what the cones hold together, `sliding` what follows of a node that slides out, `rate_options::spatial` its ways as parts of
 //! the rate problem.
 
-pub(crate) mod hold;
+pub(crate) mod cone_sum;
 pub(crate) mod sliding;
 
 use crate::mechanics::problem::node_forces::free_directions;
 pub use sliding::{Edge, beside, taken_over};
 
 use crate::mechanics::contact::Frame;
-use crate::mechanics::contact::share::{Cone, least_reactions};
+use crate::mechanics::contact::least_norm_reactions::{Cone, least_reactions};
 use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled, size, unit};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_forces::{is_driven, reaction_in_space, total_force};

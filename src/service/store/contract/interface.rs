@@ -95,7 +95,7 @@ pub trait Store: Send + Sync + 'static {
     /// Looks through the whole database for damage.
     ///
     /// # Errors
-    /// [`StoreError::Damaged`], which every call answers from then on that would write.
+    /// [`StoreError::Damaged`](super::error::StoreError::Damaged), which every call answers from then on that would write.
     async fn check(&self) -> Result<()>;
 
     /// Proves that the store takes writes.

@@ -1,0 +1,278 @@
+//! A matrix `[[K, B], [C, D]]` with `K` sparse and nearly symmetric, and few rows and columns beside it.
+
+use crate::algebra::Inertia;
+use crate::algebra::dense::assembly::Sink;
+use crate::algebra::sparse::factors::entries::Entries;
+use crate::algebra::sparse::factors::ldl::SymmetricFactor;
+use crate::algebra::sparse::factors::pattern::Pattern;
+use nalgebra::DVector;
+use smallvec::smallvec;
+use std::sync::Arc;
+
+/// The matrix as it is assembled.
+#[derive(Debug, Clone)]
+pub struct Bordered {
+    pub(crate) pattern: Arc<Pattern>,
+    /// Entries of `K`, both triangles.
+    pub(crate) values: Vec<f64>,
+    /// Columns of `B`.
+    pub(crate) right: Vec<Entries>,
+    /// Rows of `[C, D]`.
+    pub(crate) lower: Vec<Entries>,
+    /// Entries of `K` that were put in one by one: only these may be unsymmetric.
+    pub(crate) touched: Vec<(usize, usize)>,
+    /// Some entry had no place.
+    pub(crate) is_outside: bool,
+}
+
+impl Bordered {
+    /// All zero, with so many rows and columns beside `K`.
+    pub fn new(pattern: Arc<Pattern>, borders: usize) -> Self {
+        Self {
+            values: vec![0.0; pattern.entries()],
+            pattern,
+            right: vec![Entries::new(); borders],
+            lower: vec![Entries::new(); borders],
+            touched: Vec::new(),
+            is_outside: false,
+        }
+    }
+
+    /// Rows of the whole.
+    pub fn size(&self) -> usize {
+        self.pattern.size() + self.lower.len()
+    }
+
+    /// Adds to an entry of `K` whose place is known, as a part of symmetric whole.
+    pub fn add_at(&mut self, place: usize, value: f64) {
+        self.values[place] += value;
+    }
+
+    /// With so many rows and columns more, zero.
+    #[must_use]
+    pub fn widened(mut self, borders: usize) -> Self {
+        let count = self.lower.len() + borders;
+        self.right.resize(count, Entries::new());
+        self.lower.resize(count, Entries::new());
+        self
+    }
+
+    /// The transposed matrix.
+    #[must_use]
+    pub fn transposed(&self) -> Self {
+        let n = self.pattern.size();
+        let mut transposed = Self::new(self.pattern.clone(), self.lower.len());
+        transposed
+            .values
+            .iter_mut()
+            .zip(&self.pattern.mirrors)
+            .for_each(|(value, mirror)| *value = self.values[*mirror]);
+        transposed.touched = self.touched.iter().map(|(row, column)| (*column, *row)).collect();
+        transposed.is_outside = self.is_outside;
+        transposed.lower.clone_from(&self.right);
+        for (border, entries) in self.lower.iter().enumerate() {
+            for (column, value) in entries {
+                match column.checked_sub(n) {
+                    None => transposed.right[border].push((*column, *value)),
+                    Some(column) => transposed.lower[column].push((n + border, *value)),
+                }
+            }
+        }
+        transposed
+    }
+
+    /// `(A - B) f`, `B` another matrix of the same equations.
+    #[must_use]
+    pub fn minus(&self, other: &Self, factor: f64) -> Self {
+        let mut change = self.clone();
+        change.values.iter_mut().zip(&other.values).for_each(|(value, other)| *value = (*value - other) * factor);
+        let lists = |own: &mut [Entries], others: &[Entries]| {
+            for (own, other) in own.iter_mut().zip(others) {
+                own.extend(other.iter().map(|(place, value)| (*place, -value)));
+                own.sort_by_key(|(place, _)| *place);
+                let sums = own.chunk_by(|a, b| a.0 == b.0).map(|same| {
+                    let sum: f64 = same.iter().map(|(_, value)| value).sum();
+                    (same[0].0, sum * factor)
+                });
+                *own = sums.collect();
+            }
+        };
+        lists(&mut change.right, &other.right);
+        lists(&mut change.lower, &other.lower);
+        change.touched.extend_from_slice(&other.touched);
+        change.is_outside |= other.is_outside;
+        change
+    }
+
+    /// `A f`
+    #[must_use]
+    pub fn scaled(mut self, factor: f64) -> Self {
+        self.values.iter_mut().for_each(|value| *value *= factor);
+        self.right.iter_mut().chain(&mut self.lower).flatten().for_each(|(_, value)| *value *= factor);
+        self
+    }
+
+    /// `A x`
+    pub fn times(&self, x: &DVector<f64>) -> DVector<f64> {
+        let (mut product, mut sizes) = (DVector::zeros(self.size()), vec![0.0; self.size()]);
+        self.multiply(x.as_slice(), product.as_mut_slice(), &mut sizes);
+        product
+    }
+
+    /// The largest entry, those at one place counted one by one.
+    pub fn largest(&self) -> f64 {
+        let borders = self.right.iter().chain(&self.lower).flatten().map(|(_, value)| *value);
+        self.values.iter().copied().chain(borders).fold(0.0, |most, value| value.abs().max(most))
+    }
+
+    /// The largest entry of `K`.
+    pub fn largest_within(&self) -> f64 {
+        self.values.iter().fold(0.0, |most, value| value.abs().max(most))
+    }
+
+    /// Column of `B`; repeated places are to be added.
+    pub fn right_column(&self, border: usize) -> &[(usize, f64)] {
+        &self.right[border]
+    }
+
+    /// `y = A x`, and the sums of the terms' sizes.
+    pub(crate) fn multiply(&self, x: &[f64], y: &mut [f64], sizes: &mut [f64]) {
+        let n = self.pattern.size();
+        y.fill(0.0);
+        sizes.fill(0.0);
+        for (column, value) in x.iter().take(n).enumerate() {
+            for place in self.pattern.column(column) {
+                let (row, term) = (self.pattern.rows[place], self.values[place] * value);
+                y[row] += term;
+                sizes[row] += term.abs();
+            }
+        }
+        for (entries, value) in self.right.iter().zip(&x[n..]) {
+            for (row, entry) in entries {
+                y[*row] += entry * value;
+                sizes[*row] += (entry * value).abs();
+            }
+        }
+        for (border, entries) in self.lower.iter().enumerate() {
+            for (column, entry) in entries {
+                let term = entry * x[*column];
+                y[n + border] += term;
+                sizes[n + border] += term.abs();
+            }
+        }
+    }
+
+    /// The same of so many vectors one after the other: an entry that is looked up serves several of them.
+    /// The sizes are left as they are where they are not asked for.
+    pub(crate) fn multiply_all<const WITH_SIZES: bool>(&self, x: &[f64], y: &mut [f64], sizes: &mut [f64]) {
+        const SIDE_BY_SIDE: usize = 4;
+        let size = self.size();
+        let chunk = SIDE_BY_SIDE * size.max(1);
+        for ((x, y), sizes) in x.chunks(chunk).zip(y.chunks_mut(chunk)).zip(sizes.chunks_mut(chunk)) {
+            let mut rows = vec![[0.0; SIDE_BY_SIDE]; size];
+            for (number, x) in x.chunks_exact(size).enumerate() {
+                rows.iter_mut().zip(x).for_each(|(row, value)| row[number] = *value);
+            }
+            let (mut sums, mut of_terms) = (vec![[0.0; SIDE_BY_SIDE]; size], vec![[0.0; SIDE_BY_SIDE]; size]);
+            self.each_entry(&mut |row, column, entry| {
+                let terms = rows[column].map(|value| entry * value);
+                sums[row].iter_mut().zip(&terms).for_each(|(sum, term)| *sum += term);
+                if WITH_SIZES {
+                    of_terms[row].iter_mut().zip(&terms).for_each(|(sum, term)| *sum += term.abs());
+                }
+            });
+            for (number, (y, sizes)) in y.chunks_exact_mut(size).zip(sizes.chunks_exact_mut(size)).enumerate() {
+                y.iter_mut().zip(&sums).for_each(|(value, row)| *value = row[number]);
+                if WITH_SIZES {
+                    sizes.iter_mut().zip(&of_terms).for_each(|(value, row)| *value = row[number]);
+                }
+            }
+        }
+    }
+
+    /// Calls with row, column and value of each entry; several at one place add up.
+    fn each_entry(&self, each: &mut impl FnMut(usize, usize, f64)) {
+        let n = self.pattern.size();
+        for column in 0..n {
+            self.pattern.column(column).for_each(|place| each(self.pattern.rows[place], column, self.values[place]));
+        }
+        for (border, entries) in self.right.iter().enumerate() {
+            entries.iter().for_each(|(row, value)| each(*row, n + border, *value));
+        }
+        for (border, entries) in self.lower.iter().enumerate() {
+            entries.iter().for_each(|(column, value)| each(n + border, *column, *value));
+        }
+    }
+
+    /// Vectors of unit size that `K` alone, symmetric, turns to nothing within a tolerance; `None` where it could not be
+    /// factorised.
+    pub fn null_vectors(&self, tolerance: f64) -> Option<Vec<DVector<f64>>> {
+        SymmetricFactor::new(self.pattern.clone(), &self.values).ok()?.null_vectors(tolerance)
+    }
+
+    /// Numbers of eigenvalues of `K` alone, symmetric, by sign.
+    pub fn inertia(&self, tolerance: f64) -> Option<Inertia> {
+        SymmetricFactor::new(self.pattern.clone(), &self.values).ok()?.inertia(tolerance)
+    }
+
+    /// The matrix with a symmetric `K`: a row `a` that it has more becomes a border `[[K, e], [a, -1]]`.
+    pub(crate) fn symmetrised(&self) -> Self {
+        let mut whole = self.clone();
+        let mut extra: Vec<(usize, Entries)> = Vec::new();
+        let mut touched: Vec<(usize, usize)> =
+            self.touched.iter().filter(|(row, column)| row > column).copied().collect();
+        touched.extend(self.touched.iter().filter(|(row, column)| row < column).map(|(row, column)| (*column, *row)));
+        touched.sort_unstable();
+        touched.dedup();
+        let borders = self.lower.len();
+        for (row, column) in touched {
+            let (Some(below), Some(above)) = (self.pattern.place(row, column), self.pattern.place(column, row)) else {
+                continue;
+            };
+            let difference = self.values[below] - self.values[above];
+            let size = self.values[below].abs().max(self.values[above].abs());
+            if difference.abs() <= 4.0 * f64::EPSILON * size {
+                continue;
+            }
+            // The triangle above is the rule.
+            whole.values[below] = self.values[above];
+            match extra.iter_mut().find(|(known, _)| *known == row) {
+                Some((_, entries)) => entries.push((column, difference)),
+                None => extra.push((row, smallvec![(column, difference)])),
+            }
+        }
+        for (index, (row, mut entries)) in extra.into_iter().enumerate() {
+            let border = self.pattern.size() + borders + index;
+            entries.push((border, -1.0));
+            whole.right.push(smallvec![(row, 1.0)]);
+            whole.lower.push(entries);
+        }
+        whole
+    }
+
+    pub(crate) fn is_finite(&self) -> bool {
+        let finite = |entries: &Entries| entries.iter().all(|(_, value)| value.is_finite());
+        self.values.iter().all(|value| value.is_finite())
+            && self.right.iter().all(finite)
+            && self.lower.iter().all(finite)
+    }
+}
+
+impl Sink for Bordered {
+    fn add(&mut self, row: usize, column: usize, value: f64) {
+        let n = self.pattern.size();
+        if value == 0.0 {
+            return;
+        }
+        if row >= n {
+            self.lower[row - n].push((column, value));
+        } else if column >= n {
+            self.right[column - n].push((row, value));
+        } else if let Some(place) = self.pattern.place(row, column) {
+            self.values[place] += value;
+            self.touched.push((row, column));
+        } else {
+            self.is_outside = true;
+        }
+    }
+}

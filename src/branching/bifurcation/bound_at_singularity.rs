@@ -1,0 +1,139 @@
+//! A bound of the stage at a singular point of the path, or beside one.
+//!
+//! Newton's method is singular there, and near it may land on another branch. Like the singular point itself
+//! (`locate`), the point at which the bound is met is taken on a cubic Hermite interpolant between regular points, and
+//! judged by its residual like any other.
+
+use crate::algebra::scalar_root::find_root;
+use crate::branching::bifurcation::locate::{self, Ended, Located, WIDTHS};
+use crate::branching::bifurcation::simultaneous_limit_points;
+use crate::branching::bifurcation::singularity::test_functions::{self, Change, Signature};
+use crate::mechanics::equations::ModeSystem;
+use crate::mechanics::equations::stage_criteria::End;
+use crate::mechanics::problem::state::{Rate, State};
+use crate::step::corrector::cost_counters::Work;
+use crate::step::corrector::newton::ACCEPTED_RESIDUAL;
+use crate::step::event_functions::Watch;
+use crate::step::interpolation::{Placed, between, placed, unit};
+use crate::step::segment::{AT_END, Reached, Start};
+
+/// Steps that are tried, over the one that ends at the bound: the point past it has to be regular.
+const LENGTHENED: [f64; 4] = [1.0, 1.01, 1.1, 1.5];
+
+/// How far a bifurcation point is moved along the path to meet a bound that lies within round-off of it.
+const ALONG: f64 = 1e-9;
+
+/// Ends a step at a bound of the stage, or at the bifurcation just before it, where Newton's method does not reach the
+/// bound; `None` where there is no singular point near.
+///
+/// `load_sign` and `known`: sign of the load rate and signature at the start.
+pub fn beside_singular(
+    start: &Start<'_>,
+    step: f64,
+    ends: &[End],
+    load_sign: f64,
+    known: Option<Signature>,
+    work: &mut Work,
+) -> Option<Ended> {
+    let bounds: Vec<End> = ends.iter().copied().filter(|end| end.is_bound()).collect();
+    if bounds.is_empty() {
+        return None;
+    }
+    let left_to = |bound: &End, state: &State| Watch::End(*bound).value(start.loading, start.modes, state, start.rate);
+    let beyond = LENGTHENED.iter().find_map(|factor| {
+        let beyond = start.advance(factor * step, &[], load_sign, simultaneous_limit_points::locate, work).ok()?;
+        let passed = bounds.iter().any(|bound| left_to(bound, &beyond.corrected.state) < -AT_END);
+        (passed && beyond.determinant.is_some()).then_some(beyond)
+    })?;
+    let here = Signature::at(start.loading, start.modes, start.state, start.rate, &mut None, work);
+    let located = known.or(here).and_then(|before| match test_functions::compare(start, before, &beyond, work).1 {
+        Change::None => None,
+        change => locate::locate(start, before, change, &beyond, work),
+    });
+    if let Some(located) = located {
+        return at_crossing(start, located, &bounds, &left_to, &beyond, work);
+    }
+    if here.is_some() {
+        return None;
+    }
+    // The start itself is singular.
+    let origin = Placed { place: 0.0, state: start.state.clone(), rate: start.rate.clone() };
+    WIDTHS.iter().rev().find_map(|width| {
+        let width = width * beyond.step;
+        let farther = start.reach(width, work).ok()?;
+        let farther = placed(start, &farther);
+        let (place, bound) = first_met(&origin, &farther, &bounds, &left_to)?;
+        let (state, rate) = between(&origin, &farther, place);
+        Some((ended(start, state, &rate, bound, width, &beyond)?, None, None))
+    })
+}
+
+/// Which of bound and bifurcation comes first.
+fn at_crossing(
+    start: &Start<'_>,
+    located: Located,
+    bounds: &[End],
+    left_to: &impl Fn(&End, &State) -> f64,
+    beyond: &Reached,
+    work: &mut Work,
+) -> Option<Ended> {
+    let [nearer, farther] = located.between(start, beyond.step, work)?;
+    let Located { mut point, crossing, .. } = located;
+    let width = farther.place - nearer.place;
+    if let Some(bound) = bounds.iter().find(|bound| left_to(bound, &point.corrected.state).abs() <= AT_END) {
+        // Both are within round-off of each other; the bound is met exactly.
+        let watch = Watch::End(*bound);
+        let slope = watch.slope(start.loading, start.modes, &point.corrected.state, &point.rate).unwrap_or(0.0);
+        let ahead = -left_to(bound, &point.corrected.state) / slope;
+        let state = point.corrected.state.advanced(&point.rate, if ahead.abs() <= ALONG { ahead } else { 0.0 });
+        let found = ended(start, state, &point.rate, *bound, width, beyond)?;
+        let after = crossing.after;
+        return Some((found, Some(crossing), Some(after)));
+    }
+    let (place, bound) = first_met(&nearer, &farther, bounds, left_to)?;
+    if place > point.step {
+        point.corrected.iterations_to_small = beyond.corrected.iterations_to_small;
+        let after = crossing.after;
+        return Some((point, Some(crossing), Some(after)));
+    }
+    let (state, rate) = between(&nearer, &farther, place);
+    Some((ended(start, state, &rate, bound, width, beyond)?, None, None))
+}
+
+/// The bound that is met first between two points, and where.
+fn first_met(
+    nearer: &Placed,
+    farther: &Placed,
+    bounds: &[End],
+    left_to: &impl Fn(&End, &State) -> f64,
+) -> Option<(f64, End)> {
+    let met = |bound: &End| {
+        let (first, last) = (left_to(bound, &nearer.state), left_to(bound, &farther.state));
+        let value = |place: f64| Some(left_to(bound, &between(nearer, farther, place).0));
+        let bracketed = first > 0.0 && last < 0.0;
+        let place = bracketed.then(|| find_root(value, (nearer.place, first), (farther.place, last), 0.0))??;
+        Some((place, *bound))
+    };
+    bounds.iter().filter_map(met).min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// The point at which a stage ends, its bound exact; `None` where its residual is not accepted.
+fn ended(
+    start: &Start<'_>,
+    mut state: State,
+    rate: &Rate,
+    bound: End,
+    width: f64,
+    beyond: &Reached,
+) -> Option<Box<Reached>> {
+    bound.make_exact(&mut state);
+    let system = ModeSystem::new(start.loading, start.modes, start.state);
+    let mut corrected = system.judged(state, start.force_scale);
+    corrected.iterations_to_small = beyond.corrected.iterations_to_small;
+    (corrected.residual <= ACCEPTED_RESIDUAL).then(|| {
+        let step = corrected.state.distance(start.state);
+        let mut point = Reached::new(corrected, unit(rate), step, width.powi(4));
+        (point.drift, point.event) = (start.drift.cloned(), Some(Watch::End(bound)));
+        point
+    })
+}

@@ -1,0 +1,439 @@
+//! The same for many unknowns, by sparse factorisations.
+//!
+//! Between two points of the path the equations change from `J` at some place by nearly `δ D`, `D` their change over the
+//! way between. So crossings are expected where `(J + δ D) φ = 0`, those nearest to the place first: block inverse iteration
+//! with `J⁻¹ D` (B. N. Parlett, *The Symmetric Eigenvalue Problem*, SIAM 1998, chapter 14). From there Newton's method on
+//!
+//! ```text
+//! F(x) + Ψ μ = 0,      G(x) = 0
+//! ```
+//!
+//! (`bordering`) finds the point where `k` motions are free together. Of the second equations there are `k (k + 1)` for
+//! `k + 1` unknowns: where `k > 1` eigenvalues are zero together all of them hold, and where some merely come close they do
+//! not. The path's own direction there is the root of `ψ_j F''(v, v) = 0` that continues it.
+
+use crate::algebra::SystemFactorisation;
+use crate::branching::bifurcation::locate::{AT_START, Crossing, Located};
+use crate::branching::bifurcation::singularity::bordering::{Bordering, orthonormal};
+use crate::branching::bifurcation::singularity::null_vectors::NullVectors;
+use crate::branching::bifurcation::singularity::test_functions::{Change, Signature};
+use crate::mechanics::equations::{Kind, ModeSystem};
+use crate::mechanics::problem::state::{Rate, State};
+use crate::resources::budget;
+use crate::step::corrector::cost_counters::Work;
+use crate::step::corrector::newton::ACCEPTED_RESIDUAL;
+use crate::step::interpolation::{Placed, between, placed, unit};
+use crate::step::segment::{Reached, Start};
+use nalgebra::{Complex, DMatrix, DVector};
+use std::sync::Arc;
+
+/// Rounds of block inverse iteration.
+const ROUNDS: usize = 10;
+/// Vectors of the block beyond those expected to cross: what else is near slows the others down.
+const BESIDE: usize = 3;
+/// Vectors of the block at the most: past that eigenvalues are counted in shorter and shorter parts of the step.
+const MOST_IN_BLOCK: usize = 8;
+/// What of a vector is across the others, over its size, up to which it is rounding.
+const AMONG_OTHERS: f64 = 1e-10;
+/// An eigenvalue whose imaginary part is no larger than this part of it is real.
+const REAL: f64 = 1e-6;
+/// Crossings that are expected this close to each other, over the bracket, are taken for one at first.
+const CLOSE: f64 = 2e-2;
+/// How far out of the bracket a crossing may be expected, over the bracket: the estimate is of second order.
+const OUTSIDE: f64 = 0.25;
+/// Parts of the bracket at which its crossings are looked for from, one after another.
+const FROM: [f64; 3] = [0.5, 0.2, 0.8];
+/// Newton iterations.
+const MOST_ITERATIONS: usize = 12;
+/// Correction (dimensionless) after which nothing is left: the next would be of the order of its square.
+const CONVERGED: f64 = 1e-9;
+/// The same where corrections no longer fall, which the residual has to bear out.
+const STALLED: f64 = 1e-6;
+/// Tests up to this are zero: the eigenvalues vanish together. As `TOGETHER` for dense matrices.
+const ZERO: f64 = 1e-10;
+/// How far the point may be from the interpolant of the path, over the step: that is off by the fourth power of the step.
+const BESIDE_PATH: f64 = 2e-2;
+/// Cosine of the angle within which the direction at the point continues that of the interpolant.
+const CONTINUES: f64 = 0.99;
+/// How far beside the point eigenvalues are counted, over the step.
+const BESIDE_POINT: f64 = 1e-4;
+/// Brackets within which the first of several crossings is looked for.
+const MOST_BRACKETS: usize = 6;
+
+/// A crossing that is expected.
+struct Expected {
+    place: f64,
+    /// Motions that become free.
+    motions: Vec<Rate>,
+}
+
+/// A singular point.
+struct Singular<'a> {
+    bordering: Bordering<'a>,
+    state: State,
+    /// `ψ_j F''(X_l, X_i)` by `l`, of all `j` and `i`.
+    curvatures: Vec<DMatrix<f64>>,
+    /// What is left of the tests, of `k > 1` motions that are not free together.
+    rest: DMatrix<f64>,
+}
+
+/// The first crossing of a step, as [`crate::branching::bifurcation::locate::locate`] has it; `None` where it is not made out so.
+pub(super) fn locate(start: &Start<'_>, before: Signature, change: Change, reached: &Reached) -> Option<Located> {
+    let system = ModeSystem::new(start.loading, start.modes, start.state);
+    let origin = Placed { place: 0.0, state: start.state.clone(), rate: start.rate.clone() };
+    let mut search = Search { start, system: &system, left: origin, right: placed(start, reached) };
+    for _ in 0..MOST_BRACKETS {
+        let located = search.within(before, change)?;
+        let is_first = match change {
+            Change::Count { net, .. } if located.crossing.eigenvalues >= net.unsigned_abs() => true,
+            Change::Count { .. } => search.is_first_counted(&located, before),
+            Change::None | Change::Odd => search.is_first_by_sign(&located, before),
+        };
+        if is_first {
+            return Some(located);
+        }
+        search.right = placed(start, &located.point);
+    }
+    None
+}
+
+struct Search<'s, 'a> {
+    start: &'s Start<'a>,
+    system: &'s ModeSystem<'a>,
+    left: Placed,
+    right: Placed,
+}
+
+impl Search<'_, '_> {
+    /// A crossing between the ends.
+    fn within(&mut self, before: Signature, change: Change) -> Option<Located> {
+        let count = match change {
+            Change::Count { net, .. } => net.unsigned_abs(),
+            Change::None | Change::Odd => 1,
+        };
+        let width = self.right.place - self.left.place;
+        FROM.iter().find_map(|part| {
+            let expected = self.expected(self.left.place + part * width, count)?;
+            let mut from = 0;
+            while let Some(first) = expected.get(from) {
+                // Those that are close to it may cross with it.
+                let near = |other: &&Expected| other.place - first.place <= CLOSE * width;
+                let close = expected[from..].iter().take_while(near).count();
+                let located = self.crossing(&expected[from..from + close], before, change);
+                if located.is_some() {
+                    return located;
+                }
+                from += close;
+            }
+            None
+        })
+    }
+
+    /// The crossings that are expected by the equations at a place and their change over the bracket, in order.
+    fn expected(&self, place: f64, count: usize) -> Option<Vec<Expected>> {
+        let (state, rate) = between(&self.left, &self.right, place);
+        let (system, width) = (self.system, self.right.place - self.left.place);
+        let iterate = system.iterate(state.clone());
+        let Some(SystemFactorisation::Sparse(factors)) = system.bordered(&iterate, &unit(&rate)) else { return None };
+        let at = |state: &State| system.assemble_sparse(&system.iterate(state.clone()), Kind::Rates);
+        let change = at(&self.right.state)?.minus(&at(&self.left.state)?, 1.0 / width);
+        let size = system.size();
+        let moving = system.loading.structure.unknowns() + 1;
+        let block = (count + BESIDE).min(MOST_IN_BLOCK).min(moving - 1);
+        // Parts in every direction, the same each time.
+        let mut vectors = DMatrix::from_fn(size, block, |row, column| {
+            let part = 0.5 + ((row * (5 + 2 * column) + 3 * column) % 13) as f64 / 26.0;
+            if row >= moving {
+                0.0
+            } else if (row * 7 + row / 3 * column) % 11 < 5 {
+                -part
+            } else {
+                part
+            }
+        });
+        let mut ritz = DMatrix::zeros(block, block);
+        for _ in 0..ROUNDS {
+            budget::spend(size * block);
+            vectors = orthonormal_columns(vectors, moving);
+            let mut next = DMatrix::zeros(size, block);
+            for (mut next, vector) in next.column_iter_mut().zip(vectors.column_iter()) {
+                let mut product = -change.times(&vector.into_owned());
+                product[size - 1] = 0.0;
+                if !factors.solve_once(&mut product) {
+                    return None;
+                }
+                next.copy_from(&product);
+            }
+            ritz = vectors.rows(0, moving).transpose() * next.rows(0, moving);
+            vectors = next;
+        }
+        let values = ritz.complex_eigenvalues();
+        let mut places: Vec<(f64, f64)> = values
+            .iter()
+            .filter(|value| value.re != 0.0 && value.im.abs() <= REAL * value.re.abs())
+            .map(|value| (place + 1.0 / value.re, value.re))
+            .filter(|(found, _)| {
+                *found >= self.left.place - OUTSIDE * width && *found <= self.right.place + OUTSIDE * width
+            })
+            .collect();
+        places.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let rate_of = |weights: DVector<f64>| {
+            let values = &vectors * weights;
+            system.rate_at(&iterate, &values, Kind::Rates).normalised()
+        };
+        let mut expected = Vec::new();
+        for close in places.chunk_by(|a, b| b.0 - a.0 <= CLOSE * width) {
+            // The subspace that belongs to them.
+            let product = close.iter().fold(DMatrix::identity(block, block), |product, (_, value)| {
+                let scaled = &ritz / *value - DMatrix::identity(block, block);
+                product * scaled
+            });
+            let vectors = product.svd(false, true).v_t?;
+            let motions: Option<Vec<Rate>> =
+                (0..close.len()).map(|index| rate_of(vectors.row(block - 1 - index).transpose())).collect();
+            let motions = motions?;
+            expected.push(Expected { place: close[0].0, motions });
+        }
+        Some(expected)
+    }
+
+    /// The crossing at which motions become free, alone or together.
+    fn crossing(&mut self, expected: &[Expected], before: Signature, change: Change) -> Option<Located> {
+        let first = expected.first()?;
+        let motions: Vec<Rate> = expected.iter().flat_map(|expected| expected.motions.iter().cloned()).collect();
+        let (state, rate) = between(&self.left, &self.right, first.place);
+        let mut singular = self.singular(state, &unit(&rate), motions)?;
+        if singular.bordering.left.len() > 1 && singular.rest.amax() > ZERO {
+            // Close to each other, but apart.
+            let (state, rate, motion) = singular.first_apart(self.start.state)?;
+            singular = self.singular(state, &rate, vec![motion])?;
+        } else if singular.bordering.left.len() > 1
+            && let Some((state, ..)) = singular.first_apart(self.start.state)
+        {
+            // As good as together: the point is where the first is.
+            singular.state = state;
+        }
+        self.located(&singular, before, change)
+    }
+
+    /// Newton's method.
+    fn singular(&self, mut state: State, along: &Rate, motions: Vec<Rate>) -> Option<Singular<'_>> {
+        let structure = self.start.loading.structure;
+        let reach = self.right.place - self.left.place;
+        let mut rows = orthonormal(std::iter::once(along.clone()).chain(motions))?;
+        let forces = |rate: &Rate| {
+            DVector::from_iterator(
+                structure.unknowns(),
+                structure.freedom_of.iter().map(|freedom| rate.displacement[*freedom]),
+            )
+        };
+        let mut columns: Vec<DVector<f64>> =
+            rows[1..].iter().filter_map(|rate| forces(rate).try_normalize(0.0)).collect();
+        if columns.len() + 1 != rows.len() {
+            return None;
+        }
+        let mut values = DVector::zeros(self.system.size());
+        let mut force = vec![0.0; structure.freedoms()];
+        let mut least = f64::INFINITY;
+        for _ in 0..MOST_ITERATIONS {
+            let mut iterate = self.system.iterate(state);
+            self.system.make_consistent(&mut iterate);
+            self.system.residual(&iterate, &mut values, &mut force);
+            let bordering = Bordering::new(self.system, iterate.state.clone(), &rows, &columns)?;
+            let across = bordering.solve(&values)?;
+            let curvatures: Option<Vec<DMatrix<f64>>> =
+                bordering.right.iter().map(|right| bordering.curvatures(&bordering.rate(right))).collect();
+            let curvatures = curvatures?;
+            let mut tests = bordering.tests.clone();
+            // What the step across the null vectors does to the tests; too short a one does nothing.
+            if let Some(moved) = bordering.curvatures(&bordering.rate(&across)) {
+                tests += moved;
+            }
+            let weights = weights(&tests, &curvatures)?;
+            curvatures.iter().zip(weights.iter()).for_each(|(curvatures, weight)| tests -= curvatures * *weight);
+            let mut correction = across;
+            for (weight, right) in weights.iter().zip(&bordering.right) {
+                correction.axpy(-weight, right, 1.0);
+            }
+            let size = self.system.length_of(&correction);
+            if !(size.is_finite() && size <= reach) {
+                return None;
+            }
+            state = self.system.corrected_by(iterate, &correction).state;
+            if state.distance(self.start.state) <= AT_START {
+                return None;
+            }
+            let stalled = size > 0.5 * least;
+            // One test is zero after each correction, as far as that goes; whether it was tells.
+            let is_zero = || columns.len() > 1 || bordering.tests.amax() <= ZERO;
+            if size <= CONVERGED || (stalled && size <= STALLED && is_zero()) {
+                return Some(Singular { bordering, state, curvatures, rest: tests });
+            }
+            if stalled && least.is_finite() && size > 4.0 * least {
+                return None;
+            }
+            least = least.min(size);
+            (rows, columns) = bordering.borders()?;
+        }
+        None
+    }
+
+    /// What was found as the end of a step, where it continues the path.
+    fn located(&self, singular: &Singular<'_>, before: Signature, change: Change) -> Option<Located> {
+        let Search { start, system, .. } = self;
+        let place = singular.state.distance(start.state);
+        if place <= AT_START || place > self.right.place {
+            return None;
+        }
+        let (near, rate) = between(&self.left, &self.right, place);
+        if near.distance(&singular.state) > BESIDE_PATH * self.right.place {
+            return None;
+        }
+        let rate = singular.continued(&unit(&rate))?;
+        let corrected = system.judged(singular.state.clone(), start.force_scale);
+        if corrected.residual > ACCEPTED_RESIDUAL {
+            return None;
+        }
+        let corank = singular.bordering.left.len();
+        let eigenvalues = match change {
+            Change::Count { net, .. } => corank.min(net.unsigned_abs()),
+            Change::None | Change::Odd => corank,
+        };
+        let (right, left) = (singular.bordering.right.clone(), singular.bordering.left.clone());
+        let nulls = (eigenvalues == corank).then(|| Arc::new(NullVectors { right, left }));
+        let mut after = before.past(change, eigenvalues)?;
+        if change == Change::Odd && before.negative.is_some() {
+            // Whether these motions are counted is not known: those that move slipping contacts are not.
+            after.negative = self.counted(&corrected.state, &rate, 1.0, after);
+        }
+        let crossing = Crossing { eigenvalues, grazing: false, after, nulls };
+        let error = singular.bordering.state.distance(&singular.state);
+        let mut point = Reached::new(corrected, rate, place, error.powi(2).max(f64::EPSILON));
+        point.drift = start.drift.cloned();
+        Some(Located { point, crossing, between: None })
+    }
+
+    /// Whether an even number of others comes before.
+    fn is_first_by_sign(&self, located: &Located, before: Signature) -> bool {
+        let Reached { corrected, rate, .. } = &*located.point;
+        let state = corrected.state.advanced(rate, -BESIDE_POINT * self.right.place);
+        let factors = self.system.bordered(&self.system.iterate(state), rate);
+        factors.is_some_and(|factors| factors.determinant_sign() == before.determinant)
+    }
+
+    /// Whether no other crossing comes before.
+    fn is_first_counted(&self, located: &Located, before: Signature) -> bool {
+        let Reached { corrected, rate, .. } = &*located.point;
+        self.counted(&corrected.state, rate, -1.0, before) == before.negative
+    }
+
+    /// Negative eigenvalues just past a point, or, the other way, just before it.
+    fn counted(&self, point: &State, rate: &Rate, way: f64, signature: Signature) -> Option<usize> {
+        let state = point.advanced(rate, way * BESIDE_POINT * self.right.place);
+        let Start { loading, modes, state: start, .. } = *self.start;
+        let mut work = Work::default();
+        Signature::with_determinant(loading, modes, start, &state, signature.determinant, &mut work)?.negative
+    }
+}
+
+impl Singular<'_> {
+    /// `ψ_j F''(v, v)` and half its gradient, `v` being so much of each null vector.
+    fn forms(&self, weights: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
+        let corank = self.bordering.left.len();
+        let mut gradient = DMatrix::zeros(corank, corank + 1);
+        for (curvatures, weight) in self.curvatures.iter().zip(weights.iter()) {
+            gradient += curvatures * *weight;
+        }
+        (&gradient * weights, gradient)
+    }
+
+    /// The direction among the null vectors that continues one which is about the path's.
+    fn continued(&self, along: &Rate) -> Option<Rate> {
+        let rates: Vec<Rate> = self.bordering.right.iter().map(|right| self.bordering.rate(right)).collect();
+        let count = rates.len();
+        let gram = DMatrix::from_fn(count, count, |i, j| rates[i].product(&rates[j]));
+        let first = gram.lu().solve(&DVector::from_fn(count, |i, _| rates[i].product(along)))?;
+        let mut weights = first.clone();
+        for _ in 0..MOST_ITERATIONS {
+            let (values, gradient) = self.forms(&weights);
+            let mut matrix = (gradient * 2.0).insert_row(count - 1, 0.0);
+            matrix.set_row(count - 1, &first.transpose());
+            let right = values.insert_row(count - 1, first.dot(&weights) - first.norm_squared());
+            let correction = matrix.svd(true, true).solve(&right, f64::EPSILON).ok()?;
+            weights -= &correction;
+            if correction.amax() <= f64::EPSILON {
+                break;
+            }
+        }
+        let mut rate = rates[0].clone();
+        rate.scale(weights[0]);
+        rates[1..].iter().zip(weights.iter().skip(1)).for_each(|(other, weight)| rate.add(other, *weight));
+        let rate = rate.normalised()?;
+        (rate.product(along) >= CONTINUES).then_some(rate)
+    }
+
+    /// Of crossings that are close to each other, but apart: the first along the path, with its motion.
+    fn first_apart(&self, start: &State) -> Option<(State, Rate, Rate)> {
+        let corank = self.bordering.left.len();
+        let along = self.bordering.rate(&self.bordering.right[0]);
+        // The first null vector is along the path; G of the others changes by -ψ F''(t, X).
+        let tests = self.rest.columns(1, corank).into_owned();
+        let slopes = -self.curvatures[0].columns(1, corank).into_owned();
+        let by_place = -(slopes.lu().solve(&tests)?);
+        let values = by_place.complex_eigenvalues();
+        let is_real = |value: &&Complex<f64>| value.im.abs() <= REAL * value.re.abs().max(ZERO);
+        let is_ahead = |place: &f64| {
+            let chord = start.chord(&self.state.advanced(&along, *place));
+            chord.product(&along) > AT_START
+        };
+        let places = values.iter().filter(is_real).map(|value| value.re).filter(is_ahead);
+        let place = places.min_by(f64::total_cmp)?;
+        let vectors = (&tests + slopes_times(&self.curvatures[0], corank, place)).svd(false, true).v_t?;
+        let weights = vectors.row(corank - 1);
+        let mut motion = along.clone();
+        motion.scale(0.0);
+        for (weight, right) in weights.iter().zip(&self.bordering.right[1..]) {
+            motion.add(&self.bordering.rate(right), *weight);
+        }
+        let state = self.state.advanced(&along, place);
+        Some((state, along.normalised()?, motion.normalised()?))
+    }
+}
+
+/// The change of the tests of the null vectors beside the path's over a way along it.
+fn slopes_times(curvatures: &DMatrix<f64>, corank: usize, place: f64) -> DMatrix<f64> {
+    curvatures.columns(1, corank) * -place
+}
+
+/// So much of each null vector as brings the tests to zero, or as near as they come together: `G_ji = ψ_j F''(X_l, X_i) w_l`.
+fn weights(tests: &DMatrix<f64>, curvatures: &[DMatrix<f64>]) -> Option<DVector<f64>> {
+    let count = tests.len();
+    let matrix = DMatrix::from_fn(count, curvatures.len(), |row, l| curvatures[l][row]);
+    let right = DVector::from_column_slice(tests.as_slice());
+    let scale = matrix.amax();
+    if !(scale > 0.0 && scale.is_finite()) {
+        return None;
+    }
+    (matrix / scale).svd(true, true).solve(&(right / scale), ZERO).ok()
+}
+
+/// Columns made orthonormal over their first rows; one that lies among the others becomes zero.
+fn orthonormal_columns(mut vectors: DMatrix<f64>, rows: usize) -> DMatrix<f64> {
+    for index in 0..vectors.ncols() {
+        let before = vectors.column(index).rows(0, rows).norm();
+        for _ in 0..2 {
+            for other in 0..index {
+                let product = vectors.column(index).rows(0, rows).dot(&vectors.column(other).rows(0, rows));
+                let other = vectors.column(other).into_owned();
+                vectors.column_mut(index).axpy(-product, &other, 1.0);
+            }
+        }
+        let size = vectors.column(index).rows(0, rows).norm();
+        if size > AMONG_OTHERS * before && size.is_finite() {
+            vectors.column_mut(index).unscale_mut(size);
+        } else {
+            vectors.column_mut(index).fill(0.0);
+        }
+    }
+    vectors
+}

@@ -1,0 +1,357 @@
+//! The directions at a point within a mode whose contacts on the cone all slip, where a cheap test says that there are two.
+//!
+//! With every contact on the cone kept closed let `b` be their slip velocities and `x` the other free motions. Equilibrium
+//! along `x`, and along the slips with `μ` times the normal added, so that what friction bears drops out, is
+//!
+//! ```text
+//! a = A (x, b) + q ṡ,      a_x = 0,      0 <= a_b ⊥ b >= 0,      A = Wᵀ K T (and how reactions turn with the place)
+//! ```
+//!
+//! with the motions `T` and the tests `W = T + μ n`; `a_b` is how fast the tractions leave the cone. Where the symmetric part
+//! of `A` is positive definite, so is that of the matrix of the slips alone (`b` with the `x` that it makes), which is then
+//! a P-matrix: each sign of the load rate has one ray (see `rates::p_matrix`). One is the way on. The other, as a rule,
+//! is all contacts stuck, which its own equations confirm. Where it is not definite it may be so across the load, and each
+//! sign of the load's power has one ray (see `one_direction::proof`); or the slips are few, and their matrix is formed (see
+//! `rates::parametric`), which a single one does not need.
+//!
+//! [`many`] are the sparse matrices, [`static_condensation`] condenses the dense ones.
+//!
+//! `None` is returned where anything is not so, or by less than a wide margin: then `directions` looks everywhere.
+
+pub(crate) mod many;
+pub(crate) mod static_condensation;
+#[cfg(test)]
+mod tests;
+
+use crate::branching::directions::candidate::is_mechanism;
+use crate::branching::directions::choice::{Choice, Rules, mark_retrace, potential_rate, sign_of};
+use crate::complementarity::rates::p_matrix::is_definite;
+use crate::complementarity::rates::parametric_lcp::slip_or_stick;
+use crate::mechanics::contact::vector::{Vector, add, dot};
+use crate::mechanics::contact::{Mode, Reaction};
+use crate::mechanics::multi_contact::contact_status::Standing;
+use crate::mechanics::problem::loading::{Loading, of_node};
+use crate::mechanics::problem::state::{Rate, State};
+use crate::step::corrector::cached_factorisation::AtHand;
+use nalgebra::{DMatrix, DVector};
+use smallvec::{SmallVec, smallvec};
+use static_condensation::Response;
+
+/// What is not zero by this much (rates of unit arc length; forces against the largest of them) leaves no doubt.
+const MARGIN: f64 = 1e-7;
+/// Eigenvalues up to this, relative, count as zero.
+const DEFINITE: f64 = 1e-9;
+/// Unknowns up to which matrices are dense: their entries are few, and only the profile is factorised.
+const MOST_DENSE: usize = 40;
+/// Load rates below this may be zero.
+const RESTING: f64 = 1e-8;
+
+/// A motion of a degree of freedom with one of the unknowns, and the weight of its equation in that of the unknown.
+#[derive(Clone, Copy)]
+struct Part {
+    unknown: usize,
+    motion: f64,
+    test: f64,
+}
+
+/// How a degree of freedom moves.
+struct Place {
+    /// Its first part and their number.
+    first: usize,
+    count: usize,
+    /// Velocity per load rate.
+    driven: f64,
+}
+
+struct Unknown {
+    is_slip: bool,
+    /// A degree of freedom at the unknown's own node, each another.
+    freedom: usize,
+}
+
+/// A contact that slips.
+struct Slip {
+    contact: usize,
+    direction: Vector,
+}
+
+/// The unknowns `(x, b)`, in the order of the nodes; of few nodes they need no memory of their own.
+struct Reduced<'a> {
+    loading: Loading<'a>,
+    state: &'a State,
+    /// Of each degree of freedom.
+    places: SmallVec<[Place; 6]>,
+    parts: SmallVec<[Part; 4]>,
+    slips: SmallVec<[Slip; 1]>,
+    unknowns: SmallVec<[Unknown; 4]>,
+    /// Entries on the diagonal blocks by which reactions turn with the place.
+    turning: SmallVec<[(usize, usize, f64); 1]>,
+    /// The closed contact of each node.
+    holder: SmallVec<[Option<usize>; 2]>,
+}
+
+/// How the degrees of freedom move.
+#[derive(Clone, Copy)]
+struct Motions<'a> {
+    places: &'a [Place],
+    parts: &'a [Part],
+}
+
+impl<'a> Motions<'a> {
+    /// The parts of a degree of freedom, and its velocity per load rate.
+    fn of(self, freedom: usize) -> (&'a [Part], f64) {
+        let Place { first, count, driven } = self.places[freedom];
+        (&self.parts[first..first + count], driven)
+    }
+}
+
+/// The way on and the other direction, if there are no more.
+pub fn directions_going_on(
+    loading: Loading<'_>,
+    state: &State,
+    standings: &[Standing],
+    modes: &[Mode],
+    incoming: &Rate,
+    rules: Rules<'_>,
+) -> Option<Vec<Choice>> {
+    if !rules.effort.certify {
+        return None;
+    }
+    let reduced = Reduced::new(loading, state, standings, modes)?;
+    let goes_on = |slip: &Slip| dot(&slip.direction, &loading.relative_rate(slip.contact, incoming)) > MARGIN;
+    if reduced.slips.is_empty() || !reduced.slips.iter().all(goes_on) {
+        return None;
+    }
+    let stuck = reduced.stuck(incoming)?;
+    let stuck_modes = standings.iter().zip(modes).map(|(standing, mode)| match standing {
+        Standing::OnCone { .. } => Mode::Stick,
+        Standing::Settled(_) | Standing::Touching | Standing::Cornered { .. } => *mode,
+    });
+    let dissipation: f64 = reduced
+        .slips
+        .iter()
+        .map(|slip| -dot(&state.reactions[slip.contact].tangential, &loading.relative_rate(slip.contact, incoming)))
+        .sum();
+    let choice = |rate: Rate, modes: Vec<Mode>, dissipation: f64| Choice {
+        at_hand: AtHand::default(),
+        dissipation,
+        potential_rate: potential_rate(loading, state, &rate, dissipation),
+        load_sign: sign_of(rate.load),
+        retrace: false,
+        mechanism: is_mechanism(loading, state, &rate),
+        is_singular: false,
+        beside: None,
+        is_tried: false,
+        rate,
+        modes,
+    };
+    let slipping_modes = standings.iter().zip(modes).map(|(standing, mode)| match standing {
+        Standing::OnCone { direction } => Mode::Slip { direction: *direction },
+        Standing::Settled(_) | Standing::Touching | Standing::Cornered { .. } => *mode,
+    });
+    let mut options = vec![
+        choice(stuck, stuck_modes.collect(), 0.0),
+        choice(incoming.clone(), slipping_modes.collect(), dissipation),
+    ];
+    mark_retrace(loading, state, &mut options, incoming);
+    Some(options)
+}
+
+impl<'a> Reduced<'a> {
+    /// `None` where some contact can do more than slip or stick, where several close on one node, and where supports guide
+    /// a closed node.
+    fn new(loading: Loading<'a>, state: &'a State, standings: &[Standing], modes: &[Mode]) -> Option<Self> {
+        let structure = loading.structure;
+        let dimension = structure.dimension;
+        let freedoms = structure.freedoms();
+        let mut holder: SmallVec<[Option<usize>; 2]> = smallvec![None; freedoms / dimension];
+        for (contact, (standing, mode)) in standings.iter().zip(modes).enumerate() {
+            let agrees = match (standing, mode) {
+                (Standing::Settled(Mode::Free), Mode::Free) => continue,
+                (Standing::Settled(Mode::Stick), Mode::Stick) => true,
+                (Standing::Settled(Mode::Slip { .. }), Mode::Slip { .. }) => loading.contacts[contact].tangents() == 0,
+                (Standing::OnCone { direction }, Mode::Slip { direction: along }) => dot(direction, along) > 0.0,
+                _ => false,
+            };
+            let node = loading.contacts[contact].node;
+            let is_free = structure.unknown_of[node * dimension..(node + 1) * dimension].iter().all(Option::is_some);
+            if !agrees || !is_free || holder[node].replace(contact).is_some() {
+                return None;
+            }
+        }
+        let mut reduced = Self {
+            loading,
+            state,
+            places: SmallVec::with_capacity(freedoms),
+            parts: SmallVec::with_capacity(structure.unknowns()),
+            slips: SmallVec::new(),
+            unknowns: SmallVec::with_capacity(structure.unknowns()),
+            turning: SmallVec::new(),
+            holder: SmallVec::new(),
+        };
+        for (node, holder) in holder.iter().enumerate() {
+            match holder {
+                Some(contact) => reduced.add_closed(node, *contact, &standings[*contact]),
+                None => (node * dimension..(node + 1) * dimension).for_each(|freedom| reduced.add_free(freedom)),
+            }
+        }
+        reduced.holder = holder;
+        Some(reduced)
+    }
+
+    fn add_free(&mut self, freedom: usize) {
+        let is_free = self.loading.structure.unknown_of[freedom].is_some();
+        let (first, driven) = (self.parts.len(), self.loading.support_rate(freedom));
+        self.places.push(Place { first, count: usize::from(is_free), driven });
+        if is_free {
+            self.parts.push(Part { unknown: self.unknowns.len(), motion: 1.0, test: 1.0 });
+            self.unknowns.push(Unknown { is_slip: false, freedom });
+        }
+    }
+
+    fn add_closed(&mut self, node: usize, contact: usize, standing: &Standing) {
+        let dimension = self.loading.structure.dimension;
+        let frame = self.loading.frame(contact, self.state);
+        let first = self.unknowns.len();
+        let normal_reaction = self.state.reactions[contact].normal;
+        // Motions and tests.
+        let mut along: [(Vector, Vector); 2] = Default::default();
+        let count = match standing {
+            Standing::OnCone { direction } => {
+                let friction = self.loading.contacts[contact].friction;
+                along[0] = (*direction, add(direction, friction, &frame.normal));
+                self.turning.push((first, first, -frame.curvature * normal_reaction * (1.0 + friction * friction)));
+                self.slips.push(Slip { contact, direction: *direction });
+                1
+            }
+            Standing::Settled(Mode::Slip { .. }) => {
+                for (k, tangent) in frame.tangents.iter().enumerate().take(dimension - 1) {
+                    along[k] = (*tangent, *tangent);
+                    self.turning.push((first + k, first + k, -frame.curvature * normal_reaction));
+                }
+                dimension - 1
+            }
+            Standing::Settled(_) | Standing::Touching | Standing::Cornered { .. } => 0,
+        };
+        let is_slip = matches!(standing, Standing::OnCone { .. });
+        self.unknowns.extend((0..count).map(|k| Unknown { is_slip, freedom: node * dimension + k }));
+        for component in 0..dimension {
+            let driven = self.loading.pattern.shifts[contact][component];
+            self.places.push(Place { first: self.parts.len(), count, driven });
+            for (k, (motion, test)) in along.iter().enumerate().take(count) {
+                self.parts.push(Part { unknown: first + k, motion: motion[component], test: test[component] });
+            }
+        }
+    }
+
+    fn motions(&self) -> Motions<'_> {
+        Motions { places: &self.places, parts: &self.parts }
+    }
+
+    /// Calls `add` for every entry of `A`, and of the column of the load rate (`None`).
+    fn each_entry(&self, add: &mut impl FnMut(usize, Option<usize>, f64)) {
+        let (structure, motions) = (self.loading.structure, self.motions());
+        structure.each_stiffness(&self.state.displacement, &mut |row, column, value| {
+            for test in motions.of(row).0 {
+                let value = test.test * value;
+                if value == 0.0 {
+                    continue;
+                }
+                let (parts, driven) = motions.of(column);
+                for part in parts {
+                    add(test.unknown, Some(part.unknown), value * part.motion);
+                }
+                if driven != 0.0 {
+                    add(test.unknown, None, value * driven);
+                }
+            }
+        });
+        for (freedom, force) in self.loading.pattern.forces.iter().enumerate().filter(|(_, force)| **force != 0.0) {
+            for test in motions.of(freedom).0 {
+                add(test.unknown, None, -test.test * force);
+            }
+        }
+        self.turning.iter().for_each(|(row, column, value)| add(*row, Some(*column), *value));
+    }
+
+    /// The direction along which all contacts on the cone stick, if that and the way on are all there are.
+    fn stuck(&self, incoming: &Rate) -> Option<Rate> {
+        if self.unknowns.len() > MOST_DENSE {
+            return self.stuck_among_many(incoming);
+        }
+        let others = self.unknowns_where(false);
+        let is_sole = self.slips.len() == 1;
+        let (mut matrix, mut load) =
+            if is_sole && others.is_empty() { (DMatrix::zeros(0, 0), DVector::zeros(0)) } else { self.equations() };
+        let response = Response::new(&matrix, &load, &others)?;
+        if is_sole {
+            // With the others condensed there are two solutions of `0 <= m b + q ṡ ⊥ b >= 0` where `q` is not zero, which
+            // the stuck rate shows, whatever `m`: the slip that goes on, its load rate `-m b / q`, and `b = 0` with `q ṡ > 0`.
+            return self.stuck_rate(&others, &response.load);
+        }
+        if incoming.load.abs() > RESTING && is_definite(matrix.clone()) {
+            return self.stuck_rate(&others, &response.load).filter(|stuck| stuck.load * incoming.load < 0.0);
+        }
+        if !others.is_empty() {
+            (matrix, load) = response.condensed(&matrix, &load, &others, &self.unknowns_where(true))?;
+        }
+        if slip_or_stick(matrix, load) { self.stuck_rate(&others, &response.load) } else { None }
+    }
+
+    /// `A`, and the column of the load rate, dense.
+    fn equations(&self) -> (DMatrix<f64>, DVector<f64>) {
+        let count = self.unknowns.len();
+        let (mut matrix, mut load) = (DMatrix::zeros(count, count), DVector::zeros(count));
+        self.each_entry(&mut |row, column, value| match column {
+            Some(column) => matrix[(row, column)] += value,
+            None => load[row] += value,
+        });
+        (matrix, load)
+    }
+
+    fn unknowns_where(&self, is_slip: bool) -> SmallVec<[usize; 4]> {
+        (0..self.unknowns.len()).filter(|unknown| self.unknowns[*unknown].is_slip == is_slip).collect()
+    }
+
+    /// The rate at which nothing slips, of unit arc length, in the sense in which all contacts stay within their cones;
+    /// `None` where they do not by a wide margin. `static_condensation` is what the other unknowns do for unit load rate.
+    fn stuck_rate(&self, others: &[usize], response: &DVector<f64>) -> Option<Rate> {
+        let (loading, structure) = (self.loading, self.loading.structure);
+        let mut velocities: SmallVec<[f64; 4]> = smallvec![0.0; self.unknowns.len()];
+        others.iter().zip(response.iter()).for_each(|(unknown, value)| velocities[*unknown] = *value);
+        let (motions, velocities) = (self.motions(), &velocities[..]);
+        let velocity = |freedom: usize| {
+            let (parts, driven) = motions.of(freedom);
+            let own: f64 = parts.iter().map(|part| part.motion * velocities[part.unknown]).sum();
+            own + driven
+        };
+        let displacement: Vec<f64> = (0..structure.freedoms()).map(velocity).collect();
+        let mut forces: SmallVec<[f64; 6]> = SmallVec::from_slice(&loading.pattern.forces);
+        let forces = &mut forces[..];
+        forces.iter_mut().for_each(|force| *force = -*force);
+        structure.each_stiffness(&self.state.displacement, &mut |row, column, value| {
+            forces[row] += value * displacement[column];
+        });
+        let mut rate = Rate { displacement, load: 1.0, reactions: vec![Reaction::default(); loading.contacts.len()] };
+        let dimension = structure.dimension;
+        for (node, contact) in self.holder.iter().enumerate().filter_map(|(node, holder)| Some((node, (*holder)?))) {
+            rate.reactions[contact] = loading.taken_by(contact, self.state, &of_node(dimension, node, forces));
+        }
+        let (size, largest) = (rate.size(), rate.largest_reaction());
+        if !size.is_finite() || size <= MARGIN * largest {
+            return None;
+        }
+        // How fast a contact's force goes into its cone.
+        let inward = |slip: &Slip| {
+            let reaction = &rate.reactions[slip.contact];
+            loading.contacts[slip.contact].friction * reaction.normal + dot(&slip.direction, &reaction.tangential)
+        };
+        let sense = 1.0_f64.copysign(self.slips.first().map_or(1.0, inward));
+        let least = MARGIN * largest.max(f64::MIN_POSITIVE);
+        if !self.slips.iter().all(|slip| sense * inward(slip) > least) {
+            return None;
+        }
+        rate.scale(sense / size);
+        Some(rate)
+    }
+}

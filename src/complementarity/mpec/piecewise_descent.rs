@@ -1,0 +1,268 @@
+//! Descent over branches: a pattern of zero members is solved as a smooth program, the result is judged, and where a
+//! neighbouring branch leads further down, that one is solved next.
+//!
+//! A branch program has no products, so it meets the usual constraint qualifications where the regularised one with a
+//! small `ε` does not, and its solution is complementary exactly. The objective falls from branch to branch, hence no
+//! branch comes twice; the number of changes is bounded all the same.
+//!
+//! Source: the piecewise programming of Z.-Q. Luo, J.-S. Pang and D. Ralph, *Mathematical Programs with Equilibrium
+//! Constraints* (Cambridge University Press, 1996), doi:10.1017/CBO9780511983658.
+
+use nalgebra::DVector;
+
+use crate::complementarity::mpec::program::cone;
+use crate::complementarity::mpec::program::evaluation::Evaluation;
+use crate::complementarity::mpec::program::problem::Problem;
+use crate::complementarity::mpec::quadratic_program::driver::StepSolver;
+use crate::complementarity::mpec::result::StationarityKind;
+use crate::complementarity::mpec::settings::{Finish, Settings};
+use crate::complementarity::mpec::smooth_program::cone_rows::ConeTreatment;
+use crate::complementarity::mpec::smooth_program::pair_treatment::{PairTreatment, Pattern};
+use crate::complementarity::mpec::smooth_program::relaxation::{Multipliers, Rows};
+use crate::complementarity::mpec::smooth_program::sqp::{self, SqpEnd, SqpOutcome, SqpSettings};
+use crate::complementarity::mpec::stationarity::{self, NoVerdict};
+use crate::resources::cancel::CancelFlag;
+
+/// A pair whose smaller member is less than this part of the larger has a clear pattern.
+const CLEAR_RATIO: f64 = 0.05;
+/// Members of a pair, at a converged point, within which both are zero to rounding.
+const BOTH_ZERO: f64 = 1e-11;
+/// How much further than what a settled point leaves violated its members are from certain.
+const LEEWAY: f64 = 10.0;
+/// Decrease of the objective that justifies another branch, relative to `1 + |f|`.
+const WORTHWHILE: f64 = 1e-10;
+
+/// Most pairs whose branches are all tried before a problem is called infeasible, whatever the settings ask for.
+const ENUMERATION_CEILING: usize = 10;
+/// A point that a search over branches or a regularised program ended at.
+#[derive(Debug, Clone)]
+pub struct Candidate {
+    pub end: SqpEnd,
+    pub x: DVector<f64>,
+    pub at: Evaluation,
+    pub multipliers: Multipliers,
+    pub stationarity: StationarityKind,
+}
+
+impl Candidate {
+    /// Largest violation, complementarity included.
+    pub fn infeasibility(&self) -> f64 {
+        self.at.largest_violation().max(self.at.largest_product())
+    }
+
+    pub fn is_feasible(&self, tolerance: f64) -> bool {
+        self.infeasibility() <= tolerance
+    }
+
+    /// Nothing better can be hoped for locally.
+    pub fn is_final(&self, tolerance: f64) -> bool {
+        self.is_feasible(tolerance)
+            && match self.stationarity {
+                StationarityKind::Strong | StationarityKind::Branch => true,
+                StationarityKind::Mordukhovich
+                | StationarityKind::Clarke
+                | StationarityKind::Weak
+                | StationarityKind::OneBranch
+                | StationarityKind::Unknown => self.end == SqpEnd::Settled,
+            }
+    }
+}
+
+/// The branch whose zero members are the smaller ones.
+pub fn nearest_pattern(at: &Evaluation) -> Pattern {
+    let pairs = at.first.iter().zip(at.second.iter());
+    Pattern {
+        pairs: pairs.map(|(a, b)| if a <= b { PairTreatment::FirstZero } else { PairTreatment::SecondZero }).collect(),
+        cones: at.cones.pairs().map(|(a, b)| ConeTreatment::nearest(a, b)).collect(),
+    }
+}
+
+/// The branch nearest to a point, then those around it: all of them where there are few scalar pairs (at most `limit`) and
+/// no cones, else those that differ in one pair.
+pub fn patterns_around(at: &Evaluation, limit: usize) -> Vec<Pattern> {
+    let nearest = nearest_pattern(at);
+    let pairs = nearest.pairs.len();
+    let flips: Vec<Vec<usize>> = if pairs <= limit.min(ENUMERATION_CEILING) && nearest.cones.is_empty() {
+        let mut subsets: Vec<usize> = (0..1_usize << pairs).collect();
+        subsets.sort_by_key(|subset| subset.count_ones());
+        subsets.into_iter().map(|subset| (0..pairs).filter(|pair| subset >> pair & 1 == 1).collect()).collect()
+    } else {
+        std::iter::once(vec![]).chain((0..pairs.min(1 << ENUMERATION_CEILING)).map(|pair| vec![pair])).collect()
+    };
+    let flipped = |flipped: Vec<usize>| {
+        let mut pattern = nearest.clone();
+        for pair in flipped {
+            pattern.pairs[pair] = match pattern.pairs[pair] {
+                PairTreatment::FirstZero => PairTreatment::SecondZero,
+                PairTreatment::SecondZero
+                | PairTreatment::Product(_)
+                | PairTreatment::BothFree
+                | PairTreatment::BothZero => PairTreatment::FirstZero,
+            };
+        }
+        pattern
+    };
+    let mut patterns: Vec<Pattern> = flips.into_iter().map(flipped).collect();
+    for (pair, (a, b)) in at.cones.pairs().enumerate().take(1 << ENUMERATION_CEILING) {
+        for treatment in nearest.cones[pair].others(a, b) {
+            let mut pattern = nearest.clone();
+            pattern.cones[pair] = treatment;
+            patterns.push(pattern);
+        }
+    }
+    patterns
+}
+
+/// True where every pair's smaller member is small beside the larger, and every cone pair nearly complementary.
+pub fn is_clear(at: &Evaluation) -> bool {
+    let largest = |v: &[f64]| v.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    at.first.iter().zip(at.second.iter()).all(|(a, b)| a.min(*b) <= CLEAR_RATIO * a.max(*b))
+        && at.cones.pairs().all(|(a, b)| cone::natural_residual(a, b) <= CLEAR_RATIO * largest(a).max(largest(b)))
+}
+
+/// Solves the branch `pair_treatment` from `start` and follows descent into its neighbours. The end
+/// of the candidate says where the whole solve has to stop: cancelled, or a function that is not finite.
+pub fn descend<P: Problem + ?Sized>(
+    problem: &P,
+    bounds: &(DVector<f64>, DVector<f64>),
+    start: &DVector<f64>,
+    mut pattern: Pattern,
+    settings: &Settings,
+    steps: &mut StepSolver,
+    cancel: &CancelFlag,
+) -> Candidate {
+    let mut stop_when_settled = settings.finish == Finish::PatternSettled;
+    let cone_sizes = problem.cone_sizes();
+    let mut changes_left = 2 * problem.pairs() + 3 * cone_sizes.len() + 8;
+    let mut start = start.clone();
+    let mut best: Option<Candidate> = None;
+    loop {
+        steps.counts.branches += 1;
+        let sequence =
+            SqpSettings { tolerance: settings.tolerance, iteration_limit: settings.iteration_limit, stop_when_settled };
+        let rows = Rows::new(problem.equalities(), problem.inequalities(), &cone_sizes, pattern.clone());
+        let outcome = sqp::solve(problem, &rows, bounds, &start, sequence, steps, cancel);
+        let mut candidate = Candidate {
+            end: outcome.end,
+            x: outcome.x,
+            at: outcome.at,
+            multipliers: outcome.multipliers,
+            stationarity: StationarityKind::Unknown,
+        };
+        let improves = best.as_ref().is_none_or(|best| {
+            candidate.is_feasible(settings.tolerance)
+                && candidate.at.objective < best.at.objective - WORTHWHILE * (1.0 + best.at.objective.abs())
+        });
+        let stopped = matches!(candidate.end, SqpEnd::Cancelled | SqpEnd::NotFinite(_));
+        if !improves {
+            return match best {
+                Some(best) if !stopped => best,
+                Some(_) | None => candidate,
+            };
+        }
+        let settled_clearly = candidate.end == SqpEnd::Settled
+            && !stationarity::is_biactive(&candidate.at, uncertain(&candidate.at, settings));
+        if stopped || settled_clearly || candidate.end == SqpEnd::Unbounded || changes_left == 0 {
+            return candidate;
+        }
+        if candidate.end == SqpEnd::Settled {
+            // A biactive pair: the pattern is not certain after all, and a verdict needs a converged point.
+            stop_when_settled = false;
+            changes_left -= 1;
+            start.copy_from(&candidate.x);
+            continue;
+        }
+        if !candidate.is_feasible(settings.tolerance) {
+            return candidate;
+        }
+        let descent = match judge(problem, &pattern, &mut candidate, settings, steps, cancel) {
+            Ok(descent) => descent,
+            Err(end) => {
+                candidate.end = end;
+                return candidate;
+            }
+        };
+        let Some(next) = descent else { return candidate };
+        start.copy_from(&candidate.x);
+        pattern = next;
+        best = Some(candidate);
+        changes_left -= 1;
+    }
+}
+
+/// Members of a pair at a settled point that may both be zero: what is left violated says how far they may still move.
+fn uncertain(at: &Evaluation, settings: &Settings) -> f64 {
+    settings.biactive_tolerance.max(LEEWAY * at.largest_violation())
+}
+
+/// Solves the branch `pair_treatment` from `start` and goes into no other. The candidate is settled or stationary where no row but
+/// those of the branch bound it: strongly, or in one branch where a pair is zero that another branch might lead down from.
+/// It is of no kind where a row bound it.
+pub fn follow<P: Problem + ?Sized>(
+    problem: &P,
+    bounds: &(DVector<f64>, DVector<f64>),
+    start: &DVector<f64>,
+    pattern: &Pattern,
+    settings: &Settings,
+    steps: &mut StepSolver,
+    cancel: &CancelFlag,
+) -> Candidate {
+    let rows = Rows::new(problem.equalities(), problem.inequalities(), &problem.cone_sizes(), pattern.clone());
+    let (tolerance, iteration_limit) = (settings.tolerance, settings.iteration_limit);
+    let mut start = start.clone();
+    let mut stop_when_settled = settings.finish == Finish::PatternSettled;
+    loop {
+        steps.counts.branches += 1;
+        let sequence = SqpSettings { tolerance, iteration_limit, stop_when_settled };
+        let outcome = sqp::solve(problem, &rows, bounds, &start, sequence, steps, cancel);
+        let is_unclear = steps.is_bound() || stationarity::is_biactive(&outcome.at, uncertain(&outcome.at, settings));
+        if outcome.end == SqpEnd::Settled && is_unclear {
+            start = outcome.x;
+            stop_when_settled = false;
+            continue;
+        }
+        let pairs = outcome.multipliers.first.iter().zip(outcome.multipliers.second.iter());
+        let least = -tolerance * (1.0 + outcome.at.gradient.iter().fold(0.0_f64, |most, entry| most.max(entry.abs())));
+        let members = outcome.at.first.iter().zip(outcome.at.second.iter());
+        let may_leave = pairs
+            .zip(members)
+            .any(|((of_first, of_second), (a, b))| a.max(*b) <= BOTH_ZERO && of_first.min(*of_second) < least);
+        let stationarity = match (outcome.end == SqpEnd::Converged && !steps.is_bound(), may_leave) {
+            (true, false) => StationarityKind::Strong,
+            (true, true) => StationarityKind::OneBranch,
+            (false, _) => StationarityKind::Unknown,
+        };
+        let SqpOutcome { end, x, at, multipliers } = outcome;
+        return Candidate { end, x, at, multipliers, stationarity };
+    }
+}
+
+/// Classifies a converged point; returns the branch that leads down from it.
+fn judge<P: Problem + ?Sized>(
+    problem: &P,
+    pattern: &Pattern,
+    candidate: &mut Candidate,
+    settings: &Settings,
+    steps: &mut StepSolver,
+    cancel: &CancelFlag,
+) -> Result<Option<Pattern>, SqpEnd> {
+    let converged = candidate.end == SqpEnd::Converged;
+    let verdict = stationarity::classify(
+        problem,
+        &candidate.x,
+        pattern,
+        converged.then_some(&candidate.multipliers),
+        settings,
+        steps,
+        cancel,
+    )
+    .map_err(|reason| match reason {
+        NoVerdict::Cancelled => SqpEnd::Cancelled,
+        NoVerdict::NotFinite(quantity) => SqpEnd::NotFinite(quantity),
+    })?;
+    candidate.stationarity = verdict.kind;
+    if let Some(multipliers) = verdict.multipliers {
+        candidate.multipliers = multipliers;
+    }
+    Ok(verdict.descent)
+}

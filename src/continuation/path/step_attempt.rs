@@ -1,0 +1,308 @@
+//! One try of a step: how far its mode goes, and whether what is reached can be a point of the path.
+
+use crate::branching::bifurcation::locate::{self, Crossing, Ended, Located};
+use crate::branching::bifurcation::singularity::test_functions::{self, Change, Signature};
+use crate::branching::bifurcation::{bound_at_singularity, simultaneous_limit_points};
+use crate::continuation::contact_changes::prediction::Foreseen;
+use crate::continuation::contact_changes::simultaneous::Joined;
+use crate::continuation::path::step_control;
+use crate::continuation::trace::progress::Here;
+use crate::continuation::trace::trace::Trace;
+use crate::mechanics::contact::Mode;
+use crate::mechanics::problem::natural_residual;
+use crate::mechanics::problem::state::Rate;
+use crate::step::corrector::cached_factorisation::AtHand;
+use crate::step::corrector::cost_counters::Work;
+use crate::step::event_functions::Watch;
+use crate::step::segment::{Attempt, Reached, Refused, Start};
+
+/// Where contacts change one after another, the next is looked for within this multiple of the way between the last two,
+/// if that is less than this part of a step: over a short way Newton's method and the location of events have little to do.
+const NEXT_WITHIN: f64 = 4.0;
+const MOST_OF_STEP: f64 = 0.5;
+/// Shorter steps that are tried where a change of signs cannot be made out.
+const MOST_UNRESOLVED: u64 = 4;
+
+/// The length of a step as far as it is known before it is tried.
+pub(crate) struct Sought {
+    /// By the path's turn, Newton's work and the energy balance of the steps before.
+    pub ordinary: f64,
+    /// The next event of a path that is straight up to there.
+    pub jump: Option<Foreseen>,
+    /// The next contact change that the rates foresee.
+    pub foreseen: Option<Foreseen>,
+    /// Contact changes in it may be taken together.
+    pub may_join: bool,
+}
+
+impl Sought {
+    /// The first length to try.
+    pub fn step(&self) -> f64 {
+        self.jump.or(self.foreseen).map_or(self.ordinary, |foreseen| foreseen.step)
+    }
+
+    /// Whether a step of this length is one to the next event of a straight path.
+    pub fn jumps(&self, step: f64) -> bool {
+        self.jump.is_some_and(|event| event.step == step)
+    }
+}
+
+/// What the tries of one step have found so far.
+pub(crate) struct Tries {
+    /// The way within which the next change is looked for, once.
+    next: Option<f64>,
+    /// Signs just past the start.
+    known: Option<Signature>,
+    /// Left over where the direction was found.
+    at_hand: AtHand,
+    /// Tries at which a change of signs could not be made out.
+    pub unresolved: u64,
+    /// Of the last try: whether changes that might have been taken together were; `None` where there were none.
+    pub joined: Option<bool>,
+}
+
+impl Tries {
+    pub fn new(here: &Here, at_hand: AtHand) -> Self {
+        let next = here.apart.map(|apart| NEXT_WITHIN * apart);
+        Self { next, known: here.signature, at_hand, unresolved: 0, joined: None }
+    }
+}
+
+/// Where a step ends.
+enum Ending {
+    Joined(Joined),
+    AtEvent(Box<Reached>),
+}
+
+impl Ending {
+    fn reached(&self) -> &Reached {
+        match self {
+            Self::Joined(joined) => &joined.reached,
+            Self::AtEvent(reached) => reached,
+        }
+    }
+}
+
+/// What a try leads to.
+pub(crate) struct Tried {
+    pub reached: Box<Reached>,
+    /// The smooth bifurcation there, if it is one.
+    pub crossing: Option<Crossing>,
+    /// Signs just past it.
+    pub signature: Option<Signature>,
+    /// It is where the stage began.
+    pub returned: bool,
+    /// How many contact changes within the step are taken together, and the direction at its end without them.
+    pub joined: Option<(u64, Rate)>,
+}
+
+impl Tried {
+    fn plain(reached: Box<Reached>, crossing: Option<Crossing>, signature: Option<Signature>) -> Self {
+        Self { reached, crossing, signature, returned: false, joined: None }
+    }
+}
+
+/// Tries a step of this length along the direction just now.
+pub(crate) fn try_step(
+    trace: &Trace<'_>,
+    rate: &Rate,
+    step: f64,
+    sought: &Sought,
+    tries: &mut Tries,
+    work: &mut Work,
+) -> Result<Tried, Refused> {
+    let here = &trace.at.here;
+    let start = Start {
+        loading: trace.loading(),
+        state: &here.state,
+        rate,
+        modes: &here.modes,
+        drift: here.drift.as_ref(),
+        force_scale: trace.at.totals.force_scale,
+        is_singular: here.is_singular,
+        beside: here.beside.as_ref(),
+    };
+    let ends = &trace.scene.stages[trace.at.stage].ends;
+    let outcome = end_of_step(trace, &start, step, sought, tries, work);
+    let is_lost = match &outcome {
+        Ok(ending) => {
+            let reached = ending.reached();
+            matches!(reached.event, Some(Watch::End(_))) && reached.determinant.is_none()
+        }
+        Err(refused) => matches!(refused, Refused::Newton(_)),
+    };
+    let bounded = is_lost
+        .then(|| bound_at_singularity::beside_singular(&start, step, ends, here.load_sign, tries.known, work))
+        .flatten();
+    let back = outcome.as_ref().ok().and_then(|ending| step_control::way_back(trace, &start, ending.reached(), work));
+    let tried = if let Some(back) = back {
+        Tried { returned: true, ..Tried::plain(back, None, None) }
+    } else if let Some((reached, crossing, signature)) = bounded {
+        Tried::plain(reached, crossing, signature)
+    } else {
+        match outcome? {
+            Ending::Joined(Joined { reached, changes, signature, unchanged }) => {
+                Tried { joined: Some((changes, unchanged)), ..Tried::plain(reached, None, signature) }
+            }
+            // The equations of a straight path are the same at both ends, and singular at none in between.
+            Ending::AtEvent(reached) if sought.jumps(step) => Tried::plain(reached, None, None),
+            Ending::AtEvent(reached) => {
+                let known = tries.known.or_else(|| Signature::past_start(&start, reached.step, &mut None, work));
+                tries.known = known;
+                let may_refuse = tries.unresolved < MOST_UNRESOLVED;
+                let (reached, crossing, signature) = first_crossing(&start, known, reached, may_refuse, work)?;
+                Tried::plain(reached, crossing, signature)
+            }
+        }
+    };
+    let corrected = &tried.reached.corrected;
+    let forces = trace.at.totals.force_scale.max(corrected.force_scale);
+    if !natural_residual::holds(trace.loading(), &corrected.state, forces) {
+        Err(Refused::Unlawful)
+    } else if step_control::shrinks_to_a_point(trace, &corrected.state) {
+        Err(Refused::Collapsed)
+    } else {
+        Ok(tried)
+    }
+}
+
+/// The end of a step: past changes that are taken together, or at the first event in it.
+fn end_of_step(
+    trace: &Trace<'_>,
+    start: &Start<'_>,
+    step: f64,
+    sought: &Sought,
+    tries: &mut Tries,
+    work: &mut Work,
+) -> Result<Ending, Refused> {
+    let (ends, load_sign) = (&trace.scene.stages[trace.at.stage].ends, trace.at.here.load_sign);
+    let may_join = sought.may_join && !sought.jumps(step);
+    let foreseen = may_join.then(|| start.join_foreseen(step, ends, load_sign, work)).flatten();
+    if let Some(joined) = foreseen {
+        tries.joined = Some(joined.is_some());
+        // Where they cannot be taken together nothing but the first of them is to be gone to.
+        return joined.map(Ending::Joined).ok_or(Refused::Apart);
+    }
+    let tried = attempt(trace, start, step, sought, tries, work)?;
+    if may_join && let Some(first) = start.changes_to_join(&tried) {
+        let joined = start.join_changes(&first, &tried, work);
+        tries.joined = Some(joined.is_some());
+        if let Some(joined) = joined {
+            return Ok(Ending::Joined(joined));
+        }
+    }
+    start.stop_at_event(tried, ends, simultaneous_limit_points::locate, work).map(Ending::AtEvent)
+}
+
+/// How far the mode goes: to the next of several changes, if that is near, to one that is foreseen, or a whole step.
+fn attempt(
+    trace: &Trace<'_>,
+    start: &Start<'_>,
+    step: f64,
+    sought: &Sought,
+    tries: &mut Tries,
+    work: &mut Work,
+) -> Result<Attempt, Refused> {
+    let here = &trace.at.here;
+    let (ends, load_sign) = (&trace.scene.stages[trace.at.stage].ends, here.load_sign);
+    let is_straight = sought.jumps(step);
+    let joins = sought.may_join && !is_straight && start.may_join();
+    // Where the rates foresee the next change, it is met where they do.
+    let is_open = !joins && !is_straight && sought.foreseen.is_none();
+    let next = tries.next.take().filter(|next| *next < MOST_OF_STEP * step && is_open);
+    let next = next.and_then(|next| {
+        let mut serving = None;
+        tries.known = tries.known.or_else(|| Signature::past_start(start, next, &mut serving, work));
+        let tried = start.attempt(next, None, serving, ends, load_sign, work).ok()?;
+        (!tried.passed.is_empty()).then_some(tried)
+    });
+    if let Some(next) = next {
+        return Ok(next);
+    }
+    let before = here.before.as_ref();
+    let foreseen = sought.jump.or(sought.foreseen).filter(|foreseen| foreseen.step == step);
+    let at_hand = here.is_factorised.then(|| std::mem::take(&mut tries.at_hand));
+    let met = foreseen.and_then(|foreseen| start.meet_change(foreseen, at_hand, before, ends, load_sign, work));
+    met.map_or_else(|| start.attempt(step, before, None, ends, load_sign, work), Ok)
+}
+
+/// Ends a step at the first smooth bifurcation in it, of its own mode or of that in which contacts that touch without
+/// reaction all along are free; with the signs past its end.
+fn first_crossing(
+    start: &Start<'_>,
+    before: Option<Signature>,
+    reached: Box<Reached>,
+    may_refuse: bool,
+    work: &mut Work,
+) -> Result<Ended, Refused> {
+    let (reached, crossing, after) = crossing_in_mode(start, before, reached, may_refuse, work)?;
+    match test_functions::loosened(start, &reached).and_then(|loose| crossing_when_loose(start, &loose, &reached, work))
+    {
+        Some((point, crossing)) => Ok((point, Some(crossing), before)),
+        None => Ok((reached, crossing, after)),
+    }
+}
+
+/// The first smooth bifurcation of a step in looser modes.
+fn crossing_when_loose(
+    start: &Start<'_>,
+    loose: &[Mode],
+    reached: &Reached,
+    work: &mut Work,
+) -> Option<(Box<Reached>, Crossing)> {
+    let loosened = Start { modes: loose, ..*start };
+    let before = Signature::past_start(&loosened, reached.step, &mut None, work)?;
+    let mut end = loosened.reach_near(reached.corrected.state.clone(), reached.step, work).ok()?;
+    end.event = reached.event;
+    let (_, change) = test_functions::compare(&loosened, before, &end, work);
+    if change == Change::None {
+        return None;
+    }
+    let Located { mut point, crossing, .. } = locate::locate(&loosened, before, change, &end, work)?;
+    if point.step >= reached.step || crossing.eigenvalues == 0 {
+        return None;
+    }
+    for (contact, mode) in point.corrected.modes.iter_mut().enumerate() {
+        if loose[contact] != start.modes[contact] {
+            *mode = start.modes[contact];
+        }
+    }
+    point.corrected.iterations_to_small = reached.corrected.iterations_to_small;
+    Some((point, Crossing { grazing: true, ..crossing }))
+}
+
+/// Ends a step at the first smooth bifurcation in its own mode.
+fn crossing_in_mode(
+    start: &Start<'_>,
+    before: Option<Signature>,
+    reached: Box<Reached>,
+    may_refuse: bool,
+    work: &mut Work,
+) -> Result<Ended, Refused> {
+    let Some(before) = before else {
+        // The start is singular: signs are known from the end on.
+        let state = &reached.corrected.state;
+        let is_limit = matches!(reached.event, Some(Watch::LoadRate { .. }));
+        let regular = if is_limit { None } else { test_functions::sign_at_end(start, &reached, work) };
+        let after = regular
+            .and_then(|sign| Signature::with_determinant(start.loading, start.modes, start.state, state, sign, work));
+        return Ok((reached, None, after));
+    };
+    let (after, change) = test_functions::compare(start, before, &reached, work);
+    if after.is_none() && reached.event.is_none() && may_refuse {
+        return Err(Refused::Unresolved);
+    }
+    if change == Change::None {
+        return Ok((reached, None, after));
+    }
+    match locate::locate(start, before, change, &reached, work) {
+        Some(Located { mut point, crossing, .. }) if point.step < reached.step || crossing.eigenvalues == 0 => {
+            point.corrected.iterations_to_small = reached.corrected.iterations_to_small;
+            let after = crossing.after;
+            Ok((point, Some(crossing), Some(after)))
+        }
+        Some(_) => Ok((reached, None, Some(before))),
+        None if may_refuse => Err(Refused::Unresolved),
+        None => Ok((reached, None, after)),
+    }
+}

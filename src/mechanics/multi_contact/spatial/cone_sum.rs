@@ -1,0 +1,245 @@
+//! What the friction cones of a node's obstacles hold together.
+//!
+//! A force `R` is in the sum of the cones `K_i` where no direction of all their duals sees it from behind (the bipolar
+//! theorem: R. T. Rockafellar, *Convex Analysis*, Princeton 1970, §14):
+//!
+//! ```text
+//! R in Σ K_i   <=>   min { y·R : |y| = 1, y·n_i >= sin φ_i } >= 0,      tan φ_i = μ_i
+//! ```
+//!
+//! The set of the directions `y` is bounded by circles on the sphere, so that the minimum is at `-R/|R|`, at the point of a
+//! circle nearest to that, or where two circles meet. Without any such `y` the node is jammed. At the minimum
+//!
+//! ```text
+//! R = (y·R) y + Σ a_i (n_i - μ_i d_i),      a_i >= 0,  d_i along the part of y across n_i
+//! ```
+//!
+//! with the obstacles whose circles it lies on: at the end of what is held these alone bear the force.
+
+use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled, size, unit};
+use crate::mechanics::multi_contact::spatial::{AT_BOUND, FLAT, Pocket, along};
+
+/// Part of a force up to which its distance from the end of what is held is a remainder of one contact's.
+const NEAR_BOUND: f64 = 1e-7;
+
+impl Pocket {
+    /// Whether the friction cones together are all of space: no direction keeps off all of them.
+    pub fn is_jammed(&self) -> bool {
+        let sines = self.sines();
+        let normals = self.normals.iter().map(unit).collect();
+        // What keeps off all cones has a corner, or is one cap.
+        let bounds = match self.free.len() {
+            3 => self.meetings(&sines),
+            2 => self.bounds_in_a_plane(&sines),
+            _ => Vec::new(),
+        };
+        ![normals, bounds].concat().iter().any(|direction| self.keeps_off(direction, &sines))
+    }
+
+    /// How far a force is from the end of what the cones hold together: negative beyond, infinite where nothing is.
+    pub fn hold(&self, force: &Vector) -> f64 {
+        self.bounds_seen_from(force).iter().map(|inward| dot(inward, force)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The derivative of that along a rate of the force.
+    pub fn hold_slope(&self, force: &Vector, rate: &Vector) -> f64 {
+        self.nearest_bound(force).map_or(0.0, |inward| dot(&inward, rate))
+    }
+
+    /// Whether a force is at the end of what is held.
+    pub fn is_at_bound(&self, force: &Vector, zero: f64) -> bool {
+        self.hold(force) <= zero
+    }
+
+    /// The least derivative along a rate of a force that is at the end of what is held; infinite where it is not.
+    pub(super) fn slope_at_bound(&self, force: &Vector, zero: f64, rate: &Vector) -> f64 {
+        let bounds = self.bounds_seen_from(force);
+        let at_bound = bounds.iter().filter(|inward| dot(inward, force) <= zero);
+        at_bound.map(|inward| dot(inward, rate)).fold(f64::INFINITY, f64::min)
+    }
+
+    fn nearest_bound(&self, force: &Vector) -> Option<Vector> {
+        self.bounds_seen_from(force).into_iter().min_by(|a, b| dot(a, force).total_cmp(&dot(b, force)))
+    }
+
+    /// Sines of the angles of friction, of as much of the cones as the node is free to feel.
+    fn sines(&self) -> Vec<f64> {
+        let sine = |(normal, friction): (&Vector, &f64)| friction / friction.hypot(size(normal));
+        self.normals.iter().zip(&self.frictions).map(sine).collect()
+    }
+
+    fn keeps_off(&self, direction: &Vector, sines: &[f64]) -> bool {
+        let fits = |(normal, sine): (&Vector, &f64)| dot(&unit(normal), direction) >= sine - FLAT;
+        self.normals.iter().zip(sines).all(fits)
+    }
+
+    /// Inward unit normals of the sum of the cones, among them that of the bound nearest to a force.
+    fn bounds_seen_from(&self, force: &Vector) -> Vec<Vector> {
+        let sines = self.sines();
+        let away = scaled(&unit(force), -1.0);
+        let mut bounds = vec![away];
+        match self.free.len() {
+            3 => {
+                let nearest = |(normal, sine): (&Vector, &f64)| {
+                    let across = unit(&add(&away, -dot(&away, normal), normal));
+                    add(&scaled(normal, *sine), (1.0 - sine * sine).max(0.0).sqrt(), &across)
+                };
+                bounds.extend(self.normals.iter().zip(&sines).map(nearest));
+                bounds.extend(self.meetings(&sines));
+            }
+            2 => bounds.extend(self.bounds_in_a_plane(&sines)),
+            _ => bounds.extend(self.normals.iter().map(unit)),
+        }
+        bounds.retain(|direction| size(direction) > 0.0 && self.keeps_off(direction, &sines));
+        bounds
+    }
+
+    /// Where the bounds of two cones meet, in space.
+    fn meetings(&self, sines: &[f64]) -> Vec<Vector> {
+        let of = |[first, second]: [usize; 2]| {
+            let (a, b) = (unit(&self.normals[first]), unit(&self.normals[second]));
+            let cosine = dot(&a, &b);
+            let determinant = 1.0 - cosine * cosine;
+            let (x, y) = (sines[first] - cosine * sines[second], sines[second] - cosine * sines[first]);
+            let inside = add(&scaled(&a, x / determinant), y / determinant, &b);
+            let rest = 1.0 - dot(&inside, &inside);
+            let across = unit(&cross(&a, &b));
+            let height = rest.max(0.0).sqrt();
+            let heights = if rest >= -FLAT { [height, -height].to_vec() } else { Vec::new() };
+            heights.into_iter().map(move |height| add(&inside, height, &across))
+        };
+        self.pairs().flat_map(of).collect()
+    }
+
+    /// The bounds of the directions that keep off each cone, in a plane.
+    fn bounds_in_a_plane(&self, sines: &[f64]) -> Vec<Vector> {
+        let [first, second] = self.free[..] else { return Vec::new() };
+        let axis = cross(&first, &second);
+        let of = |(normal, sine): (&Vector, &f64)| {
+            let (along, across) = (unit(normal), cross(&axis, &unit(normal)));
+            let cosine = (1.0 - sine * sine).max(0.0).sqrt();
+            [cosine, -cosine].map(|cosine| add(&scaled(&along, *sine), cosine, &across))
+        };
+        self.normals.iter().zip(sines).flat_map(of).collect()
+    }
+
+    /// The reactions that bear a force in space just at the end of what is held.
+    pub(super) fn at_bound(&self, force: &Vector) -> Option<Vec<Vector>> {
+        let inward = self.nearest_bound(force).filter(|_| self.free.len() == 3)?;
+        let margin = dot(&inward, force);
+        if margin.abs() > NEAR_BOUND * size(force) {
+            return None;
+        }
+        let sines = self.sines();
+        let bears = |place: &usize| dot(&self.normals[*place], &inward) - sines[*place] <= AT_BOUND;
+        let ray = |place: usize| {
+            let normal = &self.normals[place];
+            let direction = unit(&add(&inward, -dot(&inward, normal), normal));
+            add(normal, -self.frictions[place], &direction)
+        };
+        let rays: Vec<(usize, Vector)> =
+            (0..self.contacts.len()).filter(bears).map(|place| (place, ray(place))).collect();
+        let mut parts = vec![[0.0; 3]; self.contacts.len()];
+        let sizes = match &rays[..] {
+            [(_, only)] => vec![dot(only, force) / dot(only, only)],
+            [(_, a), (_, b)] => {
+                let across = [cross(b, &inward), cross(a, &inward)];
+                vec![dot(&across[0], force) / dot(&across[0], a), dot(&across[1], force) / dot(&across[1], b)]
+            }
+            _ => return None,
+        };
+        if !sizes.iter().all(|part| *part >= -FLAT * size(force)) {
+            return None;
+        }
+        for ((place, ray), part) in rays.iter().zip(&sizes) {
+            parts[*place] = scaled(ray, part.max(0.0));
+        }
+        // The rest points into the cones.
+        let rest = parts.iter().fold(*force, |rest, part| add(&rest, -1.0, part));
+        let bearer = parts.iter_mut().max_by(|a, b| size(a).total_cmp(&size(b)))?;
+        *bearer = add(bearer, 1.0, &along(&self.free, &rest));
+        Some(parts)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanics::contact::least_norm_reactions::least_reactions;
+    use crate::mechanics::contact::obstacle::Obstacle;
+    use crate::mechanics::contact::{Contact, Frame, Sliding};
+
+    const SPACE: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+    fn pocket(planes: &[(Vector, f64)]) -> Pocket {
+        let contact = |normal: Vector, friction: f64| Contact {
+            node: 0,
+            obstacle: Obstacle::Plane { normal },
+            initial_gap: 0.0,
+            friction,
+            sliding: Sliding::Plane,
+        };
+        let frame = |(normal, friction): &(Vector, f64)| contact(*normal, *friction).frame(&[0.0; 3]);
+        let frames: Vec<Frame> = planes.iter().map(frame).collect();
+        Pocket {
+            contacts: (0..planes.len()).collect(),
+            normals: frames.iter().map(|frame| frame.normal).collect(),
+            frames,
+            frictions: planes.iter().map(|(_, friction)| *friction).collect(),
+            free: SPACE.to_vec(),
+            is_driven: false,
+        }
+    }
+
+    /// Directions spread over the sphere.
+    fn directions(count: u32) -> impl Iterator<Item = Vector> {
+        (0..count).map(move |k| {
+            let (angle, height) =
+                (f64::from(k) * 2.399_963_229_728_653, 1.0 - (2.0 * f64::from(k) + 1.0) / f64::from(count));
+            let across = (1.0 - height * height).sqrt();
+            [across * angle.cos(), across * angle.sin(), height]
+        })
+    }
+
+    /// A groove of flanks at the angle β to the vertical holds a pull of `μ/√(sin²β - μ² cos²β)` times the press along it.
+    #[test]
+    fn a_groove_holds_more_than_it_slides_at() {
+        let (sine, cosine) = 50.0_f64.to_radians().sin_cos();
+        let friction = 0.4;
+        let groove = pocket(&[([cosine, 0.0, sine], friction), ([-cosine, 0.0, sine], friction)]);
+        let most = friction / (sine * sine - friction * friction * cosine * cosine).sqrt();
+        assert!(groove.hold(&[0.0, most, 1.0]).abs() < 1e-15);
+        assert!(groove.hold(&[0.0, 0.999 * most, 1.0]) > 1e-4 && groove.hold(&[0.0, 1.001 * most, 1.0]) < -1e-4);
+        assert!(groove.margin(&[0.0, friction / sine, 1.0]).abs() < 1e-15 && friction / sine < most);
+        let parts = groove.at_bound(&[0.0, most, 1.0]).expect("parts");
+        for (part, frame) in parts.iter().zip(&groove.frames) {
+            let normal = dot(part, &frame.normal);
+            assert!((size(&add(part, -normal, &frame.normal)) - friction * normal).abs() < 1e-14 && normal > 0.0);
+        }
+    }
+
+    /// The cones hold what the least reactions are found for, and nothing else.
+    #[test]
+    fn what_is_held_has_reactions() {
+        let unit = |vector: Vector| unit(&vector);
+        let cases = [
+            vec![(unit([1.0, 0.2, 0.3]), 0.5), (unit([-0.4, 0.9, 0.1]), 0.2)],
+            vec![(unit([1.0, 0.2, 0.3]), 1.5), (unit([-0.9, 0.3, 0.1]), 0.1)],
+            vec![(unit([0.0, 0.1, 1.0]), 0.0), (unit([0.3, 0.0, 1.0]), 0.7)],
+            vec![(unit([0.0, 0.1, 1.0]), 0.0), (unit([0.3, 0.0, 1.0]), 0.3), (unit([0.3, 1.0, 0.2]), 0.6)],
+            vec![(unit([1.0, 0.0, 0.1]), 1.2), (unit([-1.0, 0.3, 0.1]), 0.9)],
+        ];
+        for planes in cases {
+            let pocket = pocket(&planes);
+            let mut held = 0;
+            for force in directions(1000) {
+                let margin = pocket.hold(&force);
+                let found = least_reactions(&pocket.cones(), &pocket.free, &force).is_some();
+                assert!(margin.abs() < 1e-6 || (margin > 0.0) == found, "{planes:?}: {force:?}, {margin}");
+                assert!(!pocket.is_jammed() || margin == f64::INFINITY);
+                held += u32::from(found);
+            }
+            assert!(held > 0 && (held == 1000) == pocket.is_jammed(), "{planes:?}: {held}");
+        }
+    }
+}

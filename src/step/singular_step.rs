@@ -1,0 +1,64 @@
+//! Steps from a point at which the equations of the mode have other null vectors, or as good as that: see `branch_directions`.
+//!
+//! A slider that sticks at a fold of what hangs on it keeps that at its fold, whatever the load on the slider: all along, a
+//! second null vector leaves Newton's method nothing to go by. Where nothing else bends the path, the point straight ahead
+//! meets the equations. Where something does (another part slips), they are solved with the motions held that they leave
+//! open.
+
+use crate::mechanics::equations::ModeSystem;
+use crate::mechanics::equations::closing_equation::ClosingEquation;
+use crate::mechanics::problem::state::State;
+use crate::step::corrector::cost_counters::Work;
+use crate::step::corrector::newton::ACCEPTED_RESIDUAL;
+use crate::step::segment::{Reached, Start};
+
+impl Start<'_> {
+    /// The point straight ahead, where the equations hold along the direction.
+    pub(crate) fn held_straight(&self, system: &ModeSystem<'_>, closing: &dyn ClosingEquation) -> Option<Box<Reached>> {
+        if !self.is_singular || self.beside.is_some() || system.has_tracks() {
+            return None;
+        }
+        let step = closing.straight_way(self.state, self.rate)?;
+        if !(step.is_finite() && step > 0.0) {
+            return None;
+        }
+        let corrected = system.judged(self.state.advanced(self.rate, step), self.force_scale);
+        let error = corrected.residual;
+        (error <= ACCEPTED_RESIDUAL).then(|| self.straight_on(corrected, error))
+    }
+
+    /// The point found with the motions held that the equations leave open; `None` where there are none, or the equations
+    /// cannot be met so.
+    pub(crate) fn held_across(
+        &self,
+        guess: &State,
+        closing: &dyn ClosingEquation,
+        work: &mut Work,
+    ) -> Option<Box<Reached>> {
+        if !self.is_singular || self.beside.is_some() {
+            return None;
+        }
+        let mut system = ModeSystem::new(self.loading, self.modes, self.state);
+        if !system.hold_still(self.state, self.rate) {
+            return None;
+        }
+        let iterate = system.iterate(guess.clone());
+        let corrected = system.correct_from(iterate, closing, self.force_scale, &mut None, work).ok()?;
+        if !system.is_still_open(&corrected.state) {
+            // Only the start is singular.
+            return None;
+        }
+        let mut reached = self.directed(system, corrected, closing, &mut None, work).ok()?;
+        // Which sign it has hangs on the signs of what is added to hold the motions.
+        reached.determinant = None;
+        Some(reached)
+    }
+
+    /// A guess off the direction, where the path bends at once: along the arm of a parabola.
+    pub(crate) fn guess_beside(&self, closing: &dyn ClosingEquation) -> Option<State> {
+        let (beside, step) = (self.beside?, closing.arc_length()?);
+        let mut guess = self.state.advanced(self.rate, step);
+        guess.advance(beside, step.sqrt());
+        Some(guess)
+    }
+}

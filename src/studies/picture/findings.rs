@@ -1,0 +1,62 @@
+//! What studies and sweeps find, in the forms in which it is read: called by `command` and `http`.
+
+use crate::studies::error_against_time::Report;
+use crate::studies::picture::{PlotError, study, sweep};
+use crate::studies::sweeps::Found;
+use serde::Serialize;
+
+/// Findings that can be written down and drawn.
+pub trait Findings: Serialize {
+    /// Why there may be no picture yet.
+    const NOT_DRAWN: &'static str;
+
+    /// A table with named columns.
+    ///
+    /// # Errors
+    /// A value that cannot be written.
+    fn csv(&self) -> serde_json::Result<String>;
+
+    /// Columns for a reader.
+    ///
+    /// # Errors
+    /// A value that cannot be written.
+    fn text(&self) -> serde_json::Result<String>;
+
+    /// A picture.
+    ///
+    /// # Errors
+    /// There is nothing to be drawn yet, or the drawing failed.
+    fn svg(&self) -> Result<String, PlotError>;
+}
+
+impl Findings for Report {
+    const NOT_DRAWN: &'static str = "no path of it has an error yet";
+
+    fn csv(&self) -> serde_json::Result<String> {
+        self.csv()
+    }
+
+    fn text(&self) -> serde_json::Result<String> {
+        self.text()
+    }
+
+    fn svg(&self) -> Result<String, PlotError> {
+        study::svg(self)
+    }
+}
+
+impl Findings for Found {
+    const NOT_DRAWN: &'static str = "no run of it has a limit point yet";
+
+    fn csv(&self) -> serde_json::Result<String> {
+        self.csv()
+    }
+
+    fn text(&self) -> serde_json::Result<String> {
+        self.text()
+    }
+
+    fn svg(&self) -> Result<String, PlotError> {
+        sweep::svg(self)
+    }
+}

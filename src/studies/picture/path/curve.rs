@@ -1,0 +1,134 @@
+//! What of a path is drawn.
+
+use crate::result::increment::{Increment, PointKind};
+use crate::studies::picture::path::Against;
+use std::sync::Arc;
+
+/// Load factor against a displacement.
+#[derive(Debug)]
+pub struct Curve {
+    /// The model's name.
+    pub title: Option<String>,
+    /// The displacement's name.
+    pub against: String,
+    pub stages: Vec<StageCurve>,
+    /// In order of appearance.
+    pub events: Vec<Event>,
+}
+
+#[derive(Debug)]
+pub struct StageCurve {
+    pub name: Arc<str>,
+    pub points: Vec<CurvePoint>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CurvePoint {
+    /// Displacement and load factor.
+    pub at: (f64, f64),
+    /// The way on from here is one of several.
+    pub bifurcation: bool,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct Event {
+    /// A, B, ... Z, AA, AB, ...
+    pub label: String,
+    pub kind: EventKind,
+    /// Displacement and load factor.
+    pub at: (f64, f64),
+    /// What happens, in the path's words.
+    pub words: Option<String>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EventKind {
+    SmoothLimit,
+    NonsmoothLimit,
+    ContactChange,
+    End,
+}
+
+impl Curve {
+    pub fn new(title: Option<&str>, against: &Against, increments: &[Increment]) -> Self {
+        let mut curve = Self {
+            title: title.map(str::to_owned),
+            against: against.to_string(),
+            stages: Vec::new(),
+            events: Vec::new(),
+        };
+        for increment in increments {
+            let Some(displacement) = against.of(increment) else { continue };
+            let at = (displacement, increment.load_factor);
+            if displacement.is_finite() && increment.load_factor.is_finite() {
+                curve.add_point(increment, at);
+                curve.add_event(increment, at);
+            }
+        }
+        curve
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.stages.is_empty()
+    }
+
+    /// Every place of the curve.
+    pub fn places(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.stages.iter().flat_map(|stage| stage.points.iter().map(|point| point.at))
+    }
+
+    fn add_point(&mut self, increment: &Increment, at: (f64, f64)) {
+        let point = CurvePoint { at, bifurcation: increment.point.bifurcation };
+        match self.stages.last_mut() {
+            Some(stage) if stage.name == increment.stage => stage.points.push(point),
+            _ => self.stages.push(StageCurve { name: Arc::clone(&increment.stage), points: vec![point] }),
+        }
+    }
+
+    fn add_event(&mut self, increment: &Increment, at: (f64, f64)) {
+        let kind = match increment.point.kind {
+            PointKind::SmoothLimit => EventKind::SmoothLimit,
+            PointKind::NonsmoothLimit => EventKind::NonsmoothLimit,
+            PointKind::ContactChange => EventKind::ContactChange,
+            PointKind::End => EventKind::End,
+            PointKind::Start | PointKind::Regular | PointKind::SmoothBifurcation => return,
+        };
+        let label = letters(self.events.len());
+        self.events.push(Event { label, kind, at, words: increment.point.event.clone() });
+    }
+}
+
+impl EventKind {
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::SmoothLimit => "smooth limit",
+            Self::NonsmoothLimit => "nonsmooth limit",
+            Self::ContactChange => "contact change",
+            Self::End => "end",
+        }
+    }
+}
+
+/// 0 is A, 25 is Z, 26 is AA.
+fn letters(index: usize) -> String {
+    let mut letters = Vec::new();
+    let mut rest = index + 1;
+    while rest > 0 {
+        rest -= 1;
+        // A remainder by 26 fits in a byte.
+        letters.push(char::from(b'A' + (rest % 26) as u8));
+        rest /= 26;
+    }
+    letters.iter().rev().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::letters;
+
+    #[test]
+    fn letters_go_on_after_z() {
+        let some = [0, 1, 25, 26, 51, 52, 701, 702].map(letters);
+        assert_eq!(some, ["A", "B", "Z", "AA", "AZ", "BA", "ZZ", "AAA"]);
+    }
+}

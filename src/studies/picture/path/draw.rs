@@ -1,0 +1,129 @@
+//! The curve on paper: axes, lines, dots, marks, letters, and the legend beside them.
+
+use crate::studies::picture::axis::Axis;
+use crate::studies::picture::chart::{self, CAPTION, LONGEST, MARGIN, Side, TITLE};
+use crate::studies::picture::labels::Map;
+use crate::studies::picture::path::curve::{Curve, StageCurve};
+use crate::studies::picture::path::legend::{LISTED_EVENTS, Legend};
+use crate::studies::picture::path::strokes::{MARKER, Stroke, leader, marker};
+use crate::studies::picture::shapes::{self, DrawingError, Drawn, FINE, Lettering, Place, Sheet};
+use plotters::prelude::{PathElement, RGBColor};
+use plotters::style::Color;
+
+/// Widths, in pixels.
+const CHART: i32 = 660;
+const LEGEND: i32 = 380;
+/// The chart is at least and at most this high; the legend may be longer.
+const LOWEST: i32 = 480;
+const HIGHEST: i32 = 900;
+/// At most this many ticks an axis.
+const TICKS: usize = 10;
+/// Half a letter's height, and half its width for each character, in fine units.
+const HALF_HEIGHT: i32 = 70;
+const HALF_WIDTH: i32 = 60;
+/// A letter that stands farther from its point than this is tied to it.
+const TIED: i32 = 18 * FINE;
+/// Dots closer than this to the last one are left out, in fine units.
+const DENSE: i32 = 20;
+
+const ZERO: RGBColor = RGBColor(170, 170, 170);
+const LETTER: Lettering = Lettering { size: 14, ..TITLE };
+
+/// The picture as SVG text.
+pub fn draw(curve: &Curve) -> Result<String, DrawingError> {
+    let displacement = Axis::showing(curve.places().map(|place| place.0), TICKS);
+    let load = Axis::showing(curve.places().map(|place| place.1), TICKS);
+    let legend = Legend::new(curve, &load);
+    let height = LOWEST.max(legend.height() + CAPTION + 2 * MARGIN);
+    shapes::svg(CHART + LEGEND, height, |sheet| {
+        draw_chart(sheet, curve, &displacement, &load, height.min(HIGHEST))?;
+        legend.draw(sheet, (CHART * FINE, (CAPTION + MARGIN / 2) * FINE))
+    })
+}
+
+fn draw_chart(sheet: &Sheet<'_>, curve: &Curve, displacement: &Axis, load: &Axis, height: i32) -> Drawn {
+    let (part, _) = sheet.split_horizontally(CHART * FINE);
+    let (part, _) = part.split_vertically(height * FINE);
+    let sides = [
+        Side {
+            name: displacement.named(&format!("displacement {}", curve.against)),
+            range: displacement.range.clone(),
+            tick: &|at| displacement.tick(at),
+            ticks: TICKS,
+        },
+        Side { name: load.named("load factor"), range: load.range.clone(), tick: &|at| load.tick(at), ticks: TICKS },
+    ];
+    let chart = chart::chart(&part, CHART, curve.title.as_deref(), sides)?;
+    let on_sheet = |at: (f64, f64)| chart.backend_coord(&(displacement.drawn(at.0), load.drawn(at.1)));
+    let (across, along) = chart.plotting_area().get_pixel_range();
+    let origin = on_sheet((0.0, 0.0));
+    sheet.draw(&PathElement::new(vec![(across.start, origin.1), (across.end, origin.1)], ZERO.stroke_width(10)))?;
+    sheet.draw(&PathElement::new(vec![(origin.0, along.start), (origin.0, along.end)], ZERO.stroke_width(10)))?;
+
+    let mut map = Map::new((across.start, along.start), (across.end, along.end));
+    for (stage, drawn) in curve.stages.iter().enumerate() {
+        draw_stage(sheet, stage, drawn, &on_sheet, &mut map)?;
+    }
+    draw_events(sheet, curve, &on_sheet, &mut map)
+}
+
+fn draw_stage(
+    sheet: &Sheet<'_>,
+    stage: usize,
+    drawn: &StageCurve,
+    on_sheet: &impl Fn((f64, f64)) -> Place,
+    map: &mut Map,
+) -> Drawn {
+    let stroke = |bifurcation| Stroke { stage, bifurcation };
+    let places: Vec<Place> = drawn.points.iter().map(|point| on_sheet(point.at)).collect();
+    // A point's flag speaks of the way on from it, and so of the line from it to the next.
+    let ways: Vec<(bool, [Place; 2])> = places
+        .windows(2)
+        .zip(&drawn.points)
+        .filter_map(|(ends, point)| Some((point.bifurcation, <[Place; 2]>::try_from(ends).ok()?)))
+        .collect();
+    for stretch in ways.chunk_by(|before, after| before.0 == after.0) {
+        let Some((bifurcation, [first, _])) = stretch.first().copied() else { continue };
+        let line = std::iter::once(first).chain(stretch.iter().map(|(_, [_, end])| *end)).collect();
+        stroke(bifurcation).line(sheet, line)?;
+    }
+    for (_, [from, to]) in ways {
+        map.add_line(from, to);
+    }
+    let mut last: Option<Place> = None;
+    for (point, place) in drawn.points.iter().zip(places) {
+        if last.is_none_or(|last| (place.0 - last.0).abs().max((place.1 - last.1).abs()) >= DENSE) {
+            stroke(point.bifurcation).dot(sheet, place)?;
+            last = Some(place);
+        }
+    }
+    Ok(())
+}
+
+/// Marks first: no letter may hide one.
+fn draw_events(sheet: &Sheet<'_>, curve: &Curve, on_sheet: &impl Fn((f64, f64)) -> Place, map: &mut Map) -> Drawn {
+    for event in &curve.events {
+        map.add_marker(on_sheet(event.at), MARKER * FINE);
+    }
+    let mut letters = Vec::new();
+    for event in curve.events.iter().take(LISTED_EVENTS) {
+        let place = on_sheet(event.at);
+        let characters = i32::try_from(event.label.len()).unwrap_or(1);
+        let middle = map.take_room(place, (HALF_WIDTH * characters, HALF_HEIGHT));
+        let distance = f64::from(middle.0 - place.0).hypot(f64::from(middle.1 - place.1));
+        if distance > f64::from(TIED) {
+            // The line ends where the letter begins.
+            let short = 1.0 - f64::from(HALF_HEIGHT + 2 * FINE) / distance;
+            let along = |from: i32, to: i32| from + (f64::from(to - from) * short).round() as i32;
+            leader(sheet, place, (along(place.0, middle.0), along(place.1, middle.1)))?;
+        }
+        letters.push((middle, event.label.as_str()));
+    }
+    for event in &curve.events {
+        marker(sheet, event.kind, on_sheet(event.at))?;
+    }
+    for (middle, label) in letters {
+        LETTER.write(sheet, middle, label, LONGEST)?;
+    }
+    Ok(())
+}

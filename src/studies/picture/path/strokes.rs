@@ -1,0 +1,81 @@
+//! Lines, dots and marks of a path.
+
+use crate::studies::picture::path::curve::EventKind;
+use crate::studies::picture::shapes::{Drawn, FAINT_INK, FINE, INK, PAPER, Place, Sheet};
+use plotters::element::DashedPathElement;
+use plotters::prelude::{Circle, PathElement, Polygon, RGBColor, ShapeStyle};
+use plotters::style::Color;
+
+const BIFURCATION: RGBColor = RGBColor(230, 120, 0);
+const LIMIT: RGBColor = RGBColor(190, 20, 40);
+const NONSMOOTH: RGBColor = RGBColor(120, 40, 140);
+/// Of the stages, in turn.
+const STAGES: [RGBColor; 4] =
+    [RGBColor(25, 85, 150), RGBColor(70, 165, 40), RGBColor(125, 75, 30), RGBColor(90, 90, 120)];
+
+/// Half the size of a marker, in pixels.
+pub const MARKER: i32 = 5;
+
+/// How a stretch of the curve looks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Stroke {
+    /// Place of the stage among the stages.
+    pub stage: usize,
+    pub bifurcation: bool,
+}
+
+impl Stroke {
+    /// The colour and the width of the line, and the size of its dots, in fine units.
+    fn look(self) -> (RGBColor, u32, i32) {
+        if self.bifurcation { (BIFURCATION, 36, 26) } else { (STAGES[self.stage % STAGES.len()], 14, 16) }
+    }
+
+    /// Where a later stage covers an earlier one, both show.
+    fn dashed(self) -> bool {
+        self.stage % 2 == 1 && !self.bifurcation
+    }
+
+    pub fn line(self, sheet: &Sheet<'_>, places: Vec<Place>) -> Drawn {
+        let (color, width, _) = self.look();
+        let style = color.stroke_width(width);
+        if self.dashed() {
+            sheet.draw(&DashedPathElement::new(places, 7 * FINE, 7 * FINE, style))
+        } else {
+            sheet.draw(&PathElement::new(places, style))
+        }
+    }
+
+    pub fn dot(self, sheet: &Sheet<'_>, place: Place) -> Drawn {
+        let (color, _, size) = self.look();
+        sheet.draw(&Circle::new(place, size, color.filled()))
+    }
+}
+
+/// The line from a letter to its point, where they stand apart.
+pub fn leader(sheet: &Sheet<'_>, from: Place, to: Place) -> Drawn {
+    sheet.draw(&PathElement::new(vec![from, to], FAINT_INK.stroke_width(7)))
+}
+
+/// The mark of an event: no two kinds have the same shape.
+pub fn marker(sheet: &Sheet<'_>, kind: EventKind, (x, y): Place) -> Drawn {
+    let size = MARKER * FINE;
+    let outline = |color: RGBColor| color.stroke_width(16);
+    match kind {
+        EventKind::SmoothLimit => sheet.draw(&Circle::new((x, y), size, LIMIT.filled())),
+        EventKind::NonsmoothLimit => {
+            let reach = size * 13 / 10;
+            let corners = vec![(x - reach, y), (x, y - reach), (x + reach, y), (x, y + reach)];
+            sheet.draw(&Polygon::new(corners, NONSMOOTH.filled()))
+        }
+        EventKind::ContactChange => {
+            sheet.draw(&Circle::new((x, y), size, PAPER.filled()))?;
+            sheet.draw(&Circle::new((x, y), size * 8 / 10, outline(INK)))
+        }
+        EventKind::End => {
+            let reach = size * 9 / 10;
+            let corners =
+                vec![(x - reach, y - reach), (x + reach, y - reach), (x + reach, y + reach), (x - reach, y + reach)];
+            sheet.draw(&Polygon::new(corners, ShapeStyle::from(&INK).filled()))
+        }
+    }
+}
