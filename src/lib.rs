@@ -57,3 +57,4 @@ pub mod result;
 pub mod service;
 pub mod step;
 pub mod studies;
+

@@ -13,3 +13,4 @@ pub mod bifurcation;
 pub mod directions;
 pub mod selection;
 pub mod uniqueness;
+

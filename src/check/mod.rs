@@ -14,3 +14,4 @@ pub mod judged;
 pub mod measure;
 pub mod scenes;
 pub mod verify;
+

@@ -6,3 +6,4 @@
 pub mod mpec;
 pub mod rate_search;
 pub mod rates;
+

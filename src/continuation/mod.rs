@@ -6,7 +6,7 @@
 //! | room or file | what it holds |
 //! |---|---|
 //! | [`scene`] | a request made dimensionless, and the plan: what the scene does not need |
-//! | [`trace`] | the state of a path: present point, contacts in reach, totals, history; rows for the user |
+//! | [`path_state`] | the state of a path: present point, contacts in reach, totals, history; rows for the user |
 //! | [`contact_changes`] | contact changes that are foreseen, taken together, or jumped to |
 //! | [`path`] | the loop of an increment: stages, step control, trial, acceptance, classification, checkpoints |
 //! | [`penalty`] | the conventional method with penalties, for comparison |
@@ -15,10 +15,11 @@
 pub mod contact_changes;
 pub mod method_dispatch;
 pub mod path;
+pub(crate) mod path_state;
 pub mod penalty;
 pub mod scene;
 #[cfg(test)]
 mod tests_of_exhaustive;
 #[cfg(test)]
 mod tests_of_lattice;
-pub(crate) mod trace;
+

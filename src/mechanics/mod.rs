@@ -15,3 +15,4 @@ pub(crate) mod equations;
 pub mod multi_contact;
 pub mod problem;
 pub mod structure;
+

@@ -14,3 +14,4 @@ pub mod plan;
 pub mod program_iterate;
 pub mod report;
 pub mod stop_reason;
+

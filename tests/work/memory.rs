@@ -1,5 +1,5 @@
 //! What a path takes does not grow with its increments: a million of them can be streamed. (Ten times as many, and what the
-//! process takes: `cargo bench --bench memory`. The states kept for telling a cycle: `continuation/trace/visited_states`.)
+//! process takes: `cargo bench --bench memory`. The states kept for telling a cycle: `continuation/path_state/visited_states`.)
 
 use crate::common::long_paths::one_bar_in_short_steps;
 use allocation_counter::measure;

@@ -15,3 +15,4 @@ pub(crate) mod choice;
 pub(crate) mod condensation_basis;
 pub(crate) mod condensed_rate_problem;
 pub(crate) mod trial_step;
+

@@ -7,3 +7,4 @@
 
 pub(crate) mod all_slipping;
 pub(crate) mod sparse_uniqueness;
+

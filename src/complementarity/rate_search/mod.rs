@@ -15,3 +15,4 @@ pub(crate) mod slip_onset_direction;
 #[cfg(test)]
 pub(crate) mod tests;
 pub(crate) mod unbranched;
+

@@ -21,3 +21,4 @@ pub(crate) mod rate_problem;
 pub(crate) mod ray;
 pub(crate) mod simplex_dictionary;
 pub(crate) mod warm_start;
+

@@ -7,7 +7,7 @@
 //! them another direction can be followed.
 
 use crate::continuation::contact_changes::prediction::Foreseen;
-use crate::continuation::trace::trace::Trace;
+use crate::continuation::path_state::trace::Trace;
 use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::linearity::is_straight;
 use crate::mechanics::problem::node_forces;

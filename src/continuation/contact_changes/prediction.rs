@@ -9,8 +9,8 @@
 
 use crate::algebra::SystemFactorisation;
 use crate::continuation::contact_changes::simultaneous::may_join_at;
-use crate::continuation::trace::step_quantum::quantised;
-use crate::continuation::trace::trace::Trace;
+use crate::continuation::path_state::step_quantum::quantised;
+use crate::continuation::path_state::trace::Trace;
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::state::Rate;

@@ -1,11 +1,11 @@
 //! A point that a step has reached becomes the present one and a row.
 
-use crate::continuation::path::classification::{self, Came};
 use crate::continuation::path::stages;
+use crate::continuation::path::classification::{self, Came};
 use crate::continuation::path::step_control::{self, Accepted};
-use crate::continuation::trace::progress::{Arriving, Phase};
-use crate::continuation::trace::tolerances::ROUND_OFF;
-use crate::continuation::trace::trace::{Emitted, Trace};
+use crate::continuation::path_state::progress::{Arriving, Phase};
+use crate::continuation::path_state::tolerances::ROUND_OFF;
+use crate::continuation::path_state::trace::{Emitted, Trace};
 use crate::mechanics::contact::{Reaction, all_continue};
 use crate::mechanics::problem::natural_residual;
 use crate::result::increment::{Increment, PointKind};

@@ -3,11 +3,11 @@
 use crate::branching::directions::choice::{Choice, STATIONARY};
 use crate::continuation::path::checkpoint::CheckpointError;
 
-use crate::continuation::trace::progress::{Followed, Phase, StageCounts};
-use crate::continuation::trace::totals::Totals;
-use crate::continuation::trace::trace::{Emitted, Trace};
+use crate::continuation::path_state::progress::{Followed, Phase, StageCounts};
+use crate::continuation::path_state::totals::Totals;
+use crate::continuation::path_state::trace::{Emitted, Trace};
 
-use crate::continuation::trace::visited_states;
+use crate::continuation::path_state::visited_states;
 use crate::mechanics::contact::all_continue;
 use crate::mechanics::equations::stage_criteria::End;
 use crate::result::increment::{Increment, Point, PointKind};

@@ -6,9 +6,9 @@
 //! up with the scene that it was made with, or with one that differs in `max_increments` alone.
 
 use crate::continuation::scene::Scene;
-use crate::continuation::trace::progress::{Listed, Progress};
-use crate::continuation::trace::trace::Trace;
-use crate::continuation::trace::visited_states::Numbered;
+use crate::continuation::path_state::progress::{Listed, Progress};
+use crate::continuation::path_state::trace::Trace;
+use crate::continuation::path_state::visited_states::Numbered;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::cancel::CancelFlag;

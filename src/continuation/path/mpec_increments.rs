@@ -12,7 +12,7 @@
 
 use crate::continuation::path::mpec_verification;
 use crate::continuation::path::step_control::Accepted;
-use crate::continuation::trace::trace::Trace;
+use crate::continuation::path_state::trace::Trace;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::closing_equation::ArcLengthEquation;

@@ -5,7 +5,7 @@
 
 use crate::branching::directions::choice::Choice;
 use crate::complementarity::mpec::Problem;
-use crate::continuation::trace::trace::Trace;
+use crate::continuation::path_state::trace::Trace;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::multi_contact::reaction_split::agree;
 use crate::mechanics::problem::loading::Loading;

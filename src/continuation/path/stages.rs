@@ -2,10 +2,10 @@
 
 use crate::branching::directions::choice::{self, Before};
 use crate::branching::selection::decision;
-use crate::continuation::trace::event_names::describe_start;
-use crate::continuation::trace::progress::{Phase, StageCounts};
-use crate::continuation::trace::trace::{Emitted, Trace};
-use crate::continuation::trace::visited_states::History;
+use crate::continuation::path_state::event_names::describe_start;
+use crate::continuation::path_state::progress::{Phase, StageCounts};
+use crate::continuation::path_state::trace::{Emitted, Trace};
+use crate::continuation::path_state::visited_states::History;
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::state::Rate;

@@ -1,13 +1,13 @@
 //! One try of a step: how far its mode goes, and whether what is reached can be a point of the path.
 
+use crate::branching::bifurcation::{bound_at_singularity, simultaneous_limit_points};
 use crate::branching::bifurcation::locate::{self, Crossing, Ended, Located};
 use crate::branching::bifurcation::singularity::test_functions::{self, Change, Signature};
-use crate::branching::bifurcation::{bound_at_singularity, simultaneous_limit_points};
 use crate::continuation::contact_changes::prediction::Foreseen;
 use crate::continuation::contact_changes::simultaneous::Joined;
 use crate::continuation::path::step_control;
-use crate::continuation::trace::progress::Here;
-use crate::continuation::trace::trace::Trace;
+use crate::continuation::path_state::progress::Here;
+use crate::continuation::path_state::trace::Trace;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::problem::natural_residual;
 use crate::mechanics::problem::state::Rate;

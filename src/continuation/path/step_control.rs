@@ -9,12 +9,12 @@ use crate::branching::selection::decision;
 use crate::continuation::contact_changes::piecewise_linear;
 use crate::continuation::contact_changes::prediction::{self, Foreseen};
 use crate::continuation::contact_changes::simultaneous::may_join_at;
-use crate::continuation::path::step_attempt::{self, Sought, Tried, Tries};
 use crate::continuation::path::{mpec_increments, mpec_verification};
-use crate::continuation::trace::step_quantum::quantised;
-use crate::continuation::trace::tolerances::SAME_STATE;
-use crate::continuation::trace::totals::{Added, NO_ENERGY};
-use crate::continuation::trace::trace::Trace;
+use crate::continuation::path::step_attempt::{self, Sought, Tried, Tries};
+use crate::continuation::path_state::step_quantum::quantised;
+use crate::continuation::path_state::tolerances::SAME_STATE;
+use crate::continuation::path_state::totals::{Added, NO_ENERGY};
+use crate::continuation::path_state::trace::Trace;
 use crate::mechanics::contact::all_continue;
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::stage_criteria::End;
@@ -385,7 +385,7 @@ mod tests {
     use super::*;
     use crate::check::scenes;
     use crate::continuation::scene::Scene;
-    use crate::continuation::trace::progress::Progress;
+    use crate::continuation::path_state::progress::Progress;
     use crate::model::request::ArcLength;
     use crate::resources::cancel::CancelFlag;
 

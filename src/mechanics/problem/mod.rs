@@ -15,3 +15,4 @@ pub(crate) mod loading;
 pub(crate) mod natural_residual;
 pub(crate) mod node_forces;
 pub(crate) mod state;
+

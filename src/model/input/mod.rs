@@ -5,3 +5,4 @@ pub mod json;
 pub mod limits;
 pub(crate) mod mistakes;
 pub(crate) mod names;
+

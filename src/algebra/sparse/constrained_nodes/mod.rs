@@ -9,3 +9,4 @@
 pub(crate) mod held_node;
 pub(crate) mod nodal_constraints;
 pub(crate) mod node_cache;
+

@@ -15,3 +15,4 @@ pub(crate) mod counts;
 pub(crate) mod evaluation;
 pub mod problem;
 pub(crate) mod sparse_rows;
+

@@ -1,10 +1,7 @@
 //! What an engine of storage does, whichever it is.
 
 use crate::service::store::contract::error::Result;
-use crate::service::store::contract::record::{
-    Batch, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Listed, NewFollower, NewJob, NewSweep,
-    Origin, Page, Retried, Standing, Status, Submitted,
-};
+use crate::service::store::contract::record::{Batch, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Listed, NewFollower, NewJob, NewSweep, Origin, Page, Retried, Standing, Status, Submitted};
 use crate::service::store::contract::signals::Change;
 use async_trait::async_trait;
 use std::time::Duration;
@@ -95,7 +92,7 @@ pub trait Store: Send + Sync + 'static {
     /// Looks through the whole database for damage.
     ///
     /// # Errors
-    /// [`StoreError::Damaged`](super::error::StoreError::Damaged), which every call answers from then on that would write.
+    /// [`StoreError::Damaged`](crate::service::store::contract::error::StoreError::Damaged), which every call answers from then on that would write.
     async fn check(&self) -> Result<()>;
 
     /// Proves that the store takes writes.

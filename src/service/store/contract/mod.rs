@@ -6,3 +6,4 @@ pub mod interface;
 pub mod location;
 pub mod record;
 pub mod signals;
+

@@ -16,3 +16,4 @@ pub(crate) mod rows;
 pub(crate) mod store;
 pub(crate) mod sweeps;
 pub(crate) mod turns;
+

@@ -2,7 +2,7 @@
 
 use crate::branching::directions::choice::{Choice, is_worth_listing};
 use crate::continuation::scene::{Reported, Scene};
-use crate::continuation::trace::totals::Totals;
+use crate::continuation::path_state::totals::Totals;
 use crate::mechanics::contact::vector::{add, dot};
 use crate::mechanics::contact::{Mode, tangents_in_space};
 use crate::mechanics::problem::loading::Loading;

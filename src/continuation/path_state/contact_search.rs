@@ -10,7 +10,7 @@
 
 use crate::continuation::scene::Scene;
 use crate::continuation::scene::recorded_rows::{REACH, fastest};
-use crate::continuation::trace::progress::Progress;
+use crate::continuation::path_state::progress::Progress;
 use crate::mechanics::contact::Contact;
 use crate::mechanics::problem::loading::{LoadPattern, Loading};
 use crate::mechanics::problem::node_forces::Corner;
