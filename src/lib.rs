@@ -57,4 +57,3 @@ pub mod result;
 pub mod service;
 pub mod step;
 pub mod studies;
-

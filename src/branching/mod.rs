@@ -13,4 +13,3 @@ pub mod bifurcation;
 pub mod directions;
 pub mod selection;
 pub mod uniqueness;
-

@@ -14,4 +14,3 @@ pub mod judged;
 pub mod measure;
 pub mod scenes;
 pub mod verify;
-

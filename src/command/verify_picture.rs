@@ -3,7 +3,9 @@
 use crate::check::verify::case::Row;
 use plotters::coord::Shift;
 use plotters::element::PathElement;
-use plotters::prelude::{Circle, DrawingArea, DrawingAreaErrorKind, IntoDrawingArea, IntoFont, RGBColor, SVGBackend, Text};
+use plotters::prelude::{
+    Circle, DrawingArea, DrawingAreaErrorKind, IntoDrawingArea, IntoFont, RGBColor, SVGBackend, Text,
+};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, TextStyle};
 

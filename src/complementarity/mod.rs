@@ -6,4 +6,3 @@
 pub mod mpec;
 pub mod rate_search;
 pub mod rates;
-

@@ -22,4 +22,3 @@ pub mod scene;
 mod tests_of_exhaustive;
 #[cfg(test)]
 mod tests_of_lattice;
-

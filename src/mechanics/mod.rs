@@ -15,4 +15,3 @@ pub(crate) mod equations;
 pub mod multi_contact;
 pub mod problem;
 pub mod structure;
-

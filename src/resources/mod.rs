@@ -3,4 +3,3 @@
 pub mod budget;
 pub mod cancel;
 pub mod panics;
-

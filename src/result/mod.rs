@@ -14,4 +14,3 @@ pub mod plan;
 pub mod program_iterate;
 pub mod report;
 pub mod stop_reason;
-

@@ -11,4 +11,3 @@ pub mod http;
 pub mod jobs;
 pub mod metrics;
 pub mod store;
-

@@ -17,4 +17,3 @@ pub(crate) mod increment_mpec;
 pub(crate) mod interpolation;
 pub(crate) mod segment;
 pub(crate) mod singular_step;
-

@@ -4,4 +4,3 @@ pub mod error_against_time;
 #[cfg(feature = "server")]
 pub mod picture;
 pub mod sweeps;
-

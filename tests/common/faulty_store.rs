@@ -2,7 +2,10 @@
 
 use arcslip::service::store::contract::error::Result;
 use arcslip::service::store::contract::interface::Store;
-use arcslip::service::store::{Batch, Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Listed, NewFollower, NewJob, NewSweep, Origin, Page, Retried, Standing, Status, StoreError, Submitted};
+use arcslip::service::store::{
+    Batch, Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Listed, NewFollower, NewJob,
+    NewSweep, Origin, Page, Retried, Standing, Status, StoreError, Submitted,
+};
 use async_trait::async_trait;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};

@@ -7,7 +7,9 @@ use crate::common::service::scene;
 use crate::on_both_engines;
 use arcslip::service::jobs::{PathSolver, Settings};
 use arcslip::service::store::contract::interface::Store;
-use arcslip::service::store::{Batch, Ending, JobRecord, ListFilter, Listed, NewJob, NewRun, NewSweep, Page, Status, Task};
+use arcslip::service::store::{
+    Batch, Ending, JobRecord, ListFilter, Listed, NewJob, NewRun, NewSweep, Page, Status, Task,
+};
 use serde_json::{Value, json};
 use std::time::Duration;
 

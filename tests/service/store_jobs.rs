@@ -5,7 +5,10 @@ use crate::common::engines::{Database, batch, found, job, line, queued};
 use crate::on_both_engines;
 use arcslip::model::request::Explore;
 use arcslip::service::store::contract::interface::Store;
-use arcslip::service::store::{Batch, Branch, Ending, Keep, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, NewRun, NewSweep, Page, Parent, Status, Submitted, Task};
+use arcslip::service::store::{
+    Batch, Branch, Ending, Keep, LeaseAnswer, Line, ListFilter, NewFollower, NewJob, NewRun, NewSweep, Page, Parent,
+    Status, Submitted, Task,
+};
 use std::time::Duration;
 use uuid::Uuid;
 

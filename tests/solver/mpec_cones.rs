@@ -2,7 +2,9 @@
 //! chosen, the nearest complementary pair; each with an answer by hand.
 
 use arcslip::complementarity::mpec::program::cone;
-use arcslip::complementarity::mpec::{self, ConeActivity, Problem, Settings, Solution, SparseRows, StationarityKind, Status, semismooth};
+use arcslip::complementarity::mpec::{
+    self, ConeActivity, Problem, Settings, Solution, SparseRows, StationarityKind, Status, semismooth,
+};
 use arcslip::resources::cancel::CancelFlag;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 

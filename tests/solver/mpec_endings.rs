@@ -4,7 +4,9 @@
 use std::cell::Cell;
 
 use arcslip::complementarity::mpec::quadratic_program::interior_point::{QuadraticProgram, solve_interior};
-use arcslip::complementarity::mpec::{self, InputError, PairActivity, Problem, Quantity, Settings, SparseRows, StationarityKind, Status};
+use arcslip::complementarity::mpec::{
+    self, InputError, PairActivity, Problem, Quantity, Settings, SparseRows, StationarityKind, Status,
+};
 use arcslip::resources::cancel::CancelFlag;
 use nalgebra::{DMatrix, DVector};
 

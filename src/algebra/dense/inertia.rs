@@ -7,7 +7,9 @@
 
 use crate::resources::budget;
 use faer::dyn_stack::MemStack;
-use faer::linalg::cholesky::lblt::factor::{LbltParams, PivotingStrategy, cholesky_in_place, cholesky_in_place_scratch};
+use faer::linalg::cholesky::lblt::factor::{
+    LbltParams, PivotingStrategy, cholesky_in_place, cholesky_in_place_scratch,
+};
 use faer::{ColMut, MatMut, Par, Spec};
 use nalgebra::DMatrix;
 use smallvec::SmallVec;

@@ -6,4 +6,3 @@ pub mod inertia;
 pub(crate) mod interruptible_lu;
 pub(crate) mod lu_factors;
 pub(crate) mod solve_counters;
-

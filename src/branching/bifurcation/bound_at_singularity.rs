@@ -5,8 +5,8 @@
 //! judged by its residual like any other.
 
 use crate::algebra::scalar_root::find_root;
-use crate::branching::bifurcation::simultaneous_limit_points;
 use crate::branching::bifurcation::locate::{self, Ended, Located, WIDTHS};
+use crate::branching::bifurcation::simultaneous_limit_points;
 use crate::branching::bifurcation::singularity::test_functions::{self, Change, Signature};
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::stage_criteria::End;

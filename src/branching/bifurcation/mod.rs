@@ -13,4 +13,3 @@ pub(crate) mod branch_directions;
 pub(crate) mod locate;
 pub(crate) mod simultaneous_limit_points;
 pub(crate) mod singularity;
-

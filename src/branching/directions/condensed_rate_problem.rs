@@ -6,8 +6,8 @@
 
 use crate::branching::directions::arrival_tangent::Incoming;
 use crate::branching::directions::candidate::{Alternative, Candidate, Found, WEAK, is_mechanism, merge, sort};
-use crate::complementarity::rate_search::simultaneous_slips;
 use crate::complementarity::rate_search::branch_and_bound::{self, Effort, Ray};
+use crate::complementarity::rate_search::simultaneous_slips;
 use crate::complementarity::rate_search::slip_onset_direction::{self, Touch, Turning};
 use crate::complementarity::rates::rate_problem::RateProblem;
 use crate::complementarity::rates::{gauss_seidel, warm_start};

@@ -15,4 +15,3 @@ pub(crate) mod choice;
 pub(crate) mod condensation_basis;
 pub(crate) mod condensed_rate_problem;
 pub(crate) mod trial_step;
-

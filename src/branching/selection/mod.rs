@@ -9,4 +9,3 @@
 pub(crate) mod decision;
 pub(crate) mod enumeration;
 pub(crate) mod second_order;
-

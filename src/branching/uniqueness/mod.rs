@@ -7,4 +7,3 @@
 
 pub(crate) mod all_slipping;
 pub(crate) mod sparse_uniqueness;
-

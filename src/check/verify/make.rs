@@ -1,7 +1,9 @@
 //! Requests from a few words.
 
 use crate::model::JobRequest;
-use crate::model::request::{Analysis, Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Strain, Until};
+use crate::model::request::{
+    Analysis, Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Strain, Until,
+};
 use indexmap::IndexMap;
 
 /// A request as it grows.

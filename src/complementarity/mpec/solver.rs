@@ -15,7 +15,6 @@
 use nalgebra::DVector;
 
 use crate::complementarity::mpec::input_validation::check_input;
-use crate::complementarity::mpec::unboundedness;
 use crate::complementarity::mpec::piecewise_descent::{self, Candidate};
 use crate::complementarity::mpec::program::activity::{Activities, PairActivity};
 use crate::complementarity::mpec::program::cone::ConeActivity;
@@ -27,6 +26,7 @@ use crate::complementarity::mpec::settings::Settings;
 use crate::complementarity::mpec::smooth_program::pair_treatment::Pattern;
 use crate::complementarity::mpec::smooth_program::relaxation::Rows;
 use crate::complementarity::mpec::smooth_program::sqp::{self, SqpEnd, SqpSettings};
+use crate::complementarity::mpec::unboundedness;
 use crate::resources::cancel::CancelFlag;
 
 /// Factor on `ε` from one restart to the next.

@@ -15,4 +15,3 @@ pub(crate) mod slip_onset_direction;
 #[cfg(test)]
 pub(crate) mod tests;
 pub(crate) mod unbranched;
-

@@ -21,4 +21,3 @@ pub(crate) mod rate_problem;
 pub(crate) mod ray;
 pub(crate) mod simplex_dictionary;
 pub(crate) mod warm_start;
-

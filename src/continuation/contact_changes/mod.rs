@@ -11,4 +11,3 @@ pub(crate) mod linear_complementarity;
 pub(crate) mod piecewise_linear;
 pub(crate) mod prediction;
 pub(crate) mod simultaneous;
-

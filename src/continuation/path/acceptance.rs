@@ -1,7 +1,7 @@
 //! A point that a step has reached becomes the present one and a row.
 
-use crate::continuation::path::stages;
 use crate::continuation::path::classification::{self, Came};
+use crate::continuation::path::stages;
 use crate::continuation::path::step_control::{self, Accepted};
 use crate::continuation::path_state::progress::{Arriving, Phase};
 use crate::continuation::path_state::tolerances::ROUND_OFF;

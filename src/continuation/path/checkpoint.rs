@@ -5,10 +5,10 @@
 //! them exactly (`float_roundtrip`). What a scene says (structure, loads, settings) is not in it: a checkpoint is taken
 //! up with the scene that it was made with, or with one that differs in `max_increments` alone.
 
-use crate::continuation::scene::Scene;
 use crate::continuation::path_state::progress::{Listed, Progress};
 use crate::continuation::path_state::trace::Trace;
 use crate::continuation::path_state::visited_states::Numbered;
+use crate::continuation::scene::Scene;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::cancel::CancelFlag;

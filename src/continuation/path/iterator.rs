@@ -3,11 +3,11 @@
 //! Between events the path keeps its contact mode and is followed by arc-length steps; where the mode ends, the
 //! directions are listed and one is taken. The step follows the turn of the path and the work of Newton's method.
 
-use crate::continuation::path::{acceptance, branch_switching, stages, step_control};
 use crate::continuation::path::checkpoint::{self, Checkpoint, CheckpointError};
-use crate::continuation::scene::Scene;
+use crate::continuation::path::{acceptance, branch_switching, stages, step_control};
 use crate::continuation::path_state::progress::{Phase, Progress};
 use crate::continuation::path_state::trace::Trace;
+use crate::continuation::scene::Scene;
 use crate::resources::budget::{self, Budget};
 use crate::resources::cancel::CancelFlag;
 use crate::result::increment::Increment;

@@ -24,4 +24,3 @@ pub(crate) mod mpec_verification;
 pub(crate) mod stages;
 pub(crate) mod step_attempt;
 pub(crate) mod step_control;
-

@@ -1,8 +1,8 @@
 //! One try of a step: how far its mode goes, and whether what is reached can be a point of the path.
 
-use crate::branching::bifurcation::{bound_at_singularity, simultaneous_limit_points};
 use crate::branching::bifurcation::locate::{self, Crossing, Ended, Located};
 use crate::branching::bifurcation::singularity::test_functions::{self, Change, Signature};
+use crate::branching::bifurcation::{bound_at_singularity, simultaneous_limit_points};
 use crate::continuation::contact_changes::prediction::Foreseen;
 use crate::continuation::contact_changes::simultaneous::Joined;
 use crate::continuation::path::step_control;

@@ -9,8 +9,8 @@ use crate::branching::selection::decision;
 use crate::continuation::contact_changes::piecewise_linear;
 use crate::continuation::contact_changes::prediction::{self, Foreseen};
 use crate::continuation::contact_changes::simultaneous::may_join_at;
-use crate::continuation::path::{mpec_increments, mpec_verification};
 use crate::continuation::path::step_attempt::{self, Sought, Tried, Tries};
+use crate::continuation::path::{mpec_increments, mpec_verification};
 use crate::continuation::path_state::step_quantum::quantised;
 use crate::continuation::path_state::tolerances::SAME_STATE;
 use crate::continuation::path_state::totals::{Added, NO_ENERGY};
@@ -384,8 +384,8 @@ fn next_step_factor(trace: &Trace<'_>, accepted: &Accepted, tried: f64, was_shor
 mod tests {
     use super::*;
     use crate::check::scenes;
-    use crate::continuation::scene::Scene;
     use crate::continuation::path_state::progress::Progress;
+    use crate::continuation::scene::Scene;
     use crate::model::request::ArcLength;
     use crate::resources::cancel::CancelFlag;
 

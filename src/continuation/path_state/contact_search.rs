@@ -8,9 +8,9 @@
 //!
 //! A contact that is out of reach is free, without reaction: the equations that the others have are those of the whole.
 
+use crate::continuation::path_state::progress::Progress;
 use crate::continuation::scene::Scene;
 use crate::continuation::scene::recorded_rows::{REACH, fastest};
-use crate::continuation::path_state::progress::Progress;
 use crate::mechanics::contact::Contact;
 use crate::mechanics::problem::loading::{LoadPattern, Loading};
 use crate::mechanics::problem::node_forces::Corner;

@@ -1,7 +1,7 @@
 //! Events in words.
 
-use crate::continuation::scene::Scene;
 use crate::continuation::path_state::record::status;
+use crate::continuation::scene::Scene;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::multi_contact::contact_status::Standing;
 use crate::result::increment::Status;

@@ -21,4 +21,3 @@ pub(crate) mod tolerances;
 pub(crate) mod totals;
 pub(crate) mod trace;
 pub(crate) mod visited_states;
-

@@ -2,10 +2,10 @@
 
 use crate::branching::bifurcation::singularity::test_functions::Signature;
 use crate::branching::directions::choice::Choice;
-use crate::continuation::scene::Scene;
 use crate::continuation::path_state::backoff::Waiting;
 use crate::continuation::path_state::totals::Totals;
 use crate::continuation::path_state::visited_states::History;
+use crate::continuation::scene::Scene;
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::loading::LoadPattern;

@@ -1,8 +1,8 @@
 //! From a dimensionless point to the row that a user sees: the user's units and names.
 
 use crate::branching::directions::choice::{Choice, is_worth_listing};
-use crate::continuation::scene::{Reported, Scene};
 use crate::continuation::path_state::totals::Totals;
+use crate::continuation::scene::{Reported, Scene};
 use crate::mechanics::contact::vector::{add, dot};
 use crate::mechanics::contact::{Mode, tangents_in_space};
 use crate::mechanics::problem::loading::Loading;

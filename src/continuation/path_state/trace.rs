@@ -3,11 +3,11 @@
 use crate::branching::directions::choice::{Choice, Rules};
 use crate::branching::selection::decision::Decision;
 use crate::complementarity::rate_search::branch_and_bound::Effort;
-use crate::continuation::scene::Scene;
 use crate::continuation::path_state::contact_search::{self, FarContacts, Near};
 use crate::continuation::path_state::progress::{Arriving, Listed, Phase, Progress};
 use crate::continuation::path_state::record::{self, Row};
 use crate::continuation::path_state::visited_states::{Held, Visited};
+use crate::continuation::scene::Scene;
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::multi_contact::contact_status::{Standing, standings};
 use crate::mechanics::multi_contact::moving_planes::Carried;

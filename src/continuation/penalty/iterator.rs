@@ -1,16 +1,16 @@
 //! The path as an iterator: points accepted, stages, rows.
 
 use crate::algebra::Factorisation;
+use crate::continuation::path_state::event_names::{describe_change, describe_start};
+use crate::continuation::path_state::progress::{Phase, StageCounts};
+use crate::continuation::path_state::record::{self, Row};
+use crate::continuation::path_state::totals::{Added, Totals};
 use crate::continuation::penalty::increment::Change;
 use crate::continuation::penalty::law::Penalties;
 use crate::continuation::penalty::record::{give, modes, work_and_dissipation};
 use crate::continuation::penalty::step_control::Accepted;
 use crate::continuation::penalty::system::{Point, System};
 use crate::continuation::scene::Scene;
-use crate::continuation::path_state::event_names::{describe_change, describe_start};
-use crate::continuation::path_state::progress::{Phase, StageCounts};
-use crate::continuation::path_state::record::{self, Row};
-use crate::continuation::path_state::totals::{Added, Totals};
 use crate::mechanics::problem::loading::{LoadPattern, Loading};
 use crate::mechanics::problem::state::State;
 use crate::model::request::Regularised;

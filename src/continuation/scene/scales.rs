@@ -1,6 +1,8 @@
 //! Length and forces that make a request dimensionless: see `scene`.
 
-use crate::continuation::scene::build::{Contacts, Scaled, build_contacts, build_stage, build_structure, first_contacts, norm};
+use crate::continuation::scene::build::{
+    Contacts, Scaled, build_contacts, build_stage, build_structure, first_contacts, norm,
+};
 use crate::continuation::scene::characteristic_stiffness::resisting;
 use crate::mechanics::structure::Structure;
 use crate::model::request::{self, Analysis, Model};

@@ -2,9 +2,9 @@
 
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::size;
-use crate::mechanics::equations::{ModeSystem, Role};
 use crate::mechanics::equations::slip_integration::{self, Turn};
 use crate::mechanics::equations::solution::{Corrected, Tangent};
+use crate::mechanics::equations::{ModeSystem, Role};
 use crate::mechanics::problem::state::Rate;
 
 impl ModeSystem<'_> {

@@ -17,4 +17,3 @@ pub(crate) mod planar;
 pub mod rate_options;
 pub(crate) mod reaction_split;
 pub(crate) mod spatial;
-

@@ -15,4 +15,3 @@ pub(crate) mod loading;
 pub(crate) mod natural_residual;
 pub(crate) mod node_forces;
 pub(crate) mod state;
-

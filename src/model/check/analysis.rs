@@ -1,7 +1,10 @@
 //! How the path is to be traced.
 
 use crate::model::check::numbers;
-use crate::model::input::limits::{MAX_DENSE_UNKNOWNS, MAX_DESIRED_ITERATIONS, MAX_EXPLORE_DEPTH, MAX_EXPLORE_JOBS, MAX_INCREMENTS, MAX_MODES, MAX_UNKNOWNS};
+use crate::model::input::limits::{
+    MAX_DENSE_UNKNOWNS, MAX_DESIRED_ITERATIONS, MAX_EXPLORE_DEPTH, MAX_EXPLORE_JOBS, MAX_INCREMENTS, MAX_MODES,
+    MAX_UNKNOWNS,
+};
 use crate::model::input::mistakes::{Mistakes, Place};
 use crate::model::input::names::{quoted, suggestion};
 use crate::model::request::{Analysis, ArcLength, Method, Model, Record, RecordedContact, Regularised};

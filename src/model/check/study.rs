@@ -2,7 +2,9 @@
 
 use crate::model::InputErrors;
 use crate::model::check::numbers;
-use crate::model::input::limits::{MAX_INCREMENTS, MAX_STUDY_REFINEMENT, MAX_STUDY_REPEATS, MAX_STUDY_RUNGS, MAX_STUDY_VALUES};
+use crate::model::input::limits::{
+    MAX_INCREMENTS, MAX_STUDY_REFINEMENT, MAX_STUDY_REPEATS, MAX_STUDY_RUNGS, MAX_STUDY_VALUES,
+};
 use crate::model::input::mistakes::{Mistakes, Place};
 use crate::model::input::names::listed;
 use crate::model::request::Method;

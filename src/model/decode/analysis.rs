@@ -2,7 +2,10 @@
 
 use crate::model::decode::reader::{Choices, Fields, Input, boolean, count, number, text};
 use crate::model::input::mistakes::Mistakes;
-use crate::model::request::{Analysis, ArcLength, Certificate, ContactRange, Events, Explore, LoadSign, Method, Mpec, Record, RecordedContact, RecordedContacts, Regularised, Selection};
+use crate::model::request::{
+    Analysis, ArcLength, Certificate, ContactRange, Events, Explore, LoadSign, Method, Mpec, Record, RecordedContact,
+    RecordedContacts, Regularised, Selection,
+};
 
 const ANALYSIS: Fields = Fields {
     what: "an analysis",

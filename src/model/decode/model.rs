@@ -4,7 +4,9 @@ use indexmap::IndexMap;
 
 use crate::model::decode::reader::{Choices, Fields, Input, count, number, numbers, text};
 use crate::model::input::mistakes::Mistakes;
-use crate::model::request::{Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Strain, Until};
+use crate::model::request::{
+    Component, Contact, DisplacementBound, Element, Model, Obstacle, Side, Stage, Strain, Until,
+};
 
 const MODEL: Fields = Fields {
     what: "a model",

@@ -5,4 +5,3 @@ pub mod json;
 pub mod limits;
 pub(crate) mod mistakes;
 pub(crate) mod names;
-

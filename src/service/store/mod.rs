@@ -18,7 +18,11 @@ use std::sync::Arc;
 pub use contract::error::StoreError;
 pub use contract::interface::Store;
 pub use contract::location::Location;
-pub use contract::record::{Batch, Branch, Checkpoint, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Listed, Membership, NewFollower, NewJob, NewRun, NewSweep, Origin, Page, Parent, Retried, RunOf, Standing, Status, Submitted, Task};
+pub use contract::record::{
+    Batch, Branch, Checkpoint, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Listed,
+    Membership, NewFollower, NewJob, NewRun, NewSweep, Origin, Page, Parent, Retried, RunOf, Standing, Status,
+    Submitted, Task,
+};
 
 pub use contract::signals::Change;
 

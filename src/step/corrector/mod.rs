@@ -17,4 +17,3 @@ pub(crate) mod newton;
 pub(crate) mod single_iteration;
 pub(crate) mod slip_error;
 pub(crate) mod tangent;
-

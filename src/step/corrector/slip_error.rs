@@ -12,9 +12,9 @@
 
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::{Vector, add, cross, dot, size};
-use crate::mechanics::equations::{Kind, ModeSystem, Role, Track};
 use crate::mechanics::equations::slip_integration::{self, Rule};
 use crate::mechanics::equations::solution::Corrected;
+use crate::mechanics::equations::{Kind, ModeSystem, Role, Track};
 use crate::mechanics::problem::state::{Rate, State};
 use nalgebra::DVector;
 

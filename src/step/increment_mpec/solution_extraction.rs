@@ -1,7 +1,7 @@
 //! What is read off the end of an increment: contact modes, the state, and the state made exact.
 
-use crate::complementarity::mpec::{Activities, ConeActivity, PairActivity, Problem, Solution};
 use crate::complementarity::mpec::semismooth::{self, Polished};
+use crate::complementarity::mpec::{Activities, ConeActivity, PairActivity, Problem, Solution};
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::problem::state::State;
 use crate::resources::cancel::CancelFlag;

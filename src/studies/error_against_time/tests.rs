@@ -5,8 +5,8 @@ use crate::resources::cancel::CancelFlag;
 use crate::result::increment::PointKind;
 use crate::result::stop_reason::StopReason;
 use crate::studies::error_against_time::curve::Curve;
-use crate::studies::error_against_time::matching;
 use crate::studies::error_against_time::events::{self, EventsFound};
+use crate::studies::error_against_time::matching;
 use crate::studies::error_against_time::row::{Row, Time, slope};
 use crate::studies::error_against_time::trace::{Event, Point, Trace, TracedStage};
 

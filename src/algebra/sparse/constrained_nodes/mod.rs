@@ -9,4 +9,3 @@
 pub(crate) mod held_node;
 pub(crate) mod nodal_constraints;
 pub(crate) mod node_cache;
-

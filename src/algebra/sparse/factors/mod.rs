@@ -21,4 +21,3 @@ pub mod pivoted_lu;
 pub(crate) mod static_pivot_lu;
 pub(crate) mod supernodal_ldl;
 pub(crate) mod symbolic;
-

@@ -14,7 +14,9 @@ pub(crate) mod folded_singularity;
 use crate::algebra::null_space_as_scaled;
 use crate::algebra::scalar_root::find_root;
 use crate::branching::bifurcation::singularity::null_vectors::{NullVectors, SINGULAR};
-use crate::branching::bifurcation::singularity::test_functions::{Change, Signature, bordered_determinant, counted_tangent};
+use crate::branching::bifurcation::singularity::test_functions::{
+    Change, Signature, bordered_determinant, counted_tangent,
+};
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::scaled_rows::scaled_rows;
 use crate::mechanics::problem::state::{Rate, State};

@@ -9,4 +9,3 @@
 pub(crate) mod bordering;
 pub(crate) mod null_vectors;
 pub(crate) mod test_functions;
-

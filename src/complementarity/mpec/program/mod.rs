@@ -15,4 +15,3 @@ pub(crate) mod counts;
 pub(crate) mod evaluation;
 pub mod problem;
 pub(crate) mod sparse_rows;
-

@@ -18,7 +18,9 @@ use nalgebra::DVector;
 use crate::complementarity::mpec::program::counts::{Counts, Iterate};
 use crate::complementarity::mpec::program::sparse_rows::SparseRows;
 use crate::complementarity::mpec::quadratic_program::active_set::{self, WorkingSet};
-use crate::complementarity::mpec::quadratic_program::interior_point::{ConeRows, InteriorSolver, QuadraticFailure, QuadraticProgram, QuadraticSolution};
+use crate::complementarity::mpec::quadratic_program::interior_point::{
+    ConeRows, InteriorSolver, QuadraticFailure, QuadraticProgram, QuadraticSolution,
+};
 use crate::complementarity::mpec::quadratic_program::one_dimensional::{Binding, LineSolver, Outcome};
 use crate::resources::cancel::CancelFlag;
 

@@ -15,4 +15,3 @@ pub(crate) mod driver;
 pub mod interior_point;
 pub(crate) mod linear_solve;
 pub(crate) mod one_dimensional;
-

@@ -13,4 +13,3 @@ pub(crate) mod damped_bfgs;
 pub(crate) mod pair_treatment;
 pub(crate) mod relaxation;
 pub(crate) mod sqp;
-

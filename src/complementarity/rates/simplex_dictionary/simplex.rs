@@ -1,6 +1,8 @@
 //! The dual simplex method on a dictionary, and coordinates that it forces to zero.
 
-use crate::complementarity::rates::simplex_dictionary::{Dictionary, Feasibility, INFEASIBLE, NOTHING, Place, SMALL_PIVOT, Variable};
+use crate::complementarity::rates::simplex_dictionary::{
+    Dictionary, Feasibility, INFEASIBLE, NOTHING, Place, SMALL_PIVOT, Variable,
+};
 use crate::resources::budget;
 
 /// Coefficients by which a coordinate is forced to zero.

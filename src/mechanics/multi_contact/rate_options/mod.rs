@@ -9,4 +9,3 @@
 pub(crate) mod contact_options;
 pub(crate) mod moving_planes;
 pub(crate) mod spatial;
-

@@ -2,4 +2,3 @@
 
 pub mod problem;
 pub mod tag;
-

@@ -1,7 +1,10 @@
 //! What an engine of storage does, whichever it is.
 
 use crate::service::store::contract::error::Result;
-use crate::service::store::contract::record::{Batch, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Listed, NewFollower, NewJob, NewSweep, Origin, Page, Retried, Standing, Status, Submitted};
+use crate::service::store::contract::record::{
+    Batch, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Listed, NewFollower, NewJob, NewSweep,
+    Origin, Page, Retried, Standing, Status, Submitted,
+};
 use crate::service::store::contract::signals::Change;
 use async_trait::async_trait;
 use std::time::Duration;

@@ -6,4 +6,3 @@ pub mod interface;
 pub mod location;
 pub mod record;
 pub mod signals;
-

@@ -3,8 +3,8 @@
 use crate::service::store::contract::error::Result;
 use crate::service::store::sql::dialect::{Dialect, values};
 use crate::service::store::sql::engine::{Engine, Of, begin, reader};
-use crate::service::store::sql::rows;
 use crate::service::store::sql::followers::{self, Place};
+use crate::service::store::sql::rows;
 use crate::service::store::{NewFollower, Parent, Status};
 use uuid::Uuid;
 

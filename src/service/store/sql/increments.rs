@@ -3,8 +3,8 @@
 use crate::service::store::contract::error::Result;
 use crate::service::store::sql::dialect::{Dialect, values};
 use crate::service::store::sql::engine::{Engine, Of, begin, give_up, reader};
-use crate::service::store::sql::rows;
 use crate::service::store::sql::leases::{self, held, milliseconds, ran};
+use crate::service::store::sql::rows;
 use crate::service::store::{Batch, Checkpoint, Ending, Lease, LeaseAnswer, Line, Origin, Page};
 use std::time::Duration;
 use tokio_stream::StreamExt;

@@ -16,4 +16,3 @@ pub(crate) mod rows;
 pub(crate) mod store;
 pub(crate) mod sweeps;
 pub(crate) mod turns;
-

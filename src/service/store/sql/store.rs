@@ -4,7 +4,10 @@ use crate::service::store::contract::error::Result;
 use crate::service::store::contract::interface::Store;
 use crate::service::store::sql::engine::Engine;
 use crate::service::store::sql::{claims, families, followers, increments, jobs, leases, sweeps, turns};
-use crate::service::store::{Batch, Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Listed, NewFollower, NewJob, NewSweep, Origin, Page, Retried, Standing, Status, StoreError, Submitted};
+use crate::service::store::{
+    Batch, Change, Claim, Ending, JobRecord, Keep, Lease, LeaseAnswer, Line, ListFilter, Listed, NewFollower, NewJob,
+    NewSweep, Origin, Page, Retried, Standing, Status, StoreError, Submitted,
+};
 use async_trait::async_trait;
 use std::collections::HashSet;
 use std::sync::atomic::{AtomicBool, Ordering};
