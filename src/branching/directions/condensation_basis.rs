@@ -135,8 +135,7 @@ impl ModeSystem<'_> {
     fn is_plain(&self, entry: &Changeable) -> bool {
         let structure = self.loading.structure;
         let [contact] = entry.contacts[..] else { return false };
-        let first = self.loading.contacts[contact].node * structure.dimension;
-        let mut freedoms = first..first + structure.dimension;
+        let mut freedoms = structure.translations_of(self.loading.contacts[contact].node);
         self.loading.frame(contact, self.anchor).curvature == 0.0
             && freedoms.all(|freedom| structure.unknown_of[freedom].is_some())
     }
@@ -158,9 +157,8 @@ impl ModeSystem<'_> {
     /// A right-hand side: a unit force along a direction on the node of a contact.
     pub(crate) fn pushed(&self, contact: usize, direction: &Vector) -> DVector<f64> {
         let structure = self.loading.structure;
-        let first = self.loading.contacts[contact].node * structure.dimension;
         let mut values = DVector::zeros(self.size);
-        for (freedom, part) in (first..first + structure.dimension).zip(direction) {
+        for (freedom, part) in structure.translations_of(self.loading.contacts[contact].node).zip(direction) {
             if let Some(unknown) = structure.unknown_of[freedom] {
                 values[unknown] = *part;
             }

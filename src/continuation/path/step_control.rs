@@ -20,7 +20,7 @@ use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::energy;
 use crate::mechanics::problem::state::{Rate, State};
-use crate::mechanics::structure::elements::bar::COLLAPSED;
+use crate::mechanics::structure::elements::COLLAPSED;
 use crate::model::request::{Events, Method};
 use crate::result::increment::Energy;
 use crate::result::stop_reason::StopReason;

@@ -4,7 +4,7 @@ use crate::continuation::penalty::increment::{Change, Control, Converged, Failur
 use crate::continuation::penalty::iterator::RegularisedPath;
 use crate::continuation::penalty::system::Point;
 use crate::mechanics::equations::stage_criteria::End;
-use crate::mechanics::structure::elements::bar::COLLAPSED;
+use crate::mechanics::structure::elements::COLLAPSED;
 use crate::model::request::LoadSign;
 use crate::result::stop_reason::StopReason;
 use crate::step::segment::AT_END;

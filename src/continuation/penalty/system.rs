@@ -61,7 +61,7 @@ impl System<'_> {
             let response =
                 respond(self.penalties, friction, &contact.frame(&relative), &before.reaction.tangential, &moved);
             force_scale = force_scale.max(response.reaction.normal);
-            let first = contact.node * dimension;
+            let first = structure.translations_of(contact.node).start;
             for row in 0..dimension {
                 force[first + row] -= response.force[row];
                 let Some(row_unknown) = structure.unknown_of[first + row] else { continue };
@@ -105,7 +105,7 @@ impl System<'_> {
             });
         }
         for (index, (contact, response)) in self.loading.contacts.iter().zip(contacts).enumerate() {
-            let first = contact.node * structure.dimension;
+            let first = structure.translations_of(contact.node).start;
             let mut motion: Vector = self.loading.pattern.shifts[index].map(|shift| -shift);
             for (component, motion) in motion.iter_mut().enumerate().take(structure.dimension) {
                 if structure.unknown_of[first + component].is_none() {
@@ -186,7 +186,7 @@ mod tests {
                     let frame = system.loading.frame(index, &state);
                     let slide = if index % 2 == 0 { 0.03 } else { 1e-4 };
                     for component in 0..structure.dimension {
-                        let freedom = contact.node * structure.dimension + component;
+                        let freedom = structure.translations_of(contact.node).start + component;
                         if structure.unknown_of[freedom].is_some() {
                             let push = (frame.gap + 0.004) * frame.normal[component];
                             state.displacement[freedom] += slide * frame.tangents[0][component] - push;

@@ -6,6 +6,7 @@ use crate::algebra::{Factorisation, null_space};
 use crate::continuation::scene::{Scene, StageLoad};
 use crate::model::request::Model;
 use crate::model::{InputError, InputErrors};
+use itertools::Itertools;
 use nalgebra::{DMatrix, DVector};
 
 /// Contacts closer than this (dimensionless) count as closed when the supports are judged.
@@ -22,7 +23,7 @@ impl Scene {
         for (index, one) in self.reported.iter().enumerate() {
             let contact = &self.contacts[one.contact];
             let driven = |component: usize| {
-                let freedom = contact.node * dimension + component;
+                let freedom = structure.translations_of(contact.node).start + component;
                 let moves = |stage: &StageLoad| {
                     let support = stage.pattern.supports.get(freedom).copied().unwrap_or(0.0);
                     support != stage.pattern.shifts[one.contact][component]
@@ -57,7 +58,7 @@ impl Scene {
         if worst <= BALANCED * largest {
             return Ok(());
         }
-        let name = self.node_name(freedom / structure.dimension);
+        let name = self.node_name(structure.numbering.node_of(freedom).0);
         Err(InputErrors(vec![InputError::new(
             pointer_to_node(name),
             format!(
@@ -97,7 +98,6 @@ impl Scene {
     /// Adds a stiffness in every direction in which a closed contact holds its node.
     fn hold_closed_contacts(&self, stiffness: f64, matrix: &mut impl Sink) {
         let structure = &self.structure;
-        let dimension = structure.dimension;
         for contact in &self.contacts {
             let frame = contact.frame(&[0.0; 3]);
             if frame.gap > CLOSED {
@@ -105,13 +105,11 @@ impl Scene {
             }
             let held = 1 + contact.tangents();
             for vector in [frame.normal, frame.tangents[0], frame.tangents[1]].iter().take(held) {
-                for row in 0..dimension {
-                    for column in 0..dimension {
-                        let place = |component| structure.unknown_of[contact.node * dimension + component];
-                        if let (Some(row_unknown), Some(column_unknown)) = (place(row), place(column)) {
-                            matrix.add(row_unknown, column_unknown, stiffness * vector[row] * vector[column]);
-                        }
-                    }
+                let own = structure.translations_of(contact.node).zip(vector);
+                let own =
+                    own.filter_map(|(freedom, part)| structure.unknown_of[freedom].map(|unknown| (unknown, part)));
+                for ((row, first), (column, second)) in own.clone().cartesian_product(own) {
+                    matrix.add(row, column, stiffness * first * second);
                 }
             }
         }
@@ -120,7 +118,6 @@ impl Scene {
     /// Refuses a structure that can move with no element resisting although every closed contact holds.
     pub(super) fn refuse_mechanism(&self) -> Result<(), InputErrors> {
         let structure = &self.structure;
-        let dimension = structure.dimension;
         let still = vec![0.0; structure.freedoms()];
         let Some(motions) = self.unresisted_motions(&still) else { return Ok(()) };
         for motion in &motions {
@@ -131,12 +128,13 @@ impl Scene {
             if structure.resistance(&still, &rate) < 1e-10 {
                 let unknown = motion.iamax();
                 let freedom = structure.freedom_of[unknown];
-                let name = self.node_name(freedom / dimension);
-                let component = ["x", "y", "z"][freedom % dimension];
+                let (node, which) = structure.numbering.node_of(freedom);
+                let name = self.node_name(node);
+                let component = structure.numbering.motion_of(which);
                 return Err(InputErrors(vec![InputError::new(
                     pointer_to_node(name),
                     format!(
-                        "the structure is a mechanism: \"{name}\" can move along {component} with no element, support or \
+                        "the structure is a mechanism: \"{name}\" {component} with no element, support or \
                          closed contact resisting; support it, or connect it by bars or springs that resist the motion"
                     ),
                 )]));

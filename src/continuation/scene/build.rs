@@ -33,48 +33,49 @@ pub(super) fn build_structure(
     like: Option<&Structure>,
 ) -> Structure {
     let dimension = model.dimension;
-    let mut supported = vec![false; model.nodes.len() * dimension];
-    for (name, components) in &model.supports {
-        for component in components {
-            supported[numbers[name.as_str()] * dimension + component.index()] = true;
-        }
-    }
+    let of_node = |(name, components): (&String, &Vec<_>)| -> Vec<(usize, usize)> {
+        components.iter().map(|component: &request::Component| (numbers[name.as_str()], component.index())).collect()
+    };
+    let supports: Vec<(usize, usize)> = model.supports.iter().flat_map(of_node).collect();
     let elements = model
         .elements
         .iter()
-        .map(|element| match element {
-            request::Element::Bar { nodes, axial_stiffness, rest_length, prestress, strain } => {
-                let nodes = [numbers[nodes[0].as_str()], numbers[nodes[1].as_str()]];
-                let mut vector = [0.0; 3];
-                // A difference of places as given: a place far from the origin costs no digits.
-                (0..dimension).for_each(|k| vector[k] = (model.nodes[nodes[1]][k] - model.nodes[nodes[0]][k]) / length);
-                let apart = vector.iter().map(|value| value * value).sum::<f64>().sqrt();
-                Element::Bar(Bar {
-                    nodes,
-                    reference: vector,
-                    reference_length: apart,
-                    axial_stiffness: axial_stiffness / force,
-                    rest_length: rest_length.map_or(apart, |rest| rest / length),
-                    prestress: prestress / force,
-                    strain: *strain,
-                })
-            }
-            request::Element::Spring { nodes, stiffness } => {
-                let mut matrix = [[0.0; 3]; 3];
-                for (row, values) in stiffness.iter().enumerate() {
-                    for (column, value) in values.iter().enumerate() {
-                        matrix[row][column] = value / force * length;
-                    }
+        .map(|element| -> Arc<dyn Element> {
+            match element {
+                request::Element::Bar { nodes, axial_stiffness, rest_length, prestress, strain } => {
+                    let nodes = [numbers[nodes[0].as_str()], numbers[nodes[1].as_str()]];
+                    let mut vector = [0.0; 3];
+                    // A difference of places as given: a place far from the origin costs no digits.
+                    (0..dimension)
+                        .for_each(|k| vector[k] = (model.nodes[nodes[1]][k] - model.nodes[nodes[0]][k]) / length);
+                    let apart = vector.iter().map(|value| value * value).sum::<f64>().sqrt();
+                    Arc::new(Bar {
+                        nodes,
+                        reference: vector,
+                        reference_length: apart,
+                        axial_stiffness: axial_stiffness / force,
+                        rest_length: rest_length.map_or(apart, |rest| rest / length),
+                        prestress: prestress / force,
+                        strain: *strain,
+                    })
                 }
-                Element::Spring(Spring {
-                    node: numbers[nodes[0].as_str()],
-                    other: nodes.get(1).map(|name| numbers[name.as_str()]),
-                    stiffness: matrix,
-                })
+                request::Element::Spring { nodes, stiffness } => {
+                    let mut matrix = [[0.0; 3]; 3];
+                    for (row, values) in stiffness.iter().enumerate() {
+                        for (column, value) in values.iter().enumerate() {
+                            matrix[row][column] = value / force * length;
+                        }
+                    }
+                    let node = numbers[nodes[0].as_str()];
+                    Arc::new(match nodes.get(1) {
+                        Some(other) => Spring::between([node, numbers[other.as_str()]], matrix),
+                        None => Spring::to_ground(node, matrix),
+                    })
+                }
             }
         })
         .collect();
-    Structure::like(like, dimension, &supported, elements)
+    Structure::like(like, dimension, model.nodes.len(), &supports, elements)
 }
 
 /// The contacts that are solved for, and those of the request.
@@ -237,7 +238,8 @@ fn build_contact(
 /// In which directions a node can slide, by its supports.
 fn sliding(structure: &Structure, node: usize) -> Sliding {
     let dimension = structure.dimension;
-    let held: Vec<usize> = (0..dimension).filter(|k| structure.unknown_of[node * dimension + k].is_none()).collect();
+    let freedoms = structure.translations_of(node);
+    let held: Vec<usize> = (0..dimension).filter(|k| structure.unknown_of[freedoms.start + k].is_none()).collect();
     match (dimension, held.as_slice()) {
         (2, []) => Sliding::Line { across: [0.0, 0.0, 1.0] },
         (3, []) => Sliding::Plane,
@@ -267,7 +269,6 @@ pub(super) struct Scaled<'a> {
 /// `characteristic_stiffness` is the force that the load scale goes by.
 pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &Scaled<'_>) -> StageLoad {
     let &Scaled { model, analysis, numbers, structure, first_contacts, length, force, stretched } = scaled;
-    let dimension = structure.dimension;
     // Forces and motions of supports, and shifts of obstacles.
     let held = budget::take::<f64>(2 * structure.freedoms() + 3 * first_contacts.len());
     budget::spend(structure.freedoms());
@@ -281,9 +282,8 @@ pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &Scal
     let over_freedoms = |vectors: &IndexMap<String, Vec<f64>>, unit: f64| {
         let mut values = vec![0.0; structure.freedoms()];
         for (name, vector) in vectors {
-            for (component, value) in vector.iter().enumerate() {
-                values[numbers[name.as_str()] * dimension + component] = value * load_scale / unit;
-            }
+            let freedoms = structure.translations_of(numbers[name.as_str()]);
+            freedoms.zip(vector).for_each(|(freedom, value)| values[freedom] = value * load_scale / unit);
         }
         values
     };
@@ -306,7 +306,7 @@ pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &Scal
         ends.extend(until.load_above.map(|bound| load(bound, 1.0)));
         ends.extend(until.load_below.map(|bound| load(bound, -1.0)));
         if let Some(given) = &until.displacement {
-            let freedom = numbers[given.node.as_str()] * dimension + given.component.index();
+            let freedom = structure.translations_of(numbers[given.node.as_str()]).start + given.component.index();
             let end = |bound: f64, sign: f64| End::Displacement { freedom, bound: bound / length, sign };
             ends.extend(given.above.map(|bound| end(bound, 1.0)));
             ends.extend(given.below.map(|bound| end(bound, -1.0)));

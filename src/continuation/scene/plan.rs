@@ -2,7 +2,6 @@
 
 use crate::continuation::scene::Scene;
 use crate::continuation::scene::recorded_rows::{REACH, fastest};
-use crate::mechanics::structure::elements::Element;
 use crate::mechanics::structure::{MOST_ANALYSED, Structure};
 use crate::model::input::limits::MAX_ROWS_UNASKED;
 use crate::model::request::{Analysis, Method};
@@ -10,10 +9,7 @@ use crate::result::plan::LeftOut;
 
 /// Whether straight stretches are jumped over.
 pub(crate) fn jumps(analysis: &Analysis, structure: &Structure) -> bool {
-    analysis.arc_length.jump
-        && !analysis.keep_all
-        && analysis.method != Method::Regularised
-        && structure.elements.iter().all(Element::is_linear)
+    analysis.arc_length.jump && !analysis.keep_all && analysis.method != Method::Regularised && structure.is_linear()
 }
 
 /// What this scene does not need, but for what is found while its contacts are read.
@@ -49,7 +45,7 @@ pub(crate) fn left_out(scene: &Scene) -> Vec<LeftOut> {
             &format!("they are looked for up to {MOST_ANALYSED} unknowns"),
         );
     }
-    if scene.structure.elements.iter().all(Element::is_linear) {
+    if scene.structure.is_linear() {
         leave("nonlinear iterations", "every element is linear: one correction is exact");
     }
     left_out.extend(penalty_method(analysis));

@@ -34,9 +34,9 @@ impl ModeSystem<'_> {
     /// What closed contacts hold at their node.
     fn holding(&self, contacts: &[usize]) -> Holding {
         let structure = self.loading.structure;
-        let (dimension, unknowns) = (structure.dimension, structure.unknowns());
+        let unknowns = structure.unknowns();
         let node = contacts.first().map_or(0, |contact| self.loading.contacts[*contact].node);
-        let freedoms = node * dimension..(node + 1) * dimension;
+        let freedoms = structure.translations_of(node);
         let mut holding = Holding::new(freedoms.filter_map(|freedom| structure.unknown_of[freedom]));
         for contact in contacts {
             let count = match self.roles[*contact] {

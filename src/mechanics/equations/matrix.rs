@@ -91,7 +91,7 @@ impl ModeSystem<'_> {
     fn put_motion(&self, contact: usize, row: usize, vector: &Vector, matrix: &mut impl Sink) {
         let structure = self.loading.structure;
         let load = structure.unknowns();
-        let first = self.loading.contacts[contact].node * structure.dimension;
+        let first = structure.translations_of(self.loading.contacts[contact].node).start;
         for (component, part) in vector.iter().enumerate().take(structure.dimension) {
             match structure.unknown_of[first + component] {
                 Some(unknown) => matrix.add(row, unknown, *part),
@@ -104,7 +104,7 @@ impl ModeSystem<'_> {
     /// A column of equilibrium: the negative of a force on the contact's node.
     fn put_force(&self, contact: usize, column: usize, force: &Vector, matrix: &mut impl Sink) {
         let structure = self.loading.structure;
-        let first = self.loading.contacts[contact].node * structure.dimension;
+        let first = structure.translations_of(self.loading.contacts[contact].node).start;
         for (component, part) in force.iter().enumerate().take(structure.dimension) {
             if let Some(unknown) = structure.unknown_of[first + component] {
                 matrix.add(unknown, column, -part);
@@ -157,7 +157,7 @@ impl ModeSystem<'_> {
         }
         // The reaction turns with the place on the obstacle.
         let dimension = structure.dimension;
-        let first = self.loading.contacts[contact].node * dimension;
+        let first = structure.translations_of(self.loading.contacts[contact].node).start;
         let change_with = |motion: &Vector| {
             let drag = self.direction_change(contact, iterate, &direction, motion);
             scaled(&add(&frame.normal_change(motion), -friction, &drag), normal)

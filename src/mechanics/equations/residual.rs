@@ -14,7 +14,7 @@ impl ModeSystem<'_> {
     /// Equilibrium and contact equations; returns the largest equilibrium residual and the force scale.
     pub(crate) fn residual(&self, iterate: &Iterate, values: &mut DVector<f64>, force: &mut [f64]) -> (f64, f64) {
         let structure = self.loading.structure;
-        let (dimension, state) = (structure.dimension, &iterate.state);
+        let state = &iterate.state;
         let mut scale = structure.internal_force(&state.displacement, force);
         let loads = self.loading.pattern.forces.iter().zip(&self.loading.held.forces);
         for (value, (pattern, held)) in force.iter_mut().zip(loads) {
@@ -30,9 +30,9 @@ impl ModeSystem<'_> {
             let reaction = &state.reactions[contact];
             scale = scale.max(reaction.size());
             let frame = self.loading.frame(contact, state);
-            let first = self.loading.contacts[contact].node * dimension;
-            for component in 0..dimension {
-                force[first + component] -= reaction.normal * frame.normal[component] + reaction.tangential[component];
+            let freedoms = structure.translations_of(self.loading.contacts[contact].node);
+            for (component, value) in force[freedoms].iter_mut().enumerate() {
+                *value -= reaction.normal * frame.normal[component] + reaction.tangential[component];
             }
             let row = self.row_of(contact);
             match role {
@@ -74,8 +74,7 @@ impl ModeSystem<'_> {
                 continue;
             }
             let shift = scaled(&self.loading.pattern.shifts[contact], state.load - self.anchor.load);
-            let first = self.loading.contacts[contact].node * structure.dimension;
-            for (freedom, shift) in (first..first + structure.dimension).zip(shift) {
+            for (freedom, shift) in structure.translations_of(self.loading.contacts[contact].node).zip(shift) {
                 if structure.unknown_of[freedom].is_some() {
                     state.displacement[freedom] = self.anchor.displacement[freedom] + shift;
                 }
@@ -86,8 +85,8 @@ impl ModeSystem<'_> {
     /// Whether sticking leaves the node no motion at all.
     fn holds_node(&self, contact: usize) -> bool {
         let structure = self.loading.structure;
-        let first = self.loading.contacts[contact].node * structure.dimension;
-        let free = (first..first + structure.dimension).filter(|freedom| structure.unknown_of[*freedom].is_some());
+        let freedoms = structure.translations_of(self.loading.contacts[contact].node);
+        let free = freedoms.filter(|freedom| structure.unknown_of[*freedom].is_some());
         self.held_directions(contact).len() >= free.count()
     }
 

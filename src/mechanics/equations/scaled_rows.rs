@@ -12,13 +12,11 @@ pub fn scaled_rows(system: &ModeSystem<'_>, loading: Loading<'_>, state: &State)
     let rows = system.size() - 1;
     let mut matrix = system.matrix(state).rows(0, rows).into_owned();
     let mut sizes = DVector::from_fn(rows, |row, _| matrix.row(row).amax());
-    for element in &structure.elements {
-        element.add_stiffness(structure.dimension, &state.displacement, &mut |row, _, value| {
-            if let Some(row) = structure.unknown_of[row] {
-                sizes[row] = sizes[row].max(value.abs());
-            }
-        });
-    }
+    structure.each_stiffness(&state.displacement, &mut |row, _, value| {
+        if let Some(row) = structure.unknown_of[row] {
+            sizes[row] = sizes[row].max(value.abs());
+        }
+    });
     for (mut row, size) in matrix.row_iter_mut().zip(sizes.iter_mut()) {
         if *size <= 0.0 {
             *size = 1.0;

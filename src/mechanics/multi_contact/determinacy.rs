@@ -36,14 +36,14 @@ pub fn stand_alone(loading: Loading<'_>, closed: &[usize], state: &State) -> boo
 /// Whether the reactions of some contacts of a node follow from its equilibrium: none has friction, and their normals
 /// are independent as far as the node is free to move.
 pub(crate) fn are_determinate(loading: Loading<'_>, contacts: &[usize], state: &State) -> bool {
-    let dimension = loading.structure.dimension;
+    let structure = loading.structure;
     let mut basis: Vec<Vector> = Vec::new();
     contacts.iter().all(|contact| {
         let data = &loading.contacts[*contact];
         let mut rest = loading.frame(*contact, state).normal;
+        let unknowns = &structure.unknown_of[structure.translations_of(data.node)];
         for (component, part) in rest.iter_mut().enumerate() {
-            let is_free =
-                component < dimension && loading.structure.unknown_of[data.node * dimension + component].is_some();
+            let is_free = unknowns.get(component).is_some_and(Option::is_some);
             *part = if is_free { *part } else { 0.0 };
         }
         for known in &basis {

@@ -95,7 +95,7 @@ pub fn boundary_force(loading: Loading<'_>, at: Placed<'_>) -> (f64, f64) {
     let (mut sum, mut sum_rate) = (0.0, 0.0);
     for (index, contact) in loading.contacts.iter().enumerate() {
         let (reaction, reaction_rate) = reaction_in_space(loading, index, at);
-        let first = contact.node * structure.dimension;
+        let first = structure.translations_of(contact.node).start;
         for component in 0..structure.dimension {
             force[first + component] -= reaction[component];
             change[first + component] -= reaction_rate[component];

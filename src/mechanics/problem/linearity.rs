@@ -3,7 +3,6 @@
 use crate::mechanics::contact::obstacle::Obstacle;
 use crate::mechanics::contact::{Contact, Sliding};
 use crate::mechanics::problem::loading::Loading;
-use crate::mechanics::structure::elements::Element;
 
 /// Whether nothing about a contact bends a path of linear elements.
 pub(crate) fn is_straight(contact: &Contact) -> bool {
@@ -13,7 +12,5 @@ pub(crate) fn is_straight(contact: &Contact) -> bool {
 
 /// Whether every direction of first order holds exactly over some way: nothing bends it.
 pub(crate) fn is_linear(loading: Loading<'_>) -> bool {
-    loading.corners.is_empty()
-        && loading.contacts.iter().all(is_straight)
-        && loading.structure.elements.iter().all(Element::is_linear)
+    loading.corners.is_empty() && loading.contacts.iter().all(is_straight) && loading.structure.is_linear()
 }

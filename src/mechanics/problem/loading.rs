@@ -54,16 +54,6 @@ pub struct Loading<'a> {
     pub held: &'a LoadPattern,
 }
 
-/// A node's components of a vector over all degrees of freedom.
-#[inline(always)]
-pub fn of_node(dimension: usize, node: usize, values: &[f64]) -> Vector {
-    match values[node * dimension..(node + 1) * dimension] {
-        [x, y] => [x, y, 0.0],
-        [x, y, z] => [x, y, z],
-        _ => [0.0; 3],
-    }
-}
-
 /// The displacement (dimensionless) whose forces count as meeting at a node even where there is less: the scale of
 /// displacements itself. A structure that is just undeformed has no smaller forces than before.
 pub(crate) const USUAL: f64 = 1.0;
@@ -76,7 +66,7 @@ impl Loading<'_> {
     /// Displacement of a contact's node less its obstacle's.
     #[inline(always)]
     pub fn relative(&self, contact: usize, state: &State) -> Vector {
-        let moved = of_node(self.structure.dimension, self.contacts[contact].node, &state.displacement);
+        let moved = self.structure.translation_at(self.contacts[contact].node, &state.displacement);
         let shifted = add(&moved, -1.0, &self.held.shifts[contact]);
         add(&shifted, -state.load, &self.pattern.shifts[contact])
     }
@@ -84,7 +74,7 @@ impl Loading<'_> {
     /// Velocity of a contact's node less its obstacle's.
     #[inline(always)]
     pub fn relative_rate(&self, contact: usize, rate: &Rate) -> Vector {
-        let moved = of_node(self.structure.dimension, self.contacts[contact].node, &rate.displacement);
+        let moved = self.structure.translation_at(self.contacts[contact].node, &rate.displacement);
         add(&moved, -rate.load, &self.pattern.shifts[contact])
     }
 
@@ -119,7 +109,7 @@ impl Loading<'_> {
     /// Size of the forces that meet at a contact's node.
     pub fn forces_meeting_at(&self, contact: usize, state: &State) -> f64 {
         let node = self.contacts[contact].node;
-        let own = |pattern: &LoadPattern| largest_of(&of_node(self.structure.dimension, node, &pattern.forces));
+        let own = |pattern: &LoadPattern| largest_of(&self.structure.translation_at(node, &pattern.forces));
         self.structure.force_size_at(node, &state.displacement, USUAL)
             + state.load.abs() * own(self.pattern)
             + own(self.held)

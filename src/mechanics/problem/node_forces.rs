@@ -43,14 +43,12 @@ pub fn is_in_plane(loading: Loading<'_>, corner: &Corner) -> bool {
 
 /// Whether the running stage drives a node against some closed obstacles by its supports, or them against each other.
 pub fn is_driven(loading: Loading<'_>, closed: &[usize]) -> bool {
-    let dimension = loading.structure.dimension;
-    let first = loading.contacts[closed[0]].node * dimension;
+    let freedoms = loading.structure.translations_of(loading.contacts[closed[0]].node);
     let shift = &loading.pattern.shifts[closed[0]];
-    let by_support = |component: usize| {
-        let freedom = first + component;
+    let by_support = |(component, freedom): (usize, usize)| {
         loading.structure.unknown_of[freedom].is_none() && loading.support_rate(freedom) != shift[component]
     };
-    move_apart(loading, closed) || (0..dimension).any(by_support)
+    move_apart(loading, closed) || freedoms.enumerate().any(by_support)
 }
 
 /// Whether the running stage moves the obstacles of some contacts against each other.
@@ -115,12 +113,11 @@ pub fn reaction_in_space(loading: Loading<'_>, contact: usize, at: Placed<'_>) -
 
 /// Orthonormal directions in which a node is free.
 pub fn free_directions(loading: Loading<'_>, node: usize) -> Vec<Vector> {
-    let dimension = loading.structure.dimension;
-    let is_free = |component: &usize| loading.structure.unknown_of[node * dimension + component].is_some();
+    let unknowns = &loading.structure.unknown_of[loading.structure.translations_of(node)];
     let along = |component: usize| {
         let mut direction = [0.0; 3];
         direction[component] = 1.0;
         direction
     };
-    (0..dimension).filter(is_free).map(along).collect()
+    (0..unknowns.len()).filter(|component| unknowns[*component].is_some()).map(along).collect()
 }

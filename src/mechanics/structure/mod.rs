@@ -5,15 +5,19 @@
 //! ```
 //!
 //! Dimensionless throughout (`scene` divides by the scales). Knows nothing of contacts, loads or paths. Each kind of
-//! element is a file of its own behind [`elements::Element`].
+//! element is a file of its own behind [`elements::Element`]; [`numbering`] alone knows which degrees of freedom a node has.
 
+pub mod assembly;
 pub mod elements;
+pub mod numbering;
 pub mod sparsity;
 
-use crate::mechanics::structure::elements::Stretching;
-use elements::Element;
+use assembly::{ElementAt, Scratch};
+use elements::{Element, Stretching};
 use nalgebra::DMatrix;
+use numbering::Numbering;
 use sparsity::Layout;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Unknowns up to which matrices are dense.
@@ -23,49 +27,73 @@ pub const MOST_DENSE: usize = 16;
 /// directions at singular points are not looked for beyond.
 pub const MOST_ANALYSED: usize = 3_000;
 
-/// A checked structure. Degrees of freedom are numbered node by node: `node * dimension + component`.
+/// A checked structure.
 #[derive(Debug, Clone)]
 pub struct Structure {
+    /// That of the space.
     pub dimension: usize,
+    /// Which degrees of freedom each node has.
+    pub numbering: Numbering,
     /// The unknown of each degree of freedom; `None` where it is supported.
     pub unknown_of: Vec<Option<usize>>,
     /// The degree of freedom of each unknown.
     pub freedom_of: Vec<usize>,
-    pub elements: Vec<Element>,
+    elements: Vec<Arc<dyn Element>>,
+    /// The degrees of freedom of each element, one after the other, and where those of each begin.
+    element_freedoms: Vec<usize>,
+    first_freedom: Vec<usize>,
     /// The elements at the nodes, node by node, and where those of each begin.
     elements_at: Vec<usize>,
     first_at: Vec<usize>,
+    /// Nodes whose degrees of freedom are coupled by other things than elements.
+    couplings: Vec<Vec<usize>>,
     layout: Option<Arc<Layout>>,
 }
 
 impl Structure {
-    pub fn new(dimension: usize, supported: &[bool], elements: Vec<Element>) -> Self {
-        Self::like(None, dimension, supported, elements)
+    /// A structure whose nodes have the rotations that their elements have. A support holds a degree of freedom of a node:
+    /// its number among the node's.
+    pub fn new(dimension: usize, nodes: usize, supports: &[(usize, usize)], elements: Vec<Arc<dyn Element>>) -> Self {
+        Self::like(None, dimension, nodes, supports, elements)
     }
 
     /// As [`new`](Self::new); the places of the tangent's entries are those of another structure with the same unknowns and
     /// elements between the same nodes, if that is one.
-    pub fn like(other: Option<&Self>, dimension: usize, supported: &[bool], elements: Vec<Element>) -> Self {
-        let mut unknown_of = vec![None; supported.len()];
-        let mut freedom_of = Vec::new();
-        for (freedom, held) in supported.iter().enumerate() {
-            if !held {
-                unknown_of[freedom] = Some(freedom_of.len());
-                freedom_of.push(freedom);
-            }
-        }
-        let mut first_at = vec![0; supported.len() / dimension.max(1) + 1];
-        elements.iter().flat_map(Element::nodes).for_each(|node| first_at[node + 1] += 1);
-        (1..first_at.len()).for_each(|node| first_at[node] += first_at[node - 1]);
-        let mut next = first_at.clone();
-        let mut elements_at = vec![0; first_at.last().copied().unwrap_or(0)];
-        for (index, element) in elements.iter().enumerate() {
+    pub fn like(
+        other: Option<&Self>,
+        dimension: usize,
+        nodes: usize,
+        supports: &[(usize, usize)],
+        elements: Vec<Arc<dyn Element>>,
+    ) -> Self {
+        let mut rotations = vec![0; nodes];
+        for element in &elements {
             for node in element.nodes() {
-                elements_at[next[node]] = index;
-                next[node] += 1;
+                rotations[*node] = element.rotations().max(rotations[*node]);
             }
         }
-        let mut structure = Self { dimension, unknown_of, freedom_of, elements, elements_at, first_at, layout: None };
+        let numbering = Numbering::new(dimension, rotations);
+        let mut is_held = vec![false; numbering.freedoms()];
+        for (node, which) in supports {
+            is_held[numbering.freedoms_of(*node)][*which] = true;
+        }
+        let freedom_of: Vec<usize> = (0..numbering.freedoms()).filter(|freedom| !is_held[*freedom]).collect();
+        let mut unknown_of = vec![None; numbering.freedoms()];
+        freedom_of.iter().enumerate().for_each(|(unknown, freedom)| unknown_of[*freedom] = Some(unknown));
+        let mut structure = Self {
+            dimension,
+            numbering,
+            unknown_of,
+            freedom_of,
+            elements: Vec::new(),
+            element_freedoms: Vec::new(),
+            first_freedom: vec![0],
+            elements_at: Vec::new(),
+            first_at: Vec::new(),
+            couplings: Vec::new(),
+            layout: None,
+        };
+        structure.set_elements(elements);
         match other.filter(|other| other.layout.is_some() && other.has_places_of(&structure)) {
             Some(other) => structure.layout.clone_from(&other.layout),
             None => structure.set_sparse(structure.unknowns() > MOST_DENSE),
@@ -73,15 +101,79 @@ impl Structure {
         structure
     }
 
+    /// The same nodes and supports, with more elements.
+    pub fn with_elements(&self, more: impl IntoIterator<Item = Arc<dyn Element>>) -> Self {
+        let held = (0..self.freedoms()).filter(|freedom| self.unknown_of[*freedom].is_none());
+        let supports: Vec<(usize, usize)> = held.map(|freedom| self.numbering.node_of(freedom)).collect();
+        let elements = self.elements.iter().cloned().chain(more).collect();
+        Self::new(self.dimension, self.numbering.nodes(), &supports, elements)
+    }
+
+    fn set_elements(&mut self, elements: Vec<Arc<dyn Element>>) {
+        let mut first_at = vec![0; self.numbering.nodes() + 1];
+        elements.iter().flat_map(|element| element.nodes()).for_each(|node| first_at[node + 1] += 1);
+        (1..first_at.len()).for_each(|node| first_at[node] += first_at[node - 1]);
+        let mut next = first_at.clone();
+        let mut elements_at = vec![0; first_at.last().copied().unwrap_or(0)];
+        for (index, element) in elements.iter().enumerate() {
+            for node in element.nodes() {
+                elements_at[next[*node]] = index;
+                next[*node] += 1;
+                let count = self.dimension + element.rotations();
+                self.element_freedoms.extend(self.numbering.freedoms_of(*node).take(count));
+            }
+            self.first_freedom.push(self.element_freedoms.len());
+        }
+        (self.elements, self.elements_at, self.first_at) = (elements, elements_at, first_at);
+    }
+
+    /// Gives the tangent room for entries between the degrees of freedom of nodes that something else than an element
+    /// couples, one list of nodes each.
+    pub fn couple(&mut self, couplings: Vec<Vec<usize>>) {
+        self.couplings = couplings;
+        self.set_sparse(self.layout.is_some());
+    }
+
     /// Whether the entries of both tangents are at the same places and come in the same order.
     fn has_places_of(&self, other: &Self) -> bool {
-        let is_like = |(one, other): (&Element, &Element)| {
-            std::mem::discriminant(one) == std::mem::discriminant(other) && one.nodes().eq(other.nodes())
-        };
-        self.dimension == other.dimension
+        self.numbering == other.numbering
             && self.unknown_of == other.unknown_of
-            && self.elements.len() == other.elements.len()
-            && self.elements.iter().zip(&other.elements).all(is_like)
+            && self.first_freedom == other.first_freedom
+            && self.element_freedoms == other.element_freedoms
+            && self.couplings == other.couplings
+            && self.elements.iter().zip(&other.elements).all(|(one, other)| one.nodes().len() == other.nodes().len())
+    }
+
+    /// Where the degrees of freedom of a node's translations are.
+    #[inline(always)]
+    pub fn translations_of(&self, node: usize) -> Range<usize> {
+        self.numbering.translations_of(node)
+    }
+
+    /// A node's translations in a vector over all degrees of freedom; in 2D the third component is 0.
+    #[inline(always)]
+    pub fn translation_at(&self, node: usize, values: &[f64]) -> [f64; 3] {
+        match values[self.translations_of(node)] {
+            [x, y] => [x, y, 0.0],
+            [x, y, z] => [x, y, z],
+            _ => [0.0; 3],
+        }
+    }
+
+    /// The elements, each with the degrees of freedom that it joins.
+    pub fn elements(&self) -> impl Iterator<Item = ElementAt<'_>> {
+        let freedoms = self.first_freedom.windows(2).map(|range| &self.element_freedoms[range[0]..range[1]]);
+        self.elements.iter().zip(freedoms).map(|(element, freedoms)| ElementAt { element: element.as_ref(), freedoms })
+    }
+
+    fn element(&self, index: usize) -> ElementAt<'_> {
+        let freedoms = &self.element_freedoms[self.first_freedom[index]..self.first_freedom[index + 1]];
+        ElementAt { element: self.elements[index].as_ref(), freedoms }
+    }
+
+    /// Whether the forces of all elements are linear in the displacements.
+    pub fn is_linear(&self) -> bool {
+        self.elements.iter().all(|element| element.is_linear())
     }
 
     /// Whether matrices are to be sparse; they stay dense where there is not the memory to find their layout.
@@ -116,11 +208,10 @@ impl Structure {
     /// Writes `f_int(u)` over all degrees of freedom and returns the largest force any element carries.
     pub fn internal_force(&self, displacement: &[f64], force: &mut [f64]) -> f64 {
         force.fill(0.0);
-        let mut largest = 0.0_f64;
-        for element in &self.elements {
-            largest = largest.max(element.add_force(self.dimension, displacement, force));
-        }
-        largest
+        let mut scratch = Scratch::default();
+        self.elements().fold(0.0, |largest: f64, element| {
+            largest.max(element.each_force(displacement, &mut scratch, |freedom, value| force[freedom] += value))
+        })
     }
 
     /// What the rounding of the displacements puts into `f_int(u)`, one bound a degree of freedom: stiffness times unit
@@ -131,23 +222,23 @@ impl Structure {
         rounding.iter_mut().for_each(|size| *size *= f64::EPSILON);
         rounding
     }
-
     /// Writes the size of the numbers of which `f_int(u)` is made, one a degree of freedom: `|K| |u|` and the forces that
     /// the elements carry, with displacements taken as `least` at least. Against it a residual is small or not, whatever the
     /// forces elsewhere (W. Oettli, W. Prager, Numer. Math. 6 (1964) 405, doi:10.1007/BF01386090).
     pub fn force_sizes(&self, displacement: &[f64], least: f64, sizes: &mut [f64]) {
         sizes.fill(0.0);
-        for element in &self.elements {
-            element.each_size(self.dimension, displacement, least, &mut |freedom, size| sizes[freedom] += size);
+        let mut scratch = Scratch::default();
+        for element in self.elements() {
+            element.each_force_size(displacement, least, &mut scratch, |freedom, size| sizes[freedom] += size);
         }
     }
 
-    /// The largest of them at a node.
+    /// The largest of them of a node's translations.
     pub fn force_size_at(&self, node: usize, displacement: &[f64], least: f64) -> f64 {
-        let first = node * self.dimension;
-        let mut sizes = [0.0; 3];
+        let first = self.translations_of(node).start;
+        let (mut sizes, mut scratch) = ([0.0; 3], Scratch::default());
         for element in &self.elements_at[self.first_at[node]..self.first_at[node + 1]] {
-            self.elements[*element].each_size(self.dimension, displacement, least, &mut |freedom, size| {
+            self.element(*element).each_force_size(displacement, least, &mut scratch, |freedom, size| {
                 if let Some(sum) = freedom.checked_sub(first).and_then(|component| sizes.get_mut(component)) {
                     *sum += size;
                 }
@@ -159,9 +250,8 @@ impl Structure {
     /// Calls `add(row, column, value)` for every entry of every element's tangent; rows and columns are degrees of
     /// freedom, supported ones included.
     pub fn each_stiffness(&self, displacement: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
-        for element in &self.elements {
-            element.add_stiffness(self.dimension, displacement, add);
-        }
+        let mut scratch = Scratch::default();
+        self.elements().for_each(|element| element.each_stiffness(displacement, &mut scratch, add));
     }
 
     /// Adds `K(u)` into the leading `unknowns x unknowns` block.
@@ -175,42 +265,40 @@ impl Structure {
 
     /// Calls `add` for every entry of every element's tangent without the parts that [`Self::stretching`] lists.
     pub fn each_stiffness_across(&self, displacement: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
-        for element in &self.elements {
-            element.add_stiffness_across(self.dimension, displacement, add);
-        }
+        let mut scratch = Scratch::default();
+        self.elements().for_each(|element| element.each_stiffness_across(displacement, &mut scratch, add));
     }
 
     /// The summands `k c cᵀ` of the tangent by which elements resist being stretched, `c` over degrees of freedom.
     pub fn stretching(&self, displacement: &[f64]) -> Vec<Stretching> {
-        self.elements.iter().flat_map(|element| element.stretching(self.dimension, displacement)).collect()
+        self.elements().flat_map(|element| element.stretching(displacement)).collect()
     }
 
-    /// The smallest stretch `L/L0` of any bar; infinite without bars.
+    /// The smallest stretch `L/L0` of the elements that may shrink to a point; infinite where there are none.
     pub fn smallest_stretch(&self, displacement: &[f64]) -> f64 {
-        self.elements.iter().fold(f64::INFINITY, |smallest, element| match element {
-            Element::Bar(bar) => smallest.min(bar.stretch(self.dimension, displacement)),
-            Element::Spring(_) => smallest,
-        })
+        let mut scratch = Scratch::default();
+        self.elements().filter_map(|element| element.stretch(displacement, &mut scratch)).fold(f64::INFINITY, f64::min)
     }
 
     /// `W(u)`.
     pub fn strain_energy(&self, displacement: &[f64]) -> f64 {
-        self.elements.iter().map(|element| element.energy(self.dimension, displacement)).sum()
+        let mut scratch = Scratch::default();
+        self.elements().map(|element| element.energy(displacement, &mut scratch)).sum()
     }
 
     /// The largest change of any element's nodal forces under a displacement rate, over its stiffness times the rate's
-    /// size: zero for a motion that no element resists. The stiffness is a bar's largest; of a spring that of the row, since
-    /// its rows are as the user gives them, and a soft one beside a stiff one is no round-off.
+    /// size: zero for a motion that no element resists. The stiffness is the element's largest; of a linear element that of
+    /// the row, since its rows are as the user gives them, and a soft one beside a stiff one is no round-off.
     pub fn resistance(&self, displacement: &[f64], rate: &[f64]) -> f64 {
         let size = rate.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
         if size == 0.0 {
             return 0.0;
         }
-        let mut largest = 0.0_f64;
-        for element in &self.elements {
+        let (mut scratch, mut largest) = (Scratch::default(), 0.0_f64);
+        for at in self.elements() {
             // Row, force and stiffness.
             let mut changes: Vec<(usize, f64, f64)> = Vec::new();
-            element.add_stiffness(self.dimension, displacement, &mut |row, column, value| match changes
+            at.each_stiffness(displacement, &mut scratch, &mut |row, column, value| match changes
                 .iter_mut()
                 .find(|(freedom, _, _)| *freedom == row)
             {
@@ -222,7 +310,7 @@ impl Structure {
             });
             let stiffest = changes.iter().fold(0.0_f64, |most, (_, _, stiffness)| most.max(*stiffness));
             for (_, force, of_row) in changes {
-                let stiffness = if element.is_linear() { of_row } else { stiffest };
+                let stiffness = if at.element.is_linear() { of_row } else { stiffest };
                 if stiffness > 0.0 {
                     largest = largest.max(force.abs() / (stiffness * size));
                 }

@@ -3,6 +3,8 @@
 use crate::algebra::sparse::Pattern;
 use crate::mechanics::structure::Structure;
 use crate::resources::budget::{self, Taken};
+use itertools::Itertools;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Found once; the tangent is then added up in place.
@@ -16,28 +18,27 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// Every node has a full block of its own, in which contacts add theirs, and full blocks with the nodes it has elements
-    /// with. `None` where memory or the numbers of places do not suffice.
+    /// Every node has a full block of its own, in which contacts add theirs, and full blocks with the nodes to which elements
+    /// or other things couple it. `None` where memory or the numbers of places do not suffice.
     pub fn new(structure: &Structure) -> Option<Self> {
-        let dimension = structure.dimension;
-        let unknowns = |node: usize| {
-            (node * dimension..(node + 1) * dimension).filter_map(|freedom| structure.unknown_of[freedom])
+        let unknown_of = &structure.unknown_of;
+        let block = |rows: Range<usize>, columns: Range<usize>| {
+            let unknowns = |freedoms: Range<usize>| freedoms.filter_map(|freedom| unknown_of[freedom]);
+            unknowns(rows).flat_map(move |row| unknowns(columns.clone()).map(move |column| (row, column)))
         };
-        let block = |first: usize, second: usize| {
-            unknowns(first).flat_map(move |row| unknowns(second).map(move |column| (row, column)))
+        let of_node = |node: usize| structure.numbering.freedoms_of(node);
+        let own = (0..structure.numbering.nodes()).flat_map(|node| block(of_node(node), of_node(node)));
+        let between = |nodes: &[usize]| -> Vec<(usize, usize)> {
+            let pairs = nodes.iter().array_combinations();
+            pairs.flat_map(|[first, second]| block(of_node(*first), of_node(*second))).collect()
         };
-        let nodes = structure.freedoms() / dimension.max(1);
-        let own = (0..nodes).flat_map(|node| block(node, node));
-        let of_elements = structure.elements.iter().flat_map(|element| {
-            let ends: Vec<usize> = element.nodes().collect();
-            block(ends[0], ends[ends.len() - 1]).collect::<Vec<_>>()
-        });
-        let pattern = Pattern::new(structure.unknowns(), own.chain(of_elements))?;
+        let by_elements = structure.elements().flat_map(|at| between(at.element.nodes()));
+        let by_others = structure.couplings.iter().flat_map(|nodes| between(nodes));
+        let pattern = Pattern::new(structure.unknowns(), own.chain(by_elements).chain(by_others))?;
         if u32::try_from(pattern.entries()).is_err() {
             return None;
         }
-        // Three by three entries for each pair of an element's two nodes at the most.
-        let held = budget::take::<Option<u32>>(36 * structure.elements.len());
+        let held = budget::take::<Option<u32>>(structure.elements().map(|at| at.freedoms.len().pow(2)).sum());
         let mut places = Vec::new();
         structure.each_stiffness(&vec![0.0; structure.freedoms()], &mut |row, column, _| {
             let place = match (structure.unknown_of[row], structure.unknown_of[column]) {

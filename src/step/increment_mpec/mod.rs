@@ -399,7 +399,7 @@ impl<'a> IncrementProgram<'a> {
     /// Unknowns of the contact's node with their components.
     fn node_of(&self, entry: &InReach) -> impl Iterator<Item = (usize, usize)> {
         let structure = self.loading.structure;
-        let first = self.loading.contacts[entry.contact].node * structure.dimension;
+        let first = structure.translations_of(self.loading.contacts[entry.contact].node).start;
         (0..structure.dimension).filter_map(move |k| structure.unknown_of[first + k].map(|unknown| (unknown, k)))
     }
 
@@ -407,7 +407,7 @@ impl<'a> IncrementProgram<'a> {
     /// the obstacle.
     fn driven(&self, entry: &InReach) -> Vector {
         let structure = self.loading.structure;
-        let first = self.loading.contacts[entry.contact].node * structure.dimension;
+        let first = structure.translations_of(self.loading.contacts[entry.contact].node).start;
         let mut motion = scaled(&self.loading.pattern.shifts[entry.contact], -1.0);
         for (k, component) in motion.iter_mut().enumerate().take(structure.dimension) {
             if structure.unknown_of[first + k].is_none() {

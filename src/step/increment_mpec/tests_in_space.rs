@@ -12,6 +12,7 @@ use crate::mechanics::structure::elements::spring::Spring;
 use crate::model::request::Strain;
 use crate::step::increment_mpec::*;
 use nalgebra::DMatrix;
+use std::sync::Arc;
 
 /// The normal of the floor of these tests.
 pub(super) const FLOOR: [f64; 3] = [0.0, 0.0, 1.0];
@@ -51,10 +52,10 @@ impl OneBar {
             prestress: 0.0,
             strain: Strain::Engineering,
         };
-        let supported = [true, true, true, false, false, false];
+        let supports = [(0, 0), (0, 1), (0, 2)];
         let floor = Obstacle::Plane { normal: [0.0, 0.0, 1.0] };
         Self {
-            structure: Structure::new(3, &supported, vec![Element::Bar(bar)]),
+            structure: Structure::new(3, 2, &supports, vec![Arc::new(bar)]),
             contacts: vec![Contact {
                 node: 1,
                 obstacle: floor,
@@ -71,7 +72,7 @@ impl OneBar {
     fn with_spring(mut self, stiffness: f64) -> Self {
         let mut matrix = [[0.0; 3]; 3];
         (0..3).for_each(|k| matrix[k][k] = stiffness);
-        self.structure.elements.push(Element::Spring(Spring { node: 1, other: None, stiffness: matrix }));
+        self.structure = self.structure.with_elements([Arc::new(Spring::to_ground(1, matrix)) as Arc<dyn Element>]);
         self
     }
 

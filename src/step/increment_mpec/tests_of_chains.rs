@@ -10,6 +10,7 @@ use crate::mechanics::structure::elements::Element;
 use crate::mechanics::structure::elements::spring::Spring;
 use crate::step::increment_mpec::tests_in_space::{forces, in_plane, on_floor};
 use crate::step::increment_mpec::*;
+use std::sync::Arc;
 
 struct Chain {
     structure: Structure,
@@ -29,8 +30,8 @@ impl Chain {
         let pull = [angle.cos(), angle.sin()];
         let mut matrix = [[0.0; 3]; 3];
         (0..3).for_each(|k| matrix[k][k] = stiffness);
-        let tie = |block: usize| Element::Spring(Spring { node: block, other: Some(block + 1), stiffness: matrix });
-        let structure = Structure::new(3, &vec![false; 3 * blocks], (0..blocks - 1).map(tie).collect());
+        let tie = |block: usize| -> Arc<dyn Element> { Arc::new(Spring::between([block, block + 1], matrix)) };
+        let structure = Structure::new(3, blocks, &[], (0..blocks - 1).map(tie).collect());
         let floor = Obstacle::Plane { normal: [0.0, 0.0, 1.0] };
         let contact =
             |node| Contact { node, obstacle: floor.clone(), initial_gap: 0.0, friction, sliding: Sliding::Plane };

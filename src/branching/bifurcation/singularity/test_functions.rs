@@ -28,7 +28,6 @@ use crate::mechanics::equations::{Kind, ModeSystem};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::natural_residual::ZERO;
 use crate::mechanics::problem::state::{Rate, State};
-use crate::mechanics::structure::elements::Element;
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::determinant_sign::UNCERTAIN;
 use crate::step::event_functions::Watch;
@@ -95,8 +94,7 @@ fn counted_modes<'s>(
 ) -> Option<(Vec<Mode>, &'s State)> {
     let unknowns = loading.structure.unknowns();
     if unknowns < 2
-        || (loading.structure.elements.iter().all(Element::is_linear)
-            && !loading.contacts.iter().any(|contact| contact.obstacle.is_curved()))
+        || (loading.structure.is_linear() && !loading.contacts.iter().any(|contact| contact.obstacle.is_curved()))
     {
         return None;
     }

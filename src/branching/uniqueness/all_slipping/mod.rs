@@ -30,7 +30,7 @@ use crate::complementarity::rates::parametric_lcp::slip_or_stick;
 use crate::mechanics::contact::vector::{Vector, add, dot};
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::multi_contact::contact_status::Standing;
-use crate::mechanics::problem::loading::{Loading, of_node};
+use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cached_factorisation::AtHand;
 use nalgebra::{DMatrix, DVector};
@@ -162,9 +162,8 @@ impl<'a> Reduced<'a> {
     /// a closed node.
     fn new(loading: Loading<'a>, state: &'a State, standings: &[Standing], modes: &[Mode]) -> Option<Self> {
         let structure = loading.structure;
-        let dimension = structure.dimension;
         let freedoms = structure.freedoms();
-        let mut holder: SmallVec<[Option<usize>; 2]> = smallvec![None; freedoms / dimension];
+        let mut holder: SmallVec<[Option<usize>; 2]> = smallvec![None; structure.numbering.nodes()];
         for (contact, (standing, mode)) in standings.iter().zip(modes).enumerate() {
             let agrees = match (standing, mode) {
                 (Standing::Settled(Mode::Free), Mode::Free) => continue,
@@ -174,7 +173,7 @@ impl<'a> Reduced<'a> {
                 _ => false,
             };
             let node = loading.contacts[contact].node;
-            let is_free = structure.unknown_of[node * dimension..(node + 1) * dimension].iter().all(Option::is_some);
+            let is_free = structure.unknown_of[structure.translations_of(node)].iter().all(Option::is_some);
             if !agrees || !is_free || holder[node].replace(contact).is_some() {
                 return None;
             }
@@ -192,8 +191,9 @@ impl<'a> Reduced<'a> {
         for (node, holder) in holder.iter().enumerate() {
             match holder {
                 Some(contact) => reduced.add_closed(node, *contact, &standings[*contact]),
-                None => (node * dimension..(node + 1) * dimension).for_each(|freedom| reduced.add_free(freedom)),
+                None => structure.translations_of(node).for_each(|freedom| reduced.add_free(freedom)),
             }
+            structure.numbering.rotations_of(node).for_each(|freedom| reduced.add_free(freedom));
         }
         reduced.holder = holder;
         Some(reduced)
@@ -234,7 +234,8 @@ impl<'a> Reduced<'a> {
             Standing::Settled(_) | Standing::Touching | Standing::Cornered { .. } => 0,
         };
         let is_slip = matches!(standing, Standing::OnCone { .. });
-        self.unknowns.extend((0..count).map(|k| Unknown { is_slip, freedom: node * dimension + k }));
+        let freedom = self.loading.structure.translations_of(node).start;
+        self.unknowns.extend((0..count).map(|k| Unknown { is_slip, freedom: freedom + k }));
         for component in 0..dimension {
             let driven = self.loading.pattern.shifts[contact][component];
             self.places.push(Place { first: self.parts.len(), count, driven });
@@ -333,9 +334,8 @@ impl<'a> Reduced<'a> {
             forces[row] += value * displacement[column];
         });
         let mut rate = Rate { displacement, load: 1.0, reactions: vec![Reaction::default(); loading.contacts.len()] };
-        let dimension = structure.dimension;
         for (node, contact) in self.holder.iter().enumerate().filter_map(|(node, holder)| Some((node, (*holder)?))) {
-            rate.reactions[contact] = loading.taken_by(contact, self.state, &of_node(dimension, node, forces));
+            rate.reactions[contact] = loading.taken_by(contact, self.state, &structure.translation_at(node, forces));
         }
         let (size, largest) = (rate.size(), rate.largest_reaction());
         if !size.is_finite() || size <= MARGIN * largest {

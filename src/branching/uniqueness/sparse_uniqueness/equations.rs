@@ -64,18 +64,18 @@ impl<'a> Equations<'a> {
             size: 0,
             turning: Vec::new(),
         };
-        let mut is_closed = vec![false; structure.freedoms() / 2];
+        let mut is_closed = vec![false; structure.freedoms()];
         for (contact, (standing, data)) in standings.iter().zip(loading.contacts).enumerate() {
             if *standing == Standing::Settled(Mode::Free) {
                 equations.held.push(Mode::Free);
                 continue;
             }
-            let first = 2 * data.node;
-            let is_free = (first..first + 2).all(|freedom| structure.unknown_of[freedom].is_some());
+            let freedoms = structure.translations_of(data.node);
+            let is_free = structure.unknown_of[freedoms.clone()].iter().all(Option::is_some);
             if *standing != Standing::Settled(Mode::Stick) && !is_free {
                 return None;
             }
-            is_closed[data.node] = true;
+            is_closed[freedoms].fill(true);
             equations.add_closed(contact, standing)?;
             equations.held.push(match standing {
                 Standing::Settled(mode) => *mode,
@@ -84,7 +84,7 @@ impl<'a> Equations<'a> {
             });
         }
         for freedom in &structure.freedom_of {
-            if !is_closed[freedom / 2] {
+            if !is_closed[*freedom] {
                 equations.parts[*freedom].push(Part { column: equations.size, motion: 1.0, test: 1.0 });
                 equations.size += 1;
             }
@@ -95,7 +95,7 @@ impl<'a> Equations<'a> {
     fn add_closed(&mut self, contact: usize, standing: &Standing) -> Option<()> {
         let data = &self.loading.contacts[contact];
         let frame = self.loading.frame(contact, self.state);
-        let first = 2 * data.node;
+        let first = self.loading.structure.translations_of(data.node).start;
         let column = self.size;
         let mut add_column = |motion: &Vector, test: &Vector| {
             let column = self.size;

@@ -101,10 +101,7 @@ impl Equations<'_> {
     /// Nothing moves, and what each closed contact bears of the load grows with it; solved for where supports bear some.
     fn rest(&self, sign: f64) -> Option<Rate> {
         let (loading, structure) = (self.loading, self.loading.structure);
-        let freedoms = |contact: usize| {
-            let first = loading.contacts[contact].node * structure.dimension;
-            first..first + structure.dimension
-        };
+        let freedoms = |contact: usize| structure.translations_of(loading.contacts[contact].node);
         let mut closed = (0..self.held.len()).filter(|contact| self.held[*contact] != Mode::Free);
         let shares = closed.any(|contact| freedoms(contact).any(|freedom| structure.unknown_of[freedom].is_none()));
         if shares || loading.pattern.moves_boundary() {

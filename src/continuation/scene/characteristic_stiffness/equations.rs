@@ -50,7 +50,7 @@ impl Response<'_> {
         let structure = self.structure;
         let unknowns = structure.unknowns();
         // A spring may be as many summands as there are dimensions.
-        let summands = structure.dimension * structure.elements.len() + ties.len();
+        let summands = structure.dimension * structure.elements().count() + ties.len();
         if unknowns + summands <= MOST_APART {
             return self.factorise_apart(displacement, ties, row).map(SystemFactorisation::Dense);
         }

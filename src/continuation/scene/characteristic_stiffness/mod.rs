@@ -20,9 +20,10 @@
 pub(crate) mod equations;
 
 use crate::mechanics::contact::Contact;
-use crate::mechanics::contact::vector::{Vector, add, dot, size};
-use crate::mechanics::problem::loading::{LoadPattern, of_node};
-use crate::mechanics::structure::elements::{Element, Stretching};
+use crate::mechanics::contact::vector::{Vector, add, dot};
+use crate::mechanics::problem::loading::LoadPattern;
+use crate::mechanics::structure::assembly::{ElementAt, Scratch};
+use crate::mechanics::structure::elements::Stretching;
 use crate::mechanics::structure::{MOST_ANALYSED, Structure};
 use nalgebra::DVector;
 
@@ -80,24 +81,26 @@ fn stiffness_at(structure: &Structure, still: &[f64]) -> Vec<f64> {
         }
     });
     let mean = |node: &[f64]| (node.iter().sum::<f64>() / node.len() as f64).abs();
-    diagonal.chunks(structure.dimension.max(1)).map(mean).collect()
+    let numbering = &structure.numbering;
+    (0..numbering.nodes()).map(|node| mean(&diagonal[numbering.translations_of(node)])).collect()
 }
 
-/// The stiffness of which as many bars are stiffer as softer, or one more; of springs where there are only these. An element's
+/// The stiffness of which as many bars are stiffer as softer, or one more; of linear elements where there are only these. An element's
 /// is the sum of its diagonal entries at a node, a bar's own whatever the axes.
 fn usual_stiffness(structure: &Structure, still: &[f64]) -> f64 {
-    let of_element = |element: &Element| {
+    let mut scratch = Scratch::default();
+    let of_element = |at: ElementAt<'_>| {
         let mut sum = 0.0_f64;
-        element.add_stiffness(structure.dimension, still, &mut |row, column, value| {
+        at.each_stiffness(still, &mut scratch, &mut |row, column, value| {
             if row == column {
                 sum += value;
             }
         });
-        sum.abs() / element.nodes().count() as f64
+        sum.abs() / at.element.nodes().len() as f64
     };
-    let has_bars = structure.elements.iter().any(|element| matches!(element, Element::Bar(_)));
-    let counts = |element: &&Element| !has_bars || matches!(element, Element::Bar(_));
-    let mut all: Vec<f64> = structure.elements.iter().filter(counts).map(of_element).collect();
+    let is_linear = structure.is_linear();
+    let counts = |at: &ElementAt<'_>| is_linear || !at.element.is_linear();
+    let mut all: Vec<f64> = structure.elements().filter(counts).map(of_element).collect();
     all.sort_by(f64::total_cmp);
     all.get(all.len().saturating_sub(1) / 2).copied().unwrap_or(0.0)
 }
@@ -152,7 +155,7 @@ impl Response<'_> {
 
     /// Displacement of a contact's node less its obstacle's.
     fn relative(&self, contact: usize, motion: &Motion) -> Vector {
-        let moved = of_node(self.structure.dimension, self.contacts[contact].node, &motion.displacement);
+        let moved = self.structure.translation_at(self.contacts[contact].node, &motion.displacement);
         add(&moved, -motion.load, &self.pattern.shifts[contact])
     }
 
@@ -162,13 +165,11 @@ impl Response<'_> {
 
     /// What holds the nodes of the contacts that are held: first along the normals, then across them.
     fn ties(&self) -> [Vec<Tie>; 2] {
-        let dimension = self.structure.dimension;
         let mut ties = [Vec::new(), Vec::new()];
         for (index, contact) in self.contacts.iter().enumerate().filter(|(index, _)| self.held[*index]) {
             let frame = contact.frame(&[0.0; 3]);
             let tie = |vector: &Vector, stiffness: f64| {
-                let component = |component: usize| (contact.node * dimension + component, vector[component]);
-                let along = (0..dimension).map(component).collect();
+                let along = self.structure.translations_of(contact.node).zip(*vector).collect();
                 let by_load = -dot(vector, &self.pattern.shifts[index]);
                 (stiffness > 0.0).then_some(Tie { stretching: Stretching { stiffness, along }, by_load })
             };
@@ -198,7 +199,8 @@ impl Response<'_> {
             return None;
         }
         let mut motion = self.motion(values.as_slice());
-        let of_nodes = motion.displacement.chunks(self.structure.dimension.max(1));
+        let numbering = &self.structure.numbering;
+        let of_nodes = (0..numbering.nodes()).map(|node| &motion.displacement[numbering.freedoms_of(node)]);
         let largest =
             of_nodes.map(|node| node.iter().map(|value| value * value).sum::<f64>().sqrt()).fold(0.0_f64, f64::max);
         if largest <= 0.0 || !largest.is_finite() {
@@ -226,7 +228,7 @@ impl Response<'_> {
     /// method does not find it.
     fn relaxed(&self, still: &[f64], first: &Motion) -> Option<Motion> {
         let structure = self.structure;
-        if structure.unknowns() > MOST_ANALYSED || structure.elements.iter().all(Element::is_linear) {
+        if structure.unknowns() > MOST_ANALYSED || structure.is_linear() {
             return None;
         }
         let along: Vec<f64> = structure.freedom_of.iter().map(|freedom| first.displacement[*freedom]).collect();
@@ -277,16 +279,16 @@ impl Response<'_> {
     fn mean(&self, motion: &Motion, is_finite: bool) -> Option<f64> {
         let still = vec![0.0; motion.displacement.len()];
         let (mut stored, mut logarithms, mut most) = (0.0, 0.0, 0.0);
-        for element in &self.structure.elements {
+        let mut scratch = Scratch::default();
+        for element in self.structure.elements() {
             let energy = if is_finite {
-                2.0 * (element.energy(self.structure.dimension, &motion.displacement)
-                    - element.energy(self.structure.dimension, &still))
-                .abs()
+                let after = element.energy(&motion.displacement, &mut scratch);
+                2.0 * (after - element.energy(&still, &mut scratch)).abs()
             } else {
-                self.energy_at_first_order(element, &still, motion)
+                energy_at_first_order(element, &still, motion, &mut scratch)
             };
-            let stiffness = self.stiffness(element, motion);
-            most += self.most_energy(element, &still, motion);
+            let stiffness = element.axial_stiffness(&motion.displacement, &mut scratch);
+            most += most_energy(element, &still, motion, &mut scratch);
             if energy > 0.0 && stiffness > 0.0 {
                 stored += energy;
                 logarithms += energy * stiffness.ln();
@@ -297,38 +299,24 @@ impl Response<'_> {
         (stored > NOT_HELD * held && stored > ROUNDING * most && stored.is_finite())
             .then(|| (logarithms / stored).exp())
     }
+}
 
-    /// What an element would store if no displacement took any of another away.
-    fn most_energy(&self, element: &Element, still: &[f64], motion: &Motion) -> f64 {
-        let mut most = 0.0;
-        element.add_stiffness(self.structure.dimension, still, &mut |row, column, value| {
-            most += (motion.displacement[row] * value * motion.displacement[column]).abs();
-        });
-        most
-    }
+/// What an element would store if no displacement took any of another away.
+fn most_energy(element: ElementAt<'_>, still: &[f64], motion: &Motion, scratch: &mut Scratch) -> f64 {
+    let mut most = 0.0;
+    element.each_stiffness(still, scratch, &mut |row, column, value| {
+        most += (motion.displacement[row] * value * motion.displacement[column]).abs();
+    });
+    most
+}
 
-    /// `u·K_e u`
-    fn energy_at_first_order(&self, element: &Element, still: &[f64], motion: &Motion) -> f64 {
-        let of = |stretching: Stretching| Tie { stretching, by_load: 0.0 }.energy(motion);
-        let stretched: f64 = element.stretching(self.structure.dimension, still).into_iter().map(of).sum();
-        let mut across = 0.0;
-        element.add_stiffness_across(self.structure.dimension, still, &mut |row, column, value| {
-            across += motion.displacement[row] * value * motion.displacement[column];
-        });
-        stretched + across.abs()
-    }
-
-    /// An element's stiffness as an axial one: of a spring, against the motion.
-    fn stiffness(&self, element: &Element, motion: &Motion) -> f64 {
-        match element {
-            Element::Bar(bar) => bar.axial_stiffness,
-            Element::Spring(spring) => {
-                let at = |node: usize| of_node(self.structure.dimension, node, &motion.displacement);
-                let moved =
-                    spring.other.map_or_else(|| at(spring.node), |other| add(&at(spring.node), -1.0, &at(other)));
-                let force = spring.stiffness.map(|row| dot(&row, &moved));
-                if size(&moved) > 0.0 { size(&force) / size(&moved) } else { 0.0 }
-            }
-        }
-    }
+/// `u·K_e u`
+fn energy_at_first_order(element: ElementAt<'_>, still: &[f64], motion: &Motion, scratch: &mut Scratch) -> f64 {
+    let of = |stretching: Stretching| Tie { stretching, by_load: 0.0 }.energy(motion);
+    let stretched: f64 = element.stretching(still).map(of).sum();
+    let mut across = 0.0;
+    element.each_stiffness_across(still, scratch, &mut |row, column, value| {
+        across += motion.displacement[row] * value * motion.displacement[column];
+    });
+    stretched + across.abs()
 }

@@ -11,7 +11,7 @@
 //! `N = ∂W/∂L` is the axial force in the deformed direction `d`; the tangent is `N' d dᵀ + (N/L)(I - d dᵀ)`.
 //! (Crisfield, *Non-linear Finite Element Analysis of Solids and Structures* 1, Wiley 1991, chapter 3.)
 
-use crate::mechanics::structure::elements::Stretching;
+use crate::mechanics::structure::elements::{Element, Stretching};
 use serde::{Deserialize, Serialize};
 
 #[derive(Debug, Clone)]
@@ -42,11 +42,10 @@ impl Bar {
     /// Deformed direction, length and elongation. The elongation comes from `L² - X² = 2 X·Δu + Δu·Δu`, which keeps
     /// its digits where `L - L0` would cancel.
     #[inline(always)]
-    fn deformed(&self, dimension: usize, displacement: &[f64]) -> Deformed {
-        let [from, to] = self.nodes.map(|node| &displacement[node * dimension..][..dimension]);
-        match (from, to) {
-            ([x0, y0], [x1, y1]) => self.deformed_by([x1 - x0, y1 - y0]),
-            ([x0, y0, z0], [x1, y1, z1]) => self.deformed_by([x1 - x0, y1 - y0, z1 - z0]),
+    fn deformed(&self, displacement: &[f64]) -> Deformed {
+        match *displacement {
+            [x0, y0, x1, y1] => self.deformed_by([x1 - x0, y1 - y0]),
+            [x0, y0, z0, x1, y1, z1] => self.deformed_by([x1 - x0, y1 - y0, z1 - z0]),
             _ => self.deformed_by([]),
         }
     }
@@ -70,11 +69,6 @@ impl Bar {
         Deformed { direction, length, elongation }
     }
 
-    /// `L/L0`
-    pub fn stretch(&self, dimension: usize, displacement: &[f64]) -> f64 {
-        self.deformed(dimension, displacement).length / self.rest_length
-    }
-
     /// `ε`, `N` and `N'`.
     #[inline(always)]
     fn response(&self, elongation: f64) -> (f64, f64, f64) {
@@ -96,100 +90,96 @@ impl Bar {
         }
     }
 
-    pub fn add_force(&self, dimension: usize, displacement: &[f64], force: &mut [f64]) -> f64 {
-        let deformed = self.deformed(dimension, displacement);
-        let (_, axial, _) = self.response(deformed.elongation);
-        let mut add = |node: usize, sign: f64| {
-            let own = force[node * dimension..(node + 1) * dimension].iter_mut();
-            own.zip(&deformed.direction).for_each(|(force, direction)| *force += sign * (axial * direction));
-        };
-        add(self.nodes[0], -1.0);
-        add(self.nodes[1], 1.0);
-        axial.abs()
-    }
-
-    pub fn add_stiffness(&self, dimension: usize, displacement: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
-        let deformed = self.deformed(dimension, displacement);
-        let (_, axial, slope) = self.response(deformed.elongation);
-        self.add_parts(dimension, &deformed, slope, axial / deformed.length, add);
-    }
-
-    /// `(N/L)(I - d dᵀ)` alone.
-    pub fn add_stiffness_across(
-        &self,
-        dimension: usize,
-        displacement: &[f64],
-        add: &mut impl FnMut(usize, usize, f64),
-    ) {
-        let deformed = self.deformed(dimension, displacement);
-        let (_, axial, _) = self.response(deformed.elongation);
-        self.add_parts(dimension, &deformed, 0.0, axial / deformed.length, add);
-    }
-
-    /// `N' d dᵀ`
-    pub fn stretching(&self, dimension: usize, displacement: &[f64]) -> Option<Stretching> {
-        let deformed = self.deformed(dimension, displacement);
-        let (_, _, stiffness) = self.response(deformed.elongation);
-        let end = |node: usize, sign: f64| {
-            (0..dimension).map(move |component| (node * dimension + component, sign * deformed.direction[component]))
-        };
-        let along = end(self.nodes[0], -1.0).chain(end(self.nodes[1], 1.0)).collect();
-        (stiffness != 0.0).then_some(Stretching { stiffness, along })
-    }
-
-    fn add_parts(
-        &self,
-        dimension: usize,
-        deformed: &Deformed,
-        slope: f64,
-        geometric: f64,
-        add: &mut impl FnMut(usize, usize, f64),
-    ) {
-        match dimension {
-            2 => self.add_parts_in::<2>(deformed, slope, geometric, add),
-            _ => self.add_parts_in::<3>(deformed, slope, geometric, add),
+    /// `N' d dᵀ` times a factor and `(N/L)(I - d dᵀ)`, between the nodes.
+    fn write_parts(deformed: &Deformed, slope: f64, geometric: f64, stiffness: &mut [f64]) {
+        match stiffness.len() {
+            16 => Self::write_parts_in::<2>(deformed, slope, geometric, stiffness),
+            _ => Self::write_parts_in::<3>(deformed, slope, geometric, stiffness),
         }
     }
 
     /// The same in so many dimensions, which the compiler knows.
-    fn add_parts_in<const DIMENSION: usize>(
-        &self,
-        deformed: &Deformed,
-        slope: f64,
-        geometric: f64,
-        add: &mut impl FnMut(usize, usize, f64),
-    ) {
-        let (first, second) = (self.nodes[0] * DIMENSION, self.nodes[1] * DIMENSION);
-        for row in 0..DIMENSION {
-            for column in 0..DIMENSION {
+    fn write_parts_in<const DIMENSION: usize>(deformed: &Deformed, slope: f64, geometric: f64, stiffness: &mut [f64]) {
+        for (row, values) in stiffness.chunks_exact_mut(2 * DIMENSION).enumerate() {
+            let (first, second) = values.split_at_mut(DIMENSION);
+            let (own, other) = if row < DIMENSION { (first, second) } else { (second, first) };
+            let row = row % DIMENSION;
+            for (column, (own, other)) in own.iter_mut().zip(other).enumerate() {
                 let along = deformed.direction[row] * deformed.direction[column];
                 let across = if row == column { 1.0 - along } else { -along };
                 let value = slope * along + geometric * across;
-                add(first + row, first + column, value);
-                add(second + row, second + column, value);
-                add(first + row, second + column, -value);
-                add(second + row, first + column, -value);
+                (*own, *other) = (value, -value);
             }
         }
     }
+}
 
-    /// Calls `add(freedom, size)` with the axial force and what displacements of this size would make of it; not what they
-    /// do to the direction of a bar that shrinks to a point: there the forces are lost, which is no equilibrium.
-    pub fn each_size(&self, dimension: usize, displacement: &[f64], least: f64, add: &mut impl FnMut(usize, f64)) {
-        let deformed = self.deformed(dimension, displacement);
+impl Element for Bar {
+    fn nodes(&self) -> &[usize] {
+        &self.nodes
+    }
+
+    fn energy(&self, displacement: &[f64]) -> f64 {
+        let elongation = self.deformed(displacement).elongation;
+        let (strain, _, _) = self.response(elongation);
+        0.5 * self.axial_stiffness * self.rest_length * strain * strain + self.prestress * elongation
+    }
+
+    fn write_force(&self, displacement: &[f64], force: &mut [f64]) -> f64 {
+        let deformed = self.deformed(displacement);
+        let (_, axial, _) = self.response(deformed.elongation);
+        let (first, second) = force.split_at_mut(force.len() / 2);
+        for (end, sign) in [(first, -1.0), (second, 1.0)] {
+            end.iter_mut().zip(&deformed.direction).for_each(|(force, direction)| *force = sign * (axial * direction));
+        }
+        axial.abs()
+    }
+
+    fn write_stiffness(&self, displacement: &[f64], stiffness: &mut [f64]) {
+        let deformed = self.deformed(displacement);
         let (_, axial, slope) = self.response(deformed.elongation);
-        let freedoms = || self.nodes.iter().flat_map(|node| node * dimension..(node + 1) * dimension);
-        let reach = freedoms().fold(least, |reach: f64, freedom| reach.max(displacement[freedom].abs()));
+        Self::write_parts(&deformed, slope, axial / deformed.length, stiffness);
+    }
+
+    /// The axial force and what displacements of this size would make of it; not what they do to the direction of a bar
+    /// that shrinks to a point: there the forces are lost, which is no equilibrium.
+    fn write_force_sizes(&self, displacement: &[f64], least: f64, sizes: &mut [f64]) {
+        let deformed = self.deformed(displacement);
+        let (_, axial, slope) = self.response(deformed.elongation);
+        let reach = displacement.iter().fold(least, |reach: f64, value| reach.max(value.abs()));
         let stretch = (deformed.length / self.rest_length).max(1.0);
         let most = MOST_STIFFENED * self.axial_stiffness / self.rest_length * stretch * stretch;
         let stiffness = (slope.abs() + axial.abs() / deformed.length).min(most);
-        freedoms().for_each(|freedom| add(freedom, axial.abs() + stiffness * reach));
+        sizes.fill(axial.abs() + stiffness * reach);
     }
 
-    pub fn energy(&self, dimension: usize, displacement: &[f64]) -> f64 {
-        let elongation = self.deformed(dimension, displacement).elongation;
-        let (strain, _, _) = self.response(elongation);
-        0.5 * self.axial_stiffness * self.rest_length * strain * strain + self.prestress * elongation
+    fn axial_stiffness(&self, _motion: &[f64]) -> f64 {
+        self.axial_stiffness
+    }
+
+    /// `N' d dᵀ`
+    fn stretching(&self, displacement: &[f64]) -> Vec<Stretching> {
+        let deformed = self.deformed(displacement);
+        let (_, _, stiffness) = self.response(deformed.elongation);
+        if stiffness == 0.0 {
+            return Vec::new();
+        }
+        let dimension = displacement.len() / 2;
+        let end = |first: usize, sign: f64| {
+            (0..dimension).map(move |component| (first + component, sign * deformed.direction[component]))
+        };
+        vec![Stretching { stiffness, along: end(0, -1.0).chain(end(dimension, 1.0)).collect() }]
+    }
+
+    /// `(N/L)(I - d dᵀ)` alone.
+    fn write_stiffness_across(&self, displacement: &[f64], stiffness: &mut [f64]) {
+        let deformed = self.deformed(displacement);
+        let (_, axial, _) = self.response(deformed.elongation);
+        Self::write_parts(&deformed, 0.0, axial / deformed.length, stiffness);
+    }
+
+    fn stretch(&self, displacement: &[f64]) -> Option<f64> {
+        Some(self.deformed(displacement).length / self.rest_length)
     }
 }
 
@@ -206,6 +196,3 @@ pub enum Strain {
     /// `ln λ`
     Log,
 }
-
-/// Stretch of a bar at which steps that do not converge are its collapse.
-pub(crate) const COLLAPSED: f64 = 1e-4;

@@ -1,90 +1,58 @@
-//! The kinds of elements, and what each must be able to do.
+//! The kinds of elements, each a file of its own, and what each must be able to do.
 
 pub mod bar;
 pub mod spring;
 
-use crate::mechanics::structure::elements::bar::Bar;
-use crate::mechanics::structure::elements::spring::Spring;
+use std::fmt::Debug;
 
-/// One element.
-#[derive(Debug, Clone)]
-pub enum Element {
-    Bar(Bar),
-    Spring(Spring),
-}
+/// One element. All quantities are dimensionless.
+///
+/// `displacement` and `force` hold the element's own degrees of freedom, node by node: the translations of a node, then as
+/// many of its rotations as [`rotations`](Self::rotations) says. `stiffness` is square in them, row by row.
+pub trait Element: Debug + Send + Sync {
+    /// The nodes that the element joins.
+    fn nodes(&self) -> &[usize];
 
-impl Element {
-    /// Adds the element's nodal forces (gradient of its energy) and returns the size of the force it carries.
-    pub fn add_force(&self, dimension: usize, displacement: &[f64], force: &mut [f64]) -> f64 {
-        match self {
-            Self::Bar(bar) => bar.add_force(dimension, displacement, force),
-            Self::Spring(spring) => spring.add_force(dimension, displacement, force),
-        }
+    /// How many rotations the element has at each of its nodes.
+    fn rotations(&self) -> usize {
+        0
     }
 
-    /// Calls `add(freedom, size)` with the size of the numbers that the element's nodal forces are made of: stiffness times
-    /// displacements as they are (`least` at least), not their differences, and the force carried.
-    pub fn each_size(&self, dimension: usize, displacement: &[f64], least: f64, add: &mut impl FnMut(usize, f64)) {
-        match self {
-            Self::Bar(bar) => bar.each_size(dimension, displacement, least, add),
-            Self::Spring(spring) => spring.each_size(dimension, displacement, least, add),
-        }
-    }
+    /// Strain energy `W`.
+    fn energy(&self, displacement: &[f64]) -> f64;
 
-    /// The nodes it joins, one or two.
-    pub fn nodes(&self) -> impl Iterator<Item = usize> {
-        let (first, second) = match self {
-            Self::Bar(bar) => (bar.nodes[0], Some(bar.nodes[1])),
-            Self::Spring(spring) => (spring.node, spring.other),
-        };
-        std::iter::once(first).chain(second)
-    }
+    /// Writes the nodal forces `∂W/∂u`; returns the size of the force that the element carries.
+    fn write_force(&self, displacement: &[f64], force: &mut [f64]) -> f64;
 
-    /// Calls `add(row, column, value)` for every entry of the element's tangent, rows and columns being degrees of
-    /// freedom.
-    pub fn add_stiffness(&self, dimension: usize, displacement: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
-        match self {
-            Self::Bar(bar) => bar.add_stiffness(dimension, displacement, add),
-            Self::Spring(spring) => spring.add_stiffness(dimension, add),
-        }
-    }
+    /// Writes the tangent `∂²W/∂u²`.
+    fn write_stiffness(&self, displacement: &[f64], stiffness: &mut [f64]);
 
-    /// The element's tangent without what [`Self::stretching`] lists.
-    pub fn add_stiffness_across(
-        &self,
-        dimension: usize,
-        displacement: &[f64],
-        add: &mut impl FnMut(usize, usize, f64),
-    ) {
-        match self {
-            Self::Bar(bar) => bar.add_stiffness_across(dimension, displacement, add),
-            Self::Spring(spring) if spring.other.is_some() => {}
-            Self::Spring(spring) => spring.add_stiffness(dimension, add),
-        }
-    }
+    /// Writes the size of the numbers of which the nodal forces are made: stiffness times the displacements as they are
+    /// (`least` at least), not their differences, and the force carried.
+    fn write_force_sizes(&self, displacement: &[f64], least: f64, sizes: &mut [f64]);
 
-    /// The summands `k c cᵀ` of the tangent by which the element resists being stretched; none for springs to the ground.
-    pub fn stretching(&self, dimension: usize, displacement: &[f64]) -> Vec<Stretching> {
-        match self {
-            Self::Bar(bar) => bar.stretching(dimension, displacement).into_iter().collect(),
-            Self::Spring(spring) => spring.stretching(dimension),
-        }
-    }
-
-    /// Strain energy.
-    pub fn energy(&self, dimension: usize, displacement: &[f64]) -> f64 {
-        match self {
-            Self::Bar(bar) => bar.energy(dimension, displacement),
-            Self::Spring(spring) => spring.energy(dimension, displacement),
-        }
-    }
+    /// The stiffness per strain by which the element resists a motion (of its degrees of freedom), as an axial one.
+    fn axial_stiffness(&self, motion: &[f64]) -> f64;
 
     /// Whether the nodal forces are linear in the displacements.
-    pub fn is_linear(&self) -> bool {
-        match self {
-            Self::Bar(_) => false,
-            Self::Spring(_) => true,
-        }
+    fn is_linear(&self) -> bool {
+        false
+    }
+
+    /// The summands `k c cᵀ` of the tangent by which the element resists being stretched, apart from the rest, where stiff
+    /// and soft ones meet; `along` counts the element's own degrees of freedom.
+    fn stretching(&self, _displacement: &[f64]) -> Vec<Stretching> {
+        Vec::new()
+    }
+
+    /// Writes the tangent without what [`stretching`](Self::stretching) lists.
+    fn write_stiffness_across(&self, displacement: &[f64], stiffness: &mut [f64]) {
+        self.write_stiffness(displacement, stiffness);
+    }
+
+    /// The stretch `L/L0` of an element that may shrink to a point, where its forces lose their direction.
+    fn stretch(&self, _displacement: &[f64]) -> Option<f64> {
+        None
     }
 }
 
@@ -96,3 +64,6 @@ pub struct Stretching {
     /// Entries of `c`, one a degree of freedom.
     pub along: Vec<(usize, f64)>,
 }
+
+/// Stretch of an element at which steps that do not converge are its collapse.
+pub(crate) const COLLAPSED: f64 = 1e-4;

@@ -1,80 +1,118 @@
 //! A constant symmetric stiffness matrix between a node and the ground, or between two nodes: `f = K Δu`,
 //! `W = ½ Δuᵀ K Δu`. It does not follow rotation.
 
-use crate::mechanics::structure::elements::Stretching;
+use crate::mechanics::structure::elements::{Element, Stretching};
 use nalgebra::DMatrix;
+use smallvec::SmallVec;
 
 #[derive(Debug, Clone)]
 pub struct Spring {
-    pub node: usize,
-    /// The other end; the ground when absent.
-    pub other: Option<usize>,
+    /// One node, held against the ground, or two.
+    nodes: SmallVec<[usize; 2]>,
     /// The leading `dimension x dimension` block is used.
-    pub stiffness: [[f64; 3]; 3],
+    stiffness: [[f64; 3]; 3],
 }
 
 impl Spring {
-    fn relative(&self, dimension: usize, displacement: &[f64]) -> [f64; 3] {
-        let mut relative = [0.0; 3];
-        for (component, value) in relative.iter_mut().enumerate().take(dimension) {
-            *value = displacement[self.node * dimension + component];
-            if let Some(other) = self.other {
-                *value -= displacement[other * dimension + component];
-            }
-        }
-        relative
+    /// Between a node and the ground.
+    pub fn to_ground(node: usize, stiffness: [[f64; 3]; 3]) -> Self {
+        Self { nodes: SmallVec::from_slice(&[node]), stiffness }
     }
 
-    fn forces(&self, dimension: usize, relative: &[f64; 3]) -> [f64; 3] {
-        let mut forces = [0.0; 3];
-        for (force, row) in forces.iter_mut().zip(&self.stiffness).take(dimension) {
-            *force = row.iter().zip(relative).take(dimension).map(|(stiffness, motion)| stiffness * motion).sum();
-        }
-        forces
+    /// Between two nodes.
+    pub fn between(nodes: [usize; 2], stiffness: [[f64; 3]; 3]) -> Self {
+        Self { nodes: SmallVec::from_slice(&nodes), stiffness }
     }
 
-    pub fn add_force(&self, dimension: usize, displacement: &[f64], force: &mut [f64]) -> f64 {
-        let forces = self.forces(dimension, &self.relative(dimension, displacement));
-        let mut largest = 0.0_f64;
-        for (component, value) in forces.iter().enumerate().take(dimension) {
-            force[self.node * dimension + component] += value;
-            if let Some(other) = self.other {
-                force[other * dimension + component] -= value;
-            }
-            largest = largest.max(value.abs());
-        }
-        largest
+    fn has_two_nodes(&self) -> bool {
+        self.nodes.len() > 1
     }
 
-    pub fn add_stiffness(&self, dimension: usize, add: &mut impl FnMut(usize, usize, f64)) {
-        let node = self.node * dimension;
-        for row in 0..dimension {
-            for column in 0..dimension {
-                let value = self.stiffness[row][column];
-                add(node + row, node + column, value);
-                if let Some(other) = self.other {
-                    let other = other * dimension;
-                    add(other + row, other + column, value);
-                    add(node + row, other + column, -value);
-                    add(other + row, node + column, -value);
-                }
+    /// `Δu`, of as many components as the space has dimensions.
+    fn relative(&self, displacement: &[f64]) -> SmallVec<[f64; 3]> {
+        let (own, other) = displacement.split_at(displacement.len() / self.nodes.len());
+        match self.has_two_nodes() {
+            true => own.iter().zip(other).map(|(own, other)| own - other).collect(),
+            false => SmallVec::from_slice(own),
+        }
+    }
+
+    fn forces(&self, relative: &[f64]) -> SmallVec<[f64; 3]> {
+        let force = |row: &[f64; 3]| row.iter().zip(relative).map(|(stiffness, motion)| stiffness * motion).sum();
+        self.stiffness.iter().take(relative.len()).map(force).collect()
+    }
+}
+
+impl Element for Spring {
+    fn nodes(&self) -> &[usize] {
+        &self.nodes
+    }
+
+    fn energy(&self, displacement: &[f64]) -> f64 {
+        let relative = self.relative(displacement);
+        let forces = self.forces(&relative);
+        0.5 * relative.iter().zip(&forces).map(|(motion, force)| motion * force).sum::<f64>()
+    }
+
+    fn write_force(&self, displacement: &[f64], force: &mut [f64]) -> f64 {
+        let forces = self.forces(&self.relative(displacement));
+        let (own, other) = force.split_at_mut(forces.len());
+        own.copy_from_slice(&forces);
+        other.iter_mut().zip(&forces).for_each(|(force, value)| *force = -value);
+        forces.iter().fold(0.0, |largest, value| largest.max(value.abs()))
+    }
+
+    fn write_stiffness(&self, displacement: &[f64], stiffness: &mut [f64]) {
+        let size = displacement.len();
+        let dimension = size / self.nodes.len();
+        for (row, values) in stiffness.chunks_exact_mut(size).enumerate() {
+            for (column, value) in values.iter_mut().enumerate() {
+                let sign = if row / dimension == column / dimension { 1.0 } else { -1.0 };
+                *value = sign * self.stiffness[row % dimension][column % dimension];
             }
         }
+    }
+
+    /// The force that displacements of this size make.
+    fn write_force_sizes(&self, displacement: &[f64], least: f64, sizes: &mut [f64]) {
+        let dimension = displacement.len() / self.nodes.len();
+        let (own, other) = displacement.split_at(dimension);
+        let size = |component: usize| {
+            let other = other.get(component).map_or(least, |value| value.abs());
+            own[component].abs().max(other).max(least)
+        };
+        for (row, force) in sizes.iter_mut().enumerate() {
+            let stiffness = &self.stiffness[row % dimension];
+            *force = (0..dimension).map(|column| stiffness[column].abs() * size(column)).sum();
+        }
+    }
+
+    /// That against the motion.
+    fn axial_stiffness(&self, motion: &[f64]) -> f64 {
+        let moved = self.relative(motion);
+        let size = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>().sqrt();
+        let moved_by = size(&moved);
+        if moved_by > 0.0 { size(&self.forces(&moved)) / moved_by } else { 0.0 }
+    }
+
+    fn is_linear(&self) -> bool {
+        true
     }
 
     /// Between two nodes `K = Σ k v vᵀ` over its eigenvectors, each a resistance of its own.
-    pub fn stretching(&self, dimension: usize) -> Vec<Stretching> {
-        let Some(other) = self.other else { return Vec::new() };
+    fn stretching(&self, displacement: &[f64]) -> Vec<Stretching> {
+        if !self.has_two_nodes() {
+            return Vec::new();
+        }
+        let dimension = displacement.len() / 2;
         let matrix = DMatrix::from_fn(dimension, dimension, |row, column| self.stiffness[row][column]);
         let eigen = matrix.symmetric_eigen();
         let along = |vector: usize| {
-            let entry = |node: usize, component: usize, sign: f64| {
-                (node * dimension + component, sign * eigen.eigenvectors[(component, vector)])
+            let entry = |freedom: usize| {
+                let sign = if freedom < dimension { 1.0 } else { -1.0 };
+                (freedom, sign * eigen.eigenvectors[(freedom % dimension, vector)])
             };
-            let ends = [(self.node, 1.0), (other, -1.0)];
-            ends.into_iter()
-                .flat_map(|(node, sign)| (0..dimension).map(move |component| entry(node, component, sign)))
-                .collect()
+            (0..2 * dimension).map(entry).collect()
         };
         let resists = |vector: &usize| eigen.eigenvalues[*vector] != 0.0;
         (0..dimension)
@@ -83,23 +121,11 @@ impl Spring {
             .collect()
     }
 
-    /// Calls `add(freedom, size)` with the force that displacements of this size make.
-    pub fn each_size(&self, dimension: usize, displacement: &[f64], least: f64, add: &mut impl FnMut(usize, f64)) {
-        let size = |component: usize| {
-            let at = |node: usize| displacement[node * dimension + component].abs();
-            at(self.node).max(self.other.map_or(least, at)).max(least)
-        };
-        for (row, stiffness) in self.stiffness.iter().enumerate().take(dimension) {
-            let force: f64 = (0..dimension).map(|column| stiffness[column].abs() * size(column)).sum();
-            for node in std::iter::once(self.node).chain(self.other) {
-                add(node * dimension + row, force);
-            }
+    fn write_stiffness_across(&self, displacement: &[f64], stiffness: &mut [f64]) {
+        if self.has_two_nodes() {
+            stiffness.fill(0.0);
+        } else {
+            self.write_stiffness(displacement, stiffness);
         }
-    }
-
-    pub fn energy(&self, dimension: usize, displacement: &[f64]) -> f64 {
-        let relative = self.relative(dimension, displacement);
-        let forces = self.forces(dimension, &relative);
-        0.5 * relative.iter().zip(&forces).map(|(motion, force)| motion * force).sum::<f64>()
     }
 }
