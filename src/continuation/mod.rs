@@ -21,4 +21,6 @@ pub mod scene;
 #[cfg(test)]
 mod tests_of_exhaustive;
 #[cfg(test)]
+mod tests_of_growth;
+#[cfg(test)]
 mod tests_of_lattice;

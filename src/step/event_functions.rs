@@ -127,7 +127,7 @@ impl Watch {
                 loading.contacts[contact].friction * reaction.normal + traction
             }
             Self::Sliding(contact) => {
-                dot(&direction(loading, modes, contact, state), &loading.relative_rate(contact, rate))
+                dot(&direction(loading, modes, contact, state), &loading.relative_rate(contact, state, rate))
             }
             Self::Facet { corner, side } => {
                 let holding: Vec<usize> = loading.corners[corner].holding(modes).collect();
@@ -157,7 +157,7 @@ impl Watch {
     pub fn slope(self, loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate) -> Option<f64> {
         match self {
             Self::Gap(contact) => {
-                Some(dot(&loading.frame(contact, state).normal, &loading.relative_rate(contact, rate)))
+                Some(dot(&loading.frame(contact, state).normal, &loading.relative_rate(contact, state, rate)))
             }
             Self::Normal(contact) => Some(rate.reactions[contact].normal),
             Self::Cone { contact, side } => {

@@ -169,7 +169,7 @@ pub(crate) fn directions(
 fn tried(here: Here<'_>, rate: Rate, modes: Vec<Mode>) -> Option<Choice> {
     let Here { loading, state, force_scale, .. } = here;
     let power = |(contact, reaction): (usize, &Reaction)| {
-        -vector::dot(&reaction.tangential, &loading.relative_rate(contact, &rate))
+        -vector::dot(&reaction.tangential, &loading.relative_rate(contact, state, &rate))
     };
     let dissipation = state.reactions.iter().enumerate().map(power).sum();
     let candidate = Candidate {
@@ -246,7 +246,7 @@ fn parts(here: Here<'_>, modes: &[Mode], incoming: &Rate, motions: usize) -> Opt
         let along = dot(&rate.displacement, &incoming.displacement);
         rate.scale(if along < 0.0 { -1.0 } else { 1.0 } / value.abs().sqrt());
         let slides = |contact: &usize| {
-            let moves = vector::size(&loading.relative_rate(*contact, &rate)) > STILL * rate.size();
+            let moves = vector::size(&loading.relative_rate(*contact, state, &rate)) > STILL * rate.size();
             moves && matches!(standings[*contact], Standing::OnCone { .. })
         };
         let slides = (0..modes.len()).filter(slides).collect();

@@ -18,7 +18,7 @@ use crate::branching::directions::choice::Choice;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::dot;
 use crate::mechanics::problem::loading::Loading;
-use crate::mechanics::problem::state::Rate;
+use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cached_factorisation::AtHand;
 
 /// One less the product of two directions that are one.
@@ -49,13 +49,13 @@ impl<'a> Incoming<'a> {
     }
 
     /// Whether in a direction contacts that have come to rest stick, all else as it was.
-    pub(crate) fn is_stopped_in(&self, loading: Loading<'_>, choice: &Choice) -> bool {
+    pub(crate) fn is_stopped_in(&self, loading: Loading<'_>, state: &State, choice: &Choice) -> bool {
         let Some(modes) = self.modes else { return false };
         let mut stops = false;
         let as_it_was = |(contact, (was, is)): (usize, (&Mode, &Mode))| match (was, is) {
             (Mode::Slip { direction }, Mode::Stick) => {
                 stops = true;
-                dot(direction, &loading.relative_rate(contact, self.rate)).abs() <= AT_REST
+                dot(direction, &loading.relative_rate(contact, state, self.rate)).abs() <= AT_REST
             }
             _ => was.continues(*is),
         };

@@ -135,7 +135,8 @@ impl ModeSystem<'_> {
     fn is_plain(&self, entry: &Changeable) -> bool {
         let structure = self.loading.structure;
         let [contact] = entry.contacts[..] else { return false };
-        let mut freedoms = structure.translations_of(self.loading.contacts[contact].node);
+        let Some(node) = self.loading.contacts[contact].kinematics.node() else { return false };
+        let mut freedoms = structure.translations_of(node);
         self.loading.frame(contact, self.anchor).curvature == 0.0
             && freedoms.all(|freedom| structure.unknown_of[freedom].is_some())
     }
@@ -158,11 +159,11 @@ impl ModeSystem<'_> {
     pub(crate) fn pushed(&self, contact: usize, direction: &Vector) -> DVector<f64> {
         let structure = self.loading.structure;
         let mut values = DVector::zeros(self.size);
-        for (freedom, part) in structure.translations_of(self.loading.contacts[contact].node).zip(direction) {
+        self.loading.each_column(contact, self.anchor, |freedom, column| {
             if let Some(unknown) = structure.unknown_of[freedom] {
-                values[unknown] = *part;
+                values[unknown] = dot(direction, column);
             }
-        }
+        });
         values
     }
 
@@ -173,7 +174,7 @@ impl ModeSystem<'_> {
         let mut parts = DMatrix::zeros(count, count);
         for (row, (contact, direction)) in velocities.iter().enumerate() {
             for (column, solution) in solutions.iter().enumerate() {
-                parts[(row, column)] = dot(direction, &self.loading.relative_rate(*contact, solution));
+                parts[(row, column)] = dot(direction, &self.loading.relative_rate(*contact, self.anchor, solution));
             }
         }
         for (column, solution) in solutions.iter().enumerate() {

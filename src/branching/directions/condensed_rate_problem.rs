@@ -94,7 +94,7 @@ impl<'a> Condensed<'a> {
         let first = || {
             let mut first = vec![vec![0; self.changeable.len()]];
             if let Some(rate) = incoming {
-                first.extend(warm_start::near(&self.problem, &self.weights_of(rate)));
+                first.extend(warm_start::near(&self.problem, &self.weights_of(state, rate)));
             }
             if self.changeable.len() > FEW {
                 first.extend(gauss_seidel::sweeps(&self.problem, effort.cancel));
@@ -211,7 +211,8 @@ impl<'a> Condensed<'a> {
         let size = nearest.size();
         let opens = |entry: &Changeable| {
             let contact = entry.contacts[0];
-            dot(&self.loading.frame(contact, state).normal, &self.loading.relative_rate(contact, &nearest)) >= -WEAK
+            dot(&self.loading.frame(contact, state).normal, &self.loading.relative_rate(contact, state, &nearest))
+                >= -WEAK
         };
         if size <= WEAK || !self.changeable.iter().all(opens) {
             return;
@@ -236,12 +237,12 @@ impl<'a> Condensed<'a> {
     }
 
     /// The weights that come nearest to a rate: its velocities, and what it has along `z₀`.
-    fn weights_of(&self, rate: &Rate) -> DVector<f64> {
+    fn weights_of(&self, state: &State, rate: &Rate) -> DVector<f64> {
         let last = self.columns.len() - 1;
         budget::spend(last * rate.displacement.len());
         let mut weights = DVector::zeros(last + 1);
         for entry in &self.changeable {
-            let motion = self.loading.relative_rate(entry.contacts[0], rate);
+            let motion = self.loading.relative_rate(entry.contacts[0], state, rate);
             for (column, direction) in &entry.velocities {
                 weights[*column] = dot(&motion, direction);
             }
@@ -261,7 +262,7 @@ impl<'a> Condensed<'a> {
         let (mut rate, _) = self.combine(&ray.weights);
         let mut modes = held.to_vec();
         for ((entry, outcomes), choice) in self.changeable.iter().zip(&self.outcomes).zip(ray.chosen()) {
-            entry.take_reaction_apart(self.loading, &mut rate);
+            entry.take_reaction_apart(self.loading, state, &mut rate);
             let slips_out = turning.iter().any(|(slipping, _)| entry.contacts.contains(slipping));
             for (contact, mode) in &outcomes[choice].modes {
                 // The other obstacles of its node are left.
@@ -289,7 +290,7 @@ impl<'a> Condensed<'a> {
         }
         let dissipation =
             self.changeable.iter().map(|entry| entry.dissipation(self.loading, &modes, &rate, state)).sum();
-        let alternatives = self.alternatives(ray, turning, &modes, &rate, force);
+        let alternatives = self.alternatives(ray, turning, &modes, (state, &rate), force);
         let forces = whole_rates(self.loading, state, &rate);
         let just_held = |entry: &Changeable| entry.margin(&modes, &rate).is_some_and(|margin| margin <= force);
         let weak = ray.weak || self.changeable.iter().any(just_held);
@@ -302,7 +303,7 @@ impl<'a> Condensed<'a> {
         ray: &Ray,
         turning: &[(usize, Vector)],
         modes: &[Mode],
-        rate: &Rate,
+        (state, rate): (&State, &Rate),
         force: f64,
     ) -> Vec<Vec<Alternative>> {
         budget::spend(self.changeable.len());
@@ -321,7 +322,7 @@ impl<'a> Condensed<'a> {
             if let [contact] = entry.contacts[..]
                 && alternatives.contains(&vec![(contact, Mode::Free)])
             {
-                alternatives.extend(entry.grazing_slip(self.loading, rate).map(|slip| vec![(contact, slip)]));
+                alternatives.extend(entry.grazing_slip(self.loading, state, rate).map(|slip| vec![(contact, slip)]));
             }
             sort(&mut alternatives);
             alternatives

@@ -255,7 +255,7 @@ impl Trial<'_> {
             let clear = match watch {
                 // A node on a stiff spring is slow, and its direction is as clear.
                 Watch::Gap(contact) | Watch::Sliding(contact) => {
-                    STILL + CLEAR_OF_SPEED * size_of(&loading.relative_rate(contact, &rate))
+                    STILL + CLEAR_OF_SPEED * size_of(&loading.relative_rate(contact, &corrected.state, &rate))
                 }
                 // By the contact's own forces: along a chain close to jamming they fall by orders from node to node.
                 Watch::Normal(contact) | Watch::Cone { contact, .. } => {

@@ -102,7 +102,7 @@ pub fn decide(
     rules: Rules<'_>,
 ) -> Decision {
     let (options, found) = list(loading, state, standings, before, rules);
-    let is_doubtful = second_order::is_asked(loading, &options, before);
+    let is_doubtful = second_order::is_asked(loading, state, &options, before);
     let decision = taken_of(loading, options, &found, before, rules);
     let ends = matches!(decision.stop, Some(StopReason::Degenerate | StopReason::NoDirection));
     if !(ends || is_doubtful) || found.unexplored > 0 || rules.effort.cancel.is_cancelled() {

@@ -8,13 +8,14 @@
 use crate::branching::bifurcation::branch_directions::{Here, SAME, Told, in_each_mode};
 use crate::branching::directions::choice::{Before, Choice, mark_retrace, sign_of};
 use crate::mechanics::problem::loading::Loading;
+use crate::mechanics::problem::state::State;
 
 /// Whether directions of first order at the end of a slip are no more than rounding, or one is missing.
-pub(crate) fn is_asked(loading: Loading<'_>, options: &[Choice], before: Before<'_>) -> bool {
+pub(crate) fn is_asked(loading: Loading<'_>, state: &State, options: &[Choice], before: Before<'_>) -> bool {
     let Before::Incoming(incoming) = before else { return false };
     // An odd count says that one is missing, or one too many.
     let is_odd = options.len() % 2 == 1;
-    let is_doubtful = |option: &Choice| (is_odd || !option.is_tried) && incoming.is_stopped_in(loading, option);
+    let is_doubtful = |option: &Choice| (is_odd || !option.is_tried) && incoming.is_stopped_in(loading, state, option);
     incoming.is_singular || options.iter().any(is_doubtful)
 }
 

@@ -145,7 +145,7 @@ impl ModeSystem<'_> {
             rate.reactions[contact].normal
         } else {
             let normal = self.loading.frame(contact, state).normal;
-            dot(&normal, &self.loading.relative_rate(contact, rate))
+            dot(&normal, &self.loading.relative_rate(contact, state, rate))
         }
     }
 

@@ -53,7 +53,7 @@ pub(crate) fn increment(scene: &Scene, totals: &Totals, row: &Row<'_>) -> Increm
     let (length, force) = (plan.displacement_scale, plan.force_scale);
     let energy_unit = length * force;
     let stage = &scene.stages[row.stage];
-    let displacements = scene.no_displacements.scaled(&row.state.displacement, length);
+    let displacements = scene.no_displacements.scaled(&scene.structure.translations(&row.state.displacement), length);
     let (contacts, complementarity) = contact_rows(scene, row, totals.force_scale);
     let directions = is_worth_listing(row.options).then(|| {
         let direction = |(index, option): (usize, &Choice)| Direction {
@@ -166,7 +166,6 @@ fn contact_rows(scene: &Scene, row: &Row<'_>, force_scale: f64) -> (Vec<ContactS
 fn held_by_too_many(loading: Loading<'_>, modes: &[Mode], contact: usize) -> bool {
     loading.corners.iter().filter(|corner| corner.contacts.contains(&contact)).any(|corner| {
         let parts: usize = corner.holding(modes).map(|one| 1 + loading.contacts[one].tangents()).sum();
-        parts > free_directions(loading, loading.contacts[contact].node).len()
-            && corner.holding(modes).any(|one| one == contact)
+        parts > free_directions(loading, contact).len() && corner.holding(modes).any(|one| one == contact)
     })
 }

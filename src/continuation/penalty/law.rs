@@ -123,7 +123,14 @@ mod tests {
         } else {
             (Obstacle::Plane { normal: [0.0, 0.0, 1.0] }, 0.0, *place)
         };
-        Contact { node: 0, obstacle, initial_gap, friction: 0.4, sliding: Sliding::Plane }.frame(&relative)
+        Contact {
+            kinematics: crate::mechanics::contact::kinematics::Kinematics::Node(0),
+            obstacle,
+            initial_gap,
+            friction: 0.4,
+            sliding: Sliding::Plane,
+        }
+        .frame(&relative)
     }
 
     fn response(place: &[f64; 3], start: &[f64; 3], ball: bool) -> Response {

@@ -12,6 +12,7 @@ use crate::continuation::penalty::law::Response;
 use crate::continuation::penalty::system::{Point, System};
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::{add, dot, size};
+use crate::mechanics::problem::contact_motion;
 use crate::result::increment::Status;
 
 /// `(ΔW, ΔD)` of an increment.
@@ -32,7 +33,12 @@ pub fn work_and_dissipation(system: &System<'_>, from: &Point, to: &Point) -> (f
             }
         }
         for (index, (before, after)) in from.contacts.iter().zip(&to.contacts).enumerate() {
-            let moved = loading.structure.translation_at(loading.contacts[index].node, &change);
+            let moved = contact_motion::velocity(
+                loading.structure,
+                &loading.contacts[index],
+                &from.state.displacement,
+                &change,
+            );
             let relative = add(&loading.relative(index, &to.state), -1.0, &loading.relative(index, &from.state));
             let obstacle = add(&moved, -1.0, &relative);
             work += 0.5 * dot(&add(&before.force, 1.0, &after.force), &obstacle);

@@ -4,9 +4,12 @@ use crate::algebra::null_space;
 use crate::continuation::penalty::law::{Penalties, Response, respond};
 use crate::mechanics::contact::Reaction;
 use crate::mechanics::contact::vector::{Vector, add, dot};
+use crate::mechanics::problem::contact_motion;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::State;
+use itertools::Itertools;
 use nalgebra::{DMatrix, DVector};
+use smallvec::SmallVec;
 
 /// Stiffness against a motion, over that of the elements concerned, below which nothing resists it.
 const UNRESISTED: f64 = 1e-10;
@@ -41,7 +44,7 @@ impl System<'_> {
     /// At a state, in an increment that began at `from`; reactions of the state play no part.
     pub fn evaluate(&self, from: &Point, state: &State) -> Evaluation {
         let structure = self.loading.structure;
-        let (dimension, unknowns) = (structure.dimension, structure.unknowns());
+        let unknowns = structure.unknowns();
         let mut force = vec![0.0; structure.freedoms()];
         let mut force_scale = structure.internal_force(&state.displacement, &mut force);
         let mut tangent = DMatrix::zeros(unknowns, unknowns);
@@ -61,16 +64,21 @@ impl System<'_> {
             let response =
                 respond(self.penalties, friction, &contact.frame(&relative), &before.reaction.tangential, &moved);
             force_scale = force_scale.max(response.reaction.normal);
-            let first = structure.translations_of(contact.node).start;
-            for row in 0..dimension {
-                force[first + row] -= response.force[row];
-                let Some(row_unknown) = structure.unknown_of[first + row] else { continue };
-                for column in 0..dimension {
-                    if let Some(column_unknown) = structure.unknown_of[first + column] {
-                        tangent[(row_unknown, column_unknown)] += response.stiffness[row][column];
-                    }
-                }
+            let mut columns: SmallVec<[(usize, Vector); 3]> = SmallVec::new();
+            self.loading.each_column(index, state, |freedom, column| {
+                force[freedom] -= dot(column, &response.force);
+                columns.extend(structure.unknown_of[freedom].map(|unknown| (unknown, *column)));
+            });
+            for ((row, own), (column, motion)) in columns.iter().cartesian_product(&columns) {
+                let pushed = response.stiffness.map(|row| dot(&row, motion));
+                tangent[(*row, *column)] += dot(own, &pushed);
             }
+            let curvature = |row: usize, column: usize, value: f64| {
+                if let (Some(row), Some(column)) = (structure.unknown_of[row], structure.unknown_of[column]) {
+                    tangent[(row, column)] -= value;
+                }
+            };
+            contact_motion::each_curvature(structure, contact, &state.displacement, &response.force, curvature);
             contacts.push(response);
         }
         Evaluation { unbalanced: force, tangent, contacts, force_scale }
@@ -105,16 +113,9 @@ impl System<'_> {
             });
         }
         for (index, (contact, response)) in self.loading.contacts.iter().zip(contacts).enumerate() {
-            let first = structure.translations_of(contact.node).start;
-            let mut motion: Vector = self.loading.pattern.shifts[index].map(|shift| -shift);
-            for (component, motion) in motion.iter_mut().enumerate().take(structure.dimension) {
-                if structure.unknown_of[first + component].is_none() {
-                    *motion += self.loading.support_rate(first + component);
-                }
-            }
-            for row in 0..structure.dimension {
-                vector[first + row] -= dot(&response.stiffness[row], &motion);
-            }
+            let motion = self.loading.driven(index, point);
+            let pushed = response.stiffness.map(|row| dot(&row, &motion));
+            contact_motion::add_force(structure, contact, &point.displacement, &pushed, -1.0, &mut vector);
         }
         let freedoms = &structure.freedom_of;
         DVector::from_iterator(freedoms.len(), freedoms.iter().map(|freedom| vector[*freedom]))
@@ -185,8 +186,8 @@ mod tests {
                     // Pressed, and sliding enough to slip on every other contact.
                     let frame = system.loading.frame(index, &state);
                     let slide = if index % 2 == 0 { 0.03 } else { 1e-4 };
-                    for component in 0..structure.dimension {
-                        let freedom = structure.translations_of(contact.node).start + component;
+                    let Some(node) = contact.kinematics.node() else { continue };
+                    for (component, freedom) in structure.translations_of(node).enumerate() {
                         if structure.unknown_of[freedom].is_some() {
                             let push = (frame.gap + 0.004) * frame.normal[component];
                             state.displacement[freedom] += slide * frame.tangents[0][component] - push;

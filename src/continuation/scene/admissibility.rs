@@ -4,6 +4,8 @@ use crate::algebra::dense::assembly::Sink;
 use crate::algebra::sparse::Bordered;
 use crate::algebra::{Factorisation, null_space};
 use crate::continuation::scene::{Scene, StageLoad};
+use crate::mechanics::contact::vector::dot;
+use crate::mechanics::problem::contact_motion;
 use crate::model::request::Model;
 use crate::model::{InputError, InputErrors};
 use itertools::Itertools;
@@ -22,8 +24,9 @@ impl Scene {
         let dimension = structure.dimension;
         for (index, one) in self.reported.iter().enumerate() {
             let contact = &self.contacts[one.contact];
+            let Some(node) = contact.kinematics.node() else { continue };
             let driven = |component: usize| {
-                let freedom = structure.translations_of(contact.node).start + component;
+                let freedom = structure.translations_of(node).start + component;
                 let moves = |stage: &StageLoad| {
                     let support = stage.pattern.supports.get(freedom).copied().unwrap_or(0.0);
                     support != stage.pattern.shifts[one.contact][component]
@@ -98,6 +101,7 @@ impl Scene {
     /// Adds a stiffness in every direction in which a closed contact holds its node.
     fn hold_closed_contacts(&self, stiffness: f64, matrix: &mut impl Sink) {
         let structure = &self.structure;
+        let still = vec![0.0; structure.freedoms()];
         for contact in &self.contacts {
             let frame = contact.frame(&[0.0; 3]);
             if frame.gap > CLOSED {
@@ -105,11 +109,12 @@ impl Scene {
             }
             let held = 1 + contact.tangents();
             for vector in [frame.normal, frame.tangents[0], frame.tangents[1]].iter().take(held) {
-                let own = structure.translations_of(contact.node).zip(vector);
-                let own =
-                    own.filter_map(|(freedom, part)| structure.unknown_of[freedom].map(|unknown| (unknown, part)));
-                for ((row, first), (column, second)) in own.clone().cartesian_product(own) {
-                    matrix.add(row, column, stiffness * first * second);
+                let mut own: Vec<(usize, f64)> = Vec::with_capacity(structure.dimension);
+                contact_motion::each_column(structure, contact, &still, |freedom, column| {
+                    own.extend(structure.unknown_of[freedom].map(|unknown| (unknown, dot(vector, column))));
+                });
+                for ((row, first), (column, second)) in own.iter().cartesian_product(&own) {
+                    matrix.add(*row, *column, stiffness * first * second);
                 }
             }
         }

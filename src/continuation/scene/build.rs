@@ -1,6 +1,7 @@
 //! From the request's names and units to numbers without.
 
 use crate::continuation::scene::{Reported, StageLoad};
+use crate::mechanics::contact::kinematics::Kinematics;
 use crate::mechanics::contact::obstacle::Obstacle;
 use crate::mechanics::contact::vector::{Vector, size};
 use crate::mechanics::contact::{Contact, Sliding};
@@ -106,7 +107,8 @@ pub(super) fn build_contacts(
     let mut by_gap: HashMap<usize, BTreeMap<u64, Vec<usize>>> = HashMap::new();
     for (index, contact) in model.contacts.iter().enumerate() {
         budget::spend(1);
-        let built = build_contact(model, contact, numbers[contact.node.as_str()], length, structure);
+        let node_number = numbers[contact.node.as_str()];
+        let built = build_contact(model, contact, node_number, length, structure);
         if built.friction == 0.0 && contact.friction > 0.0 {
             left_out.push(LeftOut {
                 what: format!("friction of {} on {}", contact.node, contact.obstacle),
@@ -118,8 +120,8 @@ pub(super) fn build_contacts(
             let motion = |stage: &request::Stage, name: &str| stage.obstacle_motion.get(name).cloned();
             model.stages.iter().all(|stage| motion(stage, &contact.obstacle) == motion(stage, &other.obstacle))
         };
-        let neighbours = of_node.entry(built.node).or_default();
-        let alike = by_gap.entry(built.node).or_default();
+        let neighbours = of_node.entry(node_number).or_default();
+        let alike = by_gap.entry(node_number).or_default();
         let (gap, near) = (built.initial_gap, COINCIDENT * (1.0 + built.initial_gap.abs()));
         let twin = alike
             .range(ordered(gap - near)..=ordered(gap + near))
@@ -161,7 +163,9 @@ pub(super) fn build_contacts(
     let corners = contacts
         .iter()
         .enumerate()
-        .filter_map(|(index, contact)| of_node.get(&contact.node).filter(|all| all.len() > 1 && all[0] == index))
+        .filter_map(|(index, contact)| {
+            of_node.get(&contact.kinematics.node()?).filter(|all| all.len() > 1 && all[0] == index)
+        })
         .map(|contacts| Corner { contacts: contacts.clone() })
         .collect();
     Contacts { contacts, contact_names, reported, corners }
@@ -192,7 +196,9 @@ fn coincide(first: &Contact, second: &Contact) -> bool {
         (Obstacle::Ball { offset: a, side: x }, Obstacle::Ball { offset: b, side: y }) => near(a, b) && x == y,
         (Obstacle::Plane { .. }, Obstacle::Ball { .. }) | (Obstacle::Ball { .. }, Obstacle::Plane { .. }) => false,
     };
-    first.node == second.node && surfaces && (first.initial_gap - second.initial_gap).abs() <= COINCIDENT
+    first.kinematics.node() == second.kinematics.node()
+        && surfaces
+        && (first.initial_gap - second.initial_gap).abs() <= COINCIDENT
 }
 
 fn build_contact(
@@ -232,7 +238,7 @@ fn build_contact(
     };
     let sliding = sliding(structure, node);
     let friction = if sliding.directions() == 0 { 0.0 } else { contact.friction };
-    Contact { node, obstacle, initial_gap, friction, sliding }
+    Contact { kinematics: Kinematics::Node(node), obstacle, initial_gap, friction, sliding }
 }
 
 /// In which directions a node can slide, by its supports.

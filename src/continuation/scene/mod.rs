@@ -21,6 +21,7 @@ use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::loading::LoadPattern;
 use crate::mechanics::problem::node_forces::Corner;
 use crate::mechanics::structure::Structure;
+use crate::mechanics::structure::elements::Element;
 use crate::model::request::{Analysis, JobRequest};
 use crate::model::{InputError, InputErrors};
 use crate::resources::budget::{self, Breach, Budget, Taken};
@@ -52,6 +53,14 @@ pub struct Scene {
     /// Straight stretches are one increment.
     pub(crate) jumps: bool,
     plan: Plan,
+}
+
+/// Elements and contacts that a request has no words for, dimensionless by the scales of the request's own.
+#[derive(Debug, Default)]
+pub(crate) struct Parts {
+    pub elements: Vec<Arc<dyn Element>>,
+    /// Each with the names of its node and its obstacle.
+    pub contacts: Vec<(&'static str, &'static str, Contact)>,
 }
 
 /// A contact of the request and its part of the one that is solved for.
@@ -108,31 +117,62 @@ impl Scene {
     /// # Errors
     /// As for [`new`](Self::new).
     pub fn like(other: Option<&Self>, request: &JobRequest) -> Result<Self, InputErrors> {
-        let other = other.map(|other| &other.structure);
-        Budget::under_way(budget::cancel_flag()).during(|| Self::built(request, other)).unwrap_or_else(|breach| {
-            let what = match breach {
-                Breach::Cancelled => budget::end(breach),
-                Breach::Memory { .. } => "the model is too large",
-                Breach::FactorEntries { .. } | Breach::FactorWork { .. } => {
-                    "the elements join too many nodes to too many others"
-                }
-            };
-            Err(InputErrors(vec![InputError::new("/model/elements", format!("{what}: {breach}"))]))
-        })
+        Self::with_parts(other, request, Parts::default())
     }
 
-    fn built(request: &JobRequest, like: Option<&Structure>) -> Result<Self, InputErrors> {
+    /// As [`like`](Self::like), with elements and contacts beside those of the request.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new).
+    pub(crate) fn with_parts(other: Option<&Self>, request: &JobRequest, parts: Parts) -> Result<Self, InputErrors> {
+        let other = other.map(|other| &other.structure);
+        Budget::under_way(budget::cancel_flag()).during(|| Self::built(request, other, parts)).unwrap_or_else(
+            |breach| {
+                let what = match breach {
+                    Breach::Cancelled => budget::end(breach),
+                    Breach::Memory { .. } => "the model is too large",
+                    Breach::FactorEntries { .. } | Breach::FactorWork { .. } => {
+                        "the elements join too many nodes to too many others"
+                    }
+                };
+                Err(InputErrors(vec![InputError::new("/model/elements", format!("{what}: {breach}"))]))
+            },
+        )
+    }
+
+    fn built(request: &JobRequest, like: Option<&Structure>, parts: Parts) -> Result<Self, InputErrors> {
         crate::model::check::check(request)?;
         let model = &request.model;
         let numbers: HashMap<&str, usize> =
             model.nodes.keys().enumerate().map(|(number, name)| (name.as_str(), number)).collect();
         let scales = scales(model, &request.analysis, &numbers, like);
         let Scales { length, force, resistances, stretched, structure } = scales;
-        let structure = build_structure(model, &numbers, length, force, structure.as_ref().or(like));
+        let mut structure = build_structure(model, &numbers, length, force, structure.as_ref().or(like));
+        if !parts.elements.is_empty() {
+            structure = structure.with_elements(parts.elements);
+        }
         let mut left_out = Vec::new();
-        let Contacts { contacts, contact_names, reported, corners } =
+        let Contacts { mut contacts, mut contact_names, mut reported, corners } =
             build_contacts(model, &numbers, length, &structure, &mut left_out);
         let first_contacts = first_contacts(&reported, contacts.len());
+        for (node, obstacle, contact) in parts.contacts {
+            let (node, obstacle) = (Arc::<str>::from(node), Arc::<str>::from(obstacle));
+            contact_names.push((Arc::clone(&node), Arc::clone(&obstacle)));
+            reported.push(Reported {
+                node,
+                obstacle,
+                contact: contacts.len(),
+                normal_share: 1.0,
+                tangential_share: 1.0,
+                shared: false,
+            });
+            contacts.push(contact);
+        }
+        let coupled = contacts.iter().filter(|contact| contact.kinematics.node().is_none());
+        let couplings: Vec<Vec<usize>> = coupled.map(|contact| contact.kinematics.nodes().to_vec()).collect();
+        if !couplings.is_empty() {
+            structure.couple(couplings);
+        }
         let scaled = Scaled {
             model,
             analysis: &request.analysis,
@@ -143,8 +183,9 @@ impl Scene {
             force,
             stretched,
         };
-        let stages: Vec<StageLoad> =
+        let mut stages: Vec<StageLoad> =
             model.stages.iter().zip(&resistances).map(|(stage, force)| build_stage(stage, *force, &scaled)).collect();
+        stages.iter_mut().for_each(|stage| stage.pattern.shifts.resize(contacts.len(), [0.0; 3]));
         let plan = Plan {
             unknowns: structure.unknowns() as u64,
             contacts: reported.len() as u64,

@@ -14,7 +14,7 @@ pub(crate) const REACH: f64 = 4.0;
 /// How far a contact's gap may change by unit arc length, in any stage.
 pub(crate) fn fastest(scene: &Scene, contact: usize) -> f64 {
     let shift = scene.stages.iter().fold(0.0_f64, |most, stage| most.max(size(&stage.pattern.shifts[contact])));
-    shift.hypot(1.0)
+    shift.hypot(scene.contacts[contact].kinematics.fastest())
 }
 
 /// Which contacts of the request have a row in every increment, in reach or not; `None`: all.

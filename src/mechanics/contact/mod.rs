@@ -1,4 +1,4 @@
-//! Contact: a node against an obstacle, its kinematics, its state and its modes.
+//! Contact: its kinematics, its obstacle, its state and its modes.
 //!
 //! ```text
 //! 0 <= g(u) ⊥ r_n >= 0,      |r_t| <= μ r_n,      Δu_t = -α r_t,  α >= 0
@@ -8,19 +8,21 @@
 //! the node is; in 2D the third component is 0. Knows nothing of structures and paths.
 
 pub(crate) mod frame;
+pub mod kinematics;
 pub mod least_norm_reactions;
 pub mod obstacle;
 pub mod vector;
 
 pub use frame::{Frame, Sliding, tangents_in_space};
+use kinematics::Kinematics;
 use obstacle::Obstacle;
 use serde::{Deserialize, Serialize};
 use vector::{Vector, size};
 
-/// One node against one obstacle.
+/// One node, or what several nodes move, against one obstacle.
 #[derive(Debug, Clone)]
 pub struct Contact {
-    pub node: usize,
+    pub kinematics: Kinematics,
     pub obstacle: Obstacle,
     /// Gap of the undeformed structure; kept apart so that a place far from the origin costs no digits.
     pub initial_gap: f64,
@@ -107,8 +109,8 @@ impl Reaction {
 }
 
 impl Contact {
-    /// Signed distance of the node from the obstacle, positive on the free side; `relative` is the node's displacement
-    /// less the obstacle's.
+    /// Signed distance from the obstacle, positive on the free side; `relative` is how far the contact has moved, less its
+    /// obstacle's displacement, in the obstacle's axes.
     #[inline(always)]
     pub fn gap(&self, relative: &Vector) -> f64 {
         self.initial_gap + self.obstacle.distance(relative).0

@@ -17,28 +17,29 @@ const SPREAD_AT_LEAST: f64 = 1e-5;
 const MOST_APART: usize = 200;
 
 impl ModeSystem<'_> {
-    /// What the closed contacts hold at each node, in the order of the nodes.
+    /// What the closed contacts hold at each node, in the order of the nodes. Those that several nodes move are no one
+    /// node's: their rows border the matrix.
     pub(crate) fn holdings(&self) -> &Holdings {
         self.holdings.get_or_init(|| {
             let closed = |contact: &usize| !matches!(self.roles[*contact], Role::Free | Role::HeldBy);
             let mut contacts = Vec::with_capacity(self.roles.len());
-            contacts.extend((0..self.roles.len()).filter(closed));
-            contacts.sort_by_key(|contact| self.loading.contacts[*contact].node);
-            let same_node = |a: &usize, b: &usize| self.loading.contacts[*a].node == self.loading.contacts[*b].node;
+            let at_node = |contact: usize| Some((self.loading.contacts[contact].kinematics.node()?, contact));
+            contacts.extend((0..self.roles.len()).filter(closed).filter_map(at_node));
+            contacts.sort_by_key(|(node, _)| *node);
             let mut holdings = Vec::with_capacity(contacts.len());
-            holdings.extend(contacts.chunk_by(same_node).map(|contacts| self.holding(contacts)));
+            holdings.extend(contacts.chunk_by(|a, b| a.0 == b.0).map(|contacts| self.holding(contacts)));
             Holdings::new(holdings)
         })
     }
 
-    /// What closed contacts hold at their node.
-    fn holding(&self, contacts: &[usize]) -> Holding {
+    /// What closed contacts hold at their node, each given with it.
+    fn holding(&self, contacts: &[(usize, usize)]) -> Holding {
         let structure = self.loading.structure;
         let unknowns = structure.unknowns();
-        let node = contacts.first().map_or(0, |contact| self.loading.contacts[*contact].node);
+        let node = contacts.first().map_or(0, |(node, _)| *node);
         let freedoms = structure.translations_of(node);
         let mut holding = Holding::new(freedoms.filter_map(|freedom| structure.unknown_of[freedom]));
-        for contact in contacts {
+        for (_, contact) in contacts {
             let count = match self.roles[*contact] {
                 Role::Free | Role::HeldBy => 0,
                 Role::Stick | Role::Held => self.held_directions(*contact).len(),

@@ -4,6 +4,8 @@ use crate::algebra::dense::assembly::Sink;
 use crate::algebra::sparse::Bordered;
 use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled};
 use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role, Track, slip_integration};
+use crate::mechanics::problem::contact_motion;
+use crate::mechanics::problem::node_forces::force;
 use crate::mechanics::problem::state::{Rate, State};
 use nalgebra::DMatrix;
 
@@ -57,7 +59,7 @@ impl ModeSystem<'_> {
         for (contact, role) in self.roles.iter().enumerate() {
             match role {
                 Role::Free | Role::HeldBy => {}
-                Role::Stick | Role::Held => self.add_stick(contact, matrix),
+                Role::Stick | Role::Held => self.add_stick(contact, &iterate.state, matrix),
                 Role::Frictionless | Role::Line { .. } | Role::Edge { .. } | Role::Plane { .. } => {
                     self.add_slip(contact, iterate, kind, matrix);
                 }
@@ -87,65 +89,80 @@ impl ModeSystem<'_> {
         Some(matrix)
     }
 
-    /// A row `vector·(relative motion)`.
-    fn put_motion(&self, contact: usize, row: usize, vector: &Vector, matrix: &mut impl Sink) {
+    /// A row `vector·(relative motion)` at a state.
+    fn put_motion(&self, contact: usize, state: &State, row: usize, vector: &Vector, matrix: &mut impl Sink) {
         let structure = self.loading.structure;
         let load = structure.unknowns();
-        let first = structure.translations_of(self.loading.contacts[contact].node).start;
-        for (component, part) in vector.iter().enumerate().take(structure.dimension) {
-            match structure.unknown_of[first + component] {
-                Some(unknown) => matrix.add(row, unknown, *part),
-                None => matrix.add(row, load, part * self.loading.support_rate(first + component)),
-            }
-        }
+        self.loading.each_column(contact, state, |freedom, column| match structure.unknown_of[freedom] {
+            Some(unknown) => matrix.add(row, unknown, dot(vector, column)),
+            None => matrix.add(row, load, dot(vector, column) * self.loading.support_rate(freedom)),
+        });
         matrix.add(row, load, -dot(vector, &self.loading.pattern.shifts[contact]));
     }
 
-    /// A column of equilibrium: the negative of a force on the contact's node.
-    fn put_force(&self, contact: usize, column: usize, force: &Vector, matrix: &mut impl Sink) {
+    /// A column of equilibrium: the negative of a contact's force at a state.
+    fn put_force(&self, contact: usize, state: &State, column: usize, force: &Vector, matrix: &mut impl Sink) {
         let structure = self.loading.structure;
-        let first = structure.translations_of(self.loading.contacts[contact].node).start;
-        for (component, part) in force.iter().enumerate().take(structure.dimension) {
-            if let Some(unknown) = structure.unknown_of[first + component] {
-                matrix.add(unknown, column, -part);
+        self.loading.each_column(contact, state, |freedom, motion| {
+            if let Some(unknown) = structure.unknown_of[freedom] {
+                matrix.add(unknown, column, -dot(force, motion));
             }
-        }
+        });
     }
 
-    fn add_stick(&self, contact: usize, matrix: &mut impl Sink) {
+    /// How the columns of a contact's force turn with the nodes that move it, at a constant force.
+    fn add_curvature(&self, contact: usize, state: &State, matrix: &mut impl Sink) {
+        let structure = self.loading.structure;
+        let data = &self.loading.contacts[contact];
+        if data.kinematics.node().is_some() {
+            return;
+        }
+        let force = force(&self.loading.frame(contact, state), &state.reactions[contact]);
+        contact_motion::each_curvature(structure, data, &state.displacement, &force, |row, column, value| {
+            let Some(row) = structure.unknown_of[row] else { return };
+            match structure.unknown_of[column] {
+                Some(column) => matrix.add(row, column, -value),
+                None => matrix.add(row, structure.unknowns(), -value * self.loading.support_rate(column)),
+            }
+        });
+    }
+
+    fn add_stick(&self, contact: usize, state: &State, matrix: &mut impl Sink) {
         let (row, column) = (self.row_of(contact), self.column_of(contact));
         for (k, direction) in self.held_directions(contact).iter().enumerate() {
-            self.put_force(contact, column + k, direction, matrix);
-            self.put_motion(contact, row + k, direction, matrix);
+            self.put_force(contact, state, column + k, direction, matrix);
+            self.put_motion(contact, state, row + k, direction, matrix);
         }
+        self.add_curvature(contact, state, matrix);
     }
 
     fn add_slip(&self, contact: usize, iterate: &Iterate, kind: Kind, matrix: &mut impl Sink) {
-        let structure = self.loading.structure;
-        let frame = self.loading.frame(contact, &iterate.state);
+        let (structure, state) = (self.loading.structure, &iterate.state);
+        let frame = self.loading.frame(contact, state);
         let (row, column) = (self.row_of(contact), self.column_of(contact));
         let friction = self.loading.contacts[contact].friction;
         let normal = iterate.state.reactions[contact].normal;
         let direction = self.direction(contact, &frame, iterate);
-        self.put_force(contact, column, &add(&frame.normal, -friction, &direction), matrix);
-        self.put_motion(contact, row, &frame.normal, matrix);
+        self.put_force(contact, state, column, &add(&frame.normal, -friction, &direction), matrix);
+        self.put_motion(contact, state, row, &frame.normal, matrix);
+        self.add_curvature(contact, state, matrix);
         if let Role::Plane { track } = self.roles[contact] {
             let Track { start, turn } = &self.tracks[track];
             let across = cross(&frame.normal, &direction);
             match kind {
                 Kind::Rates => {
                     // The unknown is μ r_n times the turn, so that a node that is hardly pressed makes nothing singular.
-                    self.put_force(contact, column + 1, &scaled(&across, -1.0), matrix);
-                    self.put_motion(contact, row + 1, &across, matrix);
+                    self.put_force(contact, state, column + 1, &scaled(&across, -1.0), matrix);
+                    self.put_motion(contact, state, row + 1, &across, matrix);
                 }
                 Kind::Increment => {
                     // Where the node is hardly pressed a turn changes nothing, and the equations would be singular.
                     let pressed = friction * normal;
                     let pressed = if pressed.abs() < LEAST_PRESSED { LEAST_PRESSED } else { pressed };
-                    self.put_force(contact, column + 1, &scaled(&across, -pressed), matrix);
+                    self.put_force(contact, state, column + 1, &scaled(&across, -pressed), matrix);
                     let chord = self.chord(contact, &iterate.state);
                     let rule = slip_integration::Rule::new(&frame, start, turn, &direction, &chord);
-                    self.put_motion(contact, row + 1, &rule.across, matrix);
+                    self.put_motion(contact, state, row + 1, &rule.across, matrix);
                     matrix.add(row + 1, column + 1, rule.by_turn);
                 }
             }
@@ -156,26 +173,22 @@ impl ModeSystem<'_> {
             return;
         }
         // The reaction turns with the place on the obstacle.
-        let dimension = structure.dimension;
-        let first = structure.translations_of(self.loading.contacts[contact].node).start;
         let change_with = |motion: &Vector| {
             let drag = self.direction_change(contact, iterate, &direction, motion);
             scaled(&add(&frame.normal_change(motion), -friction, &drag), normal)
         };
-        for component in 0..dimension {
-            let mut motion = [0.0; 3];
-            motion[component] = 1.0;
-            let change = change_with(&motion);
-            match structure.unknown_of[first + component] {
-                Some(unknown) => self.put_force(contact, unknown, &change, matrix),
+        self.loading.each_column(contact, state, |freedom, motion| {
+            let change = change_with(motion);
+            match structure.unknown_of[freedom] {
+                Some(unknown) => self.put_force(contact, state, unknown, &change, matrix),
                 None => {
-                    let change = scaled(&change, self.loading.support_rate(first + component));
-                    self.put_force(contact, structure.unknowns(), &change, matrix);
+                    let change = scaled(&change, self.loading.support_rate(freedom));
+                    self.put_force(contact, state, structure.unknowns(), &change, matrix);
                 }
             }
-        }
+        });
         let shifted = scaled(&change_with(&self.loading.pattern.shifts[contact]), -1.0);
-        self.put_force(contact, structure.unknowns(), &shifted, matrix);
+        self.put_force(contact, state, structure.unknowns(), &shifted, matrix);
     }
 
     /// Puts the bordering row of a rate into a matrix.

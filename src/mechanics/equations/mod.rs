@@ -161,7 +161,7 @@ impl<'a> ModeSystem<'a> {
             first_of.push(next);
             next += match role {
                 Role::Free | Role::HeldBy => 0,
-                Role::Held => free_directions(loading, contact.node).len(),
+                Role::Held => free_directions(loading, index).len(),
                 Role::Frictionless | Role::Line { .. } | Role::Edge { .. } => 1,
                 Role::Plane { .. } => 2,
                 Role::Stick => 1 + contact.tangents(),
@@ -277,15 +277,14 @@ impl<'a> ModeSystem<'a> {
     }
 
     fn directions_held(&self, contact: usize) -> Directions {
-        let data = &self.loading.contacts[contact];
         let in_frame = |tangents: usize| {
             let frame = self.loading.frame(contact, self.anchor);
             std::iter::once(frame.normal).chain(frame.tangents.into_iter().take(tangents)).collect()
         };
         match self.roles[contact] {
-            Role::Stick => in_frame(data.tangents()),
+            Role::Stick => in_frame(self.loading.contacts[contact].tangents()),
             Role::Held => {
-                let free = free_directions(self.loading, data.node);
+                let free = free_directions(self.loading, contact);
                 let dimension = self.loading.structure.dimension;
                 if free.len() == dimension { in_frame(dimension - 1) } else { Directions::from_vec(free) }
             }

@@ -81,7 +81,7 @@ impl ModeSystem<'_> {
                         tangential = add(&tangential, -per_turn * values[column + 1], &across);
                     }
                     if frame.curvature != 0.0 || matches!(role, Role::Edge { .. }) {
-                        let motion = self.loading.relative_rate(contact, rate);
+                        let motion = self.loading.relative_rate(contact, &iterate.state, rate);
                         let change = self.direction_change(contact, iterate, &direction, &motion);
                         tangential = add(&tangential, -pressed, &change);
                     }

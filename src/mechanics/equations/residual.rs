@@ -1,7 +1,7 @@
 //! What is left over of the equations, and states that fulfil exactly what can be.
 
 use crate::mechanics::contact::Reaction;
-use crate::mechanics::contact::vector::scaled;
+use crate::mechanics::contact::vector::{add, dot, scaled};
 use crate::mechanics::equations::{Iterate, ModeSystem, Role, Track, slip_integration};
 use crate::mechanics::problem::natural_residual::ZERO;
 use crate::mechanics::problem::state::State;
@@ -30,13 +30,17 @@ impl ModeSystem<'_> {
             let reaction = &state.reactions[contact];
             scale = scale.max(reaction.size());
             let frame = self.loading.frame(contact, state);
-            let freedoms = structure.translations_of(self.loading.contacts[contact].node);
-            for (component, value) in force[freedoms].iter_mut().enumerate() {
-                *value -= reaction.normal * frame.normal[component] + reaction.tangential[component];
-            }
+            let whole = add(&reaction.tangential, reaction.normal, &frame.normal);
+            self.loading.each_column(contact, state, |freedom, column| force[freedom] -= dot(column, &whole));
             let row = self.row_of(contact);
             match role {
                 // A sticking node is put in its place exactly: see `place_exactly`.
+                Role::Stick if self.loading.contacts[contact].kinematics.node().is_none() => {
+                    let chord = self.chord(contact, state);
+                    for (k, direction) in self.held_directions(contact).iter().enumerate() {
+                        values[row + k] = dot(direction, &chord);
+                    }
+                }
                 Role::Free | Role::Stick | Role::Held | Role::HeldBy => {}
                 Role::Frictionless | Role::Line { .. } | Role::Edge { .. } => {
                     values[row] = frame.gap - self.left_open(contact);
@@ -70,11 +74,12 @@ impl ModeSystem<'_> {
         self.loading.place_supports(state);
         let structure = self.loading.structure;
         for (contact, role) in self.roles.iter().enumerate() {
-            if !matches!(role, Role::Stick | Role::Held) || !self.holds_node(contact) {
+            let Some(node) = self.loading.contacts[contact].kinematics.node() else { continue };
+            if !matches!(role, Role::Stick | Role::Held) || !self.holds_node(contact, node) {
                 continue;
             }
             let shift = scaled(&self.loading.pattern.shifts[contact], state.load - self.anchor.load);
-            for (freedom, shift) in structure.translations_of(self.loading.contacts[contact].node).zip(shift) {
+            for (freedom, shift) in structure.translations_of(node).zip(shift) {
                 if structure.unknown_of[freedom].is_some() {
                     state.displacement[freedom] = self.anchor.displacement[freedom] + shift;
                 }
@@ -83,10 +88,9 @@ impl ModeSystem<'_> {
     }
 
     /// Whether sticking leaves the node no motion at all.
-    fn holds_node(&self, contact: usize) -> bool {
+    fn holds_node(&self, contact: usize, node: usize) -> bool {
         let structure = self.loading.structure;
-        let freedoms = structure.translations_of(self.loading.contacts[contact].node);
-        let free = freedoms.filter(|freedom| structure.unknown_of[*freedom].is_some());
+        let free = structure.translations_of(node).filter(|freedom| structure.unknown_of[*freedom].is_some());
         self.held_directions(contact).len() >= free.count()
     }
 

@@ -194,7 +194,7 @@ pub(crate) fn turn_rate(
     direction: &Vector,
 ) -> Option<f64> {
     let frame = loading.frame(contact, state);
-    let speed = dot(direction, &loading.relative_rate(contact, rate));
+    let speed = dot(direction, &loading.relative_rate(contact, state, rate));
     let pressed = loading.contacts[contact].friction * state.reactions[contact].normal;
     if speed <= SMALLEST || pressed <= SMALLEST * rate.reactions[contact].size() {
         return None;
@@ -214,7 +214,7 @@ pub(crate) fn settling(
 ) -> Option<Settling> {
     let frame = loading.frame(contact, state);
     let friction = loading.contacts[contact].friction;
-    let speed = dot(direction, &loading.relative_rate(contact, rate));
+    let speed = dot(direction, &loading.relative_rate(contact, state, rate));
     let pressed = friction * state.reactions[contact].normal;
     let across = cross(&frame.normal, direction);
     let turn = -dot(&rate.reactions[contact].tangential, &across);

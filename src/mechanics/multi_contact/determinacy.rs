@@ -4,7 +4,7 @@ use crate::mechanics::contact::vector::{Vector, add, dot, size, unit};
 use crate::mechanics::multi_contact::moving_planes::Carried;
 use crate::mechanics::multi_contact::spatial::Pocket;
 use crate::mechanics::problem::loading::Loading;
-use crate::mechanics::problem::node_forces::{is_driven, is_in_plane, move_apart};
+use crate::mechanics::problem::node_forces::{free_directions, is_driven, is_in_plane, move_apart};
 use crate::mechanics::problem::state::State;
 
 /// A normal is independent of others where more than this part of it (sine of an angle) is across them.
@@ -36,16 +36,11 @@ pub fn stand_alone(loading: Loading<'_>, closed: &[usize], state: &State) -> boo
 /// Whether the reactions of some contacts of a node follow from its equilibrium: none has friction, and their normals
 /// are independent as far as the node is free to move.
 pub(crate) fn are_determinate(loading: Loading<'_>, contacts: &[usize], state: &State) -> bool {
-    let structure = loading.structure;
     let mut basis: Vec<Vector> = Vec::new();
     contacts.iter().all(|contact| {
         let data = &loading.contacts[*contact];
         let mut rest = loading.frame(*contact, state).normal;
-        let unknowns = &structure.unknown_of[structure.translations_of(data.node)];
-        for (component, part) in rest.iter_mut().enumerate() {
-            let is_free = unknowns.get(component).is_some_and(Option::is_some);
-            *part = if is_free { *part } else { 0.0 };
-        }
+        rest = free_directions(loading, *contact).iter().fold([0.0; 3], |sum, free| add(&sum, dot(free, &rest), free));
         for known in &basis {
             rest = add(&rest, -dot(&rest, known), known);
         }

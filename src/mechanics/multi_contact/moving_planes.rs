@@ -129,7 +129,7 @@ impl Carried {
     pub fn dissipation(&self, loading: Loading<'_>, modes: &[Mode], force: &Vector, state: &State, rate: &Rate) -> f64 {
         let reactions = self.reactions(loading, modes, force, state);
         let of = |(contact, reaction): (&usize, &Reaction)| match modes[*contact] {
-            Mode::Slip { .. } => -dot(&reaction.tangential, &loading.relative_rate(*contact, rate)),
+            Mode::Slip { .. } => -dot(&reaction.tangential, &loading.relative_rate(*contact, state, rate)),
             Mode::Free | Mode::Stick => 0.0,
         };
         self.contacts.iter().zip(&reactions).map(of).sum()

@@ -73,7 +73,7 @@ pub fn share(loading: Loading<'_>, corners: &[Corner], modes: &[Mode], state: &m
                 }
             })
             .collect();
-        let free = free_directions(loading, loading.contacts[holding[0]].node);
+        let free = free_directions(loading, holding[0]);
         // Just at a bound of the cones together the least reactions may not be found: two rays make up the force.
         let parts =
             least_reactions(&cones, &free, &force).or_else(|| along_rays(loading, &holding, modes, &force, state));

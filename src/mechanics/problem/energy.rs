@@ -13,6 +13,7 @@
 
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::{add, dot as inner};
+use crate::mechanics::problem::contact_motion;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_forces::reaction_in_space;
 use crate::mechanics::problem::state::{Rate, State, dot};
@@ -63,7 +64,7 @@ pub fn work_and_dissipation(
             continue;
         }
         let chord = add(&loading.relative(index, end.0), -1.0, &loading.relative(index, start.0));
-        let (first, last) = (loading.relative_rate(index, start.1), loading.relative_rate(index, end.1));
+        let [first, last] = [start, end].map(|at| loading.relative_rate(index, at.0, at.1));
         for k in 0..loading.structure.dimension {
             let traction = Ends {
                 first: start.0.reactions[index].tangential[k],
@@ -95,11 +96,13 @@ pub fn boundary_force(loading: Loading<'_>, at: Placed<'_>) -> (f64, f64) {
     let (mut sum, mut sum_rate) = (0.0, 0.0);
     for (index, contact) in loading.contacts.iter().enumerate() {
         let (reaction, reaction_rate) = reaction_in_space(loading, index, at);
-        let first = structure.translations_of(contact.node).start;
-        for component in 0..structure.dimension {
-            force[first + component] -= reaction[component];
-            change[first + component] -= reaction_rate[component];
-        }
+        loading.each_column(index, state, |freedom, column| {
+            force[freedom] -= inner(column, &reaction);
+            change[freedom] -= inner(column, &reaction_rate);
+        });
+        contact_motion::each_curvature(structure, contact, &state.displacement, &reaction, |row, column, value| {
+            change[row] -= value * rate.displacement[column];
+        });
         sum += inner(&reaction, &loading.pattern.shifts[index]);
         sum_rate += inner(&reaction_rate, &loading.pattern.shifts[index]);
     }

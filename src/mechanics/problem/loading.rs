@@ -1,7 +1,8 @@
 //! The structure under a load pattern, with what earlier stages hold.
 
-use crate::mechanics::contact::vector::{Vector, add};
+use crate::mechanics::contact::vector::{Vector, add, scaled};
 use crate::mechanics::contact::{Contact, Frame, Reaction};
+use crate::mechanics::problem::contact_motion;
 use crate::mechanics::problem::node_forces::Corner;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::mechanics::structure::Structure;
@@ -63,19 +64,37 @@ fn largest_of(vector: &Vector) -> f64 {
 }
 
 impl Loading<'_> {
-    /// Displacement of a contact's node less its obstacle's.
+    /// How far a contact has moved less its obstacle's displacement, in the obstacle's axes.
     #[inline(always)]
     pub fn relative(&self, contact: usize, state: &State) -> Vector {
-        let moved = self.structure.translation_at(self.contacts[contact].node, &state.displacement);
+        let moved = contact_motion::moved(self.structure, &self.contacts[contact], &state.displacement);
         let shifted = add(&moved, -1.0, &self.held.shifts[contact]);
         add(&shifted, -state.load, &self.pattern.shifts[contact])
     }
 
-    /// Velocity of a contact's node less its obstacle's.
+    /// Its velocity less its obstacle's at a state.
     #[inline(always)]
-    pub fn relative_rate(&self, contact: usize, rate: &Rate) -> Vector {
-        let moved = self.structure.translation_at(self.contacts[contact].node, &rate.displacement);
+    pub fn relative_rate(&self, contact: usize, state: &State, rate: &Rate) -> Vector {
+        let contact_data = &self.contacts[contact];
+        let moved = contact_motion::velocity(self.structure, contact_data, &state.displacement, &rate.displacement);
         add(&moved, -rate.load, &self.pattern.shifts[contact])
+    }
+
+    /// Calls `each(freedom, column)` with how a contact moves with each degree of freedom at a state.
+    #[inline(always)]
+    pub fn each_column(&self, contact: usize, state: &State, each: impl FnMut(usize, &Vector)) {
+        contact_motion::each_column(self.structure, &self.contacts[contact], &state.displacement, each);
+    }
+
+    /// Velocity of a contact, less its obstacle's, per load factor with no unknown moving: by supports and obstacle.
+    pub fn driven(&self, contact: usize, state: &State) -> Vector {
+        let mut motion = scaled(&self.pattern.shifts[contact], -1.0);
+        self.each_column(contact, state, |freedom, column| {
+            if self.structure.unknown_of[freedom].is_none() {
+                motion = add(&motion, self.support_rate(freedom), column);
+            }
+        });
+        motion
     }
 
     /// Gap, normal and tangents of a contact.
@@ -106,14 +125,16 @@ impl Loading<'_> {
         self.forces_meeting_at(contact, state).min(force_scale).max(f64::EPSILON * force_scale)
     }
 
-    /// Size of the forces that meet at a contact's node.
+    /// Size of the forces that meet at a contact's node; the largest of several.
     pub fn forces_meeting_at(&self, contact: usize, state: &State) -> f64 {
-        let node = self.contacts[contact].node;
-        let own = |pattern: &LoadPattern| largest_of(&self.structure.translation_at(node, &pattern.forces));
-        self.structure.force_size_at(node, &state.displacement, USUAL)
-            + state.load.abs() * own(self.pattern)
-            + own(self.held)
-            + state.reactions[contact].size()
+        let at_node = |node: &usize| {
+            let own = |pattern: &LoadPattern| largest_of(&self.structure.translation_at(*node, &pattern.forces));
+            self.structure.force_size_at(*node, &state.displacement, USUAL)
+                + state.load.abs() * own(self.pattern)
+                + own(self.held)
+                + state.reactions[contact].size()
+        };
+        self.contacts[contact].kinematics.nodes().iter().map(at_node).fold(0.0, f64::max)
     }
 
     /// Whether a force at a contact is at most so many times the forces against which its reaction is zero.

@@ -2,6 +2,7 @@
 
 use crate::mechanics::contact::vector::{Vector, add, scaled, size};
 use crate::mechanics::contact::{Frame, Mode, Reaction, Sliding};
+use crate::mechanics::problem::contact_motion::AXES;
 use crate::mechanics::problem::energy::Placed;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::natural_residual::ZERO;
@@ -43,12 +44,14 @@ pub fn is_in_plane(loading: Loading<'_>, corner: &Corner) -> bool {
 
 /// Whether the running stage drives a node against some closed obstacles by its supports, or them against each other.
 pub fn is_driven(loading: Loading<'_>, closed: &[usize]) -> bool {
-    let freedoms = loading.structure.translations_of(loading.contacts[closed[0]].node);
     let shift = &loading.pattern.shifts[closed[0]];
-    let by_support = |(component, freedom): (usize, usize)| {
-        loading.structure.unknown_of[freedom].is_none() && loading.support_rate(freedom) != shift[component]
+    let by_support = |node: &usize| {
+        let mut freedoms = loading.structure.translations_of(*node).zip(shift);
+        freedoms.any(|(freedom, shift)| {
+            loading.structure.unknown_of[freedom].is_none() && loading.support_rate(freedom) != *shift
+        })
     };
-    move_apart(loading, closed) || freedoms.enumerate().any(by_support)
+    move_apart(loading, closed) || loading.contacts[closed[0]].kinematics.nodes().iter().any(by_support)
 }
 
 /// Whether the running stage moves the obstacles of some contacts against each other.
@@ -105,19 +108,21 @@ pub fn reaction_in_space(loading: Loading<'_>, contact: usize, at: Placed<'_>) -
         return Default::default();
     }
     let frame = loading.frame(contact, at.0);
-    let turn = frame.normal_change(&loading.relative_rate(contact, at.1));
+    let turn = frame.normal_change(&loading.relative_rate(contact, at.0, at.1));
     let force = add(&reaction.tangential, reaction.normal, &frame.normal);
     let rate = add(&add(&change.tangential, change.normal, &frame.normal), 1.0, &scaled(&turn, reaction.normal));
     (force, rate)
 }
 
-/// Orthonormal directions in which a node is free.
-pub fn free_directions(loading: Loading<'_>, node: usize) -> Vec<Vector> {
-    let unknowns = &loading.structure.unknown_of[loading.structure.translations_of(node)];
-    let along = |component: usize| {
-        let mut direction = [0.0; 3];
-        direction[component] = 1.0;
-        direction
-    };
-    (0..unknowns.len()).filter(|component| unknowns[*component].is_some()).map(along).collect()
+/// Orthonormal directions in which a contact is free to move: all, where several nodes move it.
+pub fn free_directions(loading: Loading<'_>, contact: usize) -> Vec<Vector> {
+    let structure = loading.structure;
+    let axes = &AXES[..structure.dimension];
+    match loading.contacts[contact].kinematics.node() {
+        Some(node) => {
+            let unknowns = &structure.unknown_of[structure.translations_of(node)];
+            axes.iter().zip(unknowns).filter(|(_, unknown)| unknown.is_some()).map(|(axis, _)| *axis).collect()
+        }
+        None => axes.to_vec(),
+    }
 }

@@ -17,6 +17,7 @@ use elements::{Element, Stretching};
 use nalgebra::DMatrix;
 use numbering::Numbering;
 use sparsity::Layout;
+use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -150,6 +151,11 @@ impl Structure {
         self.numbering.translations_of(node)
     }
 
+    /// All degrees of freedom of a node.
+    pub fn freedoms_of(&self, node: usize) -> Range<usize> {
+        self.numbering.freedoms_of(node)
+    }
+
     /// A node's translations in a vector over all degrees of freedom; in 2D the third component is 0.
     #[inline(always)]
     pub fn translation_at(&self, node: usize, values: &[f64]) -> [f64; 3] {
@@ -158,6 +164,14 @@ impl Structure {
             [x, y, z] => [x, y, z],
             _ => [0.0; 3],
         }
+    }
+
+    /// The translations of all nodes, node by node, of a vector over all degrees of freedom.
+    pub fn translations<'a>(&self, values: &'a [f64]) -> Cow<'a, [f64]> {
+        if self.dimension * self.numbering.nodes() == self.freedoms() {
+            return Cow::Borrowed(values);
+        }
+        (0..self.numbering.nodes()).flat_map(|node| &values[self.translations_of(node)]).copied().collect()
     }
 
     /// The elements, each with the degrees of freedom that it joins.

@@ -283,7 +283,9 @@ impl ModeSystem<'_> {
                 (state.load * self.loading.pattern.forces[freedom]).abs() + self.loading.held.forces[freedom].abs();
         }
         for (contact, reaction) in self.loading.contacts.iter().zip(&state.reactions) {
-            sizes[structure.translations_of(contact.node)].iter_mut().for_each(|size| *size += reaction.size());
+            for node in contact.kinematics.nodes() {
+                sizes[structure.freedoms_of(*node)].iter_mut().for_each(|size| *size += reaction.size());
+            }
         }
         let rows =
             structure.freedom_of.iter().zip(values.as_slice()).map(|(freedom, value)| (sizes[*freedom], value.abs()));

@@ -31,7 +31,7 @@ impl ModeSystem<'_> {
         let iterate = self.iterate_of(end.corrected);
         let mut values = DVector::zeros(self.size);
         for (contact, role) in self.roles.iter().enumerate() {
-            let moved = before.map_or([0.0; 3], |before| self.loading.relative_rate(contact, before));
+            let moved = before.map_or([0.0; 3], |before| self.loading.relative_rate(contact, self.anchor, before));
             let row = self.row_of(contact);
             match role {
                 Role::Free | Role::Frictionless | Role::Line { .. } | Role::Edge { .. } | Role::HeldBy => {}

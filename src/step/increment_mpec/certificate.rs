@@ -208,7 +208,9 @@ impl IncrementProgram<'_> {
         for (entry, here) in self.reach.iter().zip(frames) {
             let (contact, friction) = (entry.contact, entry.friction);
             let ends = [(self.forward, &entry.frame), (end.rate, here)];
-            let velocities = ends.map(|(rate, frame)| dot(&frame.normal, &self.loading.relative_rate(contact, rate)));
+            let moved = [(self.base, self.forward), (end.state, end.rate)];
+            let moved = moved.map(|(state, rate)| self.loading.relative_rate(contact, state, rate));
+            let velocities = [dot(&entry.frame.normal, &moved[0]), dot(&here.normal, &moved[1])];
             let pressed = self.base.reactions[contact].normal / self.force;
             let pressed_rates = ends.map(|(rate, _)| rate.reactions[contact].normal * per_force);
             members.push([

@@ -3,6 +3,8 @@
 use crate::complementarity::mpec::{Problem, SparseRows};
 use crate::mechanics::contact::Frame;
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled};
+use crate::mechanics::problem::contact_motion;
+use crate::mechanics::problem::state::State;
 use crate::step::increment_mpec::{InReach, IncrementProgram, tangent_components};
 use nalgebra::{DMatrix, DVector};
 
@@ -116,18 +118,15 @@ impl Problem for IncrementProgram<'_> {
             let load = state.load * self.loading.pattern.forces[*freedom] + self.loading.held.forces[*freedom];
             values[unknown] = (force[*freedom] - load) / self.force;
         }
-        let load = structure.unknowns();
-        let mut row = load;
+        let mut row = structure.unknowns();
         for entry in &self.reach {
             let frame = self.loading.frame(entry.contact, &state);
             let tangents = entry.tangents_at(&frame);
-            let mut motion =
-                tangent_components::components(&entry.frame, &self.driven(entry)).map(|part| part * x[load]);
-            for (unknown, k) in self.node_of(entry) {
-                values[unknown] -= x[entry.normal()] * frame.normal[k];
+            let motion = self.motion_at(entry, &state, x);
+            for (unknown, column) in self.columns_of(entry, &state) {
+                values[unknown] -= x[entry.normal()] * dot(&frame.normal, &column);
                 for t in 0..entry.tangents {
-                    values[unknown] -= x[entry.tangential(t)] * tangents[t][k];
-                    motion[t] += entry.frame.tangents[t][k] * x[unknown];
+                    values[unknown] -= x[entry.tangential(t)] * dot(&tangents[t], &column);
                 }
             }
             for (t, motion) in motion.into_iter().enumerate().take(entry.tangents) {
@@ -160,12 +159,12 @@ impl Problem for IncrementProgram<'_> {
         for entry in &self.reach {
             let frame = self.loading.frame(entry.contact, &state);
             let tangents = entry.tangents_at(&frame);
-            let driven = tangent_components::components(&entry.frame, &self.driven(entry));
-            for (unknown, k) in self.node_of(entry) {
-                put(jacobian, (unknown, entry.normal()), -frame.normal[k]);
+            let driven = tangent_components::components(&entry.frame, &self.loading.driven(entry.contact, &state));
+            for (unknown, column) in self.columns_of(entry, &state) {
+                put(jacobian, (unknown, entry.normal()), -dot(&frame.normal, &column));
                 for (t, (here, held)) in tangents.iter().zip(&entry.frame.tangents).enumerate().take(entry.tangents) {
-                    put(jacobian, (unknown, entry.tangential(t)), -here[k]);
-                    put(jacobian, (row + t, unknown), held[k]);
+                    put(jacobian, (unknown, entry.tangential(t)), -dot(here, &column));
+                    put(jacobian, (row + t, unknown), dot(held, &column));
                 }
             }
             for (t, driven) in driven.into_iter().enumerate().take(entry.tangents) {
@@ -176,8 +175,9 @@ impl Problem for IncrementProgram<'_> {
                 row += 1;
             }
             if frame.curvature != 0.0 {
-                self.add_turn_of_reaction(entry, &frame, x, jacobian);
+                self.add_turn_of_reaction(entry, &frame, &state, x, jacobian);
             }
+            self.add_curvature_of_motion(entry, &frame, &state, x, jacobian);
         }
     }
 
@@ -205,10 +205,10 @@ impl Problem for IncrementProgram<'_> {
         let mut pair = 0;
         for entry in &self.reach {
             let normal = self.loading.frame(entry.contact, &state).normal;
-            for (unknown, k) in self.node_of(entry) {
-                put(first, (pair, unknown), normal[k]);
+            for (unknown, column) in self.columns_of(entry, &state) {
+                put(first, (pair, unknown), dot(&normal, &column));
             }
-            put(first, (pair, load), dot(&self.driven(entry), &normal));
+            put(first, (pair, load), dot(&self.loading.driven(entry.contact, &state), &normal));
             second[(pair, entry.normal())] = 1.0;
             pair += 1;
             if entry.tangents == 1 {
@@ -253,7 +253,14 @@ impl Problem for IncrementProgram<'_> {
 
 impl IncrementProgram<'_> {
     /// On a curved obstacle the reaction turns with the node's place.
-    fn add_turn_of_reaction(&self, entry: &InReach, frame: &Frame, x: &DVector<f64>, jacobian: &mut SparseRows) {
+    fn add_turn_of_reaction(
+        &self,
+        entry: &InReach,
+        frame: &Frame,
+        state: &State,
+        x: &DVector<f64>,
+        jacobian: &mut SparseRows,
+    ) {
         let tangents = entry.tangents_at(frame);
         let turn = |motion: &Vector| {
             let of_normal = scaled(&frame.normal_change(motion), x[entry.normal()] * self.step);
@@ -262,14 +269,37 @@ impl IncrementProgram<'_> {
             })
         };
         let load = self.loading.structure.unknowns();
-        let driven = turn(&self.driven(entry));
-        for (row, k) in self.node_of(entry) {
-            jacobian[(row, load)] -= driven[k];
-            for (column, l) in self.node_of(entry) {
-                let mut motion = [0.0; 3];
-                motion[l] = 1.0;
-                jacobian[(row, column)] -= turn(&motion)[k];
+        let driven = turn(&self.loading.driven(entry.contact, state));
+        let columns = self.columns_of(entry, state);
+        for (row, own) in &columns {
+            jacobian[(*row, load)] -= dot(own, &driven);
+            for (column, motion) in &columns {
+                jacobian[(*row, *column)] -= dot(own, &turn(motion));
             }
         }
+    }
+
+    /// Where several nodes move a contact, its force turns with them.
+    fn add_curvature_of_motion(
+        &self,
+        entry: &InReach,
+        frame: &Frame,
+        state: &State,
+        x: &DVector<f64>,
+        jacobian: &mut SparseRows,
+    ) {
+        let structure = self.loading.structure;
+        let tangents = entry.tangents_at(frame);
+        let of_normal = scaled(&frame.normal, x[entry.normal()] * self.step);
+        let force =
+            (0..entry.tangents).fold(of_normal, |sum, t| add(&sum, x[entry.tangential(t)] * self.step, &tangents[t]));
+        let contact = &self.loading.contacts[entry.contact];
+        contact_motion::each_curvature(structure, contact, &state.displacement, &force, |row, column, value| {
+            let Some(row) = structure.unknown_of[row] else { return };
+            match structure.unknown_of[column] {
+                Some(column) => jacobian[(row, column)] -= value,
+                None => jacobian[(row, structure.unknowns())] -= value * self.loading.support_rate(column),
+            }
+        });
     }
 }

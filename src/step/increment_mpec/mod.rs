@@ -39,7 +39,7 @@ mod tests_of_certificate;
 mod tests_of_chains;
 
 use crate::complementarity::mpec::{self, Finish, PairActivity, Settings, Solution, StationarityKind};
-use crate::mechanics::contact::vector::{Vector, dot, scaled};
+use crate::mechanics::contact::vector::{Vector, add, dot, scaled};
 use crate::mechanics::contact::{Frame, Mode};
 use crate::mechanics::equations::slip_integration::Start;
 use crate::mechanics::problem::loading::Loading;
@@ -48,6 +48,7 @@ use crate::resources::cancel::CancelFlag;
 pub use certificate::Arrived;
 use nalgebra::DVector;
 pub use search::{End, Searched};
+use smallvec::SmallVec;
 use tangent_components::Components;
 
 /// Contacts whose gap is beyond this many arc lengths cannot close in the increment and are left out.
@@ -244,7 +245,7 @@ impl<'a> IncrementProgram<'a> {
     }
 
     fn motion(&self, entry: &InReach, rate: &Rate) -> Components {
-        tangent_components::components(&entry.frame, &self.loading.relative_rate(entry.contact, rate))
+        tangent_components::components(&entry.frame, &self.loading.relative_rate(entry.contact, self.base, rate))
     }
 
     /// The variables of a state on the way, for a start.
@@ -396,25 +397,32 @@ impl<'a> IncrementProgram<'a> {
         ROOM * rounding.into_iter().fold(0.0, f64::max) / self.force
     }
 
-    /// Unknowns of the contact's node with their components.
-    fn node_of(&self, entry: &InReach) -> impl Iterator<Item = (usize, usize)> {
+    /// How far a contact has moved since the start over the step, along the tangents there; of a node in the unknowns
+    /// themselves, which keeps their digits.
+    fn motion_at(&self, entry: &InReach, state: &State, x: &DVector<f64>) -> Components {
         let structure = self.loading.structure;
-        let first = structure.translations_of(self.loading.contacts[entry.contact].node).start;
-        (0..structure.dimension).filter_map(move |k| structure.unknown_of[first + k].map(|unknown| (unknown, k)))
-    }
-
-    /// How fast a contact's node moves against its obstacle with the load factor alone: by what drives the supports and
-    /// the obstacle.
-    fn driven(&self, entry: &InReach) -> Vector {
-        let structure = self.loading.structure;
-        let first = structure.translations_of(self.loading.contacts[entry.contact].node).start;
-        let mut motion = scaled(&self.loading.pattern.shifts[entry.contact], -1.0);
-        for (k, component) in motion.iter_mut().enumerate().take(structure.dimension) {
-            if structure.unknown_of[first + k].is_none() {
-                *component += self.loading.support_rate(first + k);
+        if self.loading.contacts[entry.contact].kinematics.node().is_none() {
+            let before = self.loading.relative(entry.contact, self.base);
+            let chord = add(&self.loading.relative(entry.contact, state), -1.0, &before);
+            return tangent_components::components(&entry.frame, &chord).map(|part| part / self.step);
+        }
+        let driven = tangent_components::components(&entry.frame, &self.loading.driven(entry.contact, state));
+        let mut motion = driven.map(|part| part * x[structure.unknowns()]);
+        for (unknown, column) in self.columns_of(entry, state) {
+            for (motion, tangent) in motion.iter_mut().zip(&entry.frame.tangents).take(entry.tangents) {
+                *motion += dot(tangent, &column) * x[unknown];
             }
         }
         motion
+    }
+
+    /// The unknowns that move a contact at a state, and how they do.
+    fn columns_of(&self, entry: &InReach, state: &State) -> SmallVec<[(usize, Vector); 3]> {
+        let mut columns = SmallVec::new();
+        self.loading.each_column(entry.contact, state, |freedom, column| {
+            columns.extend(self.loading.structure.unknown_of[freedom].map(|unknown| (unknown, *column)));
+        });
+        columns
     }
 }
 

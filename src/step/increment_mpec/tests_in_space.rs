@@ -1,6 +1,7 @@
 //! The increment in space, where friction is a second-order cone.
 
 use crate::complementarity::mpec::{Problem, SparseRows};
+use crate::mechanics::contact::kinematics::Kinematics;
 use crate::mechanics::contact::obstacle::Obstacle;
 use crate::mechanics::contact::{Contact, Reaction, Sliding, tangents_in_space};
 use crate::mechanics::problem::loading::LoadPattern;
@@ -57,7 +58,7 @@ impl OneBar {
         Self {
             structure: Structure::new(3, 2, &supports, vec![Arc::new(bar)]),
             contacts: vec![Contact {
-                node: 1,
+                kinematics: Kinematics::Node(1),
                 obstacle: floor,
                 initial_gap: tip[2],
                 friction,

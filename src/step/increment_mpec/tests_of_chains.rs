@@ -2,6 +2,7 @@
 //! in all directions, each pressed, the first one pulled along the floor. Everything is known: block m + 1 starts to slip
 //! at the load `(m + 1) μ W`, all of them move along the pull.
 
+use crate::mechanics::contact::kinematics::Kinematics;
 use crate::mechanics::contact::obstacle::Obstacle;
 use crate::mechanics::contact::{Contact, Reaction, Sliding};
 use crate::mechanics::problem::loading::LoadPattern;
@@ -33,8 +34,13 @@ impl Chain {
         let tie = |block: usize| -> Arc<dyn Element> { Arc::new(Spring::between([block, block + 1], matrix)) };
         let structure = Structure::new(3, blocks, &[], (0..blocks - 1).map(tie).collect());
         let floor = Obstacle::Plane { normal: [0.0, 0.0, 1.0] };
-        let contact =
-            |node| Contact { node, obstacle: floor.clone(), initial_gap: 0.0, friction, sliding: Sliding::Plane };
+        let contact = |node| Contact {
+            kinematics: Kinematics::Node(node),
+            obstacle: floor.clone(),
+            initial_gap: 0.0,
+            friction,
+            sliding: Sliding::Plane,
+        };
         let mut pattern = vec![0.0; 3 * blocks];
         pattern[..2].copy_from_slice(&pull);
         let held = (0..blocks).flat_map(|_| [0.0, 0.0, -weight]).collect();

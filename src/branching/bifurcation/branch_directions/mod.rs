@@ -139,7 +139,7 @@ impl Point<'_> {
             Mode::Slip { direction } => {
                 loading.contacts[contact].friction
                     * state.reactions[contact].normal
-                    * dot(direction, &loading.relative_rate(contact, &rate))
+                    * dot(direction, &loading.relative_rate(contact, state, &rate))
             }
             Mode::Free | Mode::Stick => 0.0,
         };
@@ -200,7 +200,7 @@ impl Point<'_> {
         let forces = DOUBT * rate.largest_reaction().max(force_scale);
         let mut all = Vec::new();
         for (contact, standing) in standings.iter().enumerate() {
-            let (motion, change) = (loading.relative_rate(contact, rate), &rate.reactions[contact]);
+            let (motion, change) = (loading.relative_rate(contact, state, rate), &rate.reactions[contact]);
             let normal = loading.frame(contact, state).normal;
             let friction = loading.contacts[contact].friction;
             // Each mode with what is zero in it, a velocity and a force, and what is not negative.

@@ -69,8 +69,9 @@ pub fn are_singular_in_all_modes(here: Here<'_>, modes: &[Mode], nulls: &NullVec
         .map(|values| {
             let rate = system.rate_from(here.state, values);
             let size = rate.size();
-            let motions =
-                (0..modes.len()).filter(can_change).flat_map(|contact| here.loading.relative_rate(contact, &rate));
+            let motions = (0..modes.len())
+                .filter(can_change)
+                .flat_map(|contact| here.loading.relative_rate(contact, here.state, &rate));
             DVector::from_iterator(
                 1 + 3 * (0..modes.len()).filter(can_change).count(),
                 std::iter::once(rate.load).chain(motions).map(|value| value / size),

@@ -118,7 +118,7 @@ pub fn directions_going_on(
         return None;
     }
     let reduced = Reduced::new(loading, state, standings, modes)?;
-    let goes_on = |slip: &Slip| dot(&slip.direction, &loading.relative_rate(slip.contact, incoming)) > MARGIN;
+    let goes_on = |slip: &Slip| dot(&slip.direction, &loading.relative_rate(slip.contact, state, incoming)) > MARGIN;
     if reduced.slips.is_empty() || !reduced.slips.iter().all(goes_on) {
         return None;
     }
@@ -130,7 +130,9 @@ pub fn directions_going_on(
     let dissipation: f64 = reduced
         .slips
         .iter()
-        .map(|slip| -dot(&state.reactions[slip.contact].tangential, &loading.relative_rate(slip.contact, incoming)))
+        .map(|slip| {
+            -dot(&state.reactions[slip.contact].tangential, &loading.relative_rate(slip.contact, state, incoming))
+        })
         .sum();
     let choice = |rate: Rate, modes: Vec<Mode>, dissipation: f64| Choice {
         at_hand: AtHand::default(),
@@ -172,7 +174,7 @@ impl<'a> Reduced<'a> {
                 (Standing::OnCone { direction }, Mode::Slip { direction: along }) => dot(direction, along) > 0.0,
                 _ => false,
             };
-            let node = loading.contacts[contact].node;
+            let node = loading.contacts[contact].kinematics.node()?;
             let is_free = structure.unknown_of[structure.translations_of(node)].iter().all(Option::is_some);
             if !agrees || !is_free || holder[node].replace(contact).is_some() {
                 return None;

@@ -70,7 +70,7 @@ impl<'a> Equations<'a> {
                 equations.held.push(Mode::Free);
                 continue;
             }
-            let freedoms = structure.translations_of(data.node);
+            let freedoms = structure.translations_of(data.kinematics.node()?);
             let is_free = structure.unknown_of[freedoms.clone()].iter().all(Option::is_some);
             if *standing != Standing::Settled(Mode::Stick) && !is_free {
                 return None;
@@ -95,7 +95,7 @@ impl<'a> Equations<'a> {
     fn add_closed(&mut self, contact: usize, standing: &Standing) -> Option<()> {
         let data = &self.loading.contacts[contact];
         let frame = self.loading.frame(contact, self.state);
-        let first = self.loading.structure.translations_of(data.node).start;
+        let first = self.loading.structure.translations_of(data.kinematics.node()?).start;
         let column = self.size;
         let mut add_column = |motion: &Vector, test: &Vector| {
             let column = self.size;

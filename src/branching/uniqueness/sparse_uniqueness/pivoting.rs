@@ -101,7 +101,10 @@ impl Equations<'_> {
     /// Nothing moves, and what each closed contact bears of the load grows with it; solved for where supports bear some.
     fn rest(&self, sign: f64) -> Option<Rate> {
         let (loading, structure) = (self.loading, self.loading.structure);
-        let freedoms = |contact: usize| structure.translations_of(loading.contacts[contact].node);
+        // The contacts of these equations have each a node of its own.
+        let freedoms = |contact: usize| {
+            loading.contacts[contact].kinematics.node().map_or(0..0, |node| structure.translations_of(node))
+        };
         let mut closed = (0..self.held.len()).filter(|contact| self.held[*contact] != Mode::Free);
         let shares = closed.any(|contact| freedoms(contact).any(|freedom| structure.unknown_of[freedom].is_none()));
         if shares || loading.pattern.moves_boundary() {
@@ -170,7 +173,7 @@ impl Equations<'_> {
     }
 
     fn speed(&self, one: &Changing, direction: &Vector, rate: &Rate) -> f64 {
-        dot(direction, &self.loading.relative_rate(one.contact, rate))
+        dot(direction, &self.loading.relative_rate(one.contact, self.state, rate))
     }
 
     /// Of each contact that can change, whether what must not be negative in its mode is positive beyond round-off.
@@ -231,7 +234,7 @@ impl Equations<'_> {
         let dissipation = self.changing.iter().map(|one| {
             let slips = matches!(modes[one.contact], Mode::Slip { .. });
             let traction = &self.state.reactions[one.contact].tangential;
-            if slips { -dot(traction, &self.loading.relative_rate(one.contact, &rate)) } else { 0.0 }
+            if slips { -dot(traction, &self.loading.relative_rate(one.contact, self.state, &rate)) } else { 0.0 }
         });
         let dissipation = dissipation.sum();
         let forces = whole_rates(self.loading, self.state, &rate);

@@ -21,6 +21,7 @@ pub(crate) mod equations;
 
 use crate::mechanics::contact::Contact;
 use crate::mechanics::contact::vector::{Vector, add, dot};
+use crate::mechanics::problem::contact_motion;
 use crate::mechanics::problem::loading::LoadPattern;
 use crate::mechanics::structure::assembly::{ElementAt, Scratch};
 use crate::mechanics::structure::elements::Stretching;
@@ -155,7 +156,7 @@ impl Response<'_> {
 
     /// Displacement of a contact's node less its obstacle's.
     fn relative(&self, contact: usize, motion: &Motion) -> Vector {
-        let moved = self.structure.translation_at(self.contacts[contact].node, &motion.displacement);
+        let moved = contact_motion::moved(self.structure, &self.contacts[contact], &motion.displacement);
         add(&moved, -motion.load, &self.pattern.shifts[contact])
     }
 
@@ -164,29 +165,34 @@ impl Response<'_> {
     }
 
     /// What holds the nodes of the contacts that are held: first along the normals, then across them.
-    fn ties(&self) -> [Vec<Tie>; 2] {
+    fn ties(&self, still: &[f64]) -> [Vec<Tie>; 2] {
         let mut ties = [Vec::new(), Vec::new()];
         for (index, contact) in self.contacts.iter().enumerate().filter(|(index, _)| self.held[*index]) {
             let frame = contact.frame(&[0.0; 3]);
+            let of_nodes = contact.kinematics.nodes().iter().map(|node| self.stiffness_at[*node]);
+            let stiffness = of_nodes.fold(0.0, f64::max);
             let tie = |vector: &Vector, stiffness: f64| {
-                let along = self.structure.translations_of(contact.node).zip(*vector).collect();
+                let mut along = Vec::new();
+                contact_motion::each_column(self.structure, contact, still, |freedom, column| {
+                    along.push((freedom, dot(vector, column)));
+                });
                 let by_load = -dot(vector, &self.pattern.shifts[index]);
                 (stiffness > 0.0).then_some(Tie { stretching: Stretching { stiffness, along }, by_load })
             };
-            ties[0].extend(tie(&frame.normal, HELD_BY * self.stiffness_at[contact.node]));
+            ties[0].extend(tie(&frame.normal, HELD_BY * stiffness));
             let tangents = frame.tangents.iter().take(contact.tangents());
             ties[1].extend(tangents.filter_map(|tangent| tie(tangent, self.usual)));
         }
         ties
     }
 
-    fn all_ties(&self) -> Vec<Tie> {
-        self.ties().into_iter().flatten().collect()
+    fn all_ties(&self, still: &[f64]) -> Vec<Tie> {
+        self.ties(still).into_iter().flatten().collect()
     }
 
     /// The motion `K u = s p`, `p·u = 1`; `None` where the load moves nothing, or where it is not determined.
     fn at_first_order(&self, still: &[f64]) -> Option<Motion> {
-        let ties = self.all_ties();
+        let ties = self.all_ties(still);
         let pushed = self.pushed(still, &ties);
         let size = pushed.iter().map(|value| value * value).sum::<f64>().sqrt();
         if size <= 0.0 || !size.is_finite() {
@@ -243,7 +249,7 @@ impl Response<'_> {
     /// Of one size: `f(u) = s p`, `row·u = size`.
     fn relaxed_at(&self, still: &[f64], along: &[f64], load: f64, row: &[f64], size: f64) -> Option<Motion> {
         let structure = self.structure;
-        let (ties, unknowns) = (self.all_ties(), structure.unknowns());
+        let (ties, unknowns) = (self.all_ties(still), structure.unknowns());
         let mut values: Vec<f64> = along.iter().map(|value| size * value).chain(std::iter::once(size * load)).collect();
         let (mut rest, mut force) = (vec![0.0; structure.freedoms()], vec![0.0; structure.freedoms()]);
         structure.internal_force(still, &mut rest);
@@ -294,7 +300,7 @@ impl Response<'_> {
                 logarithms += energy * stiffness.ln();
             }
         }
-        let [held, _] = self.ties();
+        let [held, _] = self.ties(&still);
         let held: f64 = held.iter().map(|tie| tie.energy(motion)).sum();
         (stored > NOT_HELD * held && stored > ROUNDING * most && stored.is_finite())
             .then(|| (logarithms / stored).exp())

@@ -86,7 +86,7 @@ impl Changeable {
             return carried.dissipation(loading, modes, &self.force, state, rate);
         }
         if let Some(pocket) = &self.pocket {
-            let motion = loading.relative_rate(self.contacts[0], rate);
+            let motion = loading.relative_rate(self.contacts[0], state, rate);
             return pocket.drag_in(modes, &self.force) * size(&motion);
         }
         let slips = |(contact, _): &(&usize, &Frame)| matches!(modes[**contact], Mode::Slip { .. });
@@ -95,16 +95,16 @@ impl Changeable {
             return 0.0;
         }
         let traction = add(&self.force, -dot(&self.force, &frame.normal), &frame.normal);
-        -dot(&traction, &loading.relative_rate(*contact, rate))
+        -dot(&traction, &loading.relative_rate(*contact, state, rate))
     }
 
     /// On a curved obstacle: from the rate of the whole force to the rates of normal and tangential reaction.
-    pub fn take_reaction_apart(&self, loading: Loading<'_>, rate: &mut Rate) {
+    pub fn take_reaction_apart(&self, loading: Loading<'_>, state: &State, rate: &mut Rate) {
         let frame = &self.frames[0];
         if frame.curvature == 0.0 || self.contacts.len() > 1 {
             return;
         }
-        let motion = loading.relative_rate(self.contacts[0], rate);
+        let motion = loading.relative_rate(self.contacts[0], state, rate);
         let slid = add(&motion, -dot(&motion, &frame.normal), &frame.normal);
         let across = frame.curvature * dot(&self.reaction.tangential, &slid);
         let reaction = &mut rate.reactions[self.contacts[0]];
@@ -124,7 +124,7 @@ impl Changeable {
         }
         if let Some(pocket) = &self.pocket {
             let whole = node_forces::force(&self.frames[0], &rate.reactions[self.contacts[0]]);
-            let motion = loading.relative_rate(self.contacts[0], rate);
+            let motion = loading.relative_rate(self.contacts[0], state, rate);
             let parts = pocket.rates_in(modes, &self.force, &whole, &motion);
             if !parts.is_empty() {
                 self.contacts.iter().for_each(|contact| rate.reactions[*contact] = Reaction::default());
@@ -141,7 +141,7 @@ impl Changeable {
         let mut tangential = add(&force, -normal, &frame.normal);
         if frame.curvature != 0.0 {
             // The normal reaction turns with the place on the obstacle.
-            let motion = loading.relative_rate(*contact, rate);
+            let motion = loading.relative_rate(*contact, state, rate);
             let pressed = dot(&self.force, &frame.normal);
             tangential = add(&tangential, -pressed, &frame.normal_change(&motion));
         }
@@ -155,11 +155,11 @@ impl Changeable {
 
     /// The slip of a node that touches in space and is free at first order while it goes along the obstacle: it may be
     /// pressed at second order, and friction then opposes the motion that it has already.
-    pub fn grazing_slip(&self, loading: Loading<'_>, rate: &Rate) -> Option<Mode> {
+    pub fn grazing_slip(&self, loading: Loading<'_>, state: &State, rate: &Rate) -> Option<Mode> {
         if !self.may_turn(loading) {
             return None;
         }
-        let (normal, motion) = (self.frames[0].normal, loading.relative_rate(self.contacts[0], rate));
+        let (normal, motion) = (self.frames[0].normal, loading.relative_rate(self.contacts[0], state, rate));
         let opening = dot(&normal, &motion);
         let along = add(&motion, -opening, &normal);
         (opening.abs() <= GRAZING && size(&along) > GRAZING).then(|| Mode::Slip { direction: unit(&along) })
@@ -227,7 +227,7 @@ impl Changeable {
                 (Entity { options: vec![stick, free], touching: None }, vec![single(Mode::Stick), single(Mode::Free)])
             }
             (Standing::Cornered { unloaded, zero, .. }, _) if let Some(pocket) = &self.pocket => {
-                rate_options::spatial::options(self, pocket, loading, unloaded, zero, forms)
+                rate_options::spatial::options(self, pocket, (loading, state), unloaded, zero, forms)
             }
             (Standing::Cornered { zero, .. }, _) if let Some(carried) = Carried::of(loading, &self.contacts, state) => {
                 rate_options::moving_planes::options(&carried, loading, state, self, zero, forms)

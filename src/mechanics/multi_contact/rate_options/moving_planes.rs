@@ -28,7 +28,7 @@ pub fn options(
     };
     let against = |forms: &mut Forms<'_>, place: usize, direction: &Vector| {
         let contact = carried.contacts[place];
-        forms.motion(|rate| dot(direction, &loading.relative_rate(contact, rate)))
+        forms.motion(|rate| dot(direction, &loading.relative_rate(contact, state, rate)))
     };
     let gaps = [0, 1].map(|place| against(forms, place, &carried.frames[place].normal));
     let tangents = [0, 1].map(|place| against(forms, place, &carried.frames[place].tangents[0]));

@@ -6,19 +6,20 @@ use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled};
 use crate::mechanics::multi_contact::rate_options::contact_options::{Changeable, Forms, Outcome};
 use crate::mechanics::multi_contact::spatial::{Drive, Pocket, Slide};
 use crate::mechanics::problem::loading::Loading;
+use crate::mechanics::problem::state::State;
 
 /// The node is held, slides along one obstacle or an edge, or leaves. What keeps it held is no linear form: see
 /// `Pocket::margin_of_rate`; nor is a first slip along one rough obstacle in space: see `slip_onset_direction`.
 pub fn options(
     entry: &Changeable,
     pocket: &Pocket,
-    loading: Loading<'_>,
+    (loading, state): (Loading<'_>, &State),
     unloaded: bool,
     zero: f64,
     forms: &mut Forms<'_>,
 ) -> (Entity, Vec<Outcome>) {
     if pocket.is_driven {
-        return driven(entry, pocket, loading, unloaded, zero, forms);
+        return driven(entry, pocket, (loading, state), unloaded, zero, forms);
     }
     let mut writer = Writer { entry, pocket, unloaded, zero, forms, options: Vec::new(), outcomes: Vec::new() };
     let held = pocket.free.iter().map(|direction| writer.forms.velocity(entry, direction)).collect();
@@ -50,7 +51,7 @@ pub fn options(
 fn driven(
     entry: &Changeable,
     pocket: &Pocket,
-    loading: Loading<'_>,
+    (loading, state): (Loading<'_>, &State),
     unloaded: bool,
     zero: f64,
     forms: &mut Forms<'_>,
@@ -58,7 +59,7 @@ fn driven(
     let places = 0..pocket.contacts.len();
     let gap = |place: usize| {
         let (contact, normal) = (pocket.contacts[place], pocket.frames[place].normal);
-        forms.motion(|rate| dot(&normal, &loading.relative_rate(contact, rate)))
+        forms.motion(|rate| dot(&normal, &loading.relative_rate(contact, state, rate)))
     };
     let gaps: Vec<usize> = places.clone().map(gap).collect();
     let (mut options, mut outcomes) = (Vec::new(), Vec::new());

@@ -173,7 +173,7 @@ mod tests {
 
     fn pocket(planes: &[(Vector, f64)]) -> Pocket {
         let contact = |normal: Vector, friction: f64| Contact {
-            node: 0,
+            kinematics: crate::mechanics::contact::kinematics::Kinematics::Node(0),
             obstacle: Obstacle::Plane { normal },
             initial_gap: 0.0,
             friction,

@@ -86,7 +86,7 @@ const NONE: f64 = 1e-12;
 
 impl Pocket {
     pub fn new(loading: Loading<'_>, contacts: &[usize], state: &State) -> Self {
-        let free = free_directions(loading, loading.contacts[contacts[0]].node);
+        let free = free_directions(loading, contacts[0]);
         let frames: Vec<Frame> = contacts.iter().map(|contact| loading.frame(*contact, state)).collect();
         let friction = |contact: &usize| {
             let data = &loading.contacts[*contact];
