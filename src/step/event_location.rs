@@ -12,7 +12,7 @@ use crate::mechanics::equations::solution::Failure;
 use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::state::State;
 use crate::step::corrector::cost_counters::Work;
-use crate::step::corrector::newton::ACCEPTED_RESIDUAL;
+use crate::step::corrector::newton::{self, ACCEPTED_RESIDUAL};
 use crate::step::event_functions::Watch;
 use crate::step::interpolation::{Knot, Placed, Polynomial, between, placed, unit};
 use crate::step::segment::{PASSED, Reached, Refused, Start};
@@ -283,7 +283,7 @@ impl Start<'_> {
         let state = near.state.advanced(&near.rate, way);
         let rate = unit(&rate);
         let value = watch.value(self.loading, self.modes, &state, &rate).abs();
-        let mut corrected = system.judged(state, self.force_scale);
+        let mut corrected = newton::judged(&system, state, self.force_scale);
         if value > zero || corrected.residual > ACCEPTED_RESIDUAL {
             return None;
         }

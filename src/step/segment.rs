@@ -10,6 +10,7 @@ use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cached_factorisation::AtHand;
 use crate::step::corrector::cost_counters::Work;
+use crate::step::corrector::newton;
 use crate::step::corrector::slip_error::Pointed;
 use crate::step::event_functions::{self, Watch};
 use crate::step::event_location::Stretch;
@@ -170,8 +171,7 @@ impl Start<'_> {
             return Ok(reached);
         }
         let guess = self.guess_beside(closing).unwrap_or(guess);
-        let corrected = system
-            .correct_from(system.iterate(guess), closing, self.force_scale, serving, work)
+        let corrected = newton::correct_from(&system, system.iterate(guess), closing, self.force_scale, serving, work)
             .map_err(Refused::Newton)?;
         self.directed(system, corrected, closing, serving, work)
     }
@@ -192,9 +192,15 @@ impl Start<'_> {
             // Once more, now that the turn of the slips at the end is known; where directions settle, until they do.
             for pass in 1.. {
                 let settles = system.set_turns(self.rate, &corrected, &tangent);
-                let again = system
-                    .correct_from(system.iterate_of(&corrected), closing, self.force_scale, &mut None, work)
-                    .map_err(Refused::Newton)?;
+                let again = newton::correct_from(
+                    &system,
+                    system.iterate_of(&corrected),
+                    closing,
+                    self.force_scale,
+                    &mut None,
+                    work,
+                )
+                .map_err(Refused::Newton)?;
                 // How hard the increment is shows in the first solve.
                 let hardness = corrected.iterations_to_small;
                 let change = system.largest_turn(&again, Some(&corrected));

@@ -9,7 +9,7 @@ use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::closing_equation::ClosingEquation;
 use crate::mechanics::problem::state::State;
 use crate::step::corrector::cost_counters::Work;
-use crate::step::corrector::newton::ACCEPTED_RESIDUAL;
+use crate::step::corrector::newton::{self, ACCEPTED_RESIDUAL};
 use crate::step::segment::{Reached, Start};
 
 impl Start<'_> {
@@ -22,7 +22,7 @@ impl Start<'_> {
         if !(step.is_finite() && step > 0.0) {
             return None;
         }
-        let corrected = system.judged(self.state.advanced(self.rate, step), self.force_scale);
+        let corrected = newton::judged(&system, self.state.advanced(self.rate, step), self.force_scale);
         let error = corrected.residual;
         (error <= ACCEPTED_RESIDUAL).then(|| self.straight_on(corrected, error))
     }
@@ -43,7 +43,7 @@ impl Start<'_> {
             return None;
         }
         let iterate = system.iterate(guess.clone());
-        let corrected = system.correct_from(iterate, closing, self.force_scale, &mut None, work).ok()?;
+        let corrected = newton::correct_from(&system, iterate, closing, self.force_scale, &mut None, work).ok()?;
         if !system.is_still_open(&corrected.state) {
             // Only the start is singular.
             return None;

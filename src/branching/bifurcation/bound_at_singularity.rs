@@ -12,7 +12,7 @@ use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cost_counters::Work;
-use crate::step::corrector::newton::ACCEPTED_RESIDUAL;
+use crate::step::corrector::newton::{self, ACCEPTED_RESIDUAL};
 use crate::step::event_functions::Watch;
 use crate::step::interpolation::{Placed, between, placed, unit};
 use crate::step::segment::{AT_END, Reached, Start};
@@ -128,7 +128,7 @@ fn ended(
 ) -> Option<Box<Reached>> {
     bound.make_exact(&mut state);
     let system = ModeSystem::new(start.loading, start.modes, start.state);
-    let mut corrected = system.judged(state, start.force_scale);
+    let mut corrected = newton::judged(&system, state, start.force_scale);
     corrected.iterations_to_small = beyond.corrected.iterations_to_small;
     (corrected.residual <= ACCEPTED_RESIDUAL).then(|| {
         let step = corrected.state.distance(start.state);

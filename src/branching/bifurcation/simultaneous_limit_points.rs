@@ -33,7 +33,7 @@ use crate::mechanics::multi_contact::contact_status::Standing;
 use crate::mechanics::problem::state::{Rate, State, dot};
 use crate::step::corrector::cached_factorisation::AtHand;
 use crate::step::corrector::cost_counters::Work;
-use crate::step::corrector::newton::ACCEPTED_RESIDUAL;
+use crate::step::corrector::newton::{self, ACCEPTED_RESIDUAL};
 use crate::step::event_functions::Watch;
 use crate::step::interpolation::{Placed, between, placed, unit};
 use crate::step::segment::{Reached, Start};
@@ -80,7 +80,7 @@ pub(crate) fn locate(start: &Start<'_>, watch: Watch, end: &Reached, work: &mut 
         let Some(place) = root_between(&nearer, &farther) else { break };
         (left, right, root) = (nearer, farther, place);
         let (state, rate) = between(&left, &right, root);
-        let corrected = system.judged(state, start.force_scale);
+        let corrected = newton::judged(&system, state, start.force_scale);
         if let Some(best) = &best {
             // Each round's points are at least four times closer.
             error = corrected.state.distance(&best.corrected.state) / 256.0;

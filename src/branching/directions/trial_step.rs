@@ -19,6 +19,7 @@ use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::budget::{self, Taken};
 use crate::step::corrector::cost_counters::Work;
+use crate::step::corrector::newton;
 use crate::step::event_functions::{self, Watch};
 use crate::step::segment::may_turn;
 use nalgebra::DVector;
@@ -172,7 +173,8 @@ fn stepped(
     let closing = ArcLengthEquation { from: state, step };
     let mut serving = None;
     let guess = system.iterate(state.advanced(rate, step));
-    let corrected = system.correct_from(guess, &closing, force_scale, &mut serving, &mut Work::default()).ok()?;
+    let corrected =
+        newton::correct_from(&system, guess, &closing, force_scale, &mut serving, &mut Work::default()).ok()?;
     let distance = state.distance(&corrected.state);
     may_turn(state.cosine_of_chord(&corrected.state, distance, rate)).ok()?;
     let rate = match serving {

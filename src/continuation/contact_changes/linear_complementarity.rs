@@ -187,6 +187,7 @@ mod tests {
     use crate::mechanics::problem::state::State;
     use crate::resources::cancel::CancelFlag;
     use crate::step::corrector::cost_counters::Work;
+    use crate::step::corrector::newton;
     use crate::step::segment::Start;
     use std::collections::BTreeSet;
 
@@ -240,7 +241,7 @@ mod tests {
                 assert!(none.abs() < 1e-9 && some > -1e-9, "contact {contact} of {first:?}: gap {gap}, force {force}");
             }
             let system = ModeSystem::new(loading, &modes, &here.state);
-            let Ok(end) = system.correct(foreseen.state.clone(), &closing, forces) else { continue };
+            let Ok(end) = newton::correct(&system, foreseen.state.clone(), &closing, forces) else { continue };
             looks += 1;
             most = most.max(end.state.distance(&foreseen.state) / far.distance(&foreseen.state));
         }

@@ -16,6 +16,7 @@ use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::state::Rate;
 use crate::step::corrector::cached_factorisation::AtHand;
 use crate::step::corrector::cost_counters::Work;
+use crate::step::corrector::newton;
 use crate::step::event_functions::{self, EventZero, Watch};
 use crate::step::event_location::Stretch;
 use crate::step::interpolation::Placed;
@@ -90,7 +91,8 @@ impl Start<'_> {
         let own = at_hand.filter(|_| is_straight).and_then(|at_hand| at_hand.along(&system, self.rate));
         let mut serving = None;
         let guess = system.iterate(guess);
-        let corrected = system.correct_with(guess, &closing, self.force_scale, own, &mut serving, work).ok()?;
+        let corrected =
+            newton::correct_with(&system, guess, &closing, self.force_scale, own, &mut serving, work).ok()?;
         let mut reached = match &serving {
             Some(SystemFactorisation::Sparse(nearby)) if is_straight => {
                 let error = system.error_by(nearby, &corrected)?;

@@ -45,6 +45,7 @@ use crate::mechanics::multi_contact::contact_status::{Standing, standings};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cost_counters::Work;
+use crate::step::corrector::newton;
 use crate::step::event_functions::{self, Watch};
 use crate::step::segment::{Attempt, COINCIDING, PASSED, Reached, Start, may_turn};
 use std::collections::BTreeSet;
@@ -276,7 +277,8 @@ impl Start<'_> {
             if roughly {
                 continue;
             }
-            let corrected = system.correct_from(system.iterate(state), &closing, self.force_scale, last, work).ok()?;
+            let corrected =
+                newton::correct_from(&system, system.iterate(state), &closing, self.force_scale, last, work).ok()?;
             let forces = self.force_scale.max(corrected.force_scale);
             wrong = self.broken(&modes, &corrected.state, forces)?;
             if wrong.is_empty() {

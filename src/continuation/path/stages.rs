@@ -11,6 +11,7 @@ use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::state::Rate;
 use crate::result::increment::{Increment, Point, PointKind};
 use crate::result::stop_reason::StopReason;
+use crate::step::corrector::newton;
 use crate::step::event_functions::Watch;
 use crate::step::segment::AT_END;
 
@@ -44,7 +45,7 @@ pub(crate) fn begin_stage(trace: &mut Trace<'_>) -> Increment {
     let here = &trace.at.here;
     let (state, modes) = (here.state.clone(), here.modes.clone());
     let system = ModeSystem::new(trace.loading(), &modes, &state);
-    let residual = system.judged(state.clone(), trace.at.totals.force_scale).residual;
+    let residual = newton::judged(&system, state.clone(), trace.at.totals.force_scale).residual;
     let error_estimate = here.drift.as_ref().map_or(0.0, Rate::size);
     trace.emit(Emitted {
         before: &state,

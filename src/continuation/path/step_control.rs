@@ -25,6 +25,7 @@ use crate::model::request::{Events, Method};
 use crate::result::increment::Energy;
 use crate::result::stop_reason::StopReason;
 use crate::step::corrector::cost_counters::Work;
+use crate::step::corrector::newton;
 use crate::step::event_functions::Watch;
 use crate::step::interpolation::unit;
 use crate::step::segment::{Reached, Refused, Start};
@@ -271,7 +272,7 @@ fn mode_ends_here(trace: &Trace<'_>, rate: &Rate) -> bool {
 fn without_step(trace: &Trace<'_>, watch: Watch, rate: &Rate) -> Box<Reached> {
     let here = &trace.at.here;
     let system = ModeSystem::new(trace.loading(), &here.modes, &here.state);
-    let mut corrected = system.judged(here.state.clone(), trace.at.totals.force_scale);
+    let mut corrected = newton::judged(&system, here.state.clone(), trace.at.totals.force_scale);
     (corrected.state, corrected.modes) = (here.state.clone(), here.modes.clone());
     let mut point = Reached::new(corrected, rate.clone(), 0.0, here.drift.as_ref().map_or(0.0, Rate::size));
     (point.drift, point.event) = (here.drift.clone(), Some(watch));

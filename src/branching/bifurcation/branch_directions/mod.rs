@@ -47,6 +47,7 @@ use crate::mechanics::multi_contact::contact_status::Standing;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cached_factorisation::AtHand;
+use crate::step::corrector::newton;
 use lyapunov_schmidt::Reduced;
 use nalgebra::{DMatrix, DVector};
 use null_derivatives::{Derivative, Null};
@@ -478,7 +479,7 @@ impl Point<'_> {
         let Here { state, force_scale, .. } = self.here;
         let guess = state.advanced(&ahead, radius);
         let closing = ArcLengthEquation { from: state, step: radius };
-        let corrected = self.system.correct(guess, &closing, force_scale).ok()?;
+        let corrected = newton::correct(&self.system, guess, &closing, force_scale).ok()?;
         let mut chord = state.chord(&corrected.state);
         let size = chord.size();
         chord.scale(1.0 / size);

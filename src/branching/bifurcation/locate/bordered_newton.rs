@@ -21,7 +21,7 @@ use crate::mechanics::equations::{Kind, ModeSystem};
 use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::budget;
 use crate::step::corrector::cost_counters::Work;
-use crate::step::corrector::newton::ACCEPTED_RESIDUAL;
+use crate::step::corrector::newton::{self, ACCEPTED_RESIDUAL};
 use crate::step::interpolation::{Placed, between, placed, unit};
 use crate::step::segment::{Reached, Start};
 use nalgebra::{Complex, DMatrix, DVector};
@@ -290,7 +290,7 @@ impl Search<'_, '_> {
             return None;
         }
         let rate = singular.continued(&unit(&rate))?;
-        let corrected = system.judged(singular.state.clone(), start.force_scale);
+        let corrected = newton::judged(system, singular.state.clone(), start.force_scale);
         if corrected.residual > ACCEPTED_RESIDUAL {
             return None;
         }

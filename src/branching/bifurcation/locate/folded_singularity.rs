@@ -15,7 +15,7 @@
 
 use crate::algebra::{Factorisation, nearest_null_space, null_space_as_scaled};
 use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role};
-use crate::step::corrector::newton::ACCEPTED_RESIDUAL;
+use crate::step::corrector::newton::{self, ACCEPTED_RESIDUAL};
 use crate::step::event_functions::{self, Watch};
 use crate::step::segment::{Reached, Start};
 use nalgebra::{DMatrix, DVector};
@@ -45,7 +45,7 @@ pub fn locate(start: &Start<'_>, reached: &Reached) -> Option<Box<Reached>> {
         .collect();
     let search = Search { system, tracks };
     let iterate = search.found(search.system.iterate_of(&reached.corrected), NEAR * reached.step)?;
-    let corrected = search.system.judged_as_state(iterate, &search.tracks, start.force_scale);
+    let corrected = newton::judged_as_state(&search.system, iterate, &search.tracks, start.force_scale);
     let step = corrected.state.distance(start.state);
     if corrected.residual > ACCEPTED_RESIDUAL || step > NEAR * reached.step || step <= 0.0 {
         return None;
@@ -60,7 +60,7 @@ pub fn locate(start: &Start<'_>, reached: &Reached) -> Option<Box<Reached>> {
     if !event_functions::of_mode(start.loading, start.modes, start.state, start.rate).iter().all(holds) {
         return None;
     }
-    let error_estimate = search.system.off_track(&corrected, &search.tracks);
+    let error_estimate = newton::off_track(&corrected, &search.tracks);
     Some(Reached::new(corrected, rate, step, error_estimate))
 }
 

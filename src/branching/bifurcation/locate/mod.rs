@@ -21,7 +21,7 @@ use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::scaled_rows::scaled_rows;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cost_counters::Work;
-use crate::step::corrector::newton::ACCEPTED_RESIDUAL;
+use crate::step::corrector::newton::{self, ACCEPTED_RESIDUAL};
 use crate::step::interpolation::{Placed, between, placed, unit};
 use crate::step::segment::{Reached, Start};
 use std::sync::Arc;
@@ -143,7 +143,7 @@ fn find(start: &Start<'_>, before: Signature, change: Change, reached: &Reached,
         (left, right, root) = (nearer, farther, place);
         let (state, rate) = between(&left, &right, root);
         let rate = unit(&rate);
-        let corrected = system.judged(state, start.force_scale);
+        let corrected = newton::judged(&system, state, start.force_scale);
         let residual = corrected.residual;
         if let Some(previous) = &previous {
             // Each round's points are at least four times closer.
