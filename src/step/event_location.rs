@@ -14,8 +14,8 @@ use crate::mechanics::problem::state::State;
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton::{self, ACCEPTED_RESIDUAL};
 use crate::step::event_functions::Watch;
-use crate::step::interpolation::{Knot, Placed, Polynomial, between, placed, unit};
-use crate::step::segment::{PASSED, Reached, Refused, Start};
+use crate::step::interpolation::{Knot, NewtonPolynomial, PlacedPoint, between, placed, unit};
+use crate::step::segment::{PASSED, Reached, Refused, StepStart};
 
 /// How far from zero, over its scale, a quantity may be at a point that is taken for its zero.
 const LOCATED: f64 = 1e-16;
@@ -42,20 +42,20 @@ const BESIDE: f64 = 16.0;
 const ROOM: f64 = 4.0;
 
 /// The points of a step that are reached, in order, and its start.
-pub(crate) struct Stretch {
-    origin: Placed,
-    points: Vec<(Placed, Box<Reached>)>,
+pub(crate) struct StepPoints {
+    origin: PlacedPoint,
+    points: Vec<(PlacedPoint, Box<Reached>)>,
     /// The last factorisation: it may serve at points close to its own.
     serving: Option<SystemFactorisation>,
 }
 
-impl Stretch {
-    pub fn new(start: &Start<'_>, reached: &Reached, serving: Option<SystemFactorisation>) -> Self {
-        let origin = Placed { place: 0.0, state: start.state.clone(), rate: start.rate.clone() };
+impl StepPoints {
+    pub fn new(start: &StepStart<'_>, reached: &Reached, serving: Option<SystemFactorisation>) -> Self {
+        let origin = PlacedPoint { place: 0.0, state: start.state.clone(), rate: start.rate.clone() };
         Self { origin, points: vec![(placed(start, reached), Box::new(reached.clone()))], serving }
     }
 
-    fn placed(&self) -> impl Iterator<Item = &Placed> {
+    fn placed(&self) -> impl Iterator<Item = &PlacedPoint> {
         std::iter::once(&self.origin).chain(self.points.iter().map(|(placed, _)| placed))
     }
 
@@ -66,14 +66,14 @@ impl Stretch {
         between(before, &self.points[next].0, place).0
     }
 
-    fn insert(&mut self, start: &Start<'_>, reached: &Reached) {
+    fn insert(&mut self, start: &StepStart<'_>, reached: &Reached) {
         let point = placed(start, reached);
         let at = self.points.partition_point(|(other, _)| other.place < point.place);
         self.points.insert(at, (point, Box::new(reached.clone())));
     }
 
     /// The point at a place, kept.
-    pub fn reach(&mut self, start: &Start<'_>, place: f64, work: &mut Work) -> Result<Box<Reached>, Refused> {
+    pub fn reach(&mut self, start: &StepStart<'_>, place: f64, work: &mut Work) -> Result<Box<Reached>, Refused> {
         let reached =
             start.reach_by(self.guess(place), place, &mut self.serving, work).or_else(|_| start.reach(place, work))?;
         self.insert(start, &reached);
@@ -130,7 +130,7 @@ impl Bracket {
             false => sample.knot,
         };
         let knots: Vec<Knot> = used.iter().map(knot).collect();
-        let polynomial = Polynomial::through(&knots);
+        let polynomial = NewtonPolynomial::through(&knots);
         let value = |place: f64| {
             let (value, slope) = polynomial.at(place);
             if is_slope { slope } else { value }
@@ -145,8 +145,8 @@ impl Bracket {
     }
 }
 
-impl Start<'_> {
-    fn sample(&self, watch: Watch, at: &Placed) -> Sample {
+impl StepStart<'_> {
+    fn sample(&self, watch: Watch, at: &PlacedPoint) -> Sample {
         let value = watch.value(self.loading, self.modes, &at.state, &at.rate);
         let whole = watch.whole(self.loading, self.modes, self.state, &at.state);
         let knot = match whole {
@@ -157,7 +157,7 @@ impl Start<'_> {
     }
 
     /// Where along the points a quantity first becomes negative.
-    fn bracket(&self, watch: Watch, stretch: &Stretch, zero: f64) -> Option<Bracket> {
+    fn bracket(&self, watch: Watch, stretch: &StepPoints, zero: f64) -> Option<Bracket> {
         let samples: Vec<Sample> = stretch.placed().map(|placed| self.sample(watch, placed)).collect();
         let end = samples.iter().skip(1).position(|sample| sample.value < -zero)? + 1;
         Some(Bracket { samples, end })
@@ -167,7 +167,7 @@ impl Start<'_> {
     pub(crate) fn earliest<'w>(
         &self,
         passed: &'w [Watch],
-        stretch: &Stretch,
+        stretch: &StepPoints,
         zero: impl Fn(Watch) -> f64,
     ) -> Option<&'w Watch> {
         let place = |watch: &Watch| {
@@ -184,7 +184,7 @@ impl Start<'_> {
     pub(crate) fn locate(
         &self,
         watch: Watch,
-        stretch: &mut Stretch,
+        stretch: &mut StepPoints,
         zero: f64,
         work: &mut Work,
     ) -> Result<Box<Reached>, Refused> {
@@ -250,9 +250,9 @@ impl Start<'_> {
     }
 
     /// Whether a quantity that is zero at a point falls through zero there.
-    pub(crate) fn falls_through(&self, watch: Watch, stretch: &Stretch, zero: &Reached) -> bool {
-        let away = |placed: &&Placed| (placed.place - zero.step).abs() > CLOSE * zero.step;
-        let sampled = |placed: &Placed| {
+    pub(crate) fn falls_through(&self, watch: Watch, stretch: &StepPoints, zero: &Reached) -> bool {
+        let away = |placed: &&PlacedPoint| (placed.place - zero.step).abs() > CLOSE * zero.step;
+        let sampled = |placed: &PlacedPoint| {
             (placed.place - zero.step, watch.value(self.loading, self.modes, &placed.state, &placed.rate))
         };
         let before = stretch.placed().filter(away).filter(|placed| placed.place < zero.step).last();
@@ -262,7 +262,7 @@ impl Start<'_> {
 
     /// The zero so close to a point found that a straight step leads there; `None` where what that leaves over counts for
     /// something.
-    fn by_series(&self, watch: Watch, stretch: &Stretch, zero: f64, found: &Reached) -> Option<Box<Reached>> {
+    fn by_series(&self, watch: Watch, stretch: &StepPoints, zero: f64, found: &Reached) -> Option<Box<Reached>> {
         let system = ModeSystem::new(self.loading, self.modes, self.state);
         if system.has_tracks() {
             return None;
@@ -271,7 +271,7 @@ impl Start<'_> {
         let place = bracket.estimate(zero)?;
         let [left, right] = [bracket.end - 1, bracket.end].map(|index| stretch.placed().nth(index));
         let (left, right) = (left?, right?);
-        let distance = |point: &Placed| (point.place - place).abs();
+        let distance = |point: &PlacedPoint| (point.place - place).abs();
         let (near, far) = if distance(left) < distance(right) { (left, right) } else { (right, left) };
         let (way, width) = (place - near.place, far.place - near.place);
         if way.abs() > MOST_BY_SERIES * width.abs() {
@@ -297,7 +297,7 @@ impl Start<'_> {
     }
 
     /// The point at which a bound of the stage is met, which is an equation of its own; `None` where that leads elsewhere.
-    fn meet(&self, end: End, bracket: &Bracket, stretch: &Stretch, work: &mut Work) -> Option<Box<Reached>> {
+    fn meet(&self, end: End, bracket: &Bracket, stretch: &StepPoints, work: &mut Work) -> Option<Box<Reached>> {
         let place = bracket.estimate(0.0)?;
         let system = ModeSystem::new(self.loading, self.modes, self.state);
         let mut met = self.settle(system, stretch.guess(place), &end.held()?, work).ok()?;
@@ -306,7 +306,13 @@ impl Start<'_> {
     }
 
     /// Looks for a point past the start at which a quantity that is zero there is positive.
-    fn begin_further_on(&self, watch: Watch, stretch: &mut Stretch, zero: f64, work: &mut Work) -> Result<(), Refused> {
+    fn begin_further_on(
+        &self,
+        watch: Watch,
+        stretch: &mut StepPoints,
+        zero: f64,
+        work: &mut Work,
+    ) -> Result<(), Refused> {
         let first = stretch.points[0].0.place;
         for part in FURTHER_ON {
             let near = stretch.reach(self, part * first, work)?;

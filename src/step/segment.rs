@@ -13,12 +13,12 @@ use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton;
 use crate::step::corrector::slip_error::Pointed;
 use crate::step::event_functions::{self, Watch};
-use crate::step::event_location::Stretch;
-use crate::step::interpolation::Placed;
+use crate::step::event_location::StepPoints;
+use crate::step::interpolation::PlacedPoint;
 
 /// Where a step starts.
 #[derive(Clone, Copy)]
-pub struct Start<'a> {
+pub struct StepStart<'a> {
     pub loading: Loading<'a>,
     pub state: &'a State,
     /// The direction in `modes`.
@@ -66,7 +66,7 @@ impl Reached {
 }
 
 /// Locates a limit point at which the equations of the mode are singular, from the point past it.
-pub type LocateSingularLimit = fn(&Start<'_>, Watch, &Reached, &mut Work) -> Option<Box<Reached>>;
+pub type LocateSingularLimit = fn(&StepStart<'_>, Watch, &Reached, &mut Work) -> Option<Box<Reached>>;
 
 /// A step that is tried, and what is watched along it.
 pub(crate) struct Attempt {
@@ -76,7 +76,7 @@ pub(crate) struct Attempt {
     /// Those that are.
     pub passed: Vec<Watch>,
     /// The points that it is made of, where something is passed.
-    pub stretch: Option<Box<Stretch>>,
+    pub stretch: Option<Box<StepPoints>>,
     /// What is zero at the farthest point, where that was solved for.
     pub met: Option<Watch>,
 }
@@ -123,7 +123,7 @@ pub(crate) fn may_turn(cosine: f64) -> Result<(), Refused> {
     if cosine < LEAST_COSINE { Err(Refused::Turned(cosine.clamp(-1.0, 1.0).acos())) } else { Ok(()) }
 }
 
-impl Start<'_> {
+impl StepStart<'_> {
     /// The point at an arc length, with its direction.
     pub fn reach(&self, step: f64, work: &mut Work) -> Result<Box<Reached>, Refused> {
         self.reach_near(self.state.advanced(self.rate, step), step, work)
@@ -264,7 +264,7 @@ impl Start<'_> {
     pub(crate) fn attempt(
         &self,
         step: f64,
-        before: Option<&Placed>,
+        before: Option<&PlacedPoint>,
         mut serving: Option<SystemFactorisation>,
         ends: &[End],
         load_sign: f64,
@@ -279,7 +279,7 @@ impl Start<'_> {
         may_turn(self.rate.product(&reached.rate))?;
         let watches = self.watches(ends, load_sign);
         let mut passed = self.passed(&watches, &reached);
-        let mut stretch = (!passed.is_empty()).then(|| Box::new(Stretch::new(self, &reached, serving.take())));
+        let mut stretch = (!passed.is_empty()).then(|| Box::new(StepPoints::new(self, &reached, serving.take())));
         if stretch.is_none() {
             (passed, stretch) = self.dips(&watches, &mut reached, serving, work)?;
         }
@@ -446,7 +446,7 @@ impl Start<'_> {
         reached: &mut Reached,
         mut serving: Option<SystemFactorisation>,
         work: &mut Work,
-    ) -> Result<(Vec<Watch>, Option<Box<Stretch>>), Refused> {
+    ) -> Result<(Vec<Watch>, Option<Box<StepPoints>>), Refused> {
         let step = reached.step;
         let mut stretch = None;
         for watch in watches {
@@ -457,7 +457,7 @@ impl Start<'_> {
             }
             let zero = self.zero(*watch, reached);
             let Some(place) = watch.dip(self.loading, self.modes, start, end, step, zero) else { continue };
-            let points = stretch.get_or_insert_with(|| Box::new(Stretch::new(self, reached, serving.take())));
+            let points = stretch.get_or_insert_with(|| Box::new(StepPoints::new(self, reached, serving.take())));
             let inside = points.reach(self, place, work)?;
             let passed = self.passed(watches, &inside);
             if !passed.is_empty() {

@@ -10,9 +10,9 @@ use crate::mechanics::equations::closing_equation::ClosingEquation;
 use crate::mechanics::problem::state::State;
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton::{self, ACCEPTED_RESIDUAL};
-use crate::step::segment::{Reached, Start};
+use crate::step::segment::{Reached, StepStart};
 
-impl Start<'_> {
+impl StepStart<'_> {
     /// The point straight ahead, where the equations hold along the direction.
     pub(crate) fn held_straight(&self, system: &ModeSystem<'_>, closing: &dyn ClosingEquation) -> Option<Box<Reached>> {
         if !self.is_singular || self.beside.is_some() || system.has_tracks() {

@@ -5,7 +5,7 @@ use arcslip::model::request::Method;
 use arcslip::model::request::study::{ReferenceChoice, Study, StudyRequest};
 use arcslip::resources::cancel::CancelFlag;
 use arcslip::result::stop_reason::StopReason;
-use arcslip::studies::error_against_time::{self, ReferenceKind, Report, Row, Run};
+use arcslip::studies::error_against_time::{self, ReferenceKind, Report, Run, StudyRow};
 use std::ops::ControlFlow;
 
 fn request(name: &str, study: Study) -> StudyRequest {
@@ -25,7 +25,7 @@ fn run(request: &StudyRequest) -> Report {
     report
 }
 
-fn rows(report: &Report, method: Method) -> Vec<&Row> {
+fn rows(report: &Report, method: Method) -> Vec<&StudyRow> {
     report.rows.iter().filter(|row| row.method == method).collect()
 }
 
@@ -141,8 +141,9 @@ fn a_study_that_was_broken_off_goes_on_to_the_same_rows() {
     assert!(runs.iter().enumerate().all(|(index, run)| run.index == index as u64));
     assert!(report.complete && report.rows.iter().all(|row| row.time.expect("a time").repeats == 2));
     let whole = run(&request);
-    let timeless =
-        |report: &Report| -> Vec<Row> { report.rows.iter().map(|row| Row { time: None, ..row.clone() }).collect() };
+    let timeless = |report: &Report| -> Vec<StudyRow> {
+        report.rows.iter().map(|row| StudyRow { time: None, ..row.clone() }).collect()
+    };
     assert_eq!(timeless(&report), timeless(&whole));
 }
 

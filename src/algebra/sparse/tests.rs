@@ -1,7 +1,7 @@
 //! The sparse factorisation against the dense one, on systems that look random, the same each time.
 
 use crate::algebra::dense::assembly::Sink;
-use crate::algebra::sparse::factors::entries::Entries;
+use crate::algebra::sparse::factors::entries::SparseEntries;
 use crate::algebra::sparse::factors::ldl::SymmetricFactor;
 use crate::algebra::sparse::nodal_elimination::Friction;
 use crate::algebra::sparse::*;
@@ -273,7 +273,7 @@ fn singular_systems_are_refused() {
             // The last row is another's twin: the first of the equilibrium.
             let last = sparse.lower.len() - 1;
             let n = sparse.pattern.size();
-            let mut twin = Entries::new();
+            let mut twin = SparseEntries::new();
             for column in 0..n {
                 twin.extend(sparse.pattern.place(0, column).map(|place| (column, sparse.values[place])));
             }

@@ -214,7 +214,7 @@ mod tests {
     use crate::resources::cancel::CancelFlag;
     use crate::step::corrector::cached_factorisation::AtHand;
     use crate::step::corrector::cost_counters::Work;
-    use crate::step::segment::Start;
+    use crate::step::segment::StepStart;
 
     /// At the changes of an arch that lands, the factorisation that led there gives the columns as one of the held
     /// equations does.
@@ -237,7 +237,7 @@ mod tests {
                 let rate = &listed.options[taken].rate;
                 // The direction in which the path came, found once more from a point nearby.
                 let before = state.advanced(rate, -1e-6);
-                let start = Start {
+                let start = StepStart {
                     loading,
                     state: &before,
                     rate,

@@ -92,7 +92,7 @@ fn explore_by(
     effort: Effort<'_>,
     further: impl Fn(&RateProblem, &CancelFlag) -> Vec<Vec<usize>>,
 ) -> Findings {
-    let mut search = Search {
+    let mut search = BranchAndBound {
         problem,
         findings: Findings::default(),
         seen: BTreeSet::new(),
@@ -120,7 +120,7 @@ fn explore_by(
 }
 
 /// Decided entities and the cone that is left.
-pub(crate) struct Node {
+pub(crate) struct SearchNode {
     pub chosen: Vec<Option<usize>>,
     pub dictionary: Dictionary,
     /// Sign of the load rate.
@@ -133,12 +133,12 @@ pub(crate) struct Node {
 
 /// A child that has not been looked at.
 struct Task {
-    parent: Rc<Node>,
+    parent: Rc<SearchNode>,
     decision: Option<(usize, usize)>,
 }
 
 /// The search as far as it has come.
-pub(crate) struct Search<'a> {
+pub(crate) struct BranchAndBound<'a> {
     pub problem: &'a RateProblem,
     pub findings: Findings,
     /// Combinations whose equations were solved.
@@ -154,7 +154,7 @@ pub(crate) struct Search<'a> {
     pub cost: u64,
 }
 
-impl Search<'_> {
+impl BranchAndBound<'_> {
     fn branch(&mut self) {
         self.common = self.problem.entities.iter().map(Entity::common).collect();
         let Some(dictionary) = Dictionary::new(self.problem, &self.common) else {
@@ -166,7 +166,7 @@ impl Search<'_> {
             let mut dictionary = dictionary.clone();
             dictionary.require(None, sign);
             let chosen = vec![None; self.problem.entities.len()];
-            Task { parent: Rc::new(Node { chosen, dictionary, sign, in_set: false, last: None }), decision: None }
+            Task { parent: Rc::new(SearchNode { chosen, dictionary, sign, in_set: false, last: None }), decision: None }
         };
         let settled = self.settled_signs();
         let mut tasks: Vec<Task> = [-1.0, 1.0].into_iter().filter(|sign| !settled.contains(sign)).map(root).collect();
@@ -175,7 +175,7 @@ impl Search<'_> {
             let mut dictionary = dictionary.clone();
             if dictionary.rest_load() {
                 let chosen = vec![None; self.problem.entities.len()];
-                let node = Node { chosen, dictionary, sign: 1.0, in_set: false, last: None };
+                let node = SearchNode { chosen, dictionary, sign: 1.0, in_set: false, last: None };
                 tasks.push(Task { parent: Rc::new(node), decision: None });
             }
         }
@@ -278,7 +278,7 @@ impl Search<'_> {
     /// The entity to decide next. Of those that do not fit the node's point, the one that feels the last decision most:
     /// a decision that cannot be is then refuted near by, in a few nodes. Where all fit, the first that still decides
     /// something.
-    fn next(&self, node: &Node, open: &[usize]) -> usize {
+    fn next(&self, node: &SearchNode, open: &[usize]) -> usize {
         let mut next: Option<((f64, f64), usize)> = None;
         for &entity in open {
             let fit = self.problem.entities[entity]
@@ -302,7 +302,7 @@ impl Search<'_> {
     }
 
     /// A combination under which everything left is a solution, if there is one.
-    fn filled(&self, node: &Node) -> Option<Vec<usize>> {
+    fn filled(&self, node: &SearchNode) -> Option<Vec<usize>> {
         node.chosen
             .iter()
             .zip(self.problem.entities.iter().zip(&self.common))
@@ -335,9 +335,9 @@ fn fits(dictionary: &Dictionary, choice: &Choice) -> bool {
 }
 
 /// The node of a task; `None` where nothing but zero is left.
-fn decide(problem: &RateProblem, task: Task) -> Option<Node> {
+fn decide(problem: &RateProblem, task: Task) -> Option<SearchNode> {
     let parent = &task.parent;
-    let mut node = Node {
+    let mut node = SearchNode {
         chosen: parent.chosen.clone(),
         dictionary: parent.dictionary.clone(),
         sign: parent.sign,

@@ -1,6 +1,6 @@
 //! Examining combinations: each one's exact line, and the rays that it holds.
 
-use crate::complementarity::rate_search::branch_and_bound::{Ray, Search};
+use crate::complementarity::rate_search::branch_and_bound::{BranchAndBound, Ray};
 use crate::complementarity::rates::combinations::{combinations, count};
 use crate::complementarity::rates::ray::{Along, Line};
 use nalgebra::DVector;
@@ -24,7 +24,7 @@ pub(crate) enum Examined {
     Before,
 }
 
-impl Search<'_> {
+impl BranchAndBound<'_> {
     pub(crate) fn examine(&mut self, chosen: &[usize]) -> Examined {
         if !self.seen.insert(chosen.to_vec()) {
             return Examined::Before;

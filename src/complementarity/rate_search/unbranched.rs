@@ -1,14 +1,14 @@
 //! Where the search need not branch: the certificate on the whole problem or on what is left at a node, and signs of the load
 //! rate that a known ray settles.
 
-use crate::complementarity::rate_search::branch_and_bound::{FITS, Node, Ray, Search};
+use crate::complementarity::rate_search::branch_and_bound::{BranchAndBound, FITS, Ray, SearchNode};
 use crate::complementarity::rates::p_matrix::{is_monotone, options_of, reduce};
 use crate::complementarity::rates::parametric_lcp::all_solutions;
 use crate::complementarity::rates::rate_problem::{Entity, Signed};
 use crate::resources::budget;
 use nalgebra::{DMatrix, DVector};
 
-impl Search<'_> {
+impl BranchAndBound<'_> {
     /// The certificate on the whole problem.
     pub(crate) fn certified_at_once(&mut self) -> bool {
         if !self.effort.certify {
@@ -86,7 +86,7 @@ impl Search<'_> {
     }
 
     /// The certificate on what is left at a node.
-    pub(crate) fn certified_below(&mut self, node: &Node, open: &[usize]) -> bool {
+    pub(crate) fn certified_below(&mut self, node: &SearchNode, open: &[usize]) -> bool {
         let dictionary = &node.dictionary;
         if !self.effort.certify
             || dictionary.is_lines_only()

@@ -37,7 +37,7 @@ pub(crate) struct Complementary {
 }
 
 /// The contacts that may change, as far as they are known.
-struct Changing {
+struct ActiveSetCandidates {
     contacts: Vec<usize>,
     /// Whether each is changed.
     are_changed: Vec<bool>,
@@ -58,7 +58,7 @@ impl ModeSystem<'_> {
         broken: impl Fn(&State) -> Option<Vec<usize>>,
     ) -> Option<Complementary> {
         let SystemFactorisation::Sparse(factorisation) = factorisation else { return None };
-        let mut changing = Changing { contacts: Vec::new(), are_changed: Vec::new(), columns: Vec::new() };
+        let mut changing = ActiveSetCandidates { contacts: Vec::new(), are_changed: Vec::new(), columns: Vec::new() };
         self.join(&mut changing, first, state, factorisation)?;
         for _ in 0..MOST_SETS {
             let (end, mut wrong) = self.with_changes(&changing, state)?;
@@ -89,7 +89,7 @@ impl ModeSystem<'_> {
     /// More contacts change.
     fn join(
         &self,
-        changing: &mut Changing,
+        changing: &mut ActiveSetCandidates,
         contacts: &[usize],
         state: &State,
         factorisation: &SparseFactorisation,
@@ -124,7 +124,7 @@ impl ModeSystem<'_> {
     /// Whether at a load that is held the gaps of the open contacts by forces there, and the forces of the closed ones by
     /// gaps, are positive definite: then (additivity of inertia) the tangent has as many negative eigenvalues with all of
     /// these contacts held as with all of them free.
-    fn leaves_no_choice(&self, changing: &Changing, state: &State, rate: &Rate) -> bool {
+    fn leaves_no_choice(&self, changing: &ActiveSetCandidates, state: &State, rate: &Rate) -> bool {
         [false, true].into_iter().all(|are_closed| {
             let contacts: Vec<usize> = (0..changing.contacts.len())
                 .filter(|at| self.modes[changing.contacts[*at]].is_active() == are_closed)
@@ -150,7 +150,7 @@ impl ModeSystem<'_> {
     }
 
     /// The state at which nothing is left over of those that are changed, and which of them have the wrong sign there.
-    fn with_changes(&self, changing: &Changing, state: &State) -> Option<(State, Vec<usize>)> {
+    fn with_changes(&self, changing: &ActiveSetCandidates, state: &State) -> Option<(State, Vec<usize>)> {
         let changed: Vec<usize> = (0..changing.contacts.len()).filter(|at| changing.are_changed[*at]).collect();
         let count = changed.len();
         if count == 0 {
@@ -188,7 +188,7 @@ mod tests {
     use crate::resources::cancel::CancelFlag;
     use crate::step::corrector::cost_counters::Work;
     use crate::step::corrector::newton;
-    use crate::step::segment::Start;
+    use crate::step::segment::StepStart;
     use std::collections::BTreeSet;
 
     /// Where an arch lands on several contacts at a time, its equations linearised without them tell about where the arch
@@ -207,7 +207,7 @@ mod tests {
             let step = path.trace.at.step;
             let closing = ArcLengthEquation { from: &here.state, step };
             let forces = path.trace.at.totals.force_scale;
-            let start = Start {
+            let start = StepStart {
                 loading,
                 state: &here.state,
                 rate,

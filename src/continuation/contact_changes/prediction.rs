@@ -10,7 +10,7 @@
 use crate::algebra::SystemFactorisation;
 use crate::continuation::contact_changes::simultaneous::may_join_at;
 use crate::continuation::path_state::step_quantum::quantised;
-use crate::continuation::path_state::trace::Trace;
+use crate::continuation::path_state::trace::PathTrace;
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::state::Rate;
@@ -18,9 +18,9 @@ use crate::step::corrector::cached_factorisation::AtHand;
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton;
 use crate::step::event_functions::{self, EventZero, Watch};
-use crate::step::event_location::Stretch;
-use crate::step::interpolation::Placed;
-use crate::step::segment::{Attempt, PASSED, Start, may_turn};
+use crate::step::event_location::StepPoints;
+use crate::step::interpolation::PlacedPoint;
+use crate::step::segment::{Attempt, PASSED, StepStart, may_turn};
 
 /// How far past the change the step is to end, over the way there: rates are not all that tells where it is.
 const PAST: f64 = 1.25;
@@ -31,7 +31,7 @@ const LEAST: f64 = 1.0 / 256.0;
 
 /// A contact change, or the end of a stage, that the rates foresee.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Foreseen {
+pub(crate) struct ForeseenChange {
     /// What falls to zero there.
     pub watch: Watch,
     /// Arc length up to there.
@@ -47,7 +47,12 @@ pub(crate) struct Foreseen {
 ///
 /// Only where matrices are sparse: the factorisations that are saved of a dense one cost as little as the points that
 /// come on top.
-pub(crate) fn step_to_foreseen_change(trace: &Trace<'_>, step: f64, rate: &Rate, may_join: bool) -> Option<Foreseen> {
+pub(crate) fn step_to_foreseen_change(
+    trace: &PathTrace<'_>,
+    step: f64,
+    rate: &Rate,
+    may_join: bool,
+) -> Option<ForeseenChange> {
     let (loading, here) = (trace.loading(), &trace.at.here);
     loading.structure.layout()?;
     let way = |watch: &event_functions::Watch| {
@@ -65,21 +70,21 @@ pub(crate) fn step_to_foreseen_change(trace: &Trace<'_>, step: f64, rate: &Rate,
     }
     let part = PAST * way / step;
     let step = step * quantised(part.max(LEAST));
-    (part < 1.0).then_some(Foreseen { watch: first, way, step, is_straight: false })
+    (part < 1.0).then_some(ForeseenChange { watch: first, way, step, is_straight: false })
 }
 
-impl Start<'_> {
+impl StepStart<'_> {
     /// The step that ends at a change foreseen, which is solved for at once; `None` where that leads elsewhere.
     pub(crate) fn meet_change(
         &self,
-        foreseen: Foreseen,
+        foreseen: ForeseenChange,
         at_hand: Option<AtHand>,
-        before: Option<&Placed>,
+        before: Option<&PlacedPoint>,
         ends: &[End],
         load_sign: f64,
         work: &mut Work,
     ) -> Option<Attempt> {
-        let Foreseen { watch, way, step, is_straight } = foreseen;
+        let ForeseenChange { watch, way, step, is_straight } = foreseen;
         let system = ModeSystem::new(self.loading, self.modes, self.state);
         if watch.slope(self.loading, self.modes, self.state, self.rate).is_none() || system.has_tracks() {
             return None;
@@ -110,7 +115,7 @@ impl Start<'_> {
         let watches = self.watches(ends, load_sign);
         let others: Vec<Watch> = watches.iter().copied().filter(|other| *other != watch).collect();
         let mut passed = self.passed(&others, &reached);
-        let mut stretch = (!passed.is_empty()).then(|| Box::new(Stretch::new(self, &reached, serving.take())));
+        let mut stretch = (!passed.is_empty()).then(|| Box::new(StepPoints::new(self, &reached, serving.take())));
         if stretch.is_none() && !is_straight {
             (passed, stretch) = self.dips(&others, &mut reached, serving, work).ok()?;
         }

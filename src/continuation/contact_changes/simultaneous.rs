@@ -47,7 +47,7 @@ use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton;
 use crate::step::event_functions::{self, Watch};
-use crate::step::segment::{Attempt, COINCIDING, PASSED, Reached, Start, may_turn};
+use crate::step::segment::{Attempt, COINCIDING, PASSED, Reached, StepStart, may_turn};
 use std::collections::BTreeSet;
 
 /// A mode that breaks so many times the contacts that the first one broke leads away from the end.
@@ -80,7 +80,7 @@ struct EndModes {
 
 /// About where a step would end if no contact changed.
 #[derive(Clone, Copy)]
-struct Far<'a> {
+struct UnchangedStepEnd<'a> {
     state: &'a State,
     rate: &'a Rate,
     step: f64,
@@ -106,7 +106,7 @@ pub(crate) fn may_join_at(loading: Loading<'_>, modes: &[Mode], watch: Watch) ->
     smooth(loading, watch).is_some() && !remembers(loading, modes)
 }
 
-impl Start<'_> {
+impl StepStart<'_> {
     /// The contacts that change in a step that was tried, if they are several and may be taken together.
     pub(crate) fn changes_to_join(&self, tried: &Attempt) -> Option<BTreeSet<usize>> {
         self.joinable(&tried.watches, &tried.passed, tried.reached.step)
@@ -117,7 +117,12 @@ impl Start<'_> {
         let Attempt { reached, watches, .. } = tried;
         self.join(
             first,
-            Far { state: &reached.corrected.state, rate: &reached.rate, step: reached.step, factorisation: None },
+            UnchangedStepEnd {
+                state: &reached.corrected.state,
+                rate: &reached.rate,
+                step: reached.step,
+                factorisation: None,
+            },
             watches,
             work,
         )
@@ -149,7 +154,7 @@ impl Start<'_> {
         };
         let passed: Vec<Watch> = watches.iter().copied().filter(negative).collect();
         let first = self.joinable(&watches, &passed, step)?;
-        let far = Far { state: &state, rate: &rate, step, factorisation: Some(&factorisation) };
+        let far = UnchangedStepEnd { state: &state, rate: &rate, step, factorisation: Some(&factorisation) };
         Some(self.join(&first, far, &watches, work))
     }
 
@@ -161,10 +166,16 @@ impl Start<'_> {
         passed.iter().map(|watch| self.smooth(*watch)).collect()
     }
 
-    fn join(&self, first: &BTreeSet<usize>, far: Far<'_>, watches: &[Watch], work: &mut Work) -> Option<Joined> {
+    fn join(
+        &self,
+        first: &BTreeSet<usize>,
+        far: UnchangedStepEnd<'_>,
+        watches: &[Watch],
+        work: &mut Work,
+    ) -> Option<Joined> {
         let mut serving = None;
         let EndModes { modes, corrected, asked, negative } = self.end_modes(first, far, &mut serving, work)?;
-        let end = Start { modes: &modes, ..*self };
+        let end = StepStart { modes: &modes, ..*self };
         let system = ModeSystem::new(self.loading, &modes, self.state);
         let closing = ArcLengthEquation { from: self.state, step: far.step };
         let reached = end.directed(system, corrected, &closing, &mut serving, work).ok()?;
@@ -216,7 +227,7 @@ impl Start<'_> {
     fn end_modes(
         &self,
         first: &BTreeSet<usize>,
-        far: Far<'_>,
+        far: UnchangedStepEnd<'_>,
         last: &mut Option<SystemFactorisation>,
         work: &mut Work,
     ) -> Option<EndModes> {

@@ -2,19 +2,19 @@
 
 use crate::continuation::path::classification::{self, Came};
 use crate::continuation::path::stages;
-use crate::continuation::path::step_control::{self, Accepted};
+use crate::continuation::path::step_control::{self, AcceptedStep};
 use crate::continuation::path_state::progress::{Arriving, Phase};
 use crate::continuation::path_state::tolerances::ROUND_OFF;
-use crate::continuation::path_state::trace::{Emitted, Trace};
+use crate::continuation::path_state::trace::{Emitted, PathTrace};
 use crate::mechanics::contact::{Reaction, all_continue};
 use crate::mechanics::problem::natural_residual;
 use crate::result::increment::{Increment, PointKind};
 use crate::result::stop_reason::StopReason;
 use crate::step::event_functions::Watch;
-use crate::step::interpolation::Placed;
+use crate::step::interpolation::PlacedPoint;
 
 /// Makes a reached point the present one and says what it is; none where the way on would break the laws of contact.
-pub(crate) fn accept(trace: &mut Trace<'_>, accepted: Accepted) -> Option<Increment> {
+pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Option<Increment> {
     let reached = accepted.reached;
     trace.at.totals.add(&accepted.added);
     trace.at.counts.increments += 1;
@@ -95,7 +95,7 @@ pub(crate) fn accept(trace: &mut Trace<'_>, accepted: Accepted) -> Option<Increm
         arriving: Some(arriving),
     });
     if !changes && let Some(rate) = begun {
-        trace.at.here.before = Placed::before(before, rate, &trace.at.here.state);
+        trace.at.here.before = PlacedPoint::before(before, rate, &trace.at.here.state);
     }
     trace.at.stage_over = stage_ends && trace.at.phase == Phase::Running;
     Some(row)

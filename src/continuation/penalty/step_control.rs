@@ -1,8 +1,10 @@
 //! How far a step goes: the predictor's direction, steps that are cut, and the increment that ends a stage.
 
-use crate::continuation::penalty::increment::{Change, Control, Converged, Failure, Limits};
+use crate::continuation::penalty::increment::{
+    Converged, IncrementConstraint, Limits, PenaltyFailure, PenaltyIncrement,
+};
 use crate::continuation::penalty::iterator::RegularisedPath;
-use crate::continuation::penalty::system::Point;
+use crate::continuation::penalty::system::PenaltyPoint;
 use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::structure::elements::bar::COLLAPSED;
 use crate::model::request::LoadSign;
@@ -14,7 +16,7 @@ const MOST_GROWTH: f64 = 2.0;
 /// Iterations tried, over those desired.
 const PATIENCE: u64 = 4;
 
-pub(super) struct Accepted {
+pub(super) struct AcceptedPenaltyStep {
     pub converged: Converged,
     /// It lies exactly at a load or displacement at which the stage ends.
     pub stage_ends: bool,
@@ -39,17 +41,17 @@ impl RegularisedPath<'_> {
     }
 
     /// Increments are tried, shorter and shorter, until one converges.
-    pub(super) fn step(&mut self) -> Result<Accepted, StopReason> {
+    pub(super) fn step(&mut self) -> Result<AcceptedPenaltyStep, StopReason> {
         let bounds = &self.scene.analysis.arc_length;
         let (least, most) = (bounds.min, bounds.max);
         let Some((by_load, sign)) = self.direction() else { return Err(self.reason_of_failure()) };
         let load_weight = self.settings.load_weight;
-        let tangent = Change { displacement: by_load * sign, load: sign };
+        let tangent = PenaltyIncrement { displacement: by_load * sign, load: sign };
         let length = tangent.size(load_weight);
         let mut size = self.step.min(most);
         loop {
             let predictor = tangent.scaled(size / length);
-            let found = self.correct(predictor, Control::ArcLength { size, load_weight });
+            let found = self.correct(predictor, IncrementConstraint::ArcLength { size, load_weight });
             match found.and_then(|converged| self.end_stage_if_passed(converged, size)) {
                 Ok(accepted) => {
                     let needed = accepted.converged.iterations.max(1) as f64;
@@ -57,8 +59,8 @@ impl RegularisedPath<'_> {
                     self.step = (size * factor).clamp(least, most);
                     return Ok(accepted);
                 }
-                Err(Failure::Cancelled) => return Err(StopReason::Cancelled),
-                Err(Failure::Singular | Failure::NoRoot | Failure::NotConverged) => {
+                Err(PenaltyFailure::Cancelled) => return Err(StopReason::Cancelled),
+                Err(PenaltyFailure::Singular | PenaltyFailure::NoRoot | PenaltyFailure::NotConverged) => {
                     size *= 0.5;
                     if size < least {
                         return Err(self.reason_of_failure());
@@ -68,7 +70,11 @@ impl RegularisedPath<'_> {
         }
     }
 
-    fn correct(&mut self, predictor: Change, control: Control) -> Result<Converged, Failure> {
+    fn correct(
+        &mut self,
+        predictor: PenaltyIncrement,
+        control: IncrementConstraint,
+    ) -> Result<Converged, PenaltyFailure> {
         let mut work = self.totals.work;
         let limits = Limits {
             tolerance: self.settings.tolerance,
@@ -82,7 +88,7 @@ impl RegularisedPath<'_> {
     }
 
     /// Solves once more under control of the load or displacement at which the stage ends, if the increment passed it.
-    fn end_stage_if_passed(&mut self, converged: Converged, size: f64) -> Result<Accepted, Failure> {
+    fn end_stage_if_passed(&mut self, converged: Converged, size: f64) -> Result<AcceptedPenaltyStep, PenaltyFailure> {
         let fraction = |end: &End| {
             let left = end.left(&converged.point)?;
             if left > AT_END {
@@ -93,21 +99,21 @@ impl RegularisedPath<'_> {
         };
         let passed = self.scene.stages[self.stage].ends.iter().filter_map(|end| Some((*end, fraction(end)?)));
         let Some((end, fraction)) = passed.min_by(|a, b| a.1.total_cmp(&b.1)) else {
-            return Ok(Accepted { converged, stage_ends: false });
+            return Ok(AcceptedPenaltyStep { converged, stage_ends: false });
         };
         let control = match end {
-            End::Load { bound, .. } => Control::Load(bound),
-            End::Displacement { freedom, bound, .. } => Control::Displacement { freedom, value: bound },
+            End::Load { bound, .. } => IncrementConstraint::Load(bound),
+            End::Displacement { freedom, bound, .. } => IncrementConstraint::Displacement { freedom, value: bound },
             End::LimitPoints(_) | End::ContactChanges(_) | End::Increments(_) => {
-                return Ok(Accepted { converged, stage_ends: false });
+                return Ok(AcceptedPenaltyStep { converged, stage_ends: false });
             }
         };
         let last = self.correct(converged.change.scaled(fraction), control)?;
         // Another branch may have that load, too, further away.
         if last.change.size(self.settings.load_weight) > size * (1.0 + AT_END) {
-            return Err(Failure::NotConverged);
+            return Err(PenaltyFailure::NotConverged);
         }
-        Ok(Accepted { converged: last, stage_ends: true })
+        Ok(AcceptedPenaltyStep { converged: last, stage_ends: true })
     }
 
     /// Why steps became too short.
@@ -125,7 +131,7 @@ impl RegularisedPath<'_> {
 
 impl End {
     /// How far a point is from a load or displacement bound; negative beyond it.
-    pub(super) fn left(&self, point: &Point) -> Option<f64> {
+    pub(super) fn left(&self, point: &PenaltyPoint) -> Option<f64> {
         match *self {
             Self::Load { bound, sign } => Some(sign * (bound - point.state.load)),
             Self::Displacement { freedom, bound, sign } => Some(sign * (bound - point.state.displacement[freedom])),

@@ -26,8 +26,8 @@ use crate::model::{InputError, InputErrors};
 use crate::resources::budget::{self, Breach, Budget, Taken};
 use crate::result::displacements::Displacements;
 use crate::result::plan::Plan;
-use build::{Contacts, Scaled, build_contacts, build_stage, build_structure, first_contacts};
-use scales::{Scales, scales};
+use build::{Contacts, ScaledModel, build_contacts, build_stage, build_structure, first_contacts};
+use scales::{RequestScales, scales};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -127,13 +127,13 @@ impl Scene {
         let numbers: HashMap<&str, usize> =
             model.nodes.keys().enumerate().map(|(number, name)| (name.as_str(), number)).collect();
         let scales = scales(model, &request.analysis, &numbers, like);
-        let Scales { length, force, resistances, stretched, structure } = scales;
+        let RequestScales { length, force, resistances, stretched, structure } = scales;
         let structure = build_structure(model, &numbers, length, force, structure.as_ref().or(like));
         let mut left_out = Vec::new();
         let Contacts { contacts, contact_names, reported, corners } =
             build_contacts(model, &numbers, length, &structure, &mut left_out);
         let first_contacts = first_contacts(&reported, contacts.len());
-        let scaled = Scaled {
+        let scaled = ScaledModel {
             model,
             analysis: &request.analysis,
             numbers: &numbers,

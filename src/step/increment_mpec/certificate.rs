@@ -30,7 +30,7 @@ use crate::complementarity::mpec::{Activities, PairActivity, Problem, Settings};
 use crate::mechanics::contact::vector::{Vector, add, dot};
 use crate::mechanics::contact::{Frame, Mode};
 use crate::mechanics::problem::state::{Rate, State};
-use crate::step::increment_mpec::{Foreseen, InReach, IncrementProgram, LOOSEST, Named, tangent_components};
+use crate::step::increment_mpec::{ForeseenModes, InReach, IncrementProgram, LOOSEST, Named, tangent_components};
 use nalgebra::DVector;
 
 /// Least member that is positive by itself, and how much larger it is than what the point leaves violated.
@@ -53,7 +53,7 @@ pub struct Arrived<'s> {
 
 /// One member of a pair along the increment.
 #[derive(Debug, Clone, Copy)]
-struct Member {
+struct PairMember {
     start: f64,
     end: f64,
     /// Rates at both ends, by the arc length over the one sought.
@@ -64,7 +64,7 @@ struct Member {
     is_slip: bool,
 }
 
-impl Member {
+impl PairMember {
     fn is_positive(&self, clear: f64) -> bool {
         let [first, last] = self.rates;
         let is_small = self.end.abs() <= clear;
@@ -95,26 +95,26 @@ impl Member {
 }
 
 impl IncrementProgram<'_> {
-    /// What is shown of an increment of the arc length sought that ends at a point: [`Foreseen::Named`] where it solves the
-    /// program with `γ1` adapted to it, [`Foreseen::EndsAfter`] where it lies past the end of its mode,
-    /// [`Foreseen::Unclear`] where nothing is.
+    /// What is shown of an increment of the arc length sought that ends at a point: [`ForeseenModes::Named`] where it solves the
+    /// program with `γ1` adapted to it, [`ForeseenModes::EndsAfter`] where it lies past the end of its mode,
+    /// [`ForeseenModes::Unclear`] where nothing is.
     ///
     /// `forward` is the direction at the start in the mode that leads to the end, and the equations of that mode are
     /// regular at the end.
-    pub fn solved_at(&mut self, end: Arrived<'_>, present: &[Mode]) -> Foreseen {
+    pub fn solved_at(&mut self, end: Arrived<'_>, present: &[Mode]) -> ForeseenModes {
         if self.reach.iter().any(|entry| entry.tangents == 2) || self.is_any_node_pressed_twice(end.state) {
-            return Foreseen::Unclear;
+            return ForeseenModes::Unclear;
         }
         let frames: Vec<Frame> = self.reach.iter().map(|entry| self.loading.frame(entry.contact, end.state)).collect();
         let x = self.variables_of(end.state, &frames);
         if !x.iter().all(|value| value.is_finite()) {
-            return Foreseen::Unclear;
+            return ForeseenModes::Unclear;
         }
         match self.clear_activities(&x, end, &frames) {
             Ok(activities) if self.is_strict_solution(&x, end) => {
-                Foreseen::Named(Named::of(&self.read(&x, &activities, present)))
+                ForeseenModes::Named(Named::of(&self.read(&x, &activities, present)))
             }
-            Ok(_) => Foreseen::Unclear,
+            Ok(_) => ForeseenModes::Unclear,
             Err(refused) => refused,
         }
     }
@@ -148,7 +148,12 @@ impl IncrementProgram<'_> {
     }
 
     /// Which member of each pair is zero, where the variables are feasible and that is certain.
-    fn clear_activities(&self, x: &DVector<f64>, end: Arrived<'_>, frames: &[Frame]) -> Result<Activities, Foreseen> {
+    fn clear_activities(
+        &self,
+        x: &DVector<f64>,
+        end: Arrived<'_>,
+        frames: &[Frame],
+    ) -> Result<Activities, ForeseenModes> {
         let mut equality = DVector::zeros(self.equalities());
         self.equality_values(x, &mut equality);
         // Not `max`, which passes over what is not a number.
@@ -163,7 +168,7 @@ impl IncrementProgram<'_> {
         let is_near = end.error <= LOOSEST * self.step;
         if !is_feasible || !is_near {
             // Where there is no force against a slip, it may have either sense.
-            let is_broken = |[first, second]: &[Member; 2]| {
+            let is_broken = |[first, second]: &[PairMember; 2]| {
                 let turns = second.is_slip && first.end.abs() <= feasible;
                 [first.end < -feasible, second.end < -feasible && (turns || !second.is_slip)]
             };
@@ -171,9 +176,9 @@ impl IncrementProgram<'_> {
             let parts = broken.filter(|(_, is_broken)| *is_broken).map(|(member, _)| member.ends_after());
             let part = parts.fold(f64::INFINITY, f64::min);
             let is_past = is_near && left <= feasible && part > 0.0 && part < 1.0;
-            return Err(if is_past { Foreseen::EndsAfter(part) } else { Foreseen::Unclear });
+            return Err(if is_past { ForeseenModes::EndsAfter(part) } else { ForeseenModes::Unclear });
         }
-        let activity = |[first, second]: &[Member; 2]| match (first.is_positive(clear), second.is_positive(clear)) {
+        let activity = |[first, second]: &[PairMember; 2]| match (first.is_positive(clear), second.is_positive(clear)) {
             (true, false) => PairActivity::SecondZero,
             (false, true) => PairActivity::FirstZero,
             (false, false) => PairActivity::BothZero,
@@ -187,17 +192,17 @@ impl IncrementProgram<'_> {
             rest = others;
             let is_apart = own[0] == PairActivity::SecondZero;
             if !is_clear(&own[0]) || !is_apart && !own.iter().all(is_clear) {
-                return Err(Foreseen::Unclear);
+                return Err(ForeseenModes::Unclear);
             }
         }
         Ok(Activities { pairs, cones: Vec::new() })
     }
 
     /// Both members of every pair, in the order of [`Problem::pair_values`].
-    fn members(&self, x: &DVector<f64>, end: Arrived<'_>, frames: &[Frame]) -> Vec<[Member; 2]> {
+    fn members(&self, x: &DVector<f64>, end: Arrived<'_>, frames: &[Frame]) -> Vec<[PairMember; 2]> {
         let per_force = self.step / self.force;
         let of_forces = self.forward.largest_reaction().max(end.rate.largest_reaction()) * per_force;
-        let member = |start: f64, end: f64, rates: [f64; 2], rounding: f64, is_slip: bool| Member {
+        let member = |start: f64, end: f64, rates: [f64; 2], rounding: f64, is_slip: bool| PairMember {
             start,
             end,
             rates,

@@ -1,11 +1,11 @@
 //! The program solved by itself, with nothing known of its end: the products relaxed to `ε`, `ε` falling to its last value,
 //! each relaxed program by sequential quadratic programming, each quadratic program by the interior-point method.
 
-use crate::complementarity::mpec::{self, Finish, Iterate, Settings, Status};
+use crate::complementarity::mpec::{self, Finish, Settings, SolveStatus, SolverIterate};
 use crate::mechanics::contact::Mode;
 use crate::mechanics::problem::state::State;
 use crate::resources::cancel::CancelFlag;
-use crate::step::increment_mpec::{Counts, InReach, IncrementProgram, LOOSEST};
+use crate::step::increment_mpec::{InReach, IncrementProgram, LOOSEST, ProgramCounts};
 use nalgebra::DVector;
 
 /// The largest first bound on the products, the factor from one to the next, and the last.
@@ -21,7 +21,7 @@ const ENUMERATED: usize = 6;
 
 /// Where the program ends.
 #[derive(Debug, Clone)]
-pub struct End {
+pub struct ProgramEnd {
     /// The contact modes at the end of the increment.
     pub modes: Vec<Mode>,
     /// The state there, as exact as the program is.
@@ -35,10 +35,10 @@ pub struct End {
 /// One search.
 pub struct Searched {
     /// `None` where no stationary point was found.
-    pub end: Option<End>,
-    pub counts: Counts,
+    pub end: Option<ProgramEnd>,
+    pub counts: ProgramCounts,
     /// Where they are kept.
-    pub iterates: Vec<Iterate>,
+    pub iterates: Vec<SolverIterate>,
 }
 
 /// One contact at an iterate, dimensionless.
@@ -120,18 +120,19 @@ impl IncrementProgram<'_> {
             ..default
         };
         let Ok(solution) = mpec::solve(self, start, &settings, cancel) else {
-            return Searched { end: None, counts: Counts::default(), iterates: Vec::new() };
+            return Searched { end: None, counts: ProgramCounts::default(), iterates: Vec::new() };
         };
-        let mut counts = Counts::default();
+        let mut counts = ProgramCounts::default();
         counts.add(&solution);
         let iterates = solution.iterates.clone();
-        let is_found = matches!(solution.status, Status::Solved | Status::PatternSettled | Status::Feasible);
+        let is_found =
+            matches!(solution.status, SolveStatus::Solved | SolveStatus::PatternSettled | SolveStatus::Feasible);
         let end = is_found.then(|| {
             let variables = solution.x.clone();
             let size = self.size(&variables);
             let state = self.end_state(&variables);
             let modes = self.end(solution, present, cancel).modes;
-            End { modes, state, variables, size }
+            ProgramEnd { modes, state, variables, size }
         });
         Searched { end, counts, iterates }
     }

@@ -1,7 +1,7 @@
 //! What is read off the end of an increment: contact modes, the state, and the state made exact.
 
 use crate::complementarity::mpec::semismooth::{self, Polished};
-use crate::complementarity::mpec::{Activities, ConeActivity, PairActivity, Problem, Solution};
+use crate::complementarity::mpec::{Activities, ConeActivity, PairActivity, Problem, ProgramSolution};
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::problem::state::State;
 use crate::resources::cancel::CancelFlag;
@@ -18,7 +18,7 @@ const SAME_WAY: f64 = 0.9;
 impl IncrementProgram<'_> {
     /// What a solution of the program says. Where there are cones, it is first made exact, so that directions of slip are
     /// those of the increment's own end.
-    pub(super) fn end(&self, solution: Solution, present: &[Mode], cancel: &CancelFlag) -> Named {
+    pub(super) fn end(&self, solution: ProgramSolution, present: &[Mode], cancel: &CancelFlag) -> Named {
         if let Some(exact) = self.exact_end(&solution.x, cancel)
             && let Ok(activities) = Activities::at(self, &exact, SAME)
         {

@@ -149,7 +149,7 @@ fn off_balance(scene: &OneBar, base: &State, end: &State, step: f64) -> f64 {
 /// What a march along the tractrix took and how far off it ended.
 struct March {
     increments: u64,
-    counts: Counts,
+    counts: ProgramCounts,
     /// Largest distance from the exact track.
     error: f64,
     worst_residual: f64,
@@ -164,7 +164,8 @@ fn march(step: f64) -> March {
     let mut base = scene.at_rest();
     let mut forward = scene.rate([1.0, 0.0, 0.0], 0.5);
     let mut modes = vec![Mode::Stick];
-    let mut march = March { increments: 0, counts: Counts::default(), error: 0.0, worst_residual: 0.0, seconds: 0.0 };
+    let mut march =
+        March { increments: 0, counts: ProgramCounts::default(), error: 0.0, worst_residual: 0.0, seconds: 0.0 };
     let clock = std::time::Instant::now();
     let track = |w: f64| {
         let c = friction * h;
@@ -380,7 +381,11 @@ fn karush_kuhn_tucker_conditions_of_the_increment_in_space() {
     program.arc_weight = 1.3;
     let start = program.variables_at(&forward);
     let solution = mpec::solve(&program, &start, &Settings::warm(), &CancelFlag::default()).unwrap();
-    assert!(matches!(solution.status, mpec::Status::Solved | mpec::Status::Feasible), "{:?}", solution.status);
+    assert!(
+        matches!(solution.status, mpec::SolveStatus::Solved | mpec::SolveStatus::Feasible),
+        "{:?}",
+        solution.status
+    );
     let x = &solution.x;
     let moved = x.rows(0, 4).norm();
     assert!(moved > 0.05, "the step must not be zero, {moved}");

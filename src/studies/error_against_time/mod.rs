@@ -59,5 +59,5 @@ pub use events::EventsFound;
 pub use plan::{Plan, plan};
 pub use reference::{Reference, ReferenceKind};
 pub use report::{MethodOrder, Report};
-pub use row::{Row, Run, Time};
+pub use row::{Run, StudyRow, Time};
 pub use run::run;

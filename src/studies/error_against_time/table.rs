@@ -3,7 +3,7 @@
 use crate::output::columns::{name_of, push_columns};
 use crate::output::csv::CsvRow;
 use crate::studies::error_against_time::report::Report;
-use crate::studies::error_against_time::row::Row;
+use crate::studies::error_against_time::row::StudyRow;
 use std::fmt::Write;
 
 const COLUMNS: [&str; 26] = [
@@ -50,7 +50,7 @@ impl Report {
         Ok(text)
     }
 
-    fn csv_row(&self, row: &Row) -> serde_json::Result<String> {
+    fn csv_row(&self, row: &StudyRow) -> serde_json::Result<String> {
         let mut line = CsvRow::default();
         let count = |line: &mut CsvRow, count: u64| line.raw(&count.to_string());
         count(&mut line, row.row);
@@ -115,7 +115,7 @@ impl Report {
     }
 }
 
-fn text_row(row: &Row) -> serde_json::Result<Vec<String>> {
+fn text_row(row: &StudyRow) -> serde_json::Result<Vec<String>> {
     let events = &row.events;
     let others = if events.others > 0 { format!(" +{}", events.others) } else { String::new() };
     let scientific = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.1e}"));

@@ -1,7 +1,7 @@
 //! A held node made from the borders of a matrix, and what it does to the matrix.
 
 use crate::algebra::sparse::constrained_nodes::held_node::{Coupling, HeldNode, gathered, times, transposed_times};
-use crate::algebra::sparse::constrained_nodes::nodal_constraints::{Friction, Holding, Places};
+use crate::algebra::sparse::constrained_nodes::nodal_constraints::{Friction, Holding, IndexList};
 use crate::algebra::sparse::factors::bordered_matrix::Bordered;
 use nalgebra::{Matrix3, Vector3};
 use smallvec::SmallVec;
@@ -172,7 +172,7 @@ impl HeldNode {
 }
 
 /// The node's unknowns, those first that are held where border rows hold as many as they name.
-fn held_first(matrix: &Bordered, holding: &Holding) -> Places {
+fn held_first(matrix: &Bordered, holding: &Holding) -> IndexList {
     if holding.rows.len() == holding.unknowns.len() {
         return holding.unknowns.clone();
     }

@@ -17,11 +17,11 @@ pub(crate) mod nodes;
 
 pub(super) use crate::algebra::sparse::constrained_nodes::held_node::{Coupling, HeldNode, Matrices, gathered, times};
 pub(super) use crate::algebra::sparse::constrained_nodes::nodal_constraints::Friction;
-pub use crate::algebra::sparse::constrained_nodes::nodal_constraints::{Holding, Holdings, Places};
+pub use crate::algebra::sparse::constrained_nodes::nodal_constraints::{Holding, Holdings, IndexList};
 
 use crate::algebra::sparse::constrained_nodes::node_cache::Nodes;
 use crate::algebra::sparse::factors::bordered_matrix::Bordered;
-use crate::algebra::sparse::factors::entries::Entries;
+use crate::algebra::sparse::factors::entries::SparseEntries;
 use smallvec::SmallVec;
 use std::sync::Arc;
 
@@ -98,8 +98,8 @@ impl Elimination {
     }
 
     /// Entries of a row or a column over the rotated unknowns: those that are not held, and those that are.
-    pub fn rotated(&self, entries: &[(usize, f64)]) -> (Entries, Entries) {
-        let (mut free, mut held) = (Entries::with_capacity(entries.len()), Entries::new());
+    pub fn rotated(&self, entries: &[(usize, f64)]) -> (SparseEntries, SparseEntries) {
+        let (mut free, mut held) = (SparseEntries::with_capacity(entries.len()), SparseEntries::new());
         let mut at_nodes: SmallVec<[(u32, u32, f64); 8]> = SmallVec::new();
         for (unknown, value) in entries {
             match self.nodes.place_of[*unknown] {
@@ -130,13 +130,18 @@ impl Elimination {
     }
 
     /// Splits entries of a column of the rotated matrix: adds to those that are not held, and to those that are.
-    pub fn split_into(&self, entries: impl Iterator<Item = (usize, f64)>, free: &mut Entries, held: &mut Entries) {
+    pub fn split_into(
+        &self,
+        entries: impl Iterator<Item = (usize, f64)>,
+        free: &mut SparseEntries,
+        held: &mut SparseEntries,
+    ) {
         entries.for_each(|entry| if self.is_held(entry.0) { &mut *held } else { &mut *free }.push(entry));
     }
 
     /// What entries of a column at held unknowns become in the other equations of their nodes, where friction is folded.
-    pub fn folded(&self, held: &[(usize, f64)]) -> Entries {
-        let mut free = Entries::new();
+    pub fn folded(&self, held: &[(usize, f64)]) -> SparseEntries {
+        let mut free = SparseEntries::new();
         for (unknown, value) in held {
             let Some((node, local)) = self.nodes.place_of[*unknown] else { continue };
             let node = &self.nodes()[node as usize];

@@ -4,7 +4,7 @@ use crate::algebra::sparse::constrained_nodes::held_node::HeldNode;
 use crate::algebra::sparse::constrained_nodes::nodal_constraints::{Friction, Holdings};
 use crate::algebra::sparse::constrained_nodes::node_cache::Nodes;
 use crate::algebra::sparse::factors::bordered_matrix::Bordered;
-use crate::algebra::sparse::factors::entries::Entries;
+use crate::algebra::sparse::factors::entries::SparseEntries;
 use std::sync::Arc;
 
 /// Numbers of a node, and entries of its borders, as they mostly are in the plane.
@@ -62,7 +62,7 @@ impl Nodes {
     /// Whether the entries of the rows and columns of the holdings are these.
     fn has_borders(&self, matrix: &Bordered, holdings: &Holdings) -> bool {
         let mut left = &self.borders[..];
-        let is_next = |list: &Entries| {
+        let is_next = |list: &SparseEntries| {
             let Some((own, rest)) = left.split_at_checked(list.len()) else { return false };
             left = rest.get(1..).unwrap_or_default();
             own == &list[..] && rest.first().is_some_and(|(length, _)| *length == list.len())
@@ -84,7 +84,7 @@ fn enters(matrix: &Bordered) -> Vec<bool> {
 }
 
 /// The rows and columns of holdings.
-fn borders<'a>(matrix: &'a Bordered, holdings: &'a Holdings) -> impl Iterator<Item = &'a Entries> {
+fn borders<'a>(matrix: &'a Bordered, holdings: &'a Holdings) -> impl Iterator<Item = &'a SparseEntries> {
     holdings.iter().flat_map(|holding| {
         let rows = holding.rows.iter().map(|row| &matrix.lower[*row]);
         rows.chain(holding.columns.iter().map(|column| &matrix.right[*column]))

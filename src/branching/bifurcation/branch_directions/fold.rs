@@ -30,7 +30,7 @@
 
 use crate::algebra::{nearest_null_space, null_space_as_scaled};
 use crate::branching::bifurcation::branch_directions::null_derivatives::Derivative;
-use crate::branching::bifurcation::branch_directions::{MOST_MODES, NO_CURVATURE, Null, Point};
+use crate::branching::bifurcation::branch_directions::{BranchingPoint, MOST_MODES, NO_CURVATURE, Null};
 use crate::complementarity::rates::combinations::combinations;
 use crate::mechanics::equations::scaled_rows::{RANK, scaled_rows};
 use crate::mechanics::problem::state::Rate;
@@ -48,11 +48,11 @@ const DEPENDENT: f64 = 1e-6;
 pub(super) struct Fold {
     /// `f`
     pub flat: Null,
-    parts: Vec<Part>,
+    parts: Vec<FoldProjection>,
 }
 
 /// What is at a fold.
-struct Part {
+struct FoldProjection {
     /// `g`
     steep: Null,
     /// `(2 |σ/c|)^½`
@@ -77,12 +77,12 @@ impl Fold {
     }
 
     /// The parts with arms.
-    fn wide(&self) -> impl Iterator<Item = &Part> {
+    fn wide(&self) -> impl Iterator<Item = &FoldProjection> {
         self.parts.iter().filter(|part| part.width > NO_WIDTH)
     }
 
     /// The direction in which the arms leave; `None` where those of some part leave in the other sense.
-    pub fn ahead(&self, point: &Point<'_>) -> Option<Null> {
+    pub fn ahead(&self, point: &BranchingPoint<'_>) -> Option<Null> {
         let sense = self.wide().next()?.sense;
         let agree = self.wide().all(|part| part.sense == sense);
         agree.then(|| point.combined(std::slice::from_ref(&self.flat), &[sense]))
@@ -100,7 +100,7 @@ impl Fold {
     }
 
     fn sum(&self, shares: impl Iterator<Item = f64>) -> Option<Rate> {
-        let scaled = |(part, share): (&Part, f64)| {
+        let scaled = |(part, share): (&FoldProjection, f64)| {
             let mut rate = part.steep.rate.clone();
             rate.scale(share);
             rate
@@ -112,7 +112,7 @@ impl Fold {
     }
 }
 
-impl Point<'_> {
+impl BranchingPoint<'_> {
     /// The null vectors of the mode, orthonormal in displacements and load.
     pub(super) fn orthonormal_nulls(&self) -> Option<Vec<Null>> {
         let (matrix, _) = scaled_rows(&self.system, self.here.loading, self.here.state);
@@ -230,7 +230,7 @@ impl Point<'_> {
         let force = self.system.matrix(self.here.state).rows(0, left.nrows()) * &flat.values;
         let part = |((left, steep), curvature): ((DVectorView<'_, f64>, Null), &f64)| {
             let ratio = left.dot(&force) / curvature;
-            Part { steep, width: (2.0 * ratio.abs()).sqrt(), sense: -ratio.signum() }
+            FoldProjection { steep, width: (2.0 * ratio.abs()).sqrt(), sense: -ratio.signum() }
         };
         let parts = left.column_iter().zip(steep).zip(&curvatures).map(part).collect();
         Fold { flat, parts }

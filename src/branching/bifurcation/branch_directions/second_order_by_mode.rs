@@ -17,9 +17,11 @@
 //! Asked for where the path would end: it takes a few factorisations for every combination of modes.
 
 use crate::branching::bifurcation::branch_directions::fold::{Fold, Plane};
-use crate::branching::bifurcation::branch_directions::{AtHand, Here, MOST_MODES, Null, Point, RADII, SAME};
-use crate::branching::directions::candidate::{Candidate, is_mechanism};
-use crate::branching::directions::choice::Choice;
+use crate::branching::bifurcation::branch_directions::{
+    AtHand, BranchingPoint, MOST_MODES, Null, RADII, SAME, SingularPoint,
+};
+use crate::branching::directions::candidate::{CandidateDirection, is_mechanism};
+use crate::branching::directions::choice::DirectionChoice;
 use crate::branching::directions::trial_step::confirm_by;
 use crate::complementarity::rates::combinations::{combinations, count};
 use crate::mechanics::contact::Mode;
@@ -31,8 +33,8 @@ use crate::mechanics::problem::state::{Rate, State};
 use crate::step::event_functions::{self, Watch};
 
 /// What is left of the directions at a point when each is told at second order.
-pub struct Told {
-    pub options: Vec<Choice>,
+pub struct SecondOrderFindings {
+    pub options: Vec<DirectionChoice>,
     /// Some mode has a continuum of directions at second order, too, or of some neither second order nor a step tells.
     pub unclear: bool,
 }
@@ -50,18 +52,18 @@ const NO_CHANGE: f64 = 1e-6;
 const SHARP: f64 = 1e-5;
 
 /// A direction of a mode.
-struct Way {
+struct ModeDirection {
     null: Null,
     /// `q₂`, where the direction is the only one of its mode.
     bend: Option<Rate>,
     /// The equations of the mode have more than one null vector, or as good as that.
     is_singular: bool,
-    /// See [`Choice`].
+    /// See [`DirectionChoice`].
     beside: Option<Rate>,
 }
 
 /// What is to be said of a direction.
-enum Verdict {
+enum DirectionVerdict {
     Holds,
     Fails,
     Unclear,
@@ -69,18 +71,18 @@ enum Verdict {
 
 /// Every direction of every mode of the contacts that can change; `None` where these are too many or not of a kind for
 /// which second order is known (slip in a plane, corners, and motions that no element resists).
-pub fn in_each_mode(here: Here<'_>) -> Option<Told> {
+pub fn in_each_mode(here: SingularPoint<'_>) -> Option<SecondOrderFindings> {
     let options = modes_of_each(here)?;
     if count(&options) > MOST_MODES || !here.loading.structure.allows_dense() {
         return None;
     }
-    let mut told = Told { options: Vec::new(), unclear: false };
+    let mut told = SecondOrderFindings { options: Vec::new(), unclear: false };
     for modes in combinations(&options, MOST_MODES) {
         let system = ModeSystem::new(here.loading, &modes, here.state);
         if system.has_tracks() {
             return None;
         }
-        let point = Point { here, modes: &modes, system, eigenvalues: None, nulls: None };
+        let point = BranchingPoint { here, modes: &modes, system, eigenvalues: None, nulls: None };
         for way in point.ways(&mut told.unclear)? {
             if is_mechanism(here.loading, here.state, &way.null.rate) {
                 return None;
@@ -92,7 +94,7 @@ pub fn in_each_mode(here: Here<'_>) -> Option<Told> {
 }
 
 /// What each contact may do.
-fn modes_of_each(here: Here<'_>) -> Option<Vec<Vec<Mode>>> {
+fn modes_of_each(here: SingularPoint<'_>) -> Option<Vec<Vec<Mode>>> {
     let of_contact = |(contact, standing): (usize, &Standing)| {
         let tangents = here.loading.contacts[contact].tangents();
         match standing {
@@ -110,10 +112,10 @@ fn modes_of_each(here: Here<'_>) -> Option<Vec<Vec<Mode>>> {
     here.standings.iter().enumerate().map(of_contact).collect()
 }
 
-impl Point<'_> {
+impl BranchingPoint<'_> {
     /// The directions of the mode, each in both senses; `None` where nothing moves along one, and where they are three and
     /// more that are not those of parts that nothing joins.
-    fn ways(&self, unclear: &mut bool) -> Option<Vec<Way>> {
+    fn ways(&self, unclear: &mut bool) -> Option<Vec<ModeDirection>> {
         let nulls = self.orthonormal_nulls()?;
         match &nulls[..] {
             [only] => {
@@ -139,7 +141,7 @@ impl Point<'_> {
     }
 
     /// The directions that leave a fold.
-    fn leaving(&self, fold: &Fold) -> Vec<Way> {
+    fn leaving(&self, fold: &Fold) -> Vec<ModeDirection> {
         if fold.is_straight() {
             return self.both(&fold.flat, self.bend_at_fold(&fold.flat), true).into();
         }
@@ -147,9 +149,9 @@ impl Point<'_> {
         fold.arms().into_iter().map(|arm| Self::along_arm(&ahead, arm)).collect()
     }
 
-    fn both(&self, null: &Null, bend: Option<Rate>, is_singular: bool) -> [Way; 2] {
+    fn both(&self, null: &Null, bend: Option<Rate>, is_singular: bool) -> [ModeDirection; 2] {
         // The bend is the same in both senses.
-        [1.0, -1.0].map(|sense| Way {
+        [1.0, -1.0].map(|sense| ModeDirection {
             null: self.combined(std::slice::from_ref(null), &[sense]),
             bend: bend.clone(),
             is_singular,
@@ -157,17 +159,17 @@ impl Point<'_> {
         })
     }
 
-    fn along_arm(ahead: &Null, beside: Rate) -> Way {
-        Way { null: ahead.clone(), bend: None, is_singular: true, beside: Some(beside) }
+    fn along_arm(ahead: &Null, beside: Rate) -> ModeDirection {
+        ModeDirection { null: ahead.clone(), bend: None, is_singular: true, beside: Some(beside) }
     }
 
     /// Of directions that bend at once, those that hold there, as they go on after it.
-    fn past_bend(&self, fold: &Fold, ways: [Way; 2]) -> Vec<Way> {
+    fn past_bend(&self, fold: &Fold, ways: [ModeDirection; 2]) -> Vec<ModeDirection> {
         if fold.is_straight() {
             return self.leaving(fold);
         }
-        let holding = ways.into_iter().filter(|way| !matches!(self.verdict(way), Verdict::Fails));
-        let past = |way: Way| Some(Self::along_arm(&fold.ahead(self)?, fold.beside(&way.null.rate)?));
+        let holding = ways.into_iter().filter(|way| !matches!(self.verdict(way), DirectionVerdict::Fails));
+        let past = |way: ModeDirection| Some(Self::along_arm(&fold.ahead(self)?, fold.beside(&way.null.rate)?));
         holding.filter_map(past).collect()
     }
 
@@ -178,7 +180,7 @@ impl Point<'_> {
 
     /// The same of the line along a fold, where what is at its fold stays there and the rest of the structure bends the path.
     fn bend_at_fold(&self, flat: &Null) -> Option<Rate> {
-        let Here { loading, state, .. } = self.here;
+        let SingularPoint { loading, state, .. } = self.here;
         let mut system = ModeSystem::new(loading, self.modes, state);
         let bend = if system.hold_still(state, &flat.rate) { self.bend_by(&system, flat) } else { None };
         bend.filter(|bend| bend.size() > NO_CHANGE)
@@ -192,11 +194,11 @@ impl Point<'_> {
     }
 
     /// Adds a direction, if it holds and is not known.
-    fn tell(&self, way: Way, told: &mut Told) {
-        let Here { loading, state, force_scale, .. } = self.here;
+    fn tell(&self, way: ModeDirection, told: &mut SecondOrderFindings) {
+        let SingularPoint { loading, state, force_scale, .. } = self.here;
         let rate = &way.null.rate;
         let forces = rate.largest_reaction().max(f64::MIN_POSITIVE);
-        let is_known = |known: &Choice| {
+        let is_known = |known: &DirectionChoice| {
             let mut pairs = known.rate.reactions.iter().zip(&rate.reactions);
             known.rate.product(rate) > SAME
                 && known.beside == way.beside
@@ -204,11 +206,11 @@ impl Point<'_> {
         };
         let later = way.bend.as_ref().map_or(0.0, |bend| bend.load / bend.size().max(f64::MIN_POSITIVE));
         let confirmed = match self.verdict(&way) {
-            Verdict::Fails => return,
+            DirectionVerdict::Fails => return,
             _ if told.options.iter().any(is_known) => return,
-            Verdict::Holds => Some((self.modes.to_vec(), later)),
-            Verdict::Unclear => {
-                let candidate = Candidate {
+            DirectionVerdict::Holds => Some((self.modes.to_vec(), later)),
+            DirectionVerdict::Unclear => {
+                let candidate = CandidateDirection {
                     rate: rate.clone(),
                     forces: Vec::new(),
                     modes: self.modes.to_vec(),
@@ -226,15 +228,15 @@ impl Point<'_> {
             return;
         };
         let choice = self.choice(way.null.rate, modes, Some(later), false);
-        told.options.push(Choice { is_singular: way.is_singular, beside: way.beside, ..choice });
+        told.options.push(DirectionChoice { is_singular: way.is_singular, beside: way.beside, ..choice });
     }
 
     /// Whether the inequalities of the mode hold along a direction.
-    fn verdict(&self, way: &Way) -> Verdict {
-        let Here { loading, state, force_scale, .. } = self.here;
+    fn verdict(&self, way: &ModeDirection) -> DirectionVerdict {
+        let SingularPoint { loading, state, force_scale, .. } = self.here;
         let rate = &way.null.rate;
         let bent = way.bend.as_ref().map(|bend| Bent::new(self, rate, bend));
-        let mut verdict = Verdict::Holds;
+        let mut verdict = DirectionVerdict::Holds;
         for watch in event_functions::of_mode(loading, self.modes, state, rate) {
             let value = watch.value(loading, self.modes, state, rate);
             let slope = watch.slope(loading, self.modes, state, rate);
@@ -247,10 +249,10 @@ impl Point<'_> {
             let doubt = IN_DOUBT + second.map_or(0.0, |second| LOCATED * second.abs());
             let rising = if first.abs() > doubt { first } else { second.unwrap_or(0.0) };
             if rising < 0.0 {
-                return Verdict::Fails;
+                return DirectionVerdict::Fails;
             }
             if rising == 0.0 {
-                verdict = Verdict::Unclear;
+                verdict = DirectionVerdict::Unclear;
             }
         }
         verdict
@@ -272,7 +274,7 @@ impl Bent {
     /// How far along the path what is of second order is looked at, over the radius of its bend.
     const WAY: f64 = 1e-4;
 
-    fn new(point: &Point<'_>, rate: &Rate, bend: &Rate) -> Self {
+    fn new(point: &BranchingPoint<'_>, rate: &Rate, bend: &Rate) -> Self {
         let way = Self::WAY / bend.size().max(1.0);
         let mut ahead = rate.clone();
         ahead.add(bend, way);
@@ -289,8 +291,8 @@ impl Bent {
     }
 
     /// The change of a quantity that is a rate, or of the rate of another, by arc length; 0 where it is rounding.
-    fn change(&self, point: &Point<'_>, watch: Watch) -> f64 {
-        let Here { loading, state, .. } = point.here;
+    fn change(&self, point: &BranchingPoint<'_>, watch: Watch) -> f64 {
+        let SingularPoint { loading, state, .. } = point.here;
         let at = |state, rate| {
             let slope = watch.slope(loading, point.modes, state, rate);
             slope.unwrap_or_else(|| watch.value(loading, point.modes, state, rate))

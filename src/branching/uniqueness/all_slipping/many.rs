@@ -2,11 +2,11 @@
 
 use crate::algebra::dense::assembly::Sink;
 use crate::algebra::sparse::{Bordered, Holdings, SparseFactorisation};
-use crate::branching::uniqueness::all_slipping::{DEFINITE, MARGIN, RESTING, Reduced};
+use crate::branching::uniqueness::all_slipping::{DEFINITE, MARGIN, RESTING, ReducedUnknowns};
 use crate::mechanics::problem::state::Rate;
 use nalgebra::DVector;
 
-impl Reduced<'_> {
+impl ReducedUnknowns<'_> {
     /// The same with sparse matrices: where the whole is definite, or is so across the load (see `sparse_uniqueness`).
     pub(super) fn stuck_among_many(&self, incoming: &Rate) -> Option<Rate> {
         let structure = self.loading.structure;

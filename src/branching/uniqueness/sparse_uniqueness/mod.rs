@@ -22,13 +22,13 @@ pub(crate) mod proof;
 mod tests;
 
 use crate::branching::directions::arrival_tangent::Incoming;
-use crate::branching::directions::candidate::Found;
+use crate::branching::directions::candidate::FoundDirections;
 use crate::complementarity::rate_search::branch_and_bound::Effort;
 use crate::mechanics::multi_contact::contact_status::Standing;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::State;
 use equations::Equations;
-use proof::Control;
+use proof::DistinguishingQuantity;
 
 /// Contacts that can change up to which the search of every combination is as quick: where all are on their cones, and
 /// where some touch, each of which has four ways to go on.
@@ -51,7 +51,7 @@ pub(crate) fn directions(
     standings: &[Standing],
     incoming: Option<Incoming<'_>>,
     effort: Effort<'_>,
-    found: &mut Found,
+    found: &mut FoundDirections,
 ) -> bool {
     if !effort.certify {
         return false;
@@ -72,7 +72,7 @@ pub(crate) fn directions(
         if proof.as_ref().is_some_and(|proof| equations.has_none(sign, proof)) {
             continue;
         }
-        let control = proof.as_ref().map_or(Control::Load, |proof| proof.control);
+        let control = proof.as_ref().map_or(DistinguishingQuantity::Load, |proof| proof.control);
         let candidate = equations.solve(control, sign, incoming);
         complete &= proof.as_ref().zip(candidate.as_ref()).is_some_and(|(proof, one)| equations.is_only(one, proof));
         candidates.extend(candidate);
@@ -82,7 +82,7 @@ pub(crate) fn directions(
     }
     if let Some(proof) = proof.filter(|_| complete) {
         equations.add_free_motions(&proof, found);
-        if proof.control == Control::Power {
+        if proof.control == DistinguishingQuantity::Power {
             candidates.extend(equations.at_rest());
         }
     }

@@ -3,9 +3,9 @@
 use crate::algebra::SystemFactorisation;
 use crate::algebra::dense::assembly::Sink;
 use crate::branching::directions::arrival_tangent::Incoming;
-use crate::branching::directions::candidate::{Alternative, Candidate, WEAK};
-use crate::branching::uniqueness::sparse_uniqueness::equations::{Changing, Equations};
-use crate::branching::uniqueness::sparse_uniqueness::proof::Control;
+use crate::branching::directions::candidate::{Alternative, CandidateDirection, WEAK};
+use crate::branching::uniqueness::sparse_uniqueness::equations::{ChangingContact, Equations};
+use crate::branching::uniqueness::sparse_uniqueness::proof::DistinguishingQuantity;
 use crate::complementarity::rates::ray::IN_DOUBT;
 use crate::mechanics::contact::vector::{Vector, dot, scaled};
 use crate::mechanics::contact::{Mode, Reaction, all_continue};
@@ -30,7 +30,12 @@ pub(super) struct Doubt {
 
 impl Equations<'_> {
     /// A direction with this sign of what controls it, by block pivoting.
-    pub fn solve(&self, control: Control, sign: f64, incoming: Option<Incoming<'_>>) -> Option<Candidate> {
+    pub fn solve(
+        &self,
+        control: DistinguishingQuantity,
+        sign: f64,
+        incoming: Option<Incoming<'_>>,
+    ) -> Option<CandidateDirection> {
         let mut modes = self.held.clone();
         if incoming.is_some_and(|incoming| self.value_of(control, incoming.rate) * sign > 0.0) {
             for one in &self.changing {
@@ -39,16 +44,18 @@ impl Equations<'_> {
         }
         for round in 0..ROUNDS + ROUNDS_ONE_BY_ONE {
             let (mut rate, by) = match (control, incoming) {
-                (Control::Load, _) if modes == self.held && self.may_rest() => self.rest(sign).map(|rate| (rate, None)),
+                (DistinguishingQuantity::Load, _) if modes == self.held && self.may_rest() => {
+                    self.rest(sign).map(|rate| (rate, None))
+                }
                 (_, Some(incoming)) if incoming.modes.is_some_and(|of| all_continue(of, &modes)) => {
                     Some((incoming.rate.clone(), None))
                 }
-                (Control::Power, Some(incoming)) => self.line(&modes, Some(incoming.rate)),
+                (DistinguishingQuantity::Power, Some(incoming)) => self.line(&modes, Some(incoming.rate)),
                 _ => None,
             }
             .or_else(|| self.line(&modes, None))?;
             let value = self.value_of(control, &rate);
-            if value.abs() <= WEAK * self.largest_load() * rate.size() && control == Control::Power {
+            if value.abs() <= WEAK * self.largest_load() * rate.size() && control == DistinguishingQuantity::Power {
                 return None;
             }
             rate.scale(sign * value.signum());
@@ -58,7 +65,7 @@ impl Equations<'_> {
                     let at_hand = by.map(|by| AtHand::of(self.loading, by)).unwrap_or_default();
                     let candidate = self.candidate(rate, modes, doubts);
                     // What is in doubt has other modes than those that were solved in.
-                    return Some(if candidate.weak { candidate } else { Candidate { at_hand, ..candidate } });
+                    return Some(if candidate.weak { candidate } else { CandidateDirection { at_hand, ..candidate } });
                 }
                 Some(next) if round < ROUNDS => modes = next,
                 Some(next) => {
@@ -83,7 +90,7 @@ impl Equations<'_> {
     }
 
     /// The directions along which nothing moves and the load alone changes.
-    pub fn at_rest(&self) -> Vec<Candidate> {
+    pub fn at_rest(&self) -> Vec<CandidateDirection> {
         let zero = WEAK * self.largest_load();
         let rests = |sign: f64| {
             if !self.loads().all(|(load, is_cone)| load.abs() <= zero || (is_cone && load * sign < 0.0)) {
@@ -126,8 +133,8 @@ impl Equations<'_> {
     }
 
     /// The order in which a search lists candidates: held where they can be, the first contact counting fastest.
-    pub fn order(&self, candidate: &Candidate) -> Vec<u8> {
-        let rank = |one: &Changing| match (candidate.modes[one.contact], one.direction) {
+    pub fn order(&self, candidate: &CandidateDirection) -> Vec<u8> {
+        let rank = |one: &ChangingContact| match (candidate.modes[one.contact], one.direction) {
             (Mode::Stick, _) => 0,
             (Mode::Slip { direction }, None) if dot(&direction, &one.frame.tangents[0]) < 0.0 => 2,
             (Mode::Slip { .. }, _) => 1,
@@ -136,10 +143,10 @@ impl Equations<'_> {
         self.changing.iter().rev().map(rank).collect()
     }
 
-    fn value_of(&self, control: Control, rate: &Rate) -> f64 {
+    fn value_of(&self, control: DistinguishingQuantity, rate: &Rate) -> f64 {
         match control {
-            Control::Load => rate.load,
-            Control::Power => self.power(&self.columns_of(rate)),
+            DistinguishingQuantity::Load => rate.load,
+            DistinguishingQuantity::Power => self.power(&self.columns_of(rate)),
         }
     }
 
@@ -172,15 +179,15 @@ impl Equations<'_> {
         (next, doubts)
     }
 
-    fn speed(&self, one: &Changing, direction: &Vector, rate: &Rate) -> f64 {
+    fn speed(&self, one: &ChangingContact, direction: &Vector, rate: &Rate) -> f64 {
         dot(direction, &self.loading.relative_rate(one.contact, rate))
     }
 
     /// Of each contact that can change, whether what must not be negative in its mode is positive beyond round-off.
-    pub fn strict(&self, candidate: &Candidate) -> Vec<bool> {
+    pub fn strict(&self, candidate: &CandidateDirection) -> Vec<bool> {
         let rate = &candidate.rate;
         let force = WEAK * rate.largest_reaction().max(f64::MIN_POSITIVE);
-        let is_strict = |one: &Changing| {
+        let is_strict = |one: &ChangingContact| {
             let (margin, tolerance, _) = self.margin(one, candidate.modes[one.contact], rate, force);
             margin > tolerance
         };
@@ -189,7 +196,7 @@ impl Equations<'_> {
 
     /// The least of what must not be negative in a mode, what of it is round-off (`force` of a force), and the mode to try
     /// where it is negative.
-    fn margin(&self, one: &Changing, mode: Mode, rate: &Rate, force: f64) -> (f64, f64, Mode) {
+    fn margin(&self, one: &ChangingContact, mode: Mode, rate: &Rate, force: f64) -> (f64, f64, Mode) {
         let (reaction, data) = (&rate.reactions[one.contact], &self.loading.contacts[one.contact]);
         let tolerance = if matches!(mode, Mode::Stick) || data.tangents() == 0 { force } else { WEAK };
         let (margin, other) = match (mode, one.direction) {
@@ -220,7 +227,7 @@ impl Equations<'_> {
 
     /// With the contacts that might as well be in the other mode, at first order or nearly so; where they can stick they
     /// do.
-    pub fn candidate(&self, rate: Rate, mut modes: Vec<Mode>, doubts: Vec<Doubt>) -> Candidate {
+    pub fn candidate(&self, rate: Rate, mut modes: Vec<Mode>, doubts: Vec<Doubt>) -> CandidateDirection {
         let weak = doubts.iter().any(|doubt| doubt.weak);
         let mut alternatives: Vec<Vec<Alternative>> = Vec::with_capacity(doubts.len());
         for doubt in &doubts {
@@ -238,6 +245,6 @@ impl Equations<'_> {
         });
         let dissipation = dissipation.sum();
         let forces = whole_rates(self.loading, self.state, &rate);
-        Candidate { rate, forces, modes, alternatives, weak, dissipation, at_hand: AtHand::default() }
+        CandidateDirection { rate, forces, modes, alternatives, weak, dissipation, at_hand: AtHand::default() }
     }
 }

@@ -27,8 +27,8 @@
 //! complement on `f` and the border `q` then has a negative determinant.
 
 use crate::algebra::sparse::factors::cholesky::{Definite, Triangle};
-use crate::branching::directions::candidate::{Candidate, Found, WEAK, is_mechanism};
-use crate::branching::uniqueness::sparse_uniqueness::equations::{Changing, Equations};
+use crate::branching::directions::candidate::{CandidateDirection, FoundDirections, WEAK, is_mechanism};
+use crate::branching::uniqueness::sparse_uniqueness::equations::{ChangingContact, Equations};
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::problem::state::Rate;
 
@@ -41,7 +41,7 @@ const MOST_WEIGHT: f64 = 0.999;
 
 /// What tells one solution from another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Control {
+pub(super) enum DistinguishingQuantity {
     /// The sign of the load rate.
     Load,
     /// The sign of the load's power.
@@ -51,7 +51,7 @@ pub(super) enum Control {
 /// Each sign of the control has one solution at the most, but for motions, one entry a column of `A`, that nothing
 /// resists.
 pub(super) struct Proof {
-    pub control: Control,
+    pub control: DistinguishingQuantity,
     /// Of largest entry about 1.
     null: Option<Vec<f64>>,
     /// Columns that nothing acts on.
@@ -99,22 +99,24 @@ impl Equations<'_> {
                 }
             }
         };
-        let is_rough = |one: &Changing| one.direction.is_none() && self.loading.contacts[one.contact].friction > 0.0;
+        let is_rough =
+            |one: &ChangingContact| one.direction.is_none() && self.loading.contacts[one.contact].friction > 0.0;
         if self.changing.iter().any(is_rough) {
             self.take_touching(&inverse, null.as_deref(), &mut lower)?;
         } else if null.is_none() {
-            return Some(Proof { control: Control::Load, null, loose });
+            return Some(Proof { control: DistinguishingQuantity::Load, null, loose });
         }
         if let Some(null) = &null {
             // Definite across the motion: held where it is fastest.
             hold(&mut lower, fastest(null)?);
         }
-        Definite::new(self.size, &lower, -MARGIN).map(|_| Proof { control: Control::Load, null, loose })
+        Definite::new(self.size, &lower, -MARGIN).map(|_| Proof { control: DistinguishingQuantity::Load, null, loose })
     }
 
     /// That the symmetric part is definite across the load.
     fn proof_by_power(&self, lower: Triangle, incoming: &Rate) -> Option<Proof> {
-        let is_smooth = |one: &Changing| one.direction.is_some() || self.loading.contacts[one.contact].friction == 0.0;
+        let is_smooth =
+            |one: &ChangingContact| one.direction.is_some() || self.loading.contacts[one.contact].friction == 0.0;
         if self.loading.pattern.moves_boundary() || !self.changing.iter().all(is_smooth) {
             return None;
         }
@@ -143,7 +145,11 @@ impl Equations<'_> {
         // -det, and the sizes of its terms.
         let value = (coupling[0] - coupling[1]).powi(2) + (stiffness[0] - stiffness[1]) * softness;
         let size = (coupling[0].abs() + coupling[1].abs()).powi(2) + (own.abs() + stiffness[1].abs()) * softness;
-        (value > CLEAR * size).then_some(Proof { control: Control::Power, null: None, loose: Vec::new() })
+        (value > CLEAR * size).then_some(Proof {
+            control: DistinguishingQuantity::Power,
+            null: None,
+            loose: Vec::new(),
+        })
     }
 
     /// The motion that nothing resists.
@@ -233,13 +239,13 @@ impl Equations<'_> {
     }
 
     /// Whether a solution is the only one with its sign of the load rate, and says all that first order can tell.
-    pub fn is_only(&self, candidate: &Candidate, proof: &Proof) -> bool {
+    pub fn is_only(&self, candidate: &CandidateDirection, proof: &Proof) -> bool {
         let strict = self.strict(candidate);
-        let is_told = |(one, strict): (&Changing, &bool)| *strict || one.direction.is_some();
+        let is_told = |(one, strict): (&ChangingContact, &bool)| *strict || one.direction.is_some();
         if !self.changing.iter().zip(&strict).all(is_told) {
             return false;
         }
-        let holds = |(one, strict): (&Changing, &bool), speed: &dyn Fn(usize) -> f64| {
+        let holds = |(one, strict): (&ChangingContact, &bool), speed: &dyn Fn(usize) -> f64| {
             let moves = |column: usize| speed(column).abs() > WEAK;
             let normal = one.column + 1;
             *strict
@@ -268,7 +274,7 @@ impl Equations<'_> {
 
     /// Whether no solution has this sign of the control.
     pub fn has_none(&self, sign: f64, proof: &Proof) -> bool {
-        if proof.control == Control::Power {
+        if proof.control == DistinguishingQuantity::Power {
             let mut one_sided = vec![false; self.size];
             for one in &self.changing {
                 one_sided[if one.direction.is_some() { one.column } else { one.column + 1 }] = true;
@@ -289,7 +295,7 @@ impl Equations<'_> {
             .any(|column| load[column] * sign > WEAK * force);
         for sense in [1.0, -1.0] {
             is_pulled |= proof.null.as_ref().is_some_and(|null| {
-                let opens = |one: &Changing| match one.direction {
+                let opens = |one: &ChangingContact| match one.direction {
                     Some(_) => sense * null[one.column] >= -WEAK,
                     None => {
                         let friction = self.loading.contacts[one.contact].friction;
@@ -303,7 +309,7 @@ impl Equations<'_> {
     }
 
     /// Adds the motions that nothing resists and no contact hinders. Of a family all that are loose is one.
-    pub fn add_free_motions(&self, proof: &Proof, found: &mut Found) {
+    pub fn add_free_motions(&self, proof: &Proof, found: &mut FoundDirections) {
         if proof.free_motions() > 1 {
             (found.degenerate, found.mechanism) = (true, true);
         }
@@ -315,8 +321,9 @@ impl Equations<'_> {
         }
         let back = |motion: &Vec<f64>| motion.iter().map(|value| -value).collect();
         for motion in motions.iter().flat_map(|motion| [motion.clone(), back(motion)]) {
-            let is_open =
-                |one: &Changing| motion[if one.direction.is_some() { one.column } else { one.column + 1 }] >= -WEAK;
+            let is_open = |one: &ChangingContact| {
+                motion[if one.direction.is_some() { one.column } else { one.column + 1 }] >= -WEAK
+            };
             if self.changing.iter().all(is_open) {
                 let mut modes = self.held.clone();
                 self.changing.iter().for_each(|one| modes[one.contact] = self.mode_of_motion(one, &motion, WEAK));

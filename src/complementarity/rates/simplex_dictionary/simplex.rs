@@ -1,7 +1,7 @@
 //! The dual simplex method on a dictionary, and coordinates that it forces to zero.
 
 use crate::complementarity::rates::simplex_dictionary::{
-    Dictionary, Feasibility, INFEASIBLE, NOTHING, Place, SMALL_PIVOT, Variable,
+    Dictionary, Feasibility, INFEASIBLE, NOTHING, SMALL_PIVOT, Variable, VariablePosition,
 };
 use crate::resources::budget;
 
@@ -86,7 +86,7 @@ impl Dictionary {
             for column in forced {
                 if let Variable::Form(form) = self.columns[column] {
                     self.drop_column(column);
-                    self.place[form] = Place::Zero;
+                    self.place[form] = VariablePosition::Zero;
                 }
             }
             row = 0;

@@ -3,7 +3,7 @@
 use crate::algebra::dense::assembly::Sink;
 use crate::algebra::sparse::{Bordered, Holdings, SparseFactorisation};
 use crate::algebra::{Factorisation, Stiffener, SystemFactorisation};
-use crate::continuation::scene::characteristic_stiffness::{Response, Tie};
+use crate::continuation::scene::characteristic_stiffness::{StiffnessEstimate, Tie};
 use crate::mechanics::structure::elements::Stretching;
 use nalgebra::DMatrix;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ const MOST_APART: usize = 400;
 /// Entries of a factor (of 8 bytes) up to which a structure is asked what resists: a scale is not worth more memory.
 const MOST_ENTRIES: usize = 30_000_000;
 
-impl Response<'_> {
+impl StiffnessEstimate<'_> {
     /// `p`: the forces on the unknowns for unit load with none of them moving.
     pub(super) fn pushed(&self, displacement: &[f64], ties: &[Tie]) -> Vec<f64> {
         let structure = self.structure;

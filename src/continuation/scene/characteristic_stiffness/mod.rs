@@ -48,7 +48,7 @@ const MOST_CLOSINGS: usize = 2;
 pub(super) fn resisting(structure: &Structure, contacts: &[Contact], pattern: &LoadPattern) -> Option<f64> {
     let held = contacts.iter().map(|contact| contact.gap(&[0.0; 3]) <= CLOSED).collect();
     let still = vec![0.0; structure.freedoms()];
-    let mut response = Response {
+    let mut response = StiffnessEstimate {
         structure,
         contacts,
         pattern,
@@ -108,7 +108,7 @@ struct Motion {
     load: f64,
 }
 
-struct Response<'a> {
+struct StiffnessEstimate<'a> {
     structure: &'a Structure,
     contacts: &'a [Contact],
     pattern: &'a LoadPattern,
@@ -138,7 +138,7 @@ impl Tie {
     }
 }
 
-impl Response<'_> {
+impl StiffnessEstimate<'_> {
     /// Holds the contacts that a motion passes through; whether there are any.
     fn close(&mut self, motion: &Motion) -> bool {
         let mut closes = false;
