@@ -90,24 +90,8 @@ impl Blocks {
         if count > MOST_BORDERS {
             return None;
         }
-        let mut shifts = vec![SparseEntries::new(); count];
-        for Coupling { node, row, border, value } in elimination.couplings() {
-            let node = &elimination.nodes()[*node];
-            let shift = &mut shifts[kept_columns.binary_search(border).ok()?];
-            let constraint = elimination.matrices(node).constraint.chunks_exact(node.held().len()).nth(*row)?;
-            shift.extend(node.held().zip(constraint).map(|(unknown, entry)| (unknown, -entry * value)));
-        }
-        let (mut columns, mut held_parts) = (Vec::with_capacity(count), Vec::with_capacity(count));
-        for (column, shift) in kept_columns.iter().zip(&shifts) {
-            let (mut free, mut held) = elimination.rotated(&matrix.right[*column]);
-            free.extend(elimination.folded(&held));
-            for (unknown, motion) in shift {
-                let moved = elimination.stiffness_at(*unknown)?.iter().map(|(row, value)| (*row, value * motion));
-                elimination.split_into(moved, &mut free, &mut held);
-            }
-            columns.push(free);
-            held_parts.push(held);
-        }
+        let shifts = shifts_of_held(&elimination, &kept_columns)?;
+        let (columns, held_parts) = columns_of_rest(&elimination, &matrix.right, &kept_columns, &shifts)?;
         let (mut rows, mut kept_rows) = (Vec::with_capacity(count), Vec::with_capacity(count));
         let mut corner = DMatrix::zeros(count, count);
         for (row, held) in equilibrium.iter().enumerate() {
@@ -246,6 +230,40 @@ impl Blocks {
         upper.copy_from_slice(motion);
         lower.copy_from_slice(&borders[..lower.len()]);
     }
+}
+
+/// For each kept column the motions of held unknowns by it.
+fn shifts_of_held(elimination: &Elimination, kept_columns: &[usize]) -> Option<Vec<SparseEntries>> {
+    let mut shifts = vec![SparseEntries::new(); kept_columns.len()];
+    for Coupling { node, row, border, value } in elimination.couplings() {
+        let node = &elimination.nodes()[*node];
+        let shift = &mut shifts[kept_columns.binary_search(border).ok()?];
+        let constraint = elimination.matrices(node).constraint.chunks_exact(node.held().len()).nth(*row)?;
+        shift.extend(node.held().zip(constraint).map(|(unknown, entry)| (unknown, -entry * value)));
+    }
+    Some(shifts)
+}
+
+/// The kept columns of the borders: their entries in the other equations and those in held ones.
+fn columns_of_rest(
+    elimination: &Elimination,
+    right: &[SparseEntries],
+    kept_columns: &[usize],
+    shifts: &[SparseEntries],
+) -> Option<(Vec<SparseEntries>, Vec<SparseEntries>)> {
+    let count = kept_columns.len();
+    let (mut columns, mut held_parts) = (Vec::with_capacity(count), Vec::with_capacity(count));
+    for (column, shift) in kept_columns.iter().zip(shifts) {
+        let (mut free, mut held) = elimination.rotated(&right[*column]);
+        free.extend(elimination.folded(&held));
+        for (unknown, motion) in shift {
+            let moved = elimination.stiffness_at(*unknown)?.iter().map(|(row, value)| (*row, value * motion));
+            elimination.split_into(moved, &mut free, &mut held);
+        }
+        columns.push(free);
+        held_parts.push(held);
+    }
+    Some((columns, held_parts))
 }
 
 /// A border row over what is left of the unknowns and over the kept columns.

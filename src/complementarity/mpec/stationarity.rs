@@ -174,28 +174,59 @@ pub fn classify<P: Problem + ?Sized>(
     at.update_derivatives(problem, x).map_err(NoVerdict::NotFinite)?;
     let bounds = problem.bounds();
     let judge = StationarityTest { at: &at, x, bounds: &bounds, cancel };
-    let with_biactive = |choose: &dyn Fn(usize) -> PairTreatment| {
-        let mut treatments = pattern.clone();
-        for (place, &i) in both.iter().enumerate() {
-            treatments.pairs[i] = choose(place);
-        }
-        treatments
-    };
-
     if cones.is_empty()
-        && let Some(relaxed) = judge.project(with_biactive(&|_| PairTreatment::BothFree), steps)?
+        && let Some(relaxed) = judge.project(with_biactive(pattern, &both, &|_| PairTreatment::BothFree), steps)?
         && relaxed.is_zero
     {
         let multipliers = Some(relaxed.multipliers);
         return Ok(StationarityVerdict { kind: StationarityKind::Strong, multipliers, descent: None });
     }
 
+    let BranchProjections { best, stationary, all_judged } =
+        project_onto_branches(&judge, pattern, &both, &cones, settings.enumeration_limit, steps)?;
+    let descent = |best: Option<(f64, TreatmentPattern)>| best.map(|(_, treatments)| treatments);
+    if !cones.is_empty() {
+        let kind = match (all_judged && cones_complete && best.is_none(), &stationary) {
+            (true, _) => StationarityKind::Branch,
+            (false, Some(_)) => StationarityKind::OneBranch,
+            (false, None) => StationarityKind::Unknown,
+        };
+        return Ok(StationarityVerdict { kind, multipliers: stationary, descent: descent(best) });
+    }
+    let tight = judge.project(with_biactive(pattern, &both, &|_| PairTreatment::BothZero), steps)?;
+    let weak = match &tight {
+        Some(projection) if projection.is_zero => sign_kind(&projection.multipliers, &both, settings.tolerance),
+        Some(_) | None => StationarityKind::Unknown,
+    };
+    let kind = if all_judged && best.is_none() { StationarityKind::Branch } else { weak };
+    let multipliers = tight.filter(|projection| projection.is_zero).map(|projection| projection.multipliers);
+    Ok(StationarityVerdict { kind, multipliers, descent: descent(best) })
+}
+
+/// What the projections onto the branches that meet at a point tell.
+struct BranchProjections {
+    /// The branch along which the objective falls most, if it does along one, with that objective.
+    best: Option<(f64, TreatmentPattern)>,
+    /// Multipliers of the first branch that is stationary.
+    stationary: Option<Multipliers>,
+    all_judged: bool,
+}
+
+/// Projects onto every branch, if they are not too many.
+fn project_onto_branches(
+    judge: &StationarityTest<'_>,
+    pattern: &TreatmentPattern,
+    both: &[usize],
+    cones: &[(usize, Vec<ConeTreatment>)],
+    enumeration_limit: usize,
+    steps: &mut StepSolver,
+) -> Result<BranchProjections, NoVerdict> {
     let mut best: Option<(f64, TreatmentPattern)> = None;
     let mut stationary: Option<Multipliers> = None;
     let choices: Vec<usize> =
         both.iter().map(|_| 2).chain(cones.iter().map(|(_, treatments)| treatments.len())).collect();
     let branches = choices.iter().try_fold(1_usize, |count, choices| count.checked_mul(*choices));
-    let bound = 1 << settings.enumeration_limit.min(ENUMERATION_CEILING);
+    let bound = 1 << enumeration_limit.min(ENUMERATION_CEILING);
     let branches = branches.filter(|branches| *branches <= bound);
     let mut all_judged = branches.is_some();
     if let Some(branches) = branches {
@@ -204,7 +235,7 @@ pub fn classify<P: Problem + ?Sized>(
             let digit = |place: usize| branch / choices[..place].iter().product::<usize>() % choices[place];
             let zero_member =
                 |place: usize| if digit(place) == 0 { PairTreatment::FirstZero } else { PairTreatment::SecondZero };
-            let mut treatments = with_biactive(&zero_member);
+            let mut treatments = with_biactive(pattern, both, &zero_member);
             for (place, (pair, of_cone)) in cones.iter().enumerate() {
                 treatments.cones[*pair] = of_cone[digit(both.len() + place)];
             }
@@ -221,23 +252,20 @@ pub fn classify<P: Problem + ?Sized>(
             }
         }
     }
-    let descent = |best: Option<(f64, TreatmentPattern)>| best.map(|(_, treatments)| treatments);
-    if !cones.is_empty() {
-        let kind = match (all_judged && cones_complete && best.is_none(), &stationary) {
-            (true, _) => StationarityKind::Branch,
-            (false, Some(_)) => StationarityKind::OneBranch,
-            (false, None) => StationarityKind::Unknown,
-        };
-        return Ok(StationarityVerdict { kind, multipliers: stationary, descent: descent(best) });
+    Ok(BranchProjections { best, stationary, all_judged })
+}
+
+/// A pattern with the biactive pairs treated by their place among these.
+fn with_biactive(
+    pattern: &TreatmentPattern,
+    both: &[usize],
+    choose: &dyn Fn(usize) -> PairTreatment,
+) -> TreatmentPattern {
+    let mut treatments = pattern.clone();
+    for (place, &i) in both.iter().enumerate() {
+        treatments.pairs[i] = choose(place);
     }
-    let tight = judge.project(with_biactive(&|_| PairTreatment::BothZero), steps)?;
-    let weak = match &tight {
-        Some(projection) if projection.is_zero => sign_kind(&projection.multipliers, &both, settings.tolerance),
-        Some(_) | None => StationarityKind::Unknown,
-    };
-    let kind = if all_judged && best.is_none() { StationarityKind::Branch } else { weak };
-    let multipliers = tight.filter(|projection| projection.is_zero).map(|projection| projection.multipliers);
-    Ok(StationarityVerdict { kind, multipliers, descent: descent(best) })
+    treatments
 }
 
 /// The kind that the signs of the tightened program's multipliers prove.

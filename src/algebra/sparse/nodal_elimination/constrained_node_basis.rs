@@ -23,31 +23,12 @@ impl HeldNode {
         numbers: &mut Vec<f64>,
         coupled: &mut Vec<Coupling>,
     ) -> Option<Self> {
-        let n = matrix.pattern.size();
         let (count, held) = (holding.unknowns.len(), holding.rows.len());
         if held == 0 || held > count || holding.columns.len() != held || !same_columns(matrix, &holding.unknowns) {
             return None;
         }
         let unknowns = held_first(matrix, holding);
-        let local = |unknown: usize| unknowns.iter().position(|own| *own == unknown);
-        let (mut rows, mut columns) = (Matrix3::zeros(), Matrix3::zeros());
-        let mut couplings: SmallVec<[Coupling; 3]> = SmallVec::new();
-        for (index, row) in holding.rows.iter().enumerate() {
-            for (column, value) in &matrix.lower[*row] {
-                if *column < n {
-                    rows[(index, local(*column)?)] += value;
-                } else if is_reaction[*column - n] {
-                    return None;
-                } else {
-                    couplings.push(Coupling { node: place, row: index, border: *column - n, value: *value });
-                }
-            }
-        }
-        for (index, column) in holding.columns.iter().enumerate() {
-            for (row, value) in &matrix.right[*column] {
-                columns[(local(*row)?, index)] += value;
-            }
-        }
+        let LocalBlocks { rows, columns, couplings } = local_blocks(matrix, holding, is_reaction, &unknowns, place)?;
         let is_first = held == count || rows.columns(held, count - held).iter().all(|value| *value == 0.0);
         let rotation = if is_first { Matrix3::identity() } else { completed(&rows, held, count)? };
         let largest = columns.amax();
@@ -169,6 +150,44 @@ impl HeldNode {
             }
         }
     }
+}
+
+/// What the borders that hold a node have at its unknowns.
+struct LocalBlocks {
+    rows: Matrix3<f64>,
+    columns: Matrix3<f64>,
+    /// What they have at other borders.
+    couplings: SmallVec<[Coupling; 3]>,
+}
+
+fn local_blocks(
+    matrix: &Bordered,
+    holding: &Holding,
+    is_reaction: &[bool],
+    unknowns: &[usize],
+    place: usize,
+) -> Option<LocalBlocks> {
+    let n = matrix.pattern.size();
+    let local = |unknown: usize| unknowns.iter().position(|own| *own == unknown);
+    let (mut rows, mut columns) = (Matrix3::zeros(), Matrix3::zeros());
+    let mut couplings: SmallVec<[Coupling; 3]> = SmallVec::new();
+    for (index, row) in holding.rows.iter().enumerate() {
+        for (column, value) in &matrix.lower[*row] {
+            if *column < n {
+                rows[(index, local(*column)?)] += value;
+            } else if is_reaction[*column - n] {
+                return None;
+            } else {
+                couplings.push(Coupling { node: place, row: index, border: *column - n, value: *value });
+            }
+        }
+    }
+    for (index, column) in holding.columns.iter().enumerate() {
+        for (row, value) in &matrix.right[*column] {
+            columns[(local(*row)?, index)] += value;
+        }
+    }
+    Some(LocalBlocks { rows, columns, couplings })
 }
 
 /// The node's unknowns, those first that are held where border rows hold as many as they name.

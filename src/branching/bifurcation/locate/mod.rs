@@ -11,8 +11,8 @@
 pub(crate) mod bordered_newton;
 pub(crate) mod folded_singularity;
 
-use crate::algebra::null_space_as_scaled;
 use crate::algebra::scalar_root::find_root;
+use crate::algebra::{Determinant, null_space_as_scaled};
 use crate::branching::bifurcation::singularity::null_vectors::{NullVectors, SINGULAR};
 use crate::branching::bifurcation::singularity::test_functions::{
     Signature, SignatureChange, bordered_determinant, counted_tangent,
@@ -116,20 +116,7 @@ fn find(
     let origin = PlacedPoint { place: 0.0, state: start.state.clone(), rate: start.rate.clone() };
     let end = placed(start, reached);
     let reference = bordered_determinant(&system, start.loading, &end.state, &unit(&end.rate))?;
-    let value = |state: &State, rate: &Rate| -> Option<f64> {
-        match change {
-            SignatureChange::None => None,
-            SignatureChange::Count { before, net } => {
-                let values = eigenvalues(start, state)?;
-                if net > 0 { values.get(before).copied() } else { values.get(before.checked_sub(1)?).map(|v| -v) }
-            }
-            SignatureChange::Odd => {
-                // Negative on the far side, of the size of the determinant there.
-                let here = bordered_determinant(&system, start.loading, state, rate)?;
-                Some(-here.sign * reference.sign * (here.logarithm - reference.logarithm).min(300.0).exp())
-            }
-        }
-    };
+    let value = |state: &State, rate: &Rate| crossing_value(start, &system, change, &reference, state, rate);
     let (mut left, mut right) = (origin.clone(), end.clone());
     let mut root = root_between(&left, &right, &value)?;
     let mut best: Option<(f64, Located)> = None;
@@ -181,6 +168,29 @@ fn find(
     // With sparse matrices a start that is singular itself may look regular.
     let is_start = start.loading.structure.layout().is_some() && located.point.step <= AT_START;
     (residual <= ACCEPTED_RESIDUAL && !is_start).then_some(located)
+}
+
+/// A quantity that falls through zero at the crossing; `reference` is the determinant at the end of the step.
+fn crossing_value(
+    start: &StepStart<'_>,
+    system: &ModeSystem<'_>,
+    change: SignatureChange,
+    reference: &Determinant,
+    state: &State,
+    rate: &Rate,
+) -> Option<f64> {
+    match change {
+        SignatureChange::None => None,
+        SignatureChange::Count { before, net } => {
+            let values = eigenvalues(start, state)?;
+            if net > 0 { values.get(before).copied() } else { values.get(before.checked_sub(1)?).map(|v| -v) }
+        }
+        SignatureChange::Odd => {
+            // Negative on the far side, of the size of the determinant there.
+            let here = bordered_determinant(system, start.loading, state, rate)?;
+            Some(-here.sign * reference.sign * (here.logarithm - reference.logarithm).min(300.0).exp())
+        }
+    }
 }
 
 /// Eigenvalues of the reduced tangent, the smallest first.

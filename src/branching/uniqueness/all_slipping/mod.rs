@@ -277,7 +277,7 @@ impl<'a> ReducedUnknowns<'a> {
     /// The direction along which all contacts on the cone stick, if that and the way on are all there are.
     fn stuck(&self, incoming: &Rate) -> Option<Rate> {
         if self.unknowns.len() > MOST_DENSE {
-            return self.stuck_among_many(incoming);
+            return many::stuck_among_many(self, incoming);
         }
         let others = self.unknowns_where(false);
         let is_sole = self.slips.len() == 1;

@@ -168,11 +168,7 @@ impl<P: Problem + ?Sized> Sequence<'_, P> {
             };
             std::mem::swap(&mut self.x, &mut self.trial_x);
             std::mem::swap(&mut self.at, &mut self.trial);
-            if let Some(iterates) = &mut steps.iterates {
-                let violation = self.rows.violation(&self.at);
-                let (x, objective) = (self.x.clone(), self.at.objective);
-                iterates.push(SolverIterate { relaxation: self.rows.relaxation(), x, objective, violation });
-            }
+            self.keep_iterate(steps);
             if self.at.objective < UNBOUNDED_OBJECTIVE || self.x.amax() > UNBOUNDED_VARIABLE {
                 return SqpEnd::Unbounded;
             }
@@ -185,20 +181,41 @@ impl<P: Problem + ?Sized> Sequence<'_, P> {
                 Ok(program) => program,
                 Err(quantity) => return SqpEnd::NotFinite(quantity),
             };
-            if !secant.is_idle() {
-                let change = &self.x - &self.trial_x;
-                let lagrangian = |program: &QuadraticProgram| {
-                    &program.gradient
-                        - program.equality.tr_mul(&step.solution.equality_multipliers)
-                        - program.inequality.tr_mul(&step.solution.inequality_multipliers)
-                        - program.cone_force(&step.solution)
-                };
-                secant.update(&change, &(lagrangian(&next) - lagrangian(&program)));
-            }
+            self.update_secant(&mut secant, &step, &program, &next);
             program = next;
             secant.put_into(&mut program.hessian);
         }
         SqpEnd::IterationLimit
+    }
+
+    /// Keeps `x` where iterates are asked for.
+    fn keep_iterate(&self, steps: &mut StepSolver) {
+        if let Some(iterates) = &mut steps.iterates {
+            let violation = self.rows.violation(&self.at);
+            let (x, objective) = (self.x.clone(), self.at.objective);
+            iterates.push(SolverIterate { relaxation: self.rows.relaxation(), x, objective, violation });
+        }
+    }
+
+    /// The change of the Lagrangian's gradient over the step that was taken, from one program to the next.
+    fn update_secant(
+        &self,
+        secant: &mut Secant,
+        step: &QuadraticStep,
+        program: &QuadraticProgram,
+        next: &QuadraticProgram,
+    ) {
+        if secant.is_idle() {
+            return;
+        }
+        let change = &self.x - &self.trial_x;
+        let lagrangian = |program: &QuadraticProgram| {
+            &program.gradient
+                - program.equality.tr_mul(&step.solution.equality_multipliers)
+                - program.inequality.tr_mul(&step.solution.inequality_multipliers)
+                - program.cone_force(&step.solution)
+        };
+        secant.update(&change, &(lagrangian(next) - lagrangian(program)));
     }
 
     /// The quadratic program at `x`. A model from the problem makes the secant matrix idle.
