@@ -11,10 +11,14 @@ use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cached_factorisation::AtHand;
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton;
+use crate::step::corrector::slip_error;
 use crate::step::corrector::slip_error::Pointed;
+use crate::step::corrector::tangent;
 use crate::step::event_functions::{self, Watch};
+use crate::step::event_location;
 use crate::step::event_location::StepPoints;
 use crate::step::interpolation::PlacedPoint;
+use crate::step::singular_step;
 
 /// Where a step starts.
 #[derive(Clone, Copy)]
@@ -164,13 +168,13 @@ impl StepStart<'_> {
         serving: &mut Option<SystemFactorisation>,
         work: &mut Work,
     ) -> Result<Box<Reached>, Refused> {
-        if let Some(reached) = self.held_straight(&system, closing) {
+        if let Some(reached) = singular_step::held_straight(self, &system, closing) {
             return Ok(reached);
         }
-        if let Some(reached) = self.held_across(&guess, closing, work) {
+        if let Some(reached) = singular_step::held_across(self, &guess, closing, work) {
             return Ok(reached);
         }
-        let guess = self.guess_beside(closing).unwrap_or(guess);
+        let guess = singular_step::guess_beside(self, closing).unwrap_or(guess);
         let corrected = newton::correct_from(&system, system.iterate(guess), closing, self.force_scale, serving, work)
             .map_err(Refused::Newton)?;
         self.directed(system, corrected, closing, serving, work)
@@ -186,8 +190,8 @@ impl StepStart<'_> {
         work: &mut Work,
     ) -> Result<Box<Reached>, Refused> {
         let singular = Refused::Newton(Failure::Singular);
-        let mut tangent =
-            system.tangent_and_error(&corrected, self.rate, serving, &mut work.factorisations).ok_or(singular)?;
+        let mut tangent = tangent::tangent_and_error(&system, &corrected, self.rate, serving, &mut work.factorisations)
+            .ok_or(singular)?;
         if system.has_tracks() {
             // Once more, now that the turn of the slips at the end is known; where directions settle, until they do.
             for pass in 1.. {
@@ -207,7 +211,8 @@ impl StepStart<'_> {
                 corrected = again;
                 corrected.iterations_to_small = hardness;
                 let factorisations = &mut work.factorisations;
-                tangent = system.tangent_and_error(&corrected, self.rate, &mut None, factorisations).ok_or(singular)?;
+                tangent = tangent::tangent_and_error(&system, &corrected, self.rate, &mut None, factorisations)
+                    .ok_or(singular)?;
                 if !settles || change <= SETTLED {
                     break;
                 }
@@ -314,11 +319,12 @@ impl StepStart<'_> {
         let mut is_clear = met.is_some() && passed.is_empty();
         while !is_clear {
             while let Some(stretch) = &mut stretch
-                && let Some(&watch) = self.earliest(&passed, stretch, |watch| self.zero(watch, &reached))
+                && let Some(&watch) =
+                    event_location::earliest(self, &passed, stretch, |watch| self.zero(watch, &reached))
             {
                 // Quantities that are nothing but rounding would come by turns.
                 looks.next().ok_or(Refused::Newton(Failure::NotConverged))?;
-                let located = self.locate(watch, stretch, self.zero(watch, &reached), work);
+                let located = event_location::locate(self, watch, stretch, self.zero(watch, &reached), work);
                 reached = match watch {
                     Watch::LoadRate { .. } => self.alone_or_common(located, watch, &reached, singular_limit, work)?,
                     _ => located?,
@@ -356,7 +362,7 @@ impl StepStart<'_> {
         reached.event = event;
         reached.stopped = match (event, &stretch) {
             (Some(watch @ Watch::Sliding(contact)), Some(stretch)) => {
-                self.falls_through(watch, stretch, &reached).then_some(contact)
+                event_location::falls_through(self, watch, stretch, &reached).then_some(contact)
             }
             _ => None,
         };
@@ -394,12 +400,19 @@ impl StepStart<'_> {
         let before = self.drift;
         let drift = if system.has_tracks() {
             let factorisations = &mut work.factorisations;
-            let tangent = system.tangent_and_error(&reached.corrected, self.rate, &mut None, factorisations)?;
+            let tangent =
+                tangent::tangent_and_error(&system, &reached.corrected, self.rate, &mut None, factorisations)?;
             system.set_turns(self.rate, &reached.corrected, &tangent);
             let middle = self.reach(0.5 * reached.step, work).ok()?;
-            system.drift(self.rate, before, Pointed { corrected: &middle.corrected, rate: &middle.rate }, end)
+            slip_error::drift(
+                &system,
+                self.rate,
+                before,
+                Pointed { corrected: &middle.corrected, rate: &middle.rate },
+                end,
+            )
         } else {
-            system.drift(self.rate, before, end, end)
+            slip_error::drift(&system, self.rate, before, end, end)
         };
         work.factorisations += 1;
         drift.or_else(|| before.cloned())

@@ -8,6 +8,7 @@ use crate::branching::directions::arrival_tangent::Incoming;
 use crate::branching::directions::candidate::{
     Alternative, CandidateDirection, FoundDirections, WEAK, is_mechanism, merge, sort,
 };
+use crate::branching::directions::condensation_basis;
 use crate::complementarity::rate_search::branch_and_bound::{self, Effort, Ray};
 use crate::complementarity::rate_search::simultaneous_slips;
 use crate::complementarity::rate_search::slip_onset_direction::{self, Touch, Turning};
@@ -54,7 +55,7 @@ impl<'a> Condensed<'a> {
         let velocities: usize = changeable.iter().map(|entry| entry.velocities.len()).sum();
         // The columns themselves, and the matrices of their motions and reactions.
         let held = budget::take::<f64>(2 * (velocities + 1) * of_column);
-        let columns = system.columns(&changeable, incoming)?;
+        let columns = condensation_basis::columns(&system, &changeable, incoming)?;
         let normals = |contact: usize| loading.frame(contact, state).normal;
         let mut forms = Forms { columns: &columns, normals: &normals, rows: Vec::new(), is_force: Vec::new(), held };
         let (entities, outcomes) = changeable.iter().map(|entry| entry.options(loading, state, &mut forms)).unzip();

@@ -20,6 +20,7 @@ use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::budget::{self, Taken};
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton;
+use crate::step::corrector::tangent;
 use crate::step::event_functions::{self, Watch};
 use crate::step::segment::may_turn;
 use nalgebra::DVector;
@@ -178,7 +179,7 @@ fn stepped(
     let distance = state.distance(&corrected.state);
     may_turn(state.cosine_of_chord(&corrected.state, distance, rate)).ok()?;
     let rate = match serving {
-        Some(_) => system.tangent_and_error(&corrected, rate, &mut serving, &mut 0)?.rate,
+        Some(_) => tangent::tangent_and_error(&system, &corrected, rate, &mut serving, &mut 0)?.rate,
         None => system.tangent(&corrected, rate)?,
     };
     Some((corrected, rate))

@@ -17,6 +17,7 @@ use crate::mechanics::problem::state::Rate;
 use crate::step::corrector::cached_factorisation::AtHand;
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton;
+use crate::step::corrector::tangent;
 use crate::step::event_functions::{self, EventZero, Watch};
 use crate::step::event_location::StepPoints;
 use crate::step::interpolation::PlacedPoint;
@@ -73,52 +74,49 @@ pub(crate) fn step_to_foreseen_change(
     (part < 1.0).then_some(ForeseenChange { watch: first, way, step, is_straight: false })
 }
 
-impl StepStart<'_> {
-    /// The step that ends at a change foreseen, which is solved for at once; `None` where that leads elsewhere.
-    pub(crate) fn meet_change(
-        &self,
-        foreseen: ForeseenChange,
-        at_hand: Option<AtHand>,
-        before: Option<&PlacedPoint>,
-        ends: &[End],
-        load_sign: f64,
-        work: &mut Work,
-    ) -> Option<Attempt> {
-        let ForeseenChange { watch, way, step, is_straight } = foreseen;
-        let system = ModeSystem::new(self.loading, self.modes, self.state);
-        if watch.slope(self.loading, self.modes, self.state, self.rate).is_none() || system.has_tracks() {
-            return None;
-        }
-        let guess = before.and_then(|before| before.foresee(self.state, self.rate, way));
-        let guess = guess.unwrap_or_else(|| self.state.advanced(self.rate, way));
-        let scale = watch.scale(self.loading, &guess, self.force_scale);
-        let closing = EventZero { watch, scale, towards: self.rate };
-        let own = at_hand.filter(|_| is_straight).and_then(|at_hand| at_hand.along(&system, self.rate));
-        let mut serving = None;
-        let guess = system.iterate(guess);
-        let corrected =
-            newton::correct_with(&system, guess, &closing, self.force_scale, own, &mut serving, work).ok()?;
-        let mut reached = match &serving {
-            Some(SystemFactorisation::Sparse(nearby)) if is_straight => {
-                let error = system.error_by(nearby, &corrected)?;
-                self.straight_on(corrected, error)
-            }
-            _ => self.directed(system, corrected, &closing, &mut serving, work).ok()?,
-        };
-        let state = &reached.corrected.state;
-        let falls = watch.slope(self.loading, self.modes, state, &reached.rate).is_some_and(|slope| slope < 0.0);
-        let is_zero = self.value(watch, state, &reached.rate).abs() <= self.zero(watch, &reached);
-        let turns = may_turn(self.rate.product(&reached.rate)).is_err();
-        if !falls || !is_zero || turns || reached.step > step || reached.step < LEAST_OF_WAY * way {
-            return None;
-        }
-        let watches = self.watches(ends, load_sign);
-        let others: Vec<Watch> = watches.iter().copied().filter(|other| *other != watch).collect();
-        let mut passed = self.passed(&others, &reached);
-        let mut stretch = (!passed.is_empty()).then(|| Box::new(StepPoints::new(self, &reached, serving.take())));
-        if stretch.is_none() && !is_straight {
-            (passed, stretch) = self.dips(&others, &mut reached, serving, work).ok()?;
-        }
-        Some(Attempt { reached, watches, passed, stretch, met: Some(watch) })
+/// The step that ends at a change foreseen, which is solved for at once; `None` where that leads elsewhere.
+pub(crate) fn meet_change(
+    start: &StepStart<'_>,
+    foreseen: ForeseenChange,
+    at_hand: Option<AtHand>,
+    before: Option<&PlacedPoint>,
+    ends: &[End],
+    load_sign: f64,
+    work: &mut Work,
+) -> Option<Attempt> {
+    let ForeseenChange { watch, way, step, is_straight } = foreseen;
+    let system = ModeSystem::new(start.loading, start.modes, start.state);
+    if watch.slope(start.loading, start.modes, start.state, start.rate).is_none() || system.has_tracks() {
+        return None;
     }
+    let guess = before.and_then(|before| before.foresee(start.state, start.rate, way));
+    let guess = guess.unwrap_or_else(|| start.state.advanced(start.rate, way));
+    let scale = watch.scale(start.loading, &guess, start.force_scale);
+    let closing = EventZero { watch, scale, towards: start.rate };
+    let own = at_hand.filter(|_| is_straight).and_then(|at_hand| at_hand.along(&system, start.rate));
+    let mut serving = None;
+    let guess = system.iterate(guess);
+    let corrected = newton::correct_with(&system, guess, &closing, start.force_scale, own, &mut serving, work).ok()?;
+    let mut reached = match &serving {
+        Some(SystemFactorisation::Sparse(nearby)) if is_straight => {
+            let error = tangent::error_by(&system, nearby, &corrected)?;
+            start.straight_on(corrected, error)
+        }
+        _ => start.directed(system, corrected, &closing, &mut serving, work).ok()?,
+    };
+    let state = &reached.corrected.state;
+    let falls = watch.slope(start.loading, start.modes, state, &reached.rate).is_some_and(|slope| slope < 0.0);
+    let is_zero = start.value(watch, state, &reached.rate).abs() <= start.zero(watch, &reached);
+    let turns = may_turn(start.rate.product(&reached.rate)).is_err();
+    if !falls || !is_zero || turns || reached.step > step || reached.step < LEAST_OF_WAY * way {
+        return None;
+    }
+    let watches = start.watches(ends, load_sign);
+    let others: Vec<Watch> = watches.iter().copied().filter(|other| *other != watch).collect();
+    let mut passed = start.passed(&others, &reached);
+    let mut stretch = (!passed.is_empty()).then(|| Box::new(StepPoints::new(start, &reached, serving.take())));
+    if stretch.is_none() && !is_straight {
+        (passed, stretch) = start.dips(&others, &mut reached, serving, work).ok()?;
+    }
+    Some(Attempt { reached, watches, passed, stretch, met: Some(watch) })
 }

@@ -22,6 +22,7 @@ use crate::mechanics::problem::natural_residual;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::result::program_iterate::{ContactIterate, ProgramIterate};
 use crate::step::corrector::cost_counters::Work;
+use crate::step::increment_mpec::search;
 use crate::step::increment_mpec::{IncrementProgram, ProgramCounts, ProgramEnd, Searched};
 use crate::step::segment::{Reached, StepStart};
 use std::sync::Arc;
@@ -80,17 +81,18 @@ fn search_end(trace: &PathTrace<'_>, rate: &Rate, accepted: &AcceptedStep) -> (O
     let ahead = base.advanced(rate, step);
     let mut program =
         mpec_verification::increment_program(loading, trace.at.totals.force_scale, (base, &ahead), rate, step);
-    program.stay_near();
+    search::stay_near(&mut program);
     let predicted = program.variables_at(rate);
-    let (mut start, mut relaxation) = (predicted.clone(), program.first_relaxation());
+    let (mut start, mut relaxation) = (predicted.clone(), search::first_relaxation(&program));
     for _ in 0..MOST_SEARCHES {
-        let searched = program.search(&start, relaxation, modes, trace.iterates.is_some(), &trace.cancel);
+        let searched =
+            search::search_from(&program, &start, relaxation, modes, trace.iterates.is_some(), &trace.cancel);
         note(trace, &program, &searched, &mut left);
         if trace.cancel.is_cancelled() {
             break;
         }
         let Some(end) = searched.end else {
-            let Some(tighter) = IncrementProgram::tighter(relaxation) else { break };
+            let Some(tighter) = search::tighter(relaxation) else { break };
             (start, relaxation) = (predicted.clone(), tighter);
             continue;
         };
@@ -109,10 +111,10 @@ fn search_end(trace: &PathTrace<'_>, rate: &Rate, accepted: &AcceptedStep) -> (O
         }
         // Off the path: so large a relaxation led away from it.
         let is_off = !is_near || (end.size - 1.0).abs() <= SETTLED;
-        match IncrementProgram::tighter(relaxation).filter(|_| is_off) {
+        match search::tighter(relaxation).filter(|_| is_off) {
             Some(tighter) => (start, relaxation) = (predicted.clone(), tighter),
             None => {
-                program.adapt(end.size);
+                search::adapt_arc_weight(&mut program, end.size);
                 start = end.variables;
             }
         }
@@ -126,7 +128,7 @@ fn note(trace: &PathTrace<'_>, program: &IncrementProgram<'_>, searched: &Search
     let (length, force) = (plan.displacement_scale, plan.force_scale);
     let number = left.counts.len() as u64;
     for iterate in &searched.iterates {
-        let (state, contacts) = program.contacts_at(&iterate.x);
+        let (state, contacts) = search::contacts_at(&program, &iterate.x);
         let contacts = contacts.into_iter().filter_map(|at| {
             let (node, obstacle) = trace.names().nth(at.contact)?;
             Some(ContactIterate {
@@ -141,7 +143,7 @@ fn note(trace: &PathTrace<'_>, program: &IncrementProgram<'_>, searched: &Search
         left.iterates.push(ProgramIterate {
             program: number,
             relaxation: iterate.relaxation,
-            size: program.size(&iterate.x),
+            size: search::arc_length_ratio(&program, &iterate.x),
             load_factor: trace.scene.stages[trace.at.stage].load_factor(state.load),
             violation: iterate.violation,
             contacts: contacts.collect(),

@@ -12,6 +12,7 @@ use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::natural_residual::ZERO;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::event_functions;
+use crate::step::increment_mpec::certificate;
 use crate::step::increment_mpec::{Arrived, ForeseenModes, IncrementProgram, Named, ProgramCounts};
 use crate::step::segment::{Reached, StepStart};
 
@@ -71,7 +72,7 @@ fn show_at(trace: &mut PathTrace<'_>, rate: &Rate, modes: &[Mode], reached: &Rea
     let program = program(trace.loading(), trace.at.totals.force_scale, ends, rate, reached.step);
     let Some(mut program) = program else { return ForeseenModes::Named(Named::of(modes)) };
     let end = Arrived { state: ends.1, rate: &reached.rate, error: reached.error_estimate };
-    let foreseen = program.solved_at(end, modes);
+    let foreseen = certificate::solved_at(&mut program, end, modes);
     trace.at.totals.work.certificates += u64::from(matches!(foreseen, ForeseenModes::Named(_)));
     foreseen
 }

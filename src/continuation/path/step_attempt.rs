@@ -3,7 +3,9 @@
 use crate::branching::bifurcation::locate::{self, Crossing, Located, LocatedEnd};
 use crate::branching::bifurcation::singularity::test_functions::{self, Signature, SignatureChange};
 use crate::branching::bifurcation::{bound_at_singularity, simultaneous_limit_points};
+use crate::continuation::contact_changes::prediction;
 use crate::continuation::contact_changes::prediction::ForeseenChange;
+use crate::continuation::contact_changes::simultaneous;
 use crate::continuation::contact_changes::simultaneous::Joined;
 use crate::continuation::path::step_control;
 use crate::continuation::path_state::progress::PathPoint;
@@ -177,15 +179,15 @@ fn end_of_step(
 ) -> Result<AttemptEnd, Refused> {
     let (ends, load_sign) = (&trace.scene.stages[trace.at.stage].ends, trace.at.here.load_sign);
     let may_join = sought.may_join && !sought.jumps(step);
-    let foreseen = may_join.then(|| start.join_foreseen(step, ends, load_sign, work)).flatten();
+    let foreseen = may_join.then(|| simultaneous::join_foreseen(&start, step, ends, load_sign, work)).flatten();
     if let Some(joined) = foreseen {
         tries.joined = Some(joined.is_some());
         // Where they cannot be taken together nothing but the first of them is to be gone to.
         return joined.map(AttemptEnd::Joined).ok_or(Refused::Apart);
     }
     let tried = attempt(trace, start, step, sought, tries, work)?;
-    if may_join && let Some(first) = start.changes_to_join(&tried) {
-        let joined = start.join_changes(&first, &tried, work);
+    if may_join && let Some(first) = simultaneous::changes_to_join(&start, &tried) {
+        let joined = simultaneous::join_changes(&start, &first, &tried, work);
         tries.joined = Some(joined.is_some());
         if let Some(joined) = joined {
             return Ok(AttemptEnd::Joined(joined));
@@ -206,7 +208,7 @@ fn attempt(
     let here = &trace.at.here;
     let (ends, load_sign) = (&trace.scene.stages[trace.at.stage].ends, here.load_sign);
     let is_straight = sought.jumps(step);
-    let joins = sought.may_join && !is_straight && start.may_join();
+    let joins = sought.may_join && !is_straight && simultaneous::may_join(&start);
     // Where the rates foresee the next change, it is met where they do.
     let is_open = !joins && !is_straight && sought.foreseen.is_none();
     let next = tries.next.take().filter(|next| *next < MOST_OF_STEP * step && is_open);
@@ -222,7 +224,8 @@ fn attempt(
     let before = here.before.as_ref();
     let foreseen = sought.jump.or(sought.foreseen).filter(|foreseen| foreseen.step == step);
     let at_hand = here.is_factorised.then(|| std::mem::take(&mut tries.at_hand));
-    let met = foreseen.and_then(|foreseen| start.meet_change(foreseen, at_hand, before, ends, load_sign, work));
+    let met =
+        foreseen.and_then(|foreseen| prediction::meet_change(&start, foreseen, at_hand, before, ends, load_sign, work));
     met.map_or_else(|| start.attempt(step, before, None, ends, load_sign, work), Ok)
 }
 

@@ -10,6 +10,7 @@ use crate::mechanics::problem::loading::USUAL;
 use crate::mechanics::problem::natural_residual::NO_FORCE;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cost_counters::Work;
+use crate::step::corrector::tangent;
 use nalgebra::DVector;
 
 /// Newton iterations before a step is given up.
@@ -412,7 +413,7 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
             return Err(Failure::NotConverged);
         }
         system.share(&mut best.iterate.state);
-        *serving = self.factorisation.latest.and_then(|latest| system.may_serve(latest));
+        *serving = self.factorisation.latest.and_then(|latest| tangent::may_serve(system, latest));
         Ok(Corrected {
             modes: system.modes_at(&best.iterate),
             state: best.iterate.state,

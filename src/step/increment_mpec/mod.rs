@@ -369,7 +369,10 @@ impl<'a> IncrementProgram<'a> {
                 _ => break,
             }
             if (0.5..=2.0).contains(&size) {
-                return (ForeseenModes::Named(self.end(solution, present, cancel)), counts);
+                return (
+                    ForeseenModes::Named(solution_extraction::named_modes(self, solution, present, cancel)),
+                    counts,
+                );
             }
             self.arc_weight *= size.clamp(0.02, 50.0);
             start = solution.x;

@@ -10,6 +10,7 @@ use crate::mechanics::structure::elements::Element;
 use crate::mechanics::structure::elements::bar::Bar;
 use crate::mechanics::structure::elements::spring::Spring;
 use crate::model::request::Strain;
+use crate::step::increment_mpec::solution_extraction;
 use crate::step::increment_mpec::*;
 use nalgebra::DMatrix;
 
@@ -270,7 +271,8 @@ fn the_landing_converges_quadratically_from_the_predictor() {
     let base = scene.at_rest();
     let forward = scene.rate([0.8, 0.1, -0.5], 0.05);
     let program = IncrementProgram::new(scene.loading(), &base, &forward, 0.02, 0.02);
-    let end = program.polish(&program.variables_at(&forward), &CancelFlag::default()).expect("finite");
+    let end =
+        solution_extraction::polish(&program, &program.variables_at(&forward), &CancelFlag::default()).expect("finite");
     println!("residuals of the landing: {:?}", end.residuals);
     assert!(end.is_converged, "{:?}", end.residuals);
     assert!(end.residuals.last().is_some_and(|last| *last < 1e-14), "{:?}", end.residuals);

@@ -7,6 +7,8 @@ use crate::continuation::path::mpec_verification;
 use crate::continuation::scene::Scene;
 use crate::result::increment::Increment;
 use crate::step::corrector::cost_counters::Work;
+use crate::step::increment_mpec::certificate;
+use crate::step::increment_mpec::solution_extraction;
 use crate::step::increment_mpec::*;
 use crate::step::segment::{Reached, StepStart as Beginning};
 use serde_json::{Map, json};
@@ -44,7 +46,9 @@ impl Begun {
     /// What is shown of the increment to a point; nothing where no contact is in reach.
     fn shown(&self, loading: Loading<'_>, reached: &Reached) -> ForeseenModes {
         let program = self.program(loading, reached);
-        program.map_or(ForeseenModes::Unclear, |mut program| program.solved_at(arrived(reached), &self.modes))
+        program.map_or(ForeseenModes::Unclear, |mut program| {
+            certificate::solved_at(&mut program, arrived(reached), &self.modes)
+        })
     }
 }
 
@@ -113,14 +117,17 @@ fn what_is_shown_is_a_solution_that_the_search_finds() {
             let Some(reached) = begun.reach(loading, way).filter(|_| way > 1e-4) else { return };
             let Some(mut program) = begun.program(loading, &reached) else { return };
             asked += 1;
-            let ForeseenModes::Named(named) = program.solved_at(arrived(&reached), &begun.modes) else { return };
+            let ForeseenModes::Named(named) = certificate::solved_at(&mut program, arrived(&reached), &begun.modes)
+            else {
+                return;
+            };
             shown += 1;
             assert!(crate::mechanics::contact::all_continue(&named.modes, &begun.modes), "{:?}", increment.index);
             let weight = program.arc_weight;
             program.divide_objective(weight);
             let state = &reached.corrected.state;
             let frames: Vec<_> = program.reach.iter().map(|entry| loading.frame(entry.contact, state)).collect();
-            let end = program.variables_of(state, &frames);
+            let end = certificate::variables_of(&program, state, &frames);
             let mut start = end.clone();
             start.iter_mut().for_each(|value| *value *= 1.0 + 1e-3 * part(&mut random));
             let solution = mpec::solve(&program, &start, &Settings::warm(), &CancelFlag::default()).unwrap();
@@ -130,7 +137,8 @@ fn what_is_shown_is_a_solution_that_the_search_finds() {
             let apart = (solution.x.rows(0, moved) - end.rows(0, moved)).amax();
             let gained = program.objective(&end) - solution.objective;
             assert!(gained < 1e-9 && apart < 5e-3, "increment {}: {gained:e}, {apart:e}", increment.index);
-            let found = program.end(solution, &begun.modes, &CancelFlag::default()).modes;
+            let found =
+                solution_extraction::named_modes(&program, solution, &begun.modes, &CancelFlag::default()).modes;
             assert!(crate::mechanics::contact::all_continue(&found, &begun.modes), "increment {}", increment.index);
         });
     }
@@ -219,7 +227,7 @@ fn a_contact_that_may_do_either_is_refused() {
     let mut program = IncrementProgram::new(loading, &begun.state, &begun.rate, 0.1, 1.0);
     assert!(program.pairs() > 0);
     let end = Arrived { state: &end, rate: &begun.rate, error: 0.0 };
-    assert!(matches!(program.solved_at(end, &begun.modes), ForeseenModes::Unclear));
+    assert!(matches!(certificate::solved_at(&mut program, end, &begun.modes), ForeseenModes::Unclear));
 }
 
 /// Where slip turns in a plane, and where two obstacles press one node, the search has the word.

@@ -31,6 +31,7 @@ use crate::mechanics::problem::state::{Rate, State};
 use crate::mechanics::structure::elements::Element;
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::determinant_sign::UNCERTAIN;
+use crate::step::corrector::tangent;
 use crate::step::event_functions::Watch;
 use crate::step::segment::{Reached, StepStart};
 use nalgebra::DMatrix;
@@ -270,7 +271,7 @@ impl Signature {
                 return None;
             }
             let sign = bordered.determinant_sign();
-            *serving = system.may_serve(bordered);
+            *serving = tangent::may_serve(&system, bordered);
             return Self::with_determinant(loading, modes, state, state, sign, work);
         }
         let determinant = bordered_determinant(&system, loading, state, rate)?;
