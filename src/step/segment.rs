@@ -33,7 +33,7 @@ pub struct StepStart<'a> {
     pub force_scale: f64,
     /// The equations have another null vector besides the direction: see `singular_step`.
     pub is_singular: bool,
-    /// How far the path is then off the direction: see `choice::Choice`.
+    /// How far the path is then off the direction: see `choice::DirectionChoice`.
     pub beside: Option<&'a Rate>,
 }
 

@@ -21,7 +21,7 @@ fn run(request: &StudyRequest) -> Report {
     let report =
         error_against_time::run(request, Vec::new(), &CancelFlag::default(), &mut |_| ControlFlow::Continue(()));
     let report = report.unwrap_or_else(|errors| panic!("{errors}")).expect("a report");
-    println!("{}", report.text().expect("text"));
+    println!("{}", error_against_time::table::text(&report).expect("text"));
     report
 }
 
@@ -158,13 +158,13 @@ fn a_cancelled_study_reports_what_it_has() {
     let report = report.expect("a study").expect("a report");
     assert_eq!(report.rows.len(), 1);
     assert!(!report.complete);
-    assert!(report.text().expect("text").contains("not complete"));
+    assert!(error_against_time::table::text(&report).expect("text").contains("not complete"));
 }
 
 #[test]
 fn tables_have_a_line_a_row() {
     let report = run(&request("klarbring", over(&[0.2, 0.1], &ALL)));
-    let csv = report.csv().expect("CSV");
+    let csv = error_against_time::table::csv(&report).expect("CSV");
     let cells: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
     assert_eq!(cells.len(), 7);
     assert!(cells.iter().all(|line| line.len() == cells[0].len()));
@@ -174,7 +174,7 @@ fn tables_have_a_line_a_row() {
         assert_eq!(line[column("increments")], row.increments.to_string());
         assert_eq!(line[column("reference")], "exact");
     }
-    let text = report.text().expect("text");
+    let text = error_against_time::table::text(&report).expect("text");
     assert!(text.contains("exact solution, Klarbring's node"));
     let json = serde_json::to_string(&report).expect("JSON");
     assert_eq!(serde_json::from_str::<Report>(&json).expect("the same"), report);

@@ -9,6 +9,7 @@
 //! `[Z z₀] = [X t] G⁻¹`, `G` the velocities and the load rate of `[X t]`.
 
 use crate::algebra::dense::assembly::Sink;
+use crate::algebra::sparse::preconditioned_refinement::Nearby;
 use crate::algebra::{Factorisation, SystemFactorisation, null_space};
 use crate::branching::directions::arrival_tangent::Incoming;
 use crate::mechanics::contact::Reaction;
@@ -111,7 +112,7 @@ fn columns_nearby(equations: &ModeSystem<'_>, changeable: &[Changeable], incomin
     }
     let system = ModeSystem::new(loading, modes, state);
     let iterate = system.iterate(state.clone());
-    let nearby = nearby.nearby(system.assemble_sparse(&iterate, Kind::Rates)?)?;
+    let nearby = Nearby::new(nearby, system.assemble_sparse(&iterate, Kind::Rates)?)?;
     let velocities: Vec<(usize, &Vector)> = velocities(changeable).collect();
     // The right-hand sides, what comes of them, and the rates.
     let _held = budget::take::<f64>((velocities.len() + 1) * (5 * system.size + 4 * loading.contacts.len()));

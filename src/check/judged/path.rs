@@ -5,7 +5,7 @@ use crate::check::judged::checkpoint::{JudgedCheckpoint, JudgedCheckpointError};
 use crate::check::judged::increment::JudgedIncrement;
 use crate::check::judged::record::Recorder;
 use crate::check::judged::report::{JudgedReport, MeasureReport, OFF_MEASURE};
-use crate::check::measure::Judge;
+use crate::check::measure::{Judge, history};
 use crate::continuation::method_dispatch::TracedPath;
 use crate::continuation::path::iterator::Path;
 use crate::continuation::scene::Scene;
@@ -87,7 +87,7 @@ impl<'a> JudgedPath<'a> {
     ) -> Result<Self, JudgedCheckpointError> {
         let JudgedCheckpoint { path, history, measure: _, alternatives: _, left_out: _ } = checkpoint;
         let path = Path::follow(scene, path, direction, event, cancel)?;
-        let judge = judge(request, scene).taking_up(history)?;
+        let judge = history::take_up(judge(request, scene), history)?;
         let mut followed = Self::of(request, TracedPath::Exact(Box::new(path)), judge, fresh(request));
         followed.alternatives = Alternatives::of(true);
         Ok(followed)
@@ -106,7 +106,7 @@ impl<'a> JudgedPath<'a> {
     ) -> Result<Self, JudgedCheckpointError> {
         let JudgedCheckpoint { path, history, measure, alternatives, left_out } = checkpoint;
         let path = Path::resume(scene, path, cancel)?;
-        let judge = judge(request, scene).taking_up(history)?;
+        let judge = history::take_up(judge(request, scene), history)?;
         let path = TracedPath::Exact(Box::new(path));
         let mut resumed = Self { alternatives, ..Self::of(request, path, judge, measure) };
         resumed.left_out = left_out.map(|judged| PendingIncrement { judged: *judged, place: resumed.place() });
@@ -153,7 +153,7 @@ impl<'a> JudgedPath<'a> {
         let alternatives = self.alternatives.clone();
         Some(JudgedCheckpoint {
             path: path.checkpoint(),
-            history: self.judge.history(),
+            history: history::history_of(&self.judge),
             measure: self.measure,
             alternatives,
             left_out: None,

@@ -60,71 +60,61 @@ pub enum HistoryError {
     OtherModel { what: &'static str, found: usize, expected: usize },
 }
 
-impl Judge {
-    pub fn history(&self) -> JudgeHistory {
-        JudgeHistory {
-            version: VERSION,
-            reached: self.reached.clone(),
-            load: self.before.load,
-            arc_length: self.before.arc_length,
-            displacements: self.before.displacements.clone(),
-            directions: self.before.directions.iter().map(|(contact, direction)| (*contact, *direction)).collect(),
-            largest_force: self.largest_force,
-            largest_energy: self.largest_energy,
-        }
+pub fn history_of(judge: &Judge) -> JudgeHistory {
+    JudgeHistory {
+        version: VERSION,
+        reached: judge.reached.clone(),
+        load: judge.before.load,
+        arc_length: judge.before.arc_length,
+        displacements: judge.before.displacements.clone(),
+        directions: judge.before.directions.iter().map(|(contact, direction)| (*contact, *direction)).collect(),
+        largest_force: judge.largest_force,
+        largest_energy: judge.largest_energy,
     }
+}
 
-    /// The judge with what it, or another of the same model, remembered.
-    ///
-    /// # Errors
-    /// A history of another model, or of another version of this program.
-    pub fn taking_up(mut self, history: JudgeHistory) -> Result<Self, HistoryError> {
-        let JudgeHistory {
-            version,
-            reached,
-            load,
-            arc_length,
-            displacements,
-            directions,
-            largest_force,
-            largest_energy,
-        } = history;
-        if version != VERSION {
-            return Err(HistoryError::Version { found: version });
-        }
-        let posted = &self.posted;
-        let contacts = posted.contacts.len();
-        for (what, found, expected) in [
-            ("nodes", displacements.len(), posted.nodes.len()),
-            ("contacts", directions.iter().fold(contacts, |most, (contact, _)| most.max(contact + 1)), contacts),
-            ("finished stages", reached.len(), reached.len().min(posted.stages.len().saturating_sub(1))),
-        ] {
-            if found != expected {
-                return Err(HistoryError::OtherModel { what, found, expected });
-            }
-        }
-        let mut held = PostedLoading::none(posted);
-        let mut loading = held.clone();
-        for (stage, load) in posted.stages.iter().zip(&reached) {
-            loading.set(&held, stage, *load);
-            std::mem::swap(&mut held, &mut loading);
-        }
-        loading.set(&held, &posted.stages[reached.len()], load);
-        self.stage = reached.len();
-        self.reached = reached;
-        self.held = held;
-        let mut before = PreviousPoint {
-            displacements,
-            shifts: loading.shifts.clone(),
-            load,
-            arc_length,
-            ..PreviousPoint::at_rest(posted)
-        };
-        before.directions.extend(directions);
-        self.before = before;
-        self.apart.begin(&self.posted, &loading, &self.before.displacements);
-        self.largest_force = largest_force;
-        self.largest_energy = largest_energy;
-        Ok(self)
+/// The judge with what it, or another of the same model, remembered.
+///
+/// # Errors
+/// A history of another model, or of another version of this program.
+pub fn take_up(mut judge: Judge, history: JudgeHistory) -> Result<Judge, HistoryError> {
+    let JudgeHistory { version, reached, load, arc_length, displacements, directions, largest_force, largest_energy } =
+        history;
+    if version != VERSION {
+        return Err(HistoryError::Version { found: version });
     }
+    let posted = &judge.posted;
+    let contacts = posted.contacts.len();
+    for (what, found, expected) in [
+        ("nodes", displacements.len(), posted.nodes.len()),
+        ("contacts", directions.iter().fold(contacts, |most, (contact, _)| most.max(contact + 1)), contacts),
+        ("finished stages", reached.len(), reached.len().min(posted.stages.len().saturating_sub(1))),
+    ] {
+        if found != expected {
+            return Err(HistoryError::OtherModel { what, found, expected });
+        }
+    }
+    let mut held = PostedLoading::none(posted);
+    let mut loading = held.clone();
+    for (stage, load) in posted.stages.iter().zip(&reached) {
+        loading.set(&held, stage, *load);
+        std::mem::swap(&mut held, &mut loading);
+    }
+    loading.set(&held, &posted.stages[reached.len()], load);
+    judge.stage = reached.len();
+    judge.reached = reached;
+    judge.held = held;
+    let mut before = PreviousPoint {
+        displacements,
+        shifts: loading.shifts.clone(),
+        load,
+        arc_length,
+        ..PreviousPoint::at_rest(posted)
+    };
+    before.directions.extend(directions);
+    judge.before = before;
+    judge.apart.begin(&judge.posted, &loading, &judge.before.displacements);
+    judge.largest_force = largest_force;
+    judge.largest_energy = largest_energy;
+    Ok(judge)
 }

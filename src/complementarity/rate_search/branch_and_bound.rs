@@ -7,8 +7,11 @@
 //! on the sign of the load rate. Every ray comes from the exact equations of its combination, so that the search decides
 //! only where to look.
 
+use crate::complementarity::rate_search::single_combination;
+use crate::complementarity::rate_search::unbranched;
 use crate::complementarity::rates::lemke::lemke;
 use crate::complementarity::rates::rate_problem::{Choice, Entity, RateProblem, Signed};
+use crate::complementarity::rates::simplex_dictionary::simplex;
 use crate::complementarity::rates::simplex_dictionary::{Dictionary, Feasibility};
 use crate::resources::budget::{self, Taken};
 use crate::resources::cancel::CancelFlag;
@@ -102,14 +105,14 @@ fn explore_by(
         coupling: DMatrix::zeros(0, 0),
         cost: 1 + (problem.forms.nrows() * problem.weights()) as u64 / UNIT_OF_WORK,
     };
-    if !search.certified_at_once() {
+    if !unbranched::certified_at_once(&mut search) {
         for chosen in first() {
-            search.examine(&chosen);
+            single_combination::examine(&mut search, &chosen);
         }
         search.branch();
         if search.findings.unexplored > 0 {
             for chosen in further(problem, effort.cancel) {
-                search.examine(&chosen);
+                single_combination::examine(&mut search, &chosen);
             }
         }
     }
@@ -168,7 +171,7 @@ impl BranchAndBound<'_> {
             let chosen = vec![None; self.problem.entities.len()];
             Task { parent: Rc::new(SearchNode { chosen, dictionary, sign, in_set: false, last: None }), decision: None }
         };
-        let settled = self.settled_signs();
+        let settled = unbranched::settled_signs(self);
         let mut tasks: Vec<Task> = [-1.0, 1.0].into_iter().filter(|sign| !settled.contains(sign)).map(root).collect();
         if tasks.is_empty() {
             // Rays along which the load rests are left.
@@ -223,7 +226,7 @@ impl BranchAndBound<'_> {
     /// Closes a node or gives its children, the most promising last.
     fn look_at(&mut self, task: Task) -> Vec<Task> {
         let Some(mut node) = decide(self.problem, task) else { return Vec::new() };
-        if node.dictionary.feasibility() == Feasibility::OnlyLines
+        if simplex::feasibility(&mut node.dictionary) == Feasibility::OnlyLines
             && !node.dictionary.is_lines_only()
             && !node.dictionary.leave_lines()
         {
@@ -232,10 +235,10 @@ impl BranchAndBound<'_> {
         let open: Vec<usize> = (0..node.chosen.len()).filter(|&index| node.chosen[index].is_none()).collect();
         if open.is_empty() {
             let chosen: Vec<usize> = node.chosen.iter().flatten().copied().collect();
-            self.examine(&chosen);
+            single_combination::examine(self, &chosen);
             return Vec::new();
         }
-        node.dictionary.drop_forced();
+        simplex::drop_forced(&mut node.dictionary);
         let dictionary = &node.dictionary;
         let dimension = dictionary.dimension() + usize::from(!dictionary.is_lines_only());
         if dimension == 0 {
@@ -249,18 +252,18 @@ impl BranchAndBound<'_> {
                 options[entity] = (0..choices.len()).filter(|&index| fits(dictionary, &choices[index])).collect();
             }
             if options.iter().all(|options| !options.is_empty()) {
-                self.examine_all(&options);
+                single_combination::examine_all(self, &options);
             }
             return Vec::new();
         }
-        if self.certified_below(&node, &open) {
+        if unbranched::certified_below(self, &node, &open) {
             return Vec::new();
         }
         if !node.in_set
             && let Some(filled) = self.filled(&node)
         {
             // Whatever is left solves the problem: a set of more than one dimension.
-            self.examine(&filled);
+            single_combination::examine(self, &filled);
             node.in_set = true;
         }
         let entity = self.next(&node, &open);

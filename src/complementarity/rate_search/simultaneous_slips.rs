@@ -21,6 +21,7 @@ use crate::complementarity::rate_search::slip_onset_direction::{SECTORS, Touch, 
 use crate::complementarity::rates::combinations::{combinations, count};
 use crate::complementarity::rates::gauss_seidel::{Local, own_column, rising};
 use crate::complementarity::rates::rate_problem::{RateProblem, Signed};
+use crate::complementarity::rates::ray;
 use crate::resources::budget;
 use crate::resources::cancel::CancelFlag;
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2, Vector3};
@@ -270,12 +271,12 @@ impl<'a> SlipEquations<'a> {
     }
 
     fn ray(&self, pattern: &OptionPattern, weights: &DVector<f64>) -> Option<Turning> {
-        let size = self.problem.size(weights);
+        let size = ray::size(&self.problem, weights);
         if !(size.is_finite() && size > 0.0) {
             return None;
         }
         let weights = weights / size;
-        let along = self.problem.along(&weights);
+        let along = ray::forms_along(&self.problem, &weights);
         let force = along.force_tolerance();
         let mut chosen = pattern.chosen.clone();
         let mut slips = Vec::new();

@@ -71,7 +71,7 @@ pub(crate) struct PathPoint {
     /// The equations of `modes` had another null vector where the direction was taken.
     #[serde(default)]
     pub is_singular: bool,
-    /// How far the path is off the direction: see `choice::Choice`.
+    /// How far the path is off the direction: see `choice::DirectionChoice`.
     #[serde(default)]
     pub beside: Option<Rate>,
 }

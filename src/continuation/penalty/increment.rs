@@ -74,80 +74,78 @@ impl PenaltyIncrement {
     }
 }
 
-impl PenaltySystem<'_> {
-    fn moved(&self, from: &PenaltyPoint, change: &PenaltyIncrement) -> State {
-        let mut state = from.state.clone();
-        for (unknown, freedom) in self.loading.structure.freedom_of.iter().enumerate() {
-            state.displacement[*freedom] += change.displacement[unknown];
-        }
-        state.load += change.load;
-        self.loading.place_supports(&mut state);
-        state
+fn moved(system: &PenaltySystem<'_>, from: &PenaltyPoint, change: &PenaltyIncrement) -> State {
+    let mut state = from.state.clone();
+    for (unknown, freedom) in system.loading.structure.freedom_of.iter().enumerate() {
+        state.displacement[*freedom] += change.displacement[unknown];
     }
+    state.load += change.load;
+    system.loading.place_supports(&mut state);
+    state
+}
 
-    /// Newton iterations from a predictor.
-    pub fn correct(
-        &self,
-        from: &PenaltyPoint,
-        predictor: PenaltyIncrement,
-        control: IncrementConstraint,
-        limits: &Limits<'_>,
-        work: &mut Work,
-    ) -> Result<Converged, PenaltyFailure> {
-        let mut change = predictor;
-        for iterations in 0..=limits.most_iterations {
-            if limits.cancel.is_cancelled() {
-                return Err(PenaltyFailure::Cancelled);
-            }
-            let mut state = self.moved(from, &change);
-            let evaluation = self.evaluate(from, &state);
-            let residual = self.relative_residual(&evaluation, limits.force_scale);
-            if !residual.is_finite() {
-                return Err(PenaltyFailure::NotConverged);
-            }
-            work.factorisations += 1;
-            let mut by_residual = self.right_hand_side(&evaluation);
-            let tangent = Factorisation::new(evaluation.tangent);
-            if residual <= limits.tolerance && meets(control, &state) {
-                let force_scale = evaluation.force_scale;
-                match control {
-                    IncrementConstraint::ArcLength { .. } => {}
-                    IncrementConstraint::Load(value) => state.load = value,
-                    IncrementConstraint::Displacement { freedom, value } => state.displacement[freedom] = value,
-                }
-                let point = self.point(state, evaluation.contacts);
-                return Ok(Converged { point, change, tangent, iterations, residual, force_scale });
-            }
-            if iterations == limits.most_iterations {
-                break;
-            }
-            let factorisation = tangent.ok_or(PenaltyFailure::Singular)?;
-            let mut by_load = self.load_vector(&state, &evaluation.contacts);
-            if !factorisation.solve(&mut by_residual) || !factorisation.solve(&mut by_load) {
-                return Err(PenaltyFailure::Singular);
-            }
-            let load_step = match control {
-                IncrementConstraint::ArcLength { size, load_weight } => {
-                    root(&change, &by_residual, &by_load, size, load_weight).ok_or(PenaltyFailure::NoRoot)?
-                }
-                IncrementConstraint::Load(value) => value - state.load,
-                IncrementConstraint::Displacement { freedom, value } => {
-                    let left = value - state.displacement[freedom];
-                    match self.loading.structure.unknown_of[freedom] {
-                        Some(unknown) => (left - by_residual[unknown]) / by_load[unknown],
-                        None => left / self.loading.support_rate(freedom),
-                    }
-                }
-            };
-            if !load_step.is_finite() {
-                return Err(PenaltyFailure::Singular);
-            }
-            change.displacement += by_residual + by_load * load_step;
-            change.load += load_step;
-            work.newton_iterations += 1;
+/// Newton iterations from a predictor.
+pub fn correct(
+    system: &PenaltySystem<'_>,
+    from: &PenaltyPoint,
+    predictor: PenaltyIncrement,
+    control: IncrementConstraint,
+    limits: &Limits<'_>,
+    work: &mut Work,
+) -> Result<Converged, PenaltyFailure> {
+    let mut change = predictor;
+    for iterations in 0..=limits.most_iterations {
+        if limits.cancel.is_cancelled() {
+            return Err(PenaltyFailure::Cancelled);
         }
-        Err(PenaltyFailure::NotConverged)
+        let mut state = moved(system, from, &change);
+        let evaluation = system.evaluate(from, &state);
+        let residual = system.relative_residual(&evaluation, limits.force_scale);
+        if !residual.is_finite() {
+            return Err(PenaltyFailure::NotConverged);
+        }
+        work.factorisations += 1;
+        let mut by_residual = system.right_hand_side(&evaluation);
+        let tangent = Factorisation::new(evaluation.tangent);
+        if residual <= limits.tolerance && meets(control, &state) {
+            let force_scale = evaluation.force_scale;
+            match control {
+                IncrementConstraint::ArcLength { .. } => {}
+                IncrementConstraint::Load(value) => state.load = value,
+                IncrementConstraint::Displacement { freedom, value } => state.displacement[freedom] = value,
+            }
+            let point = system.point(state, evaluation.contacts);
+            return Ok(Converged { point, change, tangent, iterations, residual, force_scale });
+        }
+        if iterations == limits.most_iterations {
+            break;
+        }
+        let factorisation = tangent.ok_or(PenaltyFailure::Singular)?;
+        let mut by_load = system.load_vector(&state, &evaluation.contacts);
+        if !factorisation.solve(&mut by_residual) || !factorisation.solve(&mut by_load) {
+            return Err(PenaltyFailure::Singular);
+        }
+        let load_step = match control {
+            IncrementConstraint::ArcLength { size, load_weight } => {
+                root(&change, &by_residual, &by_load, size, load_weight).ok_or(PenaltyFailure::NoRoot)?
+            }
+            IncrementConstraint::Load(value) => value - state.load,
+            IncrementConstraint::Displacement { freedom, value } => {
+                let left = value - state.displacement[freedom];
+                match system.loading.structure.unknown_of[freedom] {
+                    Some(unknown) => (left - by_residual[unknown]) / by_load[unknown],
+                    None => left / system.loading.support_rate(freedom),
+                }
+            }
+        };
+        if !load_step.is_finite() {
+            return Err(PenaltyFailure::Singular);
+        }
+        change.displacement += by_residual + by_load * load_step;
+        change.load += load_step;
+        work.newton_iterations += 1;
     }
+    Err(PenaltyFailure::NotConverged)
 }
 
 /// Whether the controlled quantity has its value; the arc length has it by construction.

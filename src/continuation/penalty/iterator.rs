@@ -8,6 +8,7 @@ use crate::continuation::path_state::totals::{Added, Totals};
 use crate::continuation::penalty::increment::PenaltyIncrement;
 use crate::continuation::penalty::law::Penalties;
 use crate::continuation::penalty::record::{give, modes, work_and_dissipation};
+use crate::continuation::penalty::step_control;
 use crate::continuation::penalty::step_control::AcceptedPenaltyStep;
 use crate::continuation::penalty::system::{PenaltyPoint, PenaltySystem};
 use crate::continuation::scene::Scene;
@@ -112,7 +113,7 @@ impl<'a> RegularisedPath<'a> {
         self.phase = Phase::Running;
         self.begun = true;
         let ends = &self.scene.stages[self.stage].ends;
-        self.stage_over = ends.iter().any(|end| end.left(&self.here).is_some_and(|left| left <= 0.0));
+        self.stage_over = ends.iter().any(|end| step_control::left_to(end, &self.here).is_some_and(|left| left <= 0.0));
         let event = describe_start(self.scene, self.stage, self.stage_over);
         let before = self.here.clone();
         self.emit(&before, PointKind::Start, Some(event), 0.0, residual)
@@ -135,7 +136,7 @@ impl<'a> RegularisedPath<'a> {
         self.tangent = converged.tangent;
         self.previous = Some(converged.change);
         let (mut kind, mut events) = (PointKind::Regular, Vec::new());
-        if self.direction().is_some_and(|(_, sign)| self.load_turns(sign)) {
+        if step_control::direction(self).is_some_and(|(_, sign)| self.load_turns(sign)) {
             kind = PointKind::SmoothLimit;
             let extremum = if self.load_sign < 0.0 { "maximum" } else { "minimum" };
             events.push(format!("load {extremum} within the step"));
@@ -260,7 +261,7 @@ impl RegularisedPath<'_> {
         if !self.begun {
             return Some(self.begin_stage());
         }
-        match self.step() {
+        match step_control::step(self) {
             Ok(accepted) => Some(self.accept(accepted)),
             Err(reason) => {
                 self.end(reason);

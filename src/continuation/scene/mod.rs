@@ -172,9 +172,9 @@ impl Scene {
             plan,
         };
         scene.plan.left_out.extend(crate::continuation::scene::plan::left_out(&scene));
-        scene.refuse_mechanism()?;
-        scene.refuse_imbalance()?;
-        scene.refuse_dragged_supports(model)?;
+        admissibility::refuse_mechanism(&scene)?;
+        admissibility::refuse_imbalance(&scene)?;
+        admissibility::refuse_dragged_supports(&scene, model)?;
         Ok(scene)
     }
 

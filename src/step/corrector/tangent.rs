@@ -2,6 +2,7 @@
 
 use crate::algebra::SystemFactorisation;
 use crate::algebra::sparse::SparseFactorisation;
+use crate::algebra::sparse::preconditioned_refinement::Nearby;
 use crate::mechanics::equations::solution::{Corrected, Tangent};
 use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role};
 use crate::mechanics::problem::state::Rate;
@@ -82,7 +83,7 @@ fn tangent_nearby(
     if nearby.pivot_ratio() < REGULAR {
         return None;
     }
-    let nearby = nearby.nearby(system.assemble_sparse(iterate, Kind::Rates)?)?;
+    let nearby = Nearby::new(nearby, system.assemble_sparse(iterate, Kind::Rates)?)?;
     let values = nearby.solve(&system.bordering())?;
     // On the same side of both borders, so that the determinants have one sign.
     system.direction_from(iterate, &values).filter(|rate| rate.product(towards) > 0.0)

@@ -48,7 +48,7 @@ pub(crate) mod reference;
 pub(crate) mod report;
 pub(crate) mod row;
 pub(crate) mod run;
-pub(crate) mod table;
+pub mod table;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

@@ -41,18 +41,22 @@ impl Elimination {
         let all = Nodes::of(matrix, holdings, friction);
         let (nodes, numbers) = (&all.nodes, &all.numbers);
         let mut values = matrix.values.clone();
-        nodes.iter().for_each(|node| node.rotate_matrix(matrix, numbers, &mut values));
+        nodes.iter().for_each(|node| constrained_node_basis::rotate_matrix(node, matrix, numbers, &mut values));
         let held = nodes.last().map_or(0, |node| node.before as usize + node.held_count());
         let most = nodes.iter().flat_map(HeldNode::held).map(|unknown| matrix.pattern.column(unknown).len());
         let mut entries = Vec::with_capacity(2 * most.sum::<usize>());
         let [mut rows_at, mut columns_at] = [(); 2].map(|()| Vec::with_capacity(held + 1));
         // All rows and columns are taken before any is cleared: those of neighbours have entries in each other's.
-        nodes.iter().for_each(|node| node.take(matrix, &values, true, &mut entries, &mut rows_at));
+        nodes
+            .iter()
+            .for_each(|node| constrained_node_basis::take(node, matrix, &values, true, &mut entries, &mut rows_at));
         rows_at.push(entries.len() as u32);
-        nodes.iter().for_each(|node| node.fold(matrix, numbers, &mut values));
-        nodes.iter().for_each(|node| node.take(matrix, &values, false, &mut entries, &mut columns_at));
+        nodes.iter().for_each(|node| constrained_node_basis::fold(node, matrix, numbers, &mut values));
+        nodes
+            .iter()
+            .for_each(|node| constrained_node_basis::take(node, matrix, &values, false, &mut entries, &mut columns_at));
         columns_at.push(entries.len() as u32);
-        nodes.iter().for_each(|node| node.clear(matrix, &mut values));
+        nodes.iter().for_each(|node| constrained_node_basis::clear(node, matrix, &mut values));
         (Self { nodes: all, columns_at, rows_at, entries }, values)
     }
 

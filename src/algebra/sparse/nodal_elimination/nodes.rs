@@ -5,6 +5,7 @@ use crate::algebra::sparse::constrained_nodes::nodal_constraints::{Friction, Hol
 use crate::algebra::sparse::constrained_nodes::node_cache::Nodes;
 use crate::algebra::sparse::factors::bordered_matrix::Bordered;
 use crate::algebra::sparse::factors::entries::SparseEntries;
+use crate::algebra::sparse::nodal_elimination::constrained_node_basis;
 use std::sync::Arc;
 
 /// Numbers of a node, and entries of its borders, as they mostly are in the plane.
@@ -34,7 +35,15 @@ impl Nodes {
                 continue;
             }
             let place = nodes.len();
-            let node = HeldNode::new(matrix, holding, &is_reaction, friction, place, &mut numbers, &mut couplings);
+            let node = constrained_node_basis::from_borders(
+                matrix,
+                holding,
+                &is_reaction,
+                friction,
+                place,
+                &mut numbers,
+                &mut couplings,
+            );
             let Some(mut node) = node else { continue };
             for (local, unknown) in node.unknowns().enumerate() {
                 place_of[unknown] = Some((place as u32, local as u32));

@@ -186,7 +186,7 @@ impl StiffnessEstimate<'_> {
     /// The motion `K u = s p`, `p·u = 1`; `None` where the load moves nothing, or where it is not determined.
     fn at_first_order(&self, still: &[f64]) -> Option<Motion> {
         let ties = self.all_ties();
-        let pushed = self.pushed(still, &ties);
+        let pushed = equations::pushed(self, still, &ties);
         let size = pushed.iter().map(|value| value * value).sum::<f64>().sqrt();
         if size <= 0.0 || !size.is_finite() {
             return None;
@@ -194,7 +194,7 @@ impl StiffnessEstimate<'_> {
         let row: Vec<f64> = pushed.iter().map(|value| value / size).collect();
         let mut values = DVector::zeros(row.len() + 1);
         values[row.len()] = 1.0;
-        if !self.factorise(still, &ties, &row)?.solve(&mut values) {
+        if !equations::factorise(self, still, &ties, &row)?.solve(&mut values) {
             return None;
         }
         let mut motion = self.motion(values.as_slice());
@@ -254,10 +254,12 @@ impl StiffnessEstimate<'_> {
             }
             for tie in &ties {
                 let pull = tie.stretching.stiffness * tie.stretch(&motion);
-                self.unknowns_of(&tie.stretching).iter().for_each(|(row, value)| left_over[*row] += pull * value);
+                equations::unknowns_of(self, &tie.stretching)
+                    .iter()
+                    .for_each(|(row, value)| left_over[*row] += pull * value);
             }
             left_over[unknowns] = row.iter().zip(&values).map(|(entry, value)| entry * value).sum::<f64>() - size;
-            if !self.factorise(&motion.displacement, &ties, row)?.solve(&mut left_over) {
+            if !equations::factorise(self, &motion.displacement, &ties, row)?.solve(&mut left_over) {
                 return None;
             }
             values.iter_mut().zip(left_over.iter()).for_each(|(value, change)| *value -= change);
