@@ -1,7 +1,7 @@
 //! `arcslip verify`: every scene with a known answer, solved and judged here and now.
 
 use crate::check::cases::cases;
-use crate::check::verify::case::{Case, Row};
+use crate::check::verify::case::{Case, CaseRow};
 use crate::command::outcome::{Failure, Outcome, say};
 use crate::command::verify_picture;
 use crate::command::written::{is_standard_output, one_on_standard_output, write};
@@ -91,7 +91,7 @@ impl Columns {
         )
     }
 
-    fn line(&self, row: &Row) -> String {
+    fn line(&self, row: &CaseRow) -> String {
         let Self { family, case } = *self;
         let figure = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.1e}"));
         format!(

@@ -1,6 +1,6 @@
 //! Errors over their bars, a line a scene or family.
 
-use crate::check::verify::case::Row;
+use crate::check::verify::case::CaseRow;
 use plotters::coord::Shift;
 use plotters::element::PathElement;
 use plotters::prelude::{
@@ -28,7 +28,7 @@ const DECADES: std::ops::RangeInclusive<i32> = -9..=3;
 type DrawingError = DrawingAreaErrorKind<std::io::Error>;
 
 /// The picture as SVG text. An error that is not finite stands at the right edge.
-pub fn svg(rows: &[Row]) -> Result<String, DrawingError> {
+pub fn svg(rows: &[CaseRow]) -> Result<String, DrawingError> {
     let mut families: Vec<&str> = rows.iter().map(|row| row.family).collect();
     families.dedup();
     let lines = i32::try_from(families.len()).unwrap_or(i32::MAX / LINE - ABOVE);
@@ -53,7 +53,7 @@ fn across(decades: f64) -> i32 {
 
 fn draw(
     sheet: &DrawingArea<SVGBackend<'_>, Shift>,
-    rows: &[Row],
+    rows: &[CaseRow],
     families: &[&str],
     height: i32,
 ) -> Result<(), DrawingError> {

@@ -12,10 +12,10 @@ use crate::mechanics::equations::solution::Failure;
 use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::state::State;
 use crate::step::corrector::cost_counters::Work;
-use crate::step::corrector::newton::ACCEPTED_RESIDUAL;
+use crate::step::corrector::newton::{self, ACCEPTED_RESIDUAL};
 use crate::step::event_functions::Watch;
-use crate::step::interpolation::{Knot, Placed, Polynomial, between, placed, unit};
-use crate::step::segment::{PASSED, Reached, Refused, Start};
+use crate::step::interpolation::{Knot, NewtonPolynomial, PlacedPoint, between, placed, unit};
+use crate::step::segment::{PASSED, Reached, Refused, StepStart};
 
 /// How far from zero, over its scale, a quantity may be at a point that is taken for its zero.
 const LOCATED: f64 = 1e-16;
@@ -42,20 +42,20 @@ const BESIDE: f64 = 16.0;
 const ROOM: f64 = 4.0;
 
 /// The points of a step that are reached, in order, and its start.
-pub(crate) struct Stretch {
-    origin: Placed,
-    points: Vec<(Placed, Box<Reached>)>,
+pub(crate) struct StepPoints {
+    origin: PlacedPoint,
+    points: Vec<(PlacedPoint, Box<Reached>)>,
     /// The last factorisation: it may serve at points close to its own.
     serving: Option<SystemFactorisation>,
 }
 
-impl Stretch {
-    pub fn new(start: &Start<'_>, reached: &Reached, serving: Option<SystemFactorisation>) -> Self {
-        let origin = Placed { place: 0.0, state: start.state.clone(), rate: start.rate.clone() };
+impl StepPoints {
+    pub fn new(start: &StepStart<'_>, reached: &Reached, serving: Option<SystemFactorisation>) -> Self {
+        let origin = PlacedPoint { place: 0.0, state: start.state.clone(), rate: start.rate.clone() };
         Self { origin, points: vec![(placed(start, reached), Box::new(reached.clone()))], serving }
     }
 
-    fn placed(&self) -> impl Iterator<Item = &Placed> {
+    fn placed(&self) -> impl Iterator<Item = &PlacedPoint> {
         std::iter::once(&self.origin).chain(self.points.iter().map(|(placed, _)| placed))
     }
 
@@ -66,14 +66,14 @@ impl Stretch {
         between(before, &self.points[next].0, place).0
     }
 
-    fn insert(&mut self, start: &Start<'_>, reached: &Reached) {
+    fn insert(&mut self, start: &StepStart<'_>, reached: &Reached) {
         let point = placed(start, reached);
         let at = self.points.partition_point(|(other, _)| other.place < point.place);
         self.points.insert(at, (point, Box::new(reached.clone())));
     }
 
     /// The point at a place, kept.
-    pub fn reach(&mut self, start: &Start<'_>, place: f64, work: &mut Work) -> Result<Box<Reached>, Refused> {
+    pub fn reach(&mut self, start: &StepStart<'_>, place: f64, work: &mut Work) -> Result<Box<Reached>, Refused> {
         let reached =
             start.reach_by(self.guess(place), place, &mut self.serving, work).or_else(|_| start.reach(place, work))?;
         self.insert(start, &reached);
@@ -130,7 +130,7 @@ impl Bracket {
             false => sample.knot,
         };
         let knots: Vec<Knot> = used.iter().map(knot).collect();
-        let polynomial = Polynomial::through(&knots);
+        let polynomial = NewtonPolynomial::through(&knots);
         let value = |place: f64| {
             let (value, slope) = polynomial.at(place);
             if is_slope { slope } else { value }
@@ -145,177 +145,193 @@ impl Bracket {
     }
 }
 
-impl Start<'_> {
-    fn sample(&self, watch: Watch, at: &Placed) -> Sample {
-        let value = watch.value(self.loading, self.modes, &at.state, &at.rate);
-        let whole = watch.whole(self.loading, self.modes, self.state, &at.state);
-        let knot = match whole {
-            Some(whole) => Knot { place: at.place, value: whole, slope: Some(value) },
-            None => Knot { place: at.place, value, slope: watch.slope(self.loading, self.modes, &at.state, &at.rate) },
+fn sample(start: &StepStart<'_>, watch: Watch, at: &PlacedPoint) -> Sample {
+    let value = watch.value(start.loading, start.modes, &at.state, &at.rate);
+    let whole = watch.whole(start.loading, start.modes, start.state, &at.state);
+    let knot = match whole {
+        Some(whole) => Knot { place: at.place, value: whole, slope: Some(value) },
+        None => Knot { place: at.place, value, slope: watch.slope(start.loading, start.modes, &at.state, &at.rate) },
+    };
+    Sample { value, knot, is_slope: whole.is_some() }
+}
+
+/// Where along the points a quantity first becomes negative.
+fn bracket(start: &StepStart<'_>, watch: Watch, stretch: &StepPoints, zero: f64) -> Option<Bracket> {
+    let samples: Vec<Sample> = stretch.placed().map(|placed| sample(start, watch, placed)).collect();
+    let end = samples.iter().skip(1).position(|sample| sample.value < -zero)? + 1;
+    Some(Bracket { samples, end })
+}
+
+/// The quantity that falls to zero first, of those that are negative at the last point.
+pub(crate) fn earliest<'w>(
+    start: &StepStart<'_>,
+    passed: &'w [Watch],
+    stretch: &StepPoints,
+    zero: impl Fn(Watch) -> f64,
+) -> Option<&'w Watch> {
+    let place = |watch: &Watch| {
+        let estimate = bracket(start, *watch, stretch, zero(*watch))?.estimate(zero(*watch));
+        Some(estimate.unwrap_or(0.0))
+    };
+    passed.iter().min_by(|a, b| {
+        let [a, b] = [a, b].map(|watch| place(watch).unwrap_or(f64::INFINITY));
+        a.total_cmp(&b)
+    })
+}
+
+/// The point at which a quantity that is negative at the last point first is zero; `zero` is what counts as that.
+pub(crate) fn locate(
+    start: &StepStart<'_>,
+    watch: Watch,
+    stretch: &mut StepPoints,
+    zero: f64,
+    work: &mut Work,
+) -> Result<Box<Reached>, Refused> {
+    let unclear = Refused::Newton(Failure::NotConverged);
+    let last = stretch.points.last().ok_or(unclear)?;
+    let reach = last.0.state.displacement.iter().fold(last.0.state.load.abs(), |most, value| most.max(value.abs()));
+    let same_place = |place: f64| ROOM * f64::EPSILON * (place + reach);
+    let located = zero * (LOCATED / PASSED);
+    if let Watch::End(end) = watch
+        && let Some(bracket) = bracket(start, watch, stretch, 0.0)
+        && let Some(found) = meet(start, end, &bracket, stretch, work)
+    {
+        return Ok(found);
+    }
+    let (mut nearest, mut halve) = (f64::INFINITY, false);
+    for _ in 0..MOST_POINTS {
+        let bracket = bracket(start, watch, stretch, located).ok_or(unclear)?;
+        let [first, second] = bracket.ends();
+        if !(first.value.is_finite() && second.value.is_finite()) {
+            return Err(unclear);
+        }
+        let best = if first.value.abs() < second.value.abs() { bracket.end - 1 } else { bracket.end };
+        if bracket.end > 1 && first.value <= zero {
+            return Ok(stretch.points[bracket.end - 2].1.clone());
+        }
+        let place = match bracket.estimate(zero) {
+            Some(_) if halve => first.knot.place + 0.5 * bracket.width(),
+            Some(place) => place,
+            None => {
+                // A contact that has just changed starts at zero: begin a little further on.
+                begin_further_on(start, watch, stretch, zero, work)?;
+                continue;
+            }
         };
-        Sample { value, knot, is_slope: whole.is_some() }
-    }
-
-    /// Where along the points a quantity first becomes negative.
-    fn bracket(&self, watch: Watch, stretch: &Stretch, zero: f64) -> Option<Bracket> {
-        let samples: Vec<Sample> = stretch.placed().map(|placed| self.sample(watch, placed)).collect();
-        let end = samples.iter().skip(1).position(|sample| sample.value < -zero)? + 1;
-        Some(Bracket { samples, end })
-    }
-
-    /// The quantity that falls to zero first, of those that are negative at the last point.
-    pub(crate) fn earliest<'w>(
-        &self,
-        passed: &'w [Watch],
-        stretch: &Stretch,
-        zero: impl Fn(Watch) -> f64,
-    ) -> Option<&'w Watch> {
-        let place = |watch: &Watch| {
-            let estimate = self.bracket(*watch, stretch, zero(*watch))?.estimate(zero(*watch));
-            Some(estimate.unwrap_or(0.0))
-        };
-        passed.iter().min_by(|a, b| {
-            let [a, b] = [a, b].map(|watch| place(watch).unwrap_or(f64::INFINITY));
-            a.total_cmp(&b)
-        })
-    }
-
-    /// The point at which a quantity that is negative at the last point first is zero; `zero` is what counts as that.
-    pub(crate) fn locate(
-        &self,
-        watch: Watch,
-        stretch: &mut Stretch,
-        zero: f64,
-        work: &mut Work,
-    ) -> Result<Box<Reached>, Refused> {
-        let unclear = Refused::Newton(Failure::NotConverged);
-        let last = stretch.points.last().ok_or(unclear)?;
-        let reach = last.0.state.displacement.iter().fold(last.0.state.load.abs(), |most, value| most.max(value.abs()));
-        let same_place = |place: f64| ROOM * f64::EPSILON * (place + reach);
-        let located = zero * (LOCATED / PASSED);
-        if let Watch::End(end) = watch
-            && let Some(bracket) = self.bracket(watch, stretch, 0.0)
-            && let Some(found) = self.meet(end, &bracket, stretch, work)
-        {
+        let known = bracket.samples[best].knot.place;
+        if best > 0 && (place - known).abs() <= same_place(place) {
+            return Ok(stretch.points[best - 1].1.clone());
+        }
+        // Just there the equations may be singular to the last digit.
+        let beside = (place - BESIDE * same_place(place)).max(0.5 * place);
+        let found = stretch.reach(start, place, work).or_else(|refused| match watch {
+            // A bound at a singular point ends the stage there: see `stage_end`.
+            Watch::End(_) => Err(refused),
+            _ => stretch.reach(start, beside, work),
+        })?;
+        let value = watch.value(start.loading, start.modes, &found.corrected.state, &found.rate);
+        if value.abs() <= located {
             return Ok(found);
         }
-        let (mut nearest, mut halve) = (f64::INFINITY, false);
-        for _ in 0..MOST_POINTS {
-            let bracket = self.bracket(watch, stretch, located).ok_or(unclear)?;
-            let [first, second] = bracket.ends();
-            if !(first.value.is_finite() && second.value.is_finite()) {
-                return Err(unclear);
-            }
-            let best = if first.value.abs() < second.value.abs() { bracket.end - 1 } else { bracket.end };
-            if bracket.end > 1 && first.value <= zero {
-                return Ok(stretch.points[bracket.end - 2].1.clone());
-            }
-            let place = match bracket.estimate(zero) {
-                Some(_) if halve => first.knot.place + 0.5 * bracket.width(),
-                Some(place) => place,
-                None => {
-                    // A contact that has just changed starts at zero: begin a little further on.
-                    self.begin_further_on(watch, stretch, zero, work)?;
-                    continue;
-                }
-            };
-            let known = bracket.samples[best].knot.place;
-            if best > 0 && (place - known).abs() <= same_place(place) {
-                return Ok(stretch.points[best - 1].1.clone());
-            }
-            // Just there the equations may be singular to the last digit.
-            let beside = (place - BESIDE * same_place(place)).max(0.5 * place);
-            let found = stretch.reach(self, place, work).or_else(|refused| match watch {
-                // A bound at a singular point ends the stage there: see `stage_end`.
-                Watch::End(_) => Err(refused),
-                _ => stretch.reach(self, beside, work),
-            })?;
-            let value = watch.value(self.loading, self.modes, &found.corrected.state, &found.rate);
-            if value.abs() <= located {
-                return Ok(found);
-            }
-            if value.abs() <= BY_SERIES * zero
-                && let Some(exact) = self.by_series(watch, stretch, zero, &found)
-            {
-                return Ok(exact);
-            }
-            if nearest <= zero {
-                // What is left is rounding.
-                return Ok(if value.abs() < nearest { found } else { stretch.points[best.max(1) - 1].1.clone() });
-            }
-            halve = value.abs() > SLOW * nearest;
-            nearest = nearest.min(value.abs());
+        if value.abs() <= BY_SERIES * zero
+            && let Some(exact) = by_series(start, watch, stretch, zero, &found)
+        {
+            return Ok(exact);
         }
-        Err(unclear)
+        if nearest <= zero {
+            // What is left is rounding.
+            return Ok(if value.abs() < nearest { found } else { stretch.points[best.max(1) - 1].1.clone() });
+        }
+        halve = value.abs() > SLOW * nearest;
+        nearest = nearest.min(value.abs());
     }
+    Err(unclear)
+}
 
-    /// Whether a quantity that is zero at a point falls through zero there.
-    pub(crate) fn falls_through(&self, watch: Watch, stretch: &Stretch, zero: &Reached) -> bool {
-        let away = |placed: &&Placed| (placed.place - zero.step).abs() > CLOSE * zero.step;
-        let sampled = |placed: &Placed| {
-            (placed.place - zero.step, watch.value(self.loading, self.modes, &placed.state, &placed.rate))
-        };
-        let before = stretch.placed().filter(away).filter(|placed| placed.place < zero.step).last();
-        let after = stretch.placed().filter(away).find(|placed| placed.place > zero.step);
-        before.zip(after).is_some_and(|(before, after)| falls(sampled(before), sampled(after)))
-    }
+/// Whether a quantity that is zero at a point falls through zero there.
+pub(crate) fn falls_through(start: &StepStart<'_>, watch: Watch, stretch: &StepPoints, zero: &Reached) -> bool {
+    let away = |placed: &&PlacedPoint| (placed.place - zero.step).abs() > CLOSE * zero.step;
+    let sampled = |placed: &PlacedPoint| {
+        (placed.place - zero.step, watch.value(start.loading, start.modes, &placed.state, &placed.rate))
+    };
+    let before = stretch.placed().filter(away).filter(|placed| placed.place < zero.step).last();
+    let after = stretch.placed().filter(away).find(|placed| placed.place > zero.step);
+    before.zip(after).is_some_and(|(before, after)| falls(sampled(before), sampled(after)))
+}
 
-    /// The zero so close to a point found that a straight step leads there; `None` where what that leaves over counts for
-    /// something.
-    fn by_series(&self, watch: Watch, stretch: &Stretch, zero: f64, found: &Reached) -> Option<Box<Reached>> {
-        let system = ModeSystem::new(self.loading, self.modes, self.state);
-        if system.has_tracks() {
-            return None;
-        }
-        let bracket = self.bracket(watch, stretch, 0.0)?;
-        let place = bracket.estimate(zero)?;
-        let [left, right] = [bracket.end - 1, bracket.end].map(|index| stretch.placed().nth(index));
-        let (left, right) = (left?, right?);
-        let distance = |point: &Placed| (point.place - place).abs();
-        let (near, far) = if distance(left) < distance(right) { (left, right) } else { (right, left) };
-        let (way, width) = (place - near.place, far.place - near.place);
-        if way.abs() > MOST_BY_SERIES * width.abs() {
-            return None;
-        }
-        let mut rate = near.rate.clone();
-        rate.scale(1.0 - way / width);
-        rate.add(&far.rate, way / width);
-        let state = near.state.advanced(&near.rate, way);
-        let rate = unit(&rate);
-        let value = watch.value(self.loading, self.modes, &state, &rate).abs();
-        let mut corrected = system.judged(state, self.force_scale);
-        if value > zero || corrected.residual > ACCEPTED_RESIDUAL {
-            return None;
-        }
-        corrected.modes.clone_from(&found.corrected.modes);
-        corrected.directions.clone_from(&found.corrected.directions);
-        corrected.iterations_to_small = found.corrected.iterations_to_small;
-        let step = corrected.state.distance(self.state);
-        let mut nearer = Box::new(found.clone());
-        (nearer.corrected, nearer.rate, nearer.step) = (corrected, rate, step);
-        Some(nearer)
+/// The zero so close to a point found that a straight step leads there; `None` where what that leaves over counts for
+/// something.
+fn by_series(
+    start: &StepStart<'_>,
+    watch: Watch,
+    stretch: &StepPoints,
+    zero: f64,
+    found: &Reached,
+) -> Option<Box<Reached>> {
+    let system = ModeSystem::new(start.loading, start.modes, start.state);
+    if system.has_tracks() {
+        return None;
     }
+    let bracket = bracket(start, watch, stretch, 0.0)?;
+    let place = bracket.estimate(zero)?;
+    let [left, right] = [bracket.end - 1, bracket.end].map(|index| stretch.placed().nth(index));
+    let (left, right) = (left?, right?);
+    let distance = |point: &PlacedPoint| (point.place - place).abs();
+    let (near, far) = if distance(left) < distance(right) { (left, right) } else { (right, left) };
+    let (way, width) = (place - near.place, far.place - near.place);
+    if way.abs() > MOST_BY_SERIES * width.abs() {
+        return None;
+    }
+    let mut rate = near.rate.clone();
+    rate.scale(1.0 - way / width);
+    rate.add(&far.rate, way / width);
+    let state = near.state.advanced(&near.rate, way);
+    let rate = unit(&rate);
+    let value = watch.value(start.loading, start.modes, &state, &rate).abs();
+    let mut corrected = newton::judged(&system, state, start.force_scale);
+    if value > zero || corrected.residual > ACCEPTED_RESIDUAL {
+        return None;
+    }
+    corrected.modes.clone_from(&found.corrected.modes);
+    corrected.directions.clone_from(&found.corrected.directions);
+    corrected.iterations_to_small = found.corrected.iterations_to_small;
+    let step = corrected.state.distance(start.state);
+    let mut nearer = Box::new(found.clone());
+    (nearer.corrected, nearer.rate, nearer.step) = (corrected, rate, step);
+    Some(nearer)
+}
 
-    /// The point at which a bound of the stage is met, which is an equation of its own; `None` where that leads elsewhere.
-    fn meet(&self, end: End, bracket: &Bracket, stretch: &Stretch, work: &mut Work) -> Option<Box<Reached>> {
-        let place = bracket.estimate(0.0)?;
-        let system = ModeSystem::new(self.loading, self.modes, self.state);
-        let mut met = self.settle(system, stretch.guess(place), &end.held()?, work).ok()?;
-        end.make_exact(&mut met.corrected.state);
-        ((met.step - place).abs() <= EXPECTED * bracket.width()).then_some(met)
-    }
+/// The point at which a bound of the stage is met, which is an equation of its own; `None` where that leads elsewhere.
+fn meet(
+    start: &StepStart<'_>,
+    end: End,
+    bracket: &Bracket,
+    stretch: &StepPoints,
+    work: &mut Work,
+) -> Option<Box<Reached>> {
+    let place = bracket.estimate(0.0)?;
+    let system = ModeSystem::new(start.loading, start.modes, start.state);
+    let mut met = start.settle(system, stretch.guess(place), &end.held()?, work).ok()?;
+    end.make_exact(&mut met.corrected.state);
+    ((met.step - place).abs() <= EXPECTED * bracket.width()).then_some(met)
+}
 
-    /// Looks for a point past the start at which a quantity that is zero there is positive.
-    fn begin_further_on(&self, watch: Watch, stretch: &mut Stretch, zero: f64, work: &mut Work) -> Result<(), Refused> {
-        let first = stretch.points[0].0.place;
-        for part in FURTHER_ON {
-            let near = stretch.reach(self, part * first, work)?;
-            if watch.value(self.loading, self.modes, &near.corrected.state, &near.rate) > zero {
-                return Ok(());
-            }
+/// Looks for a point past the start at which a quantity that is zero there is positive.
+fn begin_further_on(
+    start: &StepStart<'_>,
+    watch: Watch,
+    stretch: &mut StepPoints,
+    zero: f64,
+    work: &mut Work,
+) -> Result<(), Refused> {
+    let first = stretch.points[0].0.place;
+    for part in FURTHER_ON {
+        let near = stretch.reach(start, part * first, work)?;
+        if watch.value(start.loading, start.modes, &near.corrected.state, &near.rate) > zero {
+            return Ok(());
         }
-        Err(Refused::AtStart(watch))
     }
+    Err(Refused::AtStart(watch))
 }
 
 /// Whether a quantity that is zero at place 0 falls there, and is not just zero: the lines to values at places on both

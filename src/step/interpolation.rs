@@ -2,31 +2,31 @@
 //! values and slopes of one quantity.
 
 use crate::mechanics::problem::state::{Rate, State};
-use crate::step::segment::{Reached, Start};
+use crate::step::segment::{Reached, StepStart};
 use serde::{Deserialize, Serialize};
 
 /// A point on the path with its place: the distance from the start of the step, negative before it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Placed {
+pub(crate) struct PlacedPoint {
     pub place: f64,
     pub state: State,
     /// Derivative by `place`.
     pub rate: Rate,
 }
 
-pub(crate) fn placed(start: &Start<'_>, reached: &Reached) -> Placed {
+pub(crate) fn placed(start: &StepStart<'_>, reached: &Reached) -> PlacedPoint {
     let place = reached.corrected.state.distance(start.state);
     let cosine = start.state.cosine_of_chord(&reached.corrected.state, place, &reached.rate);
     let mut rate = reached.rate.clone();
     rate.scale(1.0 / cosine);
-    Placed { place, state: reached.corrected.state.clone(), rate }
+    PlacedPoint { place, state: reached.corrected.state.clone(), rate }
 }
 
 /// Multiple of the step before up to which the path is foreseen from it: what rounding left in that is not to be seen.
 const MOST_FORESEEN: f64 = 4.0;
 
-impl Placed {
+impl PlacedPoint {
     /// The point before another of the same mode, `rate` its direction.
     pub fn before(state: State, mut rate: Rate, here: &State) -> Option<Self> {
         let width = state.distance(here);
@@ -73,7 +73,7 @@ pub(crate) fn unit(rate: &Rate) -> Rate {
 }
 
 /// The cubic Hermite interpolant and its derivative.
-pub(crate) fn between(left: &Placed, right: &Placed, place: f64) -> (State, Rate) {
+pub(crate) fn between(left: &PlacedPoint, right: &PlacedPoint, place: f64) -> (State, Rate) {
     let width = right.place - left.place;
     if width <= 0.0 {
         return (left.state.clone(), left.rate.clone());
@@ -101,12 +101,12 @@ pub(crate) struct Knot {
 }
 
 /// The polynomial of least degree through knots (Newton's form).
-pub(crate) struct Polynomial {
+pub(crate) struct NewtonPolynomial {
     places: Vec<f64>,
     coefficients: Vec<f64>,
 }
 
-impl Polynomial {
+impl NewtonPolynomial {
     /// Knots at places that differ.
     pub fn through(knots: &[Knot]) -> Self {
         let (mut places, mut differences) = (Vec::new(), Vec::new());
@@ -143,7 +143,7 @@ impl Polynomial {
 
 #[cfg(test)]
 mod tests {
-    use super::{Knot, Placed, Polynomial};
+    use super::{Knot, NewtonPolynomial, PlacedPoint};
     use crate::mechanics::problem::state::{Rate, State};
 
     /// On a circle of radius 1 the guess is off by the fourth power of the step, and too far on there is none.
@@ -152,14 +152,14 @@ mod tests {
         let state = |angle: f64| State { displacement: vec![angle.cos()], load: angle.sin(), reactions: Vec::new() };
         let rate = |angle: f64| Rate { displacement: vec![-angle.sin()], load: angle.cos(), reactions: Vec::new() };
         let error = |step: f64| {
-            let before = Placed::before(state(-step), rate(-step), &state(0.0)).expect("a point before");
+            let before = PlacedPoint::before(state(-step), rate(-step), &state(0.0)).expect("a point before");
             let guess = before.foresee(&state(0.0), &rate(0.0), step).expect("a guess");
             assert!(before.foresee(&state(0.0), &rate(0.0), 4.1 * step).is_none());
             (guess.displacement[0].hypot(guess.load) - 1.0).abs()
         };
         let (coarse, fine) = (error(0.1), error(0.05));
         assert!(coarse < 1e-4 && coarse / fine > 12.0, "{coarse:e} {fine:e}");
-        assert!(Placed::before(state(0.0), rate(0.0), &state(0.0)).is_none(), "no way between");
+        assert!(PlacedPoint::before(state(0.0), rate(0.0), &state(0.0)).is_none(), "no way between");
     }
 
     #[test]
@@ -169,7 +169,7 @@ mod tests {
             let (value, slope) = exact(place);
             Knot { place, value, slope: sloped.then_some(slope) }
         };
-        let polynomial = Polynomial::through(&[knot(0.5, true), knot(-1.0, false), knot(2.0, true)]);
+        let polynomial = NewtonPolynomial::through(&[knot(0.5, true), knot(-1.0, false), knot(2.0, true)]);
         for place in [-1.5, -1.0, 0.0, 0.5, 1.3, 2.0] {
             let (found, exact) = (polynomial.at(place), exact(place));
             assert!((found.0 - exact.0).abs() < 1e-12 && (found.1 - exact.1).abs() < 1e-12);

@@ -10,14 +10,19 @@ use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cached_factorisation::AtHand;
 use crate::step::corrector::cost_counters::Work;
+use crate::step::corrector::newton;
+use crate::step::corrector::slip_error;
 use crate::step::corrector::slip_error::Pointed;
+use crate::step::corrector::tangent;
 use crate::step::event_functions::{self, Watch};
-use crate::step::event_location::Stretch;
-use crate::step::interpolation::Placed;
+use crate::step::event_location;
+use crate::step::event_location::StepPoints;
+use crate::step::interpolation::PlacedPoint;
+use crate::step::singular_step;
 
 /// Where a step starts.
 #[derive(Clone, Copy)]
-pub struct Start<'a> {
+pub struct StepStart<'a> {
     pub loading: Loading<'a>,
     pub state: &'a State,
     /// The direction in `modes`.
@@ -28,7 +33,7 @@ pub struct Start<'a> {
     pub force_scale: f64,
     /// The equations have another null vector besides the direction: see `singular_step`.
     pub is_singular: bool,
-    /// How far the path is then off the direction: see `choice::Choice`.
+    /// How far the path is then off the direction: see `choice::DirectionChoice`.
     pub beside: Option<&'a Rate>,
 }
 
@@ -65,7 +70,7 @@ impl Reached {
 }
 
 /// Locates a limit point at which the equations of the mode are singular, from the point past it.
-pub type LocateSingularLimit = fn(&Start<'_>, Watch, &Reached, &mut Work) -> Option<Box<Reached>>;
+pub type LocateSingularLimit = fn(&StepStart<'_>, Watch, &Reached, &mut Work) -> Option<Box<Reached>>;
 
 /// A step that is tried, and what is watched along it.
 pub(crate) struct Attempt {
@@ -75,7 +80,7 @@ pub(crate) struct Attempt {
     /// Those that are.
     pub passed: Vec<Watch>,
     /// The points that it is made of, where something is passed.
-    pub stretch: Option<Box<Stretch>>,
+    pub stretch: Option<Box<StepPoints>>,
     /// What is zero at the farthest point, where that was solved for.
     pub met: Option<Watch>,
 }
@@ -122,7 +127,7 @@ pub(crate) fn may_turn(cosine: f64) -> Result<(), Refused> {
     if cosine < LEAST_COSINE { Err(Refused::Turned(cosine.clamp(-1.0, 1.0).acos())) } else { Ok(()) }
 }
 
-impl Start<'_> {
+impl StepStart<'_> {
     /// The point at an arc length, with its direction.
     pub fn reach(&self, step: f64, work: &mut Work) -> Result<Box<Reached>, Refused> {
         self.reach_near(self.state.advanced(self.rate, step), step, work)
@@ -163,15 +168,14 @@ impl Start<'_> {
         serving: &mut Option<SystemFactorisation>,
         work: &mut Work,
     ) -> Result<Box<Reached>, Refused> {
-        if let Some(reached) = self.held_straight(&system, closing) {
+        if let Some(reached) = singular_step::held_straight(self, &system, closing) {
             return Ok(reached);
         }
-        if let Some(reached) = self.held_across(&guess, closing, work) {
+        if let Some(reached) = singular_step::held_across(self, &guess, closing, work) {
             return Ok(reached);
         }
-        let guess = self.guess_beside(closing).unwrap_or(guess);
-        let corrected = system
-            .correct_from(system.iterate(guess), closing, self.force_scale, serving, work)
+        let guess = singular_step::guess_beside(self, closing).unwrap_or(guess);
+        let corrected = newton::correct_from(&system, system.iterate(guess), closing, self.force_scale, serving, work)
             .map_err(Refused::Newton)?;
         self.directed(system, corrected, closing, serving, work)
     }
@@ -186,22 +190,29 @@ impl Start<'_> {
         work: &mut Work,
     ) -> Result<Box<Reached>, Refused> {
         let singular = Refused::Newton(Failure::Singular);
-        let mut tangent =
-            system.tangent_and_error(&corrected, self.rate, serving, &mut work.factorisations).ok_or(singular)?;
+        let mut tangent = tangent::tangent_and_error(&system, &corrected, self.rate, serving, &mut work.factorisations)
+            .ok_or(singular)?;
         if system.has_tracks() {
             // Once more, now that the turn of the slips at the end is known; where directions settle, until they do.
             for pass in 1.. {
                 let settles = system.set_turns(self.rate, &corrected, &tangent);
-                let again = system
-                    .correct_from(system.iterate_of(&corrected), closing, self.force_scale, &mut None, work)
-                    .map_err(Refused::Newton)?;
+                let again = newton::correct_from(
+                    &system,
+                    system.iterate_of(&corrected),
+                    closing,
+                    self.force_scale,
+                    &mut None,
+                    work,
+                )
+                .map_err(Refused::Newton)?;
                 // How hard the increment is shows in the first solve.
                 let hardness = corrected.iterations_to_small;
                 let change = system.largest_turn(&again, Some(&corrected));
                 corrected = again;
                 corrected.iterations_to_small = hardness;
                 let factorisations = &mut work.factorisations;
-                tangent = system.tangent_and_error(&corrected, self.rate, &mut None, factorisations).ok_or(singular)?;
+                tangent = tangent::tangent_and_error(&system, &corrected, self.rate, &mut None, factorisations)
+                    .ok_or(singular)?;
                 if !settles || change <= SETTLED {
                     break;
                 }
@@ -258,7 +269,7 @@ impl Start<'_> {
     pub(crate) fn attempt(
         &self,
         step: f64,
-        before: Option<&Placed>,
+        before: Option<&PlacedPoint>,
         mut serving: Option<SystemFactorisation>,
         ends: &[End],
         load_sign: f64,
@@ -273,7 +284,7 @@ impl Start<'_> {
         may_turn(self.rate.product(&reached.rate))?;
         let watches = self.watches(ends, load_sign);
         let mut passed = self.passed(&watches, &reached);
-        let mut stretch = (!passed.is_empty()).then(|| Box::new(Stretch::new(self, &reached, serving.take())));
+        let mut stretch = (!passed.is_empty()).then(|| Box::new(StepPoints::new(self, &reached, serving.take())));
         if stretch.is_none() {
             (passed, stretch) = self.dips(&watches, &mut reached, serving, work)?;
         }
@@ -308,11 +319,12 @@ impl Start<'_> {
         let mut is_clear = met.is_some() && passed.is_empty();
         while !is_clear {
             while let Some(stretch) = &mut stretch
-                && let Some(&watch) = self.earliest(&passed, stretch, |watch| self.zero(watch, &reached))
+                && let Some(&watch) =
+                    event_location::earliest(self, &passed, stretch, |watch| self.zero(watch, &reached))
             {
                 // Quantities that are nothing but rounding would come by turns.
                 looks.next().ok_or(Refused::Newton(Failure::NotConverged))?;
-                let located = self.locate(watch, stretch, self.zero(watch, &reached), work);
+                let located = event_location::locate(self, watch, stretch, self.zero(watch, &reached), work);
                 reached = match watch {
                     Watch::LoadRate { .. } => self.alone_or_common(located, watch, &reached, singular_limit, work)?,
                     _ => located?,
@@ -350,7 +362,7 @@ impl Start<'_> {
         reached.event = event;
         reached.stopped = match (event, &stretch) {
             (Some(watch @ Watch::Sliding(contact)), Some(stretch)) => {
-                self.falls_through(watch, stretch, &reached).then_some(contact)
+                event_location::falls_through(self, watch, stretch, &reached).then_some(contact)
             }
             _ => None,
         };
@@ -388,12 +400,19 @@ impl Start<'_> {
         let before = self.drift;
         let drift = if system.has_tracks() {
             let factorisations = &mut work.factorisations;
-            let tangent = system.tangent_and_error(&reached.corrected, self.rate, &mut None, factorisations)?;
+            let tangent =
+                tangent::tangent_and_error(&system, &reached.corrected, self.rate, &mut None, factorisations)?;
             system.set_turns(self.rate, &reached.corrected, &tangent);
             let middle = self.reach(0.5 * reached.step, work).ok()?;
-            system.drift(self.rate, before, Pointed { corrected: &middle.corrected, rate: &middle.rate }, end)
+            slip_error::drift(
+                &system,
+                self.rate,
+                before,
+                Pointed { corrected: &middle.corrected, rate: &middle.rate },
+                end,
+            )
         } else {
-            system.drift(self.rate, before, end, end)
+            slip_error::drift(&system, self.rate, before, end, end)
         };
         work.factorisations += 1;
         drift.or_else(|| before.cloned())
@@ -440,7 +459,7 @@ impl Start<'_> {
         reached: &mut Reached,
         mut serving: Option<SystemFactorisation>,
         work: &mut Work,
-    ) -> Result<(Vec<Watch>, Option<Box<Stretch>>), Refused> {
+    ) -> Result<(Vec<Watch>, Option<Box<StepPoints>>), Refused> {
         let step = reached.step;
         let mut stretch = None;
         for watch in watches {
@@ -451,7 +470,7 @@ impl Start<'_> {
             }
             let zero = self.zero(*watch, reached);
             let Some(place) = watch.dip(self.loading, self.modes, start, end, step, zero) else { continue };
-            let points = stretch.get_or_insert_with(|| Box::new(Stretch::new(self, reached, serving.take())));
+            let points = stretch.get_or_insert_with(|| Box::new(StepPoints::new(self, reached, serving.take())));
             let inside = points.reach(self, place, work)?;
             let passed = self.passed(watches, &inside);
             if !passed.is_empty() {

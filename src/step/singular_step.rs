@@ -9,56 +9,58 @@ use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::closing_equation::ClosingEquation;
 use crate::mechanics::problem::state::State;
 use crate::step::corrector::cost_counters::Work;
-use crate::step::corrector::newton::ACCEPTED_RESIDUAL;
-use crate::step::segment::{Reached, Start};
+use crate::step::corrector::newton::{self, ACCEPTED_RESIDUAL};
+use crate::step::segment::{Reached, StepStart};
 
-impl Start<'_> {
-    /// The point straight ahead, where the equations hold along the direction.
-    pub(crate) fn held_straight(&self, system: &ModeSystem<'_>, closing: &dyn ClosingEquation) -> Option<Box<Reached>> {
-        if !self.is_singular || self.beside.is_some() || system.has_tracks() {
-            return None;
-        }
-        let step = closing.straight_way(self.state, self.rate)?;
-        if !(step.is_finite() && step > 0.0) {
-            return None;
-        }
-        let corrected = system.judged(self.state.advanced(self.rate, step), self.force_scale);
-        let error = corrected.residual;
-        (error <= ACCEPTED_RESIDUAL).then(|| self.straight_on(corrected, error))
+/// The point straight ahead, where the equations hold along the direction.
+pub(crate) fn held_straight(
+    start: &StepStart<'_>,
+    system: &ModeSystem<'_>,
+    closing: &dyn ClosingEquation,
+) -> Option<Box<Reached>> {
+    if !start.is_singular || start.beside.is_some() || system.has_tracks() {
+        return None;
     }
+    let step = closing.straight_way(start.state, start.rate)?;
+    if !(step.is_finite() && step > 0.0) {
+        return None;
+    }
+    let corrected = newton::judged(&system, start.state.advanced(start.rate, step), start.force_scale);
+    let error = corrected.residual;
+    (error <= ACCEPTED_RESIDUAL).then(|| start.straight_on(corrected, error))
+}
 
-    /// The point found with the motions held that the equations leave open; `None` where there are none, or the equations
-    /// cannot be met so.
-    pub(crate) fn held_across(
-        &self,
-        guess: &State,
-        closing: &dyn ClosingEquation,
-        work: &mut Work,
-    ) -> Option<Box<Reached>> {
-        if !self.is_singular || self.beside.is_some() {
-            return None;
-        }
-        let mut system = ModeSystem::new(self.loading, self.modes, self.state);
-        if !system.hold_still(self.state, self.rate) {
-            return None;
-        }
-        let iterate = system.iterate(guess.clone());
-        let corrected = system.correct_from(iterate, closing, self.force_scale, &mut None, work).ok()?;
-        if !system.is_still_open(&corrected.state) {
-            // Only the start is singular.
-            return None;
-        }
-        let mut reached = self.directed(system, corrected, closing, &mut None, work).ok()?;
-        // Which sign it has hangs on the signs of what is added to hold the motions.
-        reached.determinant = None;
-        Some(reached)
+/// The point found with the motions held that the equations leave open; `None` where there are none, or the equations
+/// cannot be met so.
+pub(crate) fn held_across(
+    start: &StepStart<'_>,
+    guess: &State,
+    closing: &dyn ClosingEquation,
+    work: &mut Work,
+) -> Option<Box<Reached>> {
+    if !start.is_singular || start.beside.is_some() {
+        return None;
     }
+    let mut system = ModeSystem::new(start.loading, start.modes, start.state);
+    if !system.hold_still(start.state, start.rate) {
+        return None;
+    }
+    let iterate = system.iterate(guess.clone());
+    let corrected = newton::correct_from(&system, iterate, closing, start.force_scale, &mut None, work).ok()?;
+    if !system.is_still_open(&corrected.state) {
+        // Only the start is singular.
+        return None;
+    }
+    let mut reached = start.directed(system, corrected, closing, &mut None, work).ok()?;
+    // Which sign it has hangs on the signs of what is added to hold the motions.
+    reached.determinant = None;
+    Some(reached)
+}
 
-    /// A guess off the direction, where the path bends at once: along the arm of a parabola.
-    pub(crate) fn guess_beside(&self, closing: &dyn ClosingEquation) -> Option<State> {
-        let (beside, step) = (self.beside?, closing.arc_length()?);
-        let mut guess = self.state.advanced(self.rate, step);
-        guess.advance(beside, step.sqrt());
-        Some(guess)
-    }
+/// A guess off the direction, where the path bends at once: along the arm of a parabola.
+pub(crate) fn guess_beside(start: &StepStart<'_>, closing: &dyn ClosingEquation) -> Option<State> {
+    let (beside, step) = (start.beside?, closing.arc_length()?);
+    let mut guess = start.state.advanced(start.rate, step);
+    guess.advance(beside, step.sqrt());
+    Some(guess)
 }

@@ -8,7 +8,7 @@
 
 use arcslip::algebra::Sink;
 use arcslip::algebra::sparse::factors::pivoted_lu::GeneralLu;
-use arcslip::algebra::sparse::{Bordered, Holding, Holdings, Pattern, Places, SparseFactorisation};
+use arcslip::algebra::sparse::{Bordered, Holding, Holdings, IndexList, Pattern, SparseFactorisation};
 use faer::sparse::Triplet;
 use nalgebra::DVector;
 use std::sync::Arc;
@@ -75,7 +75,7 @@ impl System {
             let (along, normal) = (2 * node(x, 0), 2 * node(x, 0) + 1);
             let border = unknowns + contact;
             entries.extend([(border, normal, 1.0), (normal, border, -1.0), (along, border, FRICTION)]);
-            let only = |border: usize| Places::from_iter([border]);
+            let only = |border: usize| IndexList::from_iter([border]);
             holdings.push(Holding { rows: only(contact), columns: only(contact), ..Holding::new([along, normal]) });
         }
         // The load, and the length of the step.

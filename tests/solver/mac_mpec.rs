@@ -3,7 +3,9 @@
 //! Statements rewritten from the public models, optima confirmed by enumeration of all branches. Each test holds the
 //! solver to the listed objective, feasibility, complementarity, and the kind of stationarity it reports.
 
-use arcslip::complementarity::mpec::{self, Problem, Settings, Solution, SparseRows, StationarityKind, Status};
+use arcslip::complementarity::mpec::{
+    self, Problem, ProgramSolution, Settings, SolveStatus, SparseRows, StationarityKind,
+};
 use arcslip::resources::cancel::CancelFlag;
 use nalgebra::DVector;
 
@@ -104,7 +106,7 @@ impl Problem for Listed {
 }
 
 /// Solves from `start` and checks everything that a listed problem promises.
-fn check(name: &str, problem: &Listed, start: &[f64], optima: &[f64], kind: StationarityKind) -> Solution {
+fn check(name: &str, problem: &Listed, start: &[f64], optima: &[f64], kind: StationarityKind) -> ProgramSolution {
     let start = DVector::from_column_slice(start);
     let solution = mpec::solve(problem, &start, &Settings::default(), &CancelFlag::default()).expect("valid input");
     println!(
@@ -117,7 +119,7 @@ fn check(name: &str, problem: &Listed, start: &[f64], optima: &[f64], kind: Stat
         solution.x.as_slice(),
         solution.counts
     );
-    assert_eq!(solution.status, Status::Solved, "{name}");
+    assert_eq!(solution.status, SolveStatus::Solved, "{name}");
     assert!(solution.largest_violation <= 1e-8, "{name}: violation {}", solution.largest_violation);
     assert!(solution.largest_product <= 1e-8, "{name}: product {}", solution.largest_product);
     let reached = optima.iter().any(|optimum| {

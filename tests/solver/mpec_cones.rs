@@ -3,7 +3,7 @@
 
 use arcslip::complementarity::mpec::program::cone;
 use arcslip::complementarity::mpec::{
-    self, ConeActivity, Problem, Settings, Solution, SparseRows, StationarityKind, Status, semismooth,
+    self, ConeActivity, Problem, ProgramSolution, Settings, SolveStatus, SparseRows, StationarityKind, semismooth,
 };
 use arcslip::resources::cancel::CancelFlag;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
@@ -24,7 +24,7 @@ impl Mass {
         Self { stiffness, friction, push, chosen: None }
     }
 
-    fn solve(&self, start: &DVector<f64>, settings: &Settings) -> Solution {
+    fn solve(&self, start: &DVector<f64>, settings: &Settings) -> ProgramSolution {
         mpec::solve(self, start, settings, &CancelFlag::default()).expect("a well-formed problem")
     }
 }
@@ -110,7 +110,7 @@ fn from_rest(problem: &Mass) -> DVector<f64> {
 fn a_mass_pushed_less_than_friction_bears_sticks() {
     let mass = Mass::given(Matrix3::identity() * 2.0, 0.5, [0.3, -0.2]);
     let end = mass.solve(&from_rest(&mass), &Settings::default());
-    assert_eq!(end.status, Status::Solved);
+    assert_eq!(end.status, SolveStatus::Solved);
     assert_eq!(end.cone_activity, [ConeActivity::SecondZero]);
     let expected = [0.0, 0.0, 0.0, 1.0, -0.3, 0.2, 0.0, 0.0, 0.0];
     assert!((end.x - DVector::from_column_slice(&expected)).amax() < 1e-9);
@@ -122,7 +122,7 @@ fn a_mass_pushed_less_than_friction_bears_sticks() {
 fn a_mass_pushed_harder_slides_along_the_force() {
     let mass = Mass::given(Matrix3::identity() * 2.0, 0.5, [0.6, -0.8]);
     let end = mass.solve(&from_rest(&mass), &Settings::default());
-    assert_eq!(end.status, Status::Solved);
+    assert_eq!(end.status, SolveStatus::Solved);
     assert_eq!(end.cone_activity, [ConeActivity::BothOnBoundary]);
     let expected = [0.15, -0.2, 0.0, 1.0, -0.3, 0.4, 0.25, 0.15, -0.2];
     assert!((&end.x - DVector::from_column_slice(&expected)).amax() < 1e-9, "{}", end.x);
@@ -185,16 +185,16 @@ fn both_branches_of_a_chosen_load_are_found() {
     let sliding = mass.solve(&point(0.3, 1.3), &warm);
     assert_eq!(sliding.cone_activity, [ConeActivity::BothOnBoundary]);
     assert!((&sliding.x - point(slip, load)).amax() < 1e-6, "{}", sliding.x);
-    assert_eq!((sliding.status, sliding.stationarity), (Status::Solved, StationarityKind::Strong));
+    assert_eq!((sliding.status, sliding.stationarity), (SolveStatus::Solved, StationarityKind::Strong));
 
     let stuck = mass.solve(&point(0.0, 0.5), &warm);
     assert_eq!(stuck.cone_activity, [ConeActivity::SecondZero]);
     assert!((&stuck.x - point(0.0, 0.0)).amax() < 1e-6, "{}", stuck.x);
-    assert_eq!((stuck.status, stuck.stationarity), (Status::Solved, StationarityKind::Strong));
+    assert_eq!((stuck.status, stuck.stationarity), (SolveStatus::Solved, StationarityKind::Strong));
 
     // At the onset of slip both branches lead down.
     let onset = mass.solve(&point(0.0, friction), &warm);
-    assert_eq!(onset.status, Status::Solved);
+    assert_eq!(onset.status, SolveStatus::Solved);
     assert!(onset.objective < mass.objective(&point(0.0, friction)) - 1e-3);
 }
 
@@ -282,7 +282,7 @@ fn the_nearest_complementary_pair_is_a_minimum_of_a_branch() {
         let problem = Nearest { p: [number(), number(), number()], q: [number(), number(), number()] };
         let start = DVector::from_iterator(6, problem.p.into_iter().chain(problem.q));
         let end = mpec::solve(&problem, &start, &Settings::default(), &CancelFlag::default()).expect("well-formed");
-        assert!(matches!(end.status, Status::Solved | Status::Feasible), "{round}: {:?}", end.status);
+        assert!(matches!(end.status, SolveStatus::Solved | SolveStatus::Feasible), "{round}: {:?}", end.status);
         assert!(end.largest_violation <= 1e-8 && end.largest_product <= 1e-8, "{round}: {}", end.x);
         let minima = branch_minima(&problem);
         let miss = minima.iter().fold(f64::INFINITY, |miss, value| miss.min((value - end.objective).abs()));
@@ -306,12 +306,12 @@ fn what_is_claimed_of_biactive_pairs_is_what_was_examined() {
     let at_onset = end([1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]);
     assert_eq!(at_onset.cone_activity, [ConeActivity::SecondZeroFirstOnBoundary]);
     assert!((&at_onset.x - DVector::from_column_slice(&[1.0, 1.0, 0.0, 0.0, 0.0, 0.0])).amax() < 1e-7);
-    assert_eq!((at_onset.status, at_onset.stationarity), (Status::Solved, StationarityKind::Branch));
+    assert_eq!((at_onset.status, at_onset.stationarity), (SolveStatus::Solved, StationarityKind::Branch));
 
     let at_apex = end([-1.0, 0.2, 0.0], [-1.0, 0.0, 0.3]);
     assert_eq!(at_apex.cone_activity, [ConeActivity::BothZero]);
     assert!(at_apex.x.amax() < 1e-7);
-    assert_eq!((at_apex.status, at_apex.stationarity), (Status::Solved, StationarityKind::OneBranch));
+    assert_eq!((at_apex.status, at_apex.stationarity), (SolveStatus::Solved, StationarityKind::OneBranch));
 }
 
 /// Newton's method on the system itself, from a mass at rest under a push that makes it slide in a direction that the
@@ -364,5 +364,5 @@ fn members_of_size_one_are_refused() {
         }
     }
     let refused = mpec::solve(&Short, &DVector::zeros(1), &Settings::default(), &CancelFlag::default());
-    assert_eq!(refused.err(), Some(mpec::InputError::ConeSize { pair: 0, size: 1 }));
+    assert_eq!(refused.err(), Some(mpec::ProgramInputError::ConeSize { pair: 0, size: 1 }));
 }

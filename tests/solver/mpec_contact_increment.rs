@@ -4,7 +4,7 @@
 //! Pin at (0, 1), tip at (x, y) on the floor `y >= 0`, EA = 1, unstressed at (-1.5, 0), force `s (1, 0)` on the tip.
 //! Slipping towards +x: `s = P (μ - x)/L`, `r_n = P/L`, `P = 1 - L/L0`.
 
-use arcslip::complementarity::mpec::{self, Finish, PairActivity, Problem, Settings, SparseRows, Status};
+use arcslip::complementarity::mpec::{self, Finish, PairActivity, Problem, Settings, SolveStatus, SparseRows};
 use arcslip::resources::cancel::CancelFlag;
 use nalgebra::DVector;
 
@@ -135,7 +135,7 @@ fn increment_at(x: f64) -> (Increment, DVector<f64>) {
     (increment, guess)
 }
 
-fn check_slipping(solution: &mpec::Solution, increment: &Increment, load_error: f64) {
+fn check_slipping(solution: &mpec::ProgramSolution, increment: &Increment, load_error: f64) {
     assert_eq!(solution.activity[0], PairActivity::FirstZero);
     assert_eq!(solution.activity[1], PairActivity::FirstZero);
     assert_eq!(solution.activity[2], PairActivity::SecondZero);
@@ -157,7 +157,7 @@ fn warm_path_names_the_mode_in_two_or_three_programs() {
         let before = std::time::Instant::now();
         let solution = mpec::solve(&increment, &guess, &settings, &CancelFlag::default()).expect("valid input");
         time += before.elapsed();
-        assert_eq!(solution.status, Status::PatternSettled, "at {x}: {solution:?}");
+        assert_eq!(solution.status, SolveStatus::PatternSettled, "at {x}: {solution:?}");
         check_slipping(&solution, &increment, 1e-3);
         increments += 1;
         programs += solution.counts.qp_solves;
@@ -185,7 +185,7 @@ fn warm_path_converged() {
         let before = std::time::Instant::now();
         let solution = mpec::solve(&increment, &guess, &Settings::warm(), &CancelFlag::default()).expect("valid input");
         time += before.elapsed();
-        assert_eq!(solution.status, Status::Solved, "at {x}: {solution:?}");
+        assert_eq!(solution.status, SolveStatus::Solved, "at {x}: {solution:?}");
         check_slipping(&solution, &increment, 1e-7);
         increments += 1;
         programs += solution.counts.qp_solves;
@@ -217,7 +217,7 @@ fn cold_path_finds_the_same_mode() {
         let settings = Settings { first_relaxation: 1e-4, ..Settings::default() };
         let solution = mpec::solve(&increment, &start, &settings, &CancelFlag::default()).expect("valid input");
         time += before.elapsed();
-        assert_eq!(solution.status, Status::Solved, "at {x}: {solution:?}");
+        assert_eq!(solution.status, SolveStatus::Solved, "at {x}: {solution:?}");
         check_slipping(&solution, &increment, 1e-7);
         increments += 1;
         programs += solution.counts.qp_solves;
@@ -257,7 +257,7 @@ fn a_free_node_is_solved_although_its_friction_is_degenerate() {
     {
         let solution = mpec::solve(&increment, &guess, &settings, &CancelFlag::default()).expect("valid input");
         println!("free: {:?} {:?} {:?}", solution.status, solution.stationarity, solution.counts);
-        assert_eq!(solution.status, Status::Solved);
+        assert_eq!(solution.status, SolveStatus::Solved);
         assert_eq!(solution.activity[0], PairActivity::SecondZero);
         assert_eq!(solution.activity[2], PairActivity::FirstZero);
         assert_eq!(solution.x[3], 0.0);
@@ -281,7 +281,7 @@ fn the_first_increment_leaves_the_degenerate_start() {
     let solution =
         mpec::solve(&increment, &DVector::zeros(7), &Settings::default(), &CancelFlag::default()).expect("valid input");
     println!("start: {:?} {:?} {:?}", solution.status, solution.stationarity, solution.counts);
-    assert_eq!(solution.status, Status::Solved);
+    assert_eq!(solution.status, SolveStatus::Solved);
     check_slipping(&solution, &increment, 1e-9);
     assert!(solution.x[0] > 0.0 && solution.x[2] > 0.0);
 }

@@ -5,7 +5,7 @@ use std::cell::Cell;
 
 use arcslip::complementarity::mpec::quadratic_program::interior_point::{QuadraticProgram, solve_interior};
 use arcslip::complementarity::mpec::{
-    self, InputError, PairActivity, Problem, Quantity, Settings, SparseRows, StationarityKind, Status,
+    self, PairActivity, Problem, ProgramInputError, Quantity, Settings, SolveStatus, SparseRows, StationarityKind,
 };
 use arcslip::resources::cancel::CancelFlag;
 use nalgebra::{DMatrix, DVector};
@@ -98,7 +98,7 @@ impl Problem for Quadratic {
     }
 }
 
-fn solve(problem: &Quadratic, start: &[f64], settings: &Settings) -> mpec::Solution {
+fn solve(problem: &Quadratic, start: &[f64], settings: &Settings) -> mpec::ProgramSolution {
     let start = DVector::from_column_slice(start);
     mpec::solve(problem, &start, settings, &CancelFlag::default()).expect("valid input")
 }
@@ -108,7 +108,7 @@ fn without_pairs_it_is_a_plain_program() {
     let mut problem = Quadratic::new(DMatrix::identity(2, 2), &[-1.0, -3.0]);
     problem.equality = (DMatrix::from_row_slice(1, 2, &[1.0, 1.0]), DVector::from_element(1, -2.0));
     let solution = solve(&problem, &[5.0, 5.0], &Settings::default());
-    assert_eq!((solution.status, solution.stationarity), (Status::Solved, StationarityKind::Strong));
+    assert_eq!((solution.status, solution.stationarity), (SolveStatus::Solved, StationarityKind::Strong));
     assert!((solution.x[0] - 0.0).abs() < 1e-9 && (solution.x[1] - 2.0).abs() < 1e-9);
     assert_eq!(solution.counts.relaxation_levels, 0);
     // ∇f = λ ∇h: (x0 - 1, x1 - 3) = -1 (1, 1).
@@ -121,7 +121,7 @@ fn contradictory_pairs_are_reported_infeasible() {
     let mut problem = Quadratic::new(DMatrix::identity(2, 2), &[0.0, 0.0]).with_pairs(&[(0, 1)]);
     problem.equality = (DMatrix::from_row_slice(1, 2, &[1.0, 1.0]), DVector::from_element(1, 1.0));
     let solution = solve(&problem, &[1.0, 1.0], &Settings::default());
-    assert_eq!(solution.status, Status::Infeasible, "{solution:?}");
+    assert_eq!(solution.status, SolveStatus::Infeasible, "{solution:?}");
     assert!(solution.largest_violation > 0.1);
     assert_eq!(solution.stationarity, StationarityKind::Unknown);
 }
@@ -130,21 +130,21 @@ fn contradictory_pairs_are_reported_infeasible() {
 fn a_fall_without_bound_is_named() {
     let problem = Quadratic::new(DMatrix::zeros(2, 2), &[-1.0, 0.0]).with_pairs(&[(0, 1)]);
     let solution = solve(&problem, &[1.0, 1.0], &Settings::default());
-    assert_eq!(solution.status, Status::Unbounded, "{solution:?}");
+    assert_eq!(solution.status, SolveStatus::Unbounded, "{solution:?}");
 }
 
 #[test]
 fn numbers_that_are_not_finite_are_named() {
     let mut problem = Quadratic::new(DMatrix::identity(2, 2), &[1.0, 1.0]).with_pairs(&[(0, 1)]);
     let solution = solve(&problem, &[f64::NAN, 0.0], &Settings::default());
-    assert_eq!(solution.status, Status::NotFinite(Quantity::Start));
+    assert_eq!(solution.status, SolveStatus::NotFinite(Quantity::Start));
     problem.nan_in_gradient = true;
     let solution = solve(&problem, &[1.0, 1.0], &Settings::default());
-    assert_eq!(solution.status, Status::NotFinite(Quantity::ObjectiveGradient));
+    assert_eq!(solution.status, SolveStatus::NotFinite(Quantity::ObjectiveGradient));
     problem.nan_in_gradient = false;
     problem.second.1[0] = f64::NAN;
     let solution = solve(&problem, &[1.0, 1.0], &Settings::warm());
-    assert_eq!(solution.status, Status::NotFinite(Quantity::Pairs));
+    assert_eq!(solution.status, SolveStatus::NotFinite(Quantity::Pairs));
 }
 
 #[test]
@@ -156,12 +156,12 @@ fn a_raised_flag_stops_at_once_and_on_the_way() {
         let flag = CancelFlag::default();
         problem.cancel_after = Some((Cell::new(calls), flag.clone()));
         let solution = mpec::solve(&problem, &start, &Settings::default(), &flag).expect("valid input");
-        assert_eq!(solution.status, Status::Cancelled, "after {calls}");
+        assert_eq!(solution.status, SolveStatus::Cancelled, "after {calls}");
     }
     problem.cancel_after = None;
     flag.cancel();
     let solution = mpec::solve(&problem, &start, &Settings::default(), &flag).expect("valid input");
-    assert_eq!((solution.status, solution.counts.qp_solves), (Status::Cancelled, 0));
+    assert_eq!((solution.status, solution.counts.qp_solves), (SolveStatus::Cancelled, 0));
 }
 
 #[test]
@@ -169,10 +169,10 @@ fn misuse_is_an_error() {
     let problem = Quadratic::new(DMatrix::identity(2, 2), &[1.0, 1.0]);
     let cancel = CancelFlag::default();
     let short = mpec::solve(&problem, &DVector::zeros(1), &Settings::default(), &cancel);
-    assert_eq!(short.err(), Some(InputError::StartLength { expected: 2, found: 1 }));
+    assert_eq!(short.err(), Some(ProgramInputError::StartLength { expected: 2, found: 1 }));
     let settings = Settings { relaxation_factor: 1.0, ..Settings::default() };
     let factor = mpec::solve(&problem, &DVector::zeros(2), &settings, &cancel);
-    assert!(matches!(factor, Err(InputError::Setting { name: "relaxation_factor", .. })));
+    assert!(matches!(factor, Err(ProgramInputError::Setting { name: "relaxation_factor", .. })));
 }
 
 #[test]
@@ -180,11 +180,11 @@ fn a_warm_start_costs_three_programs_and_a_wrong_one_recovers() {
     // Minimum (0, 2) on the branch x0 = 0; the other branch's (-1 projected) is the origin.
     let problem = Quadratic::new(DMatrix::identity(2, 2), &[1.0, -2.0]).with_pairs(&[(0, 1)]);
     let near = solve(&problem, &[0.0, 1.9], &Settings::warm());
-    assert_eq!(near.status, Status::Solved);
+    assert_eq!(near.status, SolveStatus::Solved);
     assert!(near.counts.qp_solves <= 3, "{:?}", near.counts);
     assert_eq!(near.activity, [PairActivity::FirstZero]);
     let wrong = solve(&problem, &[1.0, 0.0], &Settings::warm());
-    assert_eq!(wrong.status, Status::Solved);
+    assert_eq!(wrong.status, SolveStatus::Solved);
     assert!((wrong.objective + 2.0).abs() < 1e-9, "{wrong:?}");
 }
 
@@ -254,11 +254,11 @@ fn random_programs_end_at_a_minimum_of_a_branch() {
             assert_eq!(solution.x, again.x, "round {round}: not the same bits");
         }
         let Some(least) = minima.iter().copied().reduce(f64::min) else {
-            assert_eq!(solution.status, Status::Infeasible, "round {round}: {solution:?}");
+            assert_eq!(solution.status, SolveStatus::Infeasible, "round {round}: {solution:?}");
             continue;
         };
         feasible += 1;
-        if solution.status == Status::Solved {
+        if solution.status == SolveStatus::Solved {
             solved += 1;
             let error = |minimum: &f64| (solution.objective - minimum).abs();
             assert!(minima.iter().any(|minimum| error(minimum) < 1e-6), "round {round}: {solution:?} {minima:?}");

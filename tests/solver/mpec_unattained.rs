@@ -1,6 +1,6 @@
 //! Programs whose infimum is not attained: the iterates go to infinity, and nothing there is a solution.
 
-use arcslip::complementarity::mpec::{self, Problem, Settings, Solution, SparseRows, Status};
+use arcslip::complementarity::mpec::{self, Problem, ProgramSolution, Settings, SolveStatus, SparseRows};
 use arcslip::resources::cancel::CancelFlag;
 use nalgebra::DVector;
 
@@ -73,7 +73,7 @@ impl Problem for Dempe {
 }
 
 /// From `w` on the branch where the first member of the pair is zero.
-fn solve_from(w: f64, problem: &Dempe, settings: &Settings) -> Solution {
+fn solve_from(w: f64, problem: &Dempe, settings: &Settings) -> ProgramSolution {
     let z = 3.0 / (1.0 + 2.0 * w);
     let own = [z * z, z, w];
     let start = DVector::from_iterator(3, own.iter().zip(&problem.units).map(|(own, unit)| own * unit));
@@ -96,7 +96,7 @@ fn solve_from(w: f64, problem: &Dempe, settings: &Settings) -> Solution {
 fn iterates_that_go_to_infinity_are_no_solution() {
     let problem = Dempe { units: [1.0; 3], of_objective: 1.0, cost: 0.0 };
     for settings in [Settings::default(), Settings::warm()] {
-        let Status::UnboundedIterates(growth) = solve_from(3.00379, &problem, &settings).status else {
+        let SolveStatus::UnboundedIterates(growth) = solve_from(3.00379, &problem, &settings).status else {
             panic!("the infimum is not attained")
         };
         assert_eq!(growth.variable, 2);
@@ -112,8 +112,12 @@ fn units_do_not_decide() {
         for of_objective in [1.0, 1e-3, 1e3] {
             let solution = solve_from(30.0, &Dempe { units, of_objective, cost: 0.0 }, &Settings::warm());
             let w = solution.x[2] / units[2];
-            assert!(w < 20.0 || solution.status != Status::Solved, "{units:?}, {of_objective}: {:?}", solution.status);
-            unbounded += usize::from(matches!(solution.status, Status::UnboundedIterates(_)));
+            assert!(
+                w < 20.0 || solution.status != SolveStatus::Solved,
+                "{units:?}, {of_objective}: {:?}",
+                solution.status
+            );
+            unbounded += usize::from(matches!(solution.status, SolveStatus::UnboundedIterates(_)));
         }
     }
     assert!(unbounded >= 8, "{unbounded}");
@@ -127,7 +131,7 @@ fn a_minimum_far_out_is_a_solution() {
             for of_objective in [1.0, 1e3] {
                 let problem = Dempe { units, of_objective, cost };
                 let status = solve_from(30.0, &problem, &Settings::warm()).status;
-                assert!(!matches!(status, Status::UnboundedIterates(_)), "{cost:e} {units:?}: {status:?}");
+                assert!(!matches!(status, SolveStatus::UnboundedIterates(_)), "{cost:e} {units:?}: {status:?}");
             }
         }
     }
@@ -179,7 +183,7 @@ fn scales_are_no_growth() {
                 let problem = Scaled { by, of_objective };
                 let solution = mpec::solve(&problem, &start, &Settings::default(), &CancelFlag::default());
                 let status = solution.expect("valid input").status;
-                assert!(!matches!(status, Status::UnboundedIterates(_)), "{by:?} {of_objective}: {status:?}");
+                assert!(!matches!(status, SolveStatus::UnboundedIterates(_)), "{by:?} {of_objective}: {status:?}");
             }
         }
     }

@@ -5,7 +5,7 @@ use arcslip::model::request::Method;
 use arcslip::model::request::study::{ReferenceChoice, Study, StudyRequest};
 use arcslip::resources::cancel::CancelFlag;
 use arcslip::result::stop_reason::StopReason;
-use arcslip::studies::error_against_time::{self, ReferenceKind, Report, Row, Run};
+use arcslip::studies::error_against_time::{self, ReferenceKind, Report, Run, StudyRow};
 use std::ops::ControlFlow;
 
 fn request(name: &str, study: Study) -> StudyRequest {
@@ -21,11 +21,11 @@ fn run(request: &StudyRequest) -> Report {
     let report =
         error_against_time::run(request, Vec::new(), &CancelFlag::default(), &mut |_| ControlFlow::Continue(()));
     let report = report.unwrap_or_else(|errors| panic!("{errors}")).expect("a report");
-    println!("{}", report.text().expect("text"));
+    println!("{}", error_against_time::table::text(&report).expect("text"));
     report
 }
 
-fn rows(report: &Report, method: Method) -> Vec<&Row> {
+fn rows(report: &Report, method: Method) -> Vec<&StudyRow> {
     report.rows.iter().filter(|row| row.method == method).collect()
 }
 
@@ -141,8 +141,9 @@ fn a_study_that_was_broken_off_goes_on_to_the_same_rows() {
     assert!(runs.iter().enumerate().all(|(index, run)| run.index == index as u64));
     assert!(report.complete && report.rows.iter().all(|row| row.time.expect("a time").repeats == 2));
     let whole = run(&request);
-    let timeless =
-        |report: &Report| -> Vec<Row> { report.rows.iter().map(|row| Row { time: None, ..row.clone() }).collect() };
+    let timeless = |report: &Report| -> Vec<StudyRow> {
+        report.rows.iter().map(|row| StudyRow { time: None, ..row.clone() }).collect()
+    };
     assert_eq!(timeless(&report), timeless(&whole));
 }
 
@@ -157,13 +158,13 @@ fn a_cancelled_study_reports_what_it_has() {
     let report = report.expect("a study").expect("a report");
     assert_eq!(report.rows.len(), 1);
     assert!(!report.complete);
-    assert!(report.text().expect("text").contains("not complete"));
+    assert!(error_against_time::table::text(&report).expect("text").contains("not complete"));
 }
 
 #[test]
 fn tables_have_a_line_a_row() {
     let report = run(&request("klarbring", over(&[0.2, 0.1], &ALL)));
-    let csv = report.csv().expect("CSV");
+    let csv = error_against_time::table::csv(&report).expect("CSV");
     let cells: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
     assert_eq!(cells.len(), 7);
     assert!(cells.iter().all(|line| line.len() == cells[0].len()));
@@ -173,7 +174,7 @@ fn tables_have_a_line_a_row() {
         assert_eq!(line[column("increments")], row.increments.to_string());
         assert_eq!(line[column("reference")], "exact");
     }
-    let text = report.text().expect("text");
+    let text = error_against_time::table::text(&report).expect("text");
     assert!(text.contains("exact solution, Klarbring's node"));
     let json = serde_json::to_string(&report).expect("JSON");
     assert_eq!(serde_json::from_str::<Report>(&json).expect("the same"), report);

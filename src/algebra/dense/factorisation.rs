@@ -2,7 +2,7 @@
 //! their number, which spends nothing on loops.
 
 use crate::algebra::dense::interruptible_lu::LargeLu;
-use crate::algebra::dense::lu_factors::Factors;
+use crate::algebra::dense::lu_factors::DenseFactors;
 use crate::algebra::dense::solve_counters::count_solves;
 use crate::resources::budget;
 use nalgebra::allocator::Allocator;
@@ -13,7 +13,7 @@ use nalgebra::{Const, DMatrix, DVector, DefaultAllocator, Dim, DimMin, Dyn, LU, 
 pub struct Factorisation {
     /// Rows of the matrix that was asked for; the rest are those of [`Stiffener`]s.
     size: usize,
-    factors: Box<dyn Factors>,
+    factors: Box<dyn DenseFactors>,
     /// Smallest pivot over the largest one.
     pivot_ratio: f64,
     /// Sign by which the determinant of what is factorised differs from the one of the matrix asked for.
@@ -37,7 +37,7 @@ const SMALLEST_PIVOT: f64 = 1e-14;
 pub(crate) const MOST_AT_ONCE: usize = 500;
 
 /// Those of a matrix whose rows were divided by their sizes.
-struct Scaled<D: DimMin<D, Output = D>>
+struct RowScaledFactors<D: DimMin<D, Output = D>>
 where
     DefaultAllocator: Allocator<D, D> + Allocator<D>,
 {
@@ -45,7 +45,7 @@ where
     lu: LU<f64, D, D>,
 }
 
-impl<D: DimMin<D, Output = D>> Factors for Scaled<D>
+impl<D: DimMin<D, Output = D>> DenseFactors for RowScaledFactors<D>
 where
     DefaultAllocator: Allocator<D, D> + Allocator<D>,
     ShapeConstraint: SameNumberOfRows<Dyn, D>,
@@ -147,13 +147,13 @@ impl Factorisation {
     fn scaled<D: Dim + DimMin<D, Output = D>>(matrix: OMatrix<f64, D, D>, row_scales: OVector<f64, D>) -> Option<Self>
     where
         DefaultAllocator: Allocator<D, D> + Allocator<D>,
-        Scaled<D>: Factors + 'static,
+        RowScaledFactors<D>: DenseFactors + 'static,
     {
         let size = matrix.nrows();
         budget::spend(size * size * size / 3);
         let lu = LU::new(matrix);
         let pivot_ratio = ratio((0..size).map(|index| lu.lu_internal()[(index, index)]))?;
-        Some(Self { size, factors: Box::new(Scaled { row_scales, lu }), pivot_ratio, sign: 1.0 })
+        Some(Self { size, factors: Box::new(RowScaledFactors { row_scales, lu }), pivot_ratio, sign: 1.0 })
     }
 
     /// Factorises `A + Σ k r cᵀ` as `[[A, R], [Cᵀ, -1/K]]`, where large and small stiffnesses are never added, so that

@@ -1,7 +1,7 @@
 //! Dense LU factorisations with partial pivoting of many equations, column after column, with a look at whether the solve
 //! goes on before each.
 
-use crate::algebra::dense::lu_factors::Factors;
+use crate::algebra::dense::lu_factors::DenseFactors;
 use crate::resources::budget::{self, Taken};
 use nalgebra::{DMatrix, DVector};
 
@@ -66,7 +66,7 @@ impl LargeLu {
     }
 }
 
-impl Factors for LargeLu {
+impl DenseFactors for LargeLu {
     fn size(&self) -> usize {
         self.factors.nrows()
     }

@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 /// The factors of a matrix of any size, known to the compiler or not.
-pub(crate) trait Factors: Send + Sync {
+pub(crate) trait DenseFactors: Send + Sync {
     /// Number of rows.
     fn size(&self) -> usize;
     /// Sign of the determinant: 1 or -1.

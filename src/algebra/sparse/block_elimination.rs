@@ -12,9 +12,9 @@
 //! row changes a row of the complement and nothing else.
 
 use crate::algebra::dense::solve_counters::count_solves;
-use crate::algebra::sparse::border_schur::{Factor, Reduced};
+use crate::algebra::sparse::border_schur::{BorderSchurComplement, Factor};
 use crate::algebra::sparse::factors::bordered_matrix::Bordered;
-use crate::algebra::sparse::factors::entries::Entries;
+use crate::algebra::sparse::factors::entries::SparseEntries;
 use crate::algebra::sparse::factors::ldl::SymmetricFactor;
 use crate::algebra::sparse::factors::static_pivot_lu::UnsymmetricFactor;
 use crate::algebra::sparse::nodal_elimination::{Coupling, Elimination, Friction, HeldNode, Holdings, gathered, times};
@@ -24,23 +24,23 @@ use smallvec::SmallVec;
 /// The system taken apart.
 pub(super) struct Blocks {
     elimination: Elimination,
-    pub reduced: Reduced,
+    pub reduced: BorderSchurComplement,
     unknowns: usize,
     /// Borders of the matrix asked for, and those added for what is not symmetric.
     borders: usize,
     kept_columns: Vec<usize>,
-    kept_rows: Vec<Row>,
+    kept_rows: Vec<ReducedRow>,
     /// For each kept column: motions of held unknowns by it, and its entries in held equations.
-    shifts: Vec<Entries>,
-    held_parts: Vec<Entries>,
+    shifts: Vec<SparseEntries>,
+    held_parts: Vec<SparseEntries>,
     /// Sign of the determinant, that of the reduced system apart.
     sign: f64,
 }
 
 /// A row of the reduced system.
-enum Row {
+enum ReducedRow {
     /// A border row, with its entries at held unknowns.
-    Border(usize, Entries),
+    Border(usize, SparseEntries),
     /// The equilibrium along a held unknown.
     Equilibrium(usize),
 }
@@ -55,8 +55,8 @@ struct AtNodes {
 
 /// What becomes of a border row where nodes are eliminated.
 struct BorderRow {
-    free: Entries,
-    held: Entries,
+    free: SparseEntries,
+    held: SparseEntries,
     /// Its entries in the kept columns.
     corner: Vec<f64>,
 }
@@ -90,24 +90,8 @@ impl Blocks {
         if count > MOST_BORDERS {
             return None;
         }
-        let mut shifts = vec![Entries::new(); count];
-        for Coupling { node, row, border, value } in elimination.couplings() {
-            let node = &elimination.nodes()[*node];
-            let shift = &mut shifts[kept_columns.binary_search(border).ok()?];
-            let constraint = elimination.matrices(node).constraint.chunks_exact(node.held().len()).nth(*row)?;
-            shift.extend(node.held().zip(constraint).map(|(unknown, entry)| (unknown, -entry * value)));
-        }
-        let (mut columns, mut held_parts) = (Vec::with_capacity(count), Vec::with_capacity(count));
-        for (column, shift) in kept_columns.iter().zip(&shifts) {
-            let (mut free, mut held) = elimination.rotated(&matrix.right[*column]);
-            free.extend(elimination.folded(&held));
-            for (unknown, motion) in shift {
-                let moved = elimination.stiffness_at(*unknown)?.iter().map(|(row, value)| (*row, value * motion));
-                elimination.split_into(moved, &mut free, &mut held);
-            }
-            columns.push(free);
-            held_parts.push(held);
-        }
+        let shifts = shifts_of_held(&elimination, &kept_columns)?;
+        let (columns, held_parts) = columns_of_rest(&elimination, &matrix.right, &kept_columns, &shifts)?;
         let (mut rows, mut kept_rows) = (Vec::with_capacity(count), Vec::with_capacity(count));
         let mut corner = DMatrix::zeros(count, count);
         for (row, held) in equilibrium.iter().enumerate() {
@@ -118,7 +102,7 @@ impl Blocks {
             match held {
                 Some(None) => continue,
                 Some(Some(unknown)) => {
-                    let (mut free, mut ignored) = (Entries::new(), Entries::new());
+                    let (mut free, mut ignored) = (SparseEntries::new(), SparseEntries::new());
                     let stiffness = elimination.stiffness_at(*unknown)?;
                     elimination.split_into(stiffness.iter().copied(), &mut free, &mut ignored);
                     rows.push(free);
@@ -126,13 +110,13 @@ impl Blocks {
                         let own = part.iter().filter(|(at, _)| at == unknown).map(|(_, value)| value);
                         corner[(place, column)] += own.sum::<f64>();
                     }
-                    kept_rows.push(Row::Equilibrium(*unknown));
+                    kept_rows.push(ReducedRow::Equilibrium(*unknown));
                 }
                 None => {
                     let border = border_row(&elimination, &matrix.lower[row], unknowns, &kept_columns, &shifts)?;
                     border.corner.iter().enumerate().for_each(|(column, value)| corner[(place, column)] = *value);
                     rows.push(border.free);
-                    kept_rows.push(Row::Border(row, border.held));
+                    kept_rows.push(ReducedRow::Border(row, border.held));
                 }
             }
         }
@@ -143,18 +127,18 @@ impl Blocks {
             Friction::Bordered => Factor::Symmetric(SymmetricFactor::new(matrix.pattern.clone(), &values).ok()?),
             Friction::Folded => Factor::Unsymmetric(UnsymmetricFactor::new(matrix.pattern.clone(), &values)?),
         };
-        let reduced = Reduced::new(factor, unknowns, columns, rows, corner)?;
+        let reduced = BorderSchurComplement::new(factor, unknowns, columns, rows, corner)?;
         Some(Self { elimination, reduced, unknowns, borders, kept_columns, kept_rows, shifts, held_parts, sign })
     }
 
     /// The same with other entries in a border row that holds nothing, to the last bit; `None` where that takes more than
     /// was kept.
-    pub fn with_row(mut self, row: usize, entries: &Entries) -> Option<Self> {
-        let is_it = |kept: &Row| matches!(kept, Row::Border(own, _) if *own == row);
+    pub fn with_row(mut self, row: usize, entries: &SparseEntries) -> Option<Self> {
+        let is_it = |kept: &ReducedRow| matches!(kept, ReducedRow::Border(own, _) if *own == row);
         let place = self.kept_rows.iter().position(is_it)?;
         let border = border_row(&self.elimination, entries, self.unknowns, &self.kept_columns, &self.shifts)?;
         self.reduced = self.reduced.with_row(place, border.free, &border.corner)?;
-        self.kept_rows[place] = Row::Border(row, border.held);
+        self.kept_rows[place] = ReducedRow::Border(row, border.held);
         Some(self)
     }
 
@@ -200,9 +184,9 @@ impl Blocks {
                 stiffness.iter().for_each(|(row, value)| force[*row] -= value * motion);
             }
         }
-        let right = |row: &Row| match row {
-            Row::Equilibrium(unknown) => force[*unknown],
-            Row::Border(row, entries) => {
+        let right = |row: &ReducedRow| match row {
+            ReducedRow::Equilibrium(unknown) => force[*unknown],
+            ReducedRow::Border(row, entries) => {
                 // Rows added for what is not symmetric have nothing on the right.
                 let given = lower.get(*row).copied().unwrap_or(0.0);
                 given - entries.iter().map(|(unknown, value)| value * held[*unknown]).sum::<f64>()
@@ -248,15 +232,50 @@ impl Blocks {
     }
 }
 
+/// For each kept column the motions of held unknowns by it.
+fn shifts_of_held(elimination: &Elimination, kept_columns: &[usize]) -> Option<Vec<SparseEntries>> {
+    let mut shifts = vec![SparseEntries::new(); kept_columns.len()];
+    for Coupling { node, row, border, value } in elimination.couplings() {
+        let node = &elimination.nodes()[*node];
+        let shift = &mut shifts[kept_columns.binary_search(border).ok()?];
+        let constraint = elimination.matrices(node).constraint.chunks_exact(node.held().len()).nth(*row)?;
+        shift.extend(node.held().zip(constraint).map(|(unknown, entry)| (unknown, -entry * value)));
+    }
+    Some(shifts)
+}
+
+/// The kept columns of the borders: their entries in the other equations and those in held ones.
+fn columns_of_rest(
+    elimination: &Elimination,
+    right: &[SparseEntries],
+    kept_columns: &[usize],
+    shifts: &[SparseEntries],
+) -> Option<(Vec<SparseEntries>, Vec<SparseEntries>)> {
+    let count = kept_columns.len();
+    let (mut columns, mut held_parts) = (Vec::with_capacity(count), Vec::with_capacity(count));
+    for (column, shift) in kept_columns.iter().zip(shifts) {
+        let (mut free, mut held) = elimination.rotated(&right[*column]);
+        free.extend(elimination.folded(&held));
+        for (unknown, motion) in shift {
+            let moved = elimination.stiffness_at(*unknown)?.iter().map(|(row, value)| (*row, value * motion));
+            elimination.split_into(moved, &mut free, &mut held);
+        }
+        columns.push(free);
+        held_parts.push(held);
+    }
+    Some((columns, held_parts))
+}
+
 /// A border row over what is left of the unknowns and over the kept columns.
 fn border_row(
     elimination: &Elimination,
-    entries: &Entries,
+    entries: &SparseEntries,
     unknowns: usize,
     kept_columns: &[usize],
-    shifts: &[Entries],
+    shifts: &[SparseEntries],
 ) -> Option<BorderRow> {
-    let (inner, outer): (Entries, Entries) = entries.iter().copied().partition(|(column, _)| *column < unknowns);
+    let (inner, outer): (SparseEntries, SparseEntries) =
+        entries.iter().copied().partition(|(column, _)| *column < unknowns);
     let (free, held) = elimination.rotated(&inner);
     let mut corner = vec![0.0; kept_columns.len()];
     for (column, value) in outer {

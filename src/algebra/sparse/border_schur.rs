@@ -1,6 +1,6 @@
 //! Block elimination of what is left of the borders.
 
-use crate::algebra::sparse::factors::entries::Entries;
+use crate::algebra::sparse::factors::entries::SparseEntries;
 use crate::algebra::sparse::factors::ldl::SymmetricFactor;
 use crate::algebra::sparse::factors::static_pivot_lu::UnsymmetricFactor;
 use nalgebra::{DMatrix, Dyn, LU};
@@ -46,11 +46,11 @@ impl Factor {
 }
 
 /// `[[K, B], [C, D]]` with `K` factorised, and the raises of its pivots as borders more.
-pub(super) struct Reduced {
+pub(super) struct BorderSchurComplement {
     pub factor: Factor,
     size: usize,
-    columns: Vec<Entries>,
-    rows: Vec<Entries>,
+    columns: Vec<SparseEntries>,
+    rows: Vec<SparseEntries>,
     /// `D`, without what raises add.
     corner: DMatrix<f64>,
     complement: Complement,
@@ -84,7 +84,7 @@ impl Terms {
     }
 
     /// Takes `C` times a column of `K⁻¹ B` from a column.
-    fn take(&mut self, rows: &[Entries], column: usize, response: &[f64]) {
+    fn take(&mut self, rows: &[SparseEntries], column: usize, response: &[f64]) {
         for (row, entries) in rows.iter().enumerate() {
             for (unknown, value) in entries {
                 self.sums[(row, column)] -= value * response[*unknown];
@@ -117,13 +117,13 @@ const ROWS_TOGETHER: usize = 512;
 /// Numbers of `K⁻¹ B` that are kept.
 const KEPT: usize = 4_000_000;
 
-impl Reduced {
+impl BorderSchurComplement {
     /// `None` where memory does not suffice or a number is not finite.
     pub fn new(
         factor: Factor,
         size: usize,
-        mut columns: Vec<Entries>,
-        mut rows: Vec<Entries>,
+        mut columns: Vec<SparseEntries>,
+        mut rows: Vec<SparseEntries>,
         corner: DMatrix<f64>,
     ) -> Option<Self> {
         let given = columns.len();
@@ -154,7 +154,7 @@ impl Reduced {
     }
 
     /// The same with another row of `[C, D]`; `None` where `K⁻¹ B` is not kept.
-    pub fn with_row(mut self, row: usize, entries: Entries, corner: &[f64]) -> Option<Self> {
+    pub fn with_row(mut self, row: usize, entries: SparseEntries, corner: &[f64]) -> Option<Self> {
         *self.rows.get_mut(row)? = entries;
         corner.iter().enumerate().for_each(|(column, value)| self.corner[(row, column)] = *value);
         let mut terms = Terms::new(&self.corner, self.factor.raised().len());

@@ -11,7 +11,7 @@ use crate::algebra::dense::assembly::Sink;
 use crate::algebra::dense::solve_counters::count_factorisation;
 use crate::algebra::sparse::block_elimination::Blocks;
 use crate::algebra::sparse::factors::bordered_matrix::Bordered;
-use crate::algebra::sparse::factors::entries::Entries;
+use crate::algebra::sparse::factors::entries::SparseEntries;
 use crate::algebra::sparse::factors::ldl::SymmetricFactor;
 use crate::algebra::sparse::fallback_lu::WholeLu;
 use crate::algebra::sparse::nodal_elimination::{Elimination, Friction, Holdings};
@@ -144,7 +144,7 @@ impl SparseFactorisation {
         Arc::ptr_eq(&self.matrix.pattern, &matrix.pattern) && self.matrix.lower.len() == matrix.lower.len()
     }
 
-    pub(super) fn last_row(&self) -> Option<&Entries> {
+    pub(super) fn last_row(&self) -> Option<&SparseEntries> {
         self.matrix.lower.last()
     }
 

@@ -26,4 +26,4 @@ pub use factorisation::{SparseFactorisation, held_inertia};
 pub use factors::bordered_matrix::Bordered;
 pub use factors::pattern::Pattern;
 pub use factors::symbolic::allow_factor;
-pub use nodal_elimination::{Holding, Holdings, Places};
+pub use nodal_elimination::{Holding, Holdings, IndexList};

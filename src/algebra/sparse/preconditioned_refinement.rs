@@ -25,18 +25,16 @@ pub struct Nearby<'a> {
     matrix: Bordered,
 }
 
-impl SparseFactorisation {
-    /// Another matrix with the last row of this one in place of its own; `None` where it has other unknowns.
-    pub fn nearby(&self, mut matrix: Bordered) -> Option<Nearby<'_>> {
-        if matrix.is_outside || !self.is_like(&matrix) {
+impl<'a> Nearby<'a> {
+    /// Another matrix with the last row of the factorised one in place of its own; `None` where it has other unknowns.
+    pub fn new(factorisation: &'a SparseFactorisation, mut matrix: Bordered) -> Option<Self> {
+        if matrix.is_outside || !factorisation.is_like(&matrix) {
             return None;
         }
-        matrix.lower.last_mut()?.clone_from(self.last_row()?);
-        Some(Nearby { factorisation: self, matrix })
+        matrix.lower.last_mut()?.clone_from(factorisation.last_row()?);
+        Some(Self { factorisation, matrix })
     }
-}
 
-impl Nearby<'_> {
     /// The solutions for right-hand sides one after the other, with backward errors up to this one; `None` where the matrix
     /// is not near enough.
     pub fn solve_all(&self, right_hand_sides: &[f64], accepted: f64) -> Option<Vec<f64>> {

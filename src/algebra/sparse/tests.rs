@@ -1,9 +1,10 @@
 //! The sparse factorisation against the dense one, on systems that look random, the same each time.
 
 use crate::algebra::dense::assembly::Sink;
-use crate::algebra::sparse::factors::entries::Entries;
+use crate::algebra::sparse::factors::entries::SparseEntries;
 use crate::algebra::sparse::factors::ldl::SymmetricFactor;
 use crate::algebra::sparse::nodal_elimination::Friction;
+use crate::algebra::sparse::preconditioned_refinement::Nearby;
 use crate::algebra::sparse::*;
 use crate::algebra::{Factorisation, inertia, null_space};
 use nalgebra::{DMatrix, DVector};
@@ -273,7 +274,7 @@ fn singular_systems_are_refused() {
             // The last row is another's twin: the first of the equilibrium.
             let last = sparse.lower.len() - 1;
             let n = sparse.pattern.size();
-            let mut twin = Entries::new();
+            let mut twin = SparseEntries::new();
             for column in 0..n {
                 twin.extend(sparse.pattern.place(0, column).map(|place| (column, sparse.values[place])));
             }
@@ -334,8 +335,7 @@ fn a_nearby_factorisation_gives_the_solution_to_rounding() {
             let right = DVector::from_fn(whole.nrows(), |row, _| if row + 1 == whole.nrows() { 1.0 } else { 0.0 });
             let mut exact = right.clone();
             assert!(Factorisation::new(whole).unwrap().solve(&mut exact));
-            factorisation
-                .nearby(nearby)
+            Nearby::new(&factorisation, nearby)
                 .and_then(|nearby| nearby.solve(&right))
                 .map(|found| (found - &exact).amax() / exact.amax())
         };
@@ -357,7 +357,8 @@ fn a_matrix_of_another_sign_is_not_nearby() {
     };
     let factorisation = SparseFactorisation::new(matrix(1e-3), &Holdings::default()).unwrap();
     let right = DVector::from_vec(vec![0.0, 0.0, 0.0, 1.0]);
-    let comes_out = |last: f64| factorisation.nearby(matrix(last)).is_some_and(|nearby| nearby.solve(&right).is_some());
+    let comes_out =
+        |last: f64| Nearby::new(&factorisation, matrix(last)).is_some_and(|nearby| nearby.solve(&right).is_some());
     assert!(comes_out(1e-3 * (1.0 + 1e-6)));
     assert!(!comes_out(-1e-3));
 }

@@ -5,17 +5,17 @@
 //! judged by its residual like any other.
 
 use crate::algebra::scalar_root::find_root;
-use crate::branching::bifurcation::locate::{self, Ended, Located, WIDTHS};
+use crate::branching::bifurcation::locate::{self, Located, LocatedEnd, WIDTHS};
 use crate::branching::bifurcation::simultaneous_limit_points;
-use crate::branching::bifurcation::singularity::test_functions::{self, Change, Signature};
+use crate::branching::bifurcation::singularity::test_functions::{self, Signature, SignatureChange};
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cost_counters::Work;
-use crate::step::corrector::newton::ACCEPTED_RESIDUAL;
+use crate::step::corrector::newton::{self, ACCEPTED_RESIDUAL};
 use crate::step::event_functions::Watch;
-use crate::step::interpolation::{Placed, between, placed, unit};
-use crate::step::segment::{AT_END, Reached, Start};
+use crate::step::interpolation::{PlacedPoint, between, placed, unit};
+use crate::step::segment::{AT_END, Reached, StepStart};
 
 /// Steps that are tried, over the one that ends at the bound: the point past it has to be regular.
 const LENGTHENED: [f64; 4] = [1.0, 1.01, 1.1, 1.5];
@@ -28,13 +28,13 @@ const ALONG: f64 = 1e-9;
 ///
 /// `load_sign` and `known`: sign of the load rate and signature at the start.
 pub fn beside_singular(
-    start: &Start<'_>,
+    start: &StepStart<'_>,
     step: f64,
     ends: &[End],
     load_sign: f64,
     known: Option<Signature>,
     work: &mut Work,
-) -> Option<Ended> {
+) -> Option<LocatedEnd> {
     let bounds: Vec<End> = ends.iter().copied().filter(|end| end.is_bound()).collect();
     if bounds.is_empty() {
         return None;
@@ -47,7 +47,7 @@ pub fn beside_singular(
     })?;
     let here = Signature::at(start.loading, start.modes, start.state, start.rate, &mut None, work);
     let located = known.or(here).and_then(|before| match test_functions::compare(start, before, &beyond, work).1 {
-        Change::None => None,
+        SignatureChange::None => None,
         change => locate::locate(start, before, change, &beyond, work),
     });
     if let Some(located) = located {
@@ -57,7 +57,7 @@ pub fn beside_singular(
         return None;
     }
     // The start itself is singular.
-    let origin = Placed { place: 0.0, state: start.state.clone(), rate: start.rate.clone() };
+    let origin = PlacedPoint { place: 0.0, state: start.state.clone(), rate: start.rate.clone() };
     WIDTHS.iter().rev().find_map(|width| {
         let width = width * beyond.step;
         let farther = start.reach(width, work).ok()?;
@@ -70,13 +70,13 @@ pub fn beside_singular(
 
 /// Which of bound and bifurcation comes first.
 fn at_crossing(
-    start: &Start<'_>,
+    start: &StepStart<'_>,
     located: Located,
     bounds: &[End],
     left_to: &impl Fn(&End, &State) -> f64,
     beyond: &Reached,
     work: &mut Work,
-) -> Option<Ended> {
+) -> Option<LocatedEnd> {
     let [nearer, farther] = located.between(start, beyond.step, work)?;
     let Located { mut point, crossing, .. } = located;
     let width = farther.place - nearer.place;
@@ -102,8 +102,8 @@ fn at_crossing(
 
 /// The bound that is met first between two points, and where.
 fn first_met(
-    nearer: &Placed,
-    farther: &Placed,
+    nearer: &PlacedPoint,
+    farther: &PlacedPoint,
     bounds: &[End],
     left_to: &impl Fn(&End, &State) -> f64,
 ) -> Option<(f64, End)> {
@@ -119,7 +119,7 @@ fn first_met(
 
 /// The point at which a stage ends, its bound exact; `None` where its residual is not accepted.
 fn ended(
-    start: &Start<'_>,
+    start: &StepStart<'_>,
     mut state: State,
     rate: &Rate,
     bound: End,
@@ -128,7 +128,7 @@ fn ended(
 ) -> Option<Box<Reached>> {
     bound.make_exact(&mut state);
     let system = ModeSystem::new(start.loading, start.modes, start.state);
-    let mut corrected = system.judged(state, start.force_scale);
+    let mut corrected = newton::judged(&system, state, start.force_scale);
     corrected.iterations_to_small = beyond.corrected.iterations_to_small;
     (corrected.residual <= ACCEPTED_RESIDUAL).then(|| {
         let step = corrected.state.distance(start.state);

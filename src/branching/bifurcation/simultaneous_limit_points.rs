@@ -19,11 +19,11 @@
 
 use crate::algebra::scalar_root::find_root;
 use crate::algebra::{nearest_null_space, null_space_as_scaled};
-use crate::branching::bifurcation::branch_directions::{Branches, Here};
+use crate::branching::bifurcation::branch_directions::{Branches, SingularPoint};
 use crate::branching::bifurcation::locate::WIDTHS;
 use crate::branching::bifurcation::singularity::null_vectors::SINGULAR;
-use crate::branching::directions::candidate::Candidate;
-use crate::branching::directions::choice::{Choice, potential_rate, sign_of};
+use crate::branching::directions::candidate::CandidateDirection;
+use crate::branching::directions::choice::{DirectionChoice, potential_rate, sign_of};
 use crate::branching::directions::trial_step::confirm_by;
 use crate::complementarity::rates::combinations::{combinations, count};
 use crate::mechanics::contact::{Mode, Reaction, vector};
@@ -33,10 +33,10 @@ use crate::mechanics::multi_contact::contact_status::Standing;
 use crate::mechanics::problem::state::{Rate, State, dot};
 use crate::step::corrector::cached_factorisation::AtHand;
 use crate::step::corrector::cost_counters::Work;
-use crate::step::corrector::newton::ACCEPTED_RESIDUAL;
+use crate::step::corrector::newton::{self, ACCEPTED_RESIDUAL};
 use crate::step::event_functions::Watch;
-use crate::step::interpolation::{Placed, between, placed, unit};
-use crate::step::segment::{Reached, Start};
+use crate::step::interpolation::{PlacedPoint, between, placed, unit};
+use crate::step::segment::{Reached, StepStart};
 use nalgebra::{DMatrix, DVector};
 
 /// Difference step (dimensionless) for second derivatives.
@@ -51,13 +51,13 @@ const STILL: f64 = 1e-7;
 const SAME: f64 = 1.0 - 1e-8;
 
 /// The limit point of a step that ends past it, and how many motions have it in common, if they are several.
-pub(crate) fn locate(start: &Start<'_>, watch: Watch, end: &Reached, work: &mut Work) -> Option<Box<Reached>> {
+pub(crate) fn locate(start: &StepStart<'_>, watch: Watch, end: &Reached, work: &mut Work) -> Option<Box<Reached>> {
     let system = ModeSystem::new(start.loading, start.modes, start.state);
     if system.has_tracks() || !start.loading.structure.allows_dense() {
         return None;
     }
-    let value = |placed: &Placed| watch.value(start.loading, start.modes, &placed.state, &placed.rate);
-    let root_between = |left: &Placed, right: &Placed| {
+    let value = |placed: &PlacedPoint| watch.value(start.loading, start.modes, &placed.state, &placed.rate);
+    let root_between = |left: &PlacedPoint, right: &PlacedPoint| {
         let at = |place: f64| {
             let (state, rate) = between(left, right, place);
             Some(watch.value(start.loading, start.modes, &state, &unit(&rate)))
@@ -65,7 +65,7 @@ pub(crate) fn locate(start: &Start<'_>, watch: Watch, end: &Reached, work: &mut 
         let (first, last) = (value(left), value(right));
         (first > 0.0 && last < 0.0).then(|| find_root(at, (left.place, first), (right.place, last), 0.0))?
     };
-    let origin = Placed { place: 0.0, state: start.state.clone(), rate: start.rate.clone() };
+    let origin = PlacedPoint { place: 0.0, state: start.state.clone(), rate: start.rate.clone() };
     let (mut left, mut right) = (origin.clone(), placed(start, end));
     let (mut root, length) = (root_between(&left, &right)?, right.place);
     let mut best: Option<Box<Reached>> = None;
@@ -80,7 +80,7 @@ pub(crate) fn locate(start: &Start<'_>, watch: Watch, end: &Reached, work: &mut 
         let Some(place) = root_between(&nearer, &farther) else { break };
         (left, right, root) = (nearer, farther, place);
         let (state, rate) = between(&left, &right, root);
-        let corrected = system.judged(state, start.force_scale);
+        let corrected = newton::judged(&system, state, start.force_scale);
         if let Some(best) = &best {
             // Each round's points are at least four times closer.
             error = corrected.state.distance(&best.corrected.state) / 256.0;
@@ -101,7 +101,7 @@ pub(crate) fn locate(start: &Start<'_>, watch: Watch, end: &Reached, work: &mut 
 }
 
 /// A part's motion.
-struct Part {
+struct PartMotion {
     /// Times `|σ|^(-1/2)`.
     rate: Rate,
     /// Sign of `σ`.
@@ -112,7 +112,7 @@ struct Part {
 
 /// What a part does: goes on or back, or rests.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Way {
+enum PartCourse {
     On,
     Back,
     Rest,
@@ -121,7 +121,7 @@ enum Way {
 /// The directions along which the load is stationary at a limit point that so many motions have in common, the path's own
 /// first; at most so many. `None` where the motions are coupled.
 pub(crate) fn directions(
-    here: Here<'_>,
+    here: SingularPoint<'_>,
     modes: &[Mode],
     incoming: &Rate,
     motions: usize,
@@ -130,17 +130,17 @@ pub(crate) fn directions(
     let parts = parts(here, modes, incoming, motions)?;
     let falls = parts.first()?.sign;
     let mut found = Branches { options: Vec::new(), degenerate: false, unexplored: 0 };
-    let ways: Vec<Vec<Way>> = parts
+    let ways: Vec<Vec<PartCourse>> = parts
         .iter()
         .map(|part| match (part.sign == falls, part.slides.is_empty()) {
-            (true, true) => vec![Way::On, Way::Back],
-            (true, false) => vec![Way::On, Way::Rest],
-            (false, _) => vec![Way::Rest],
+            (true, true) => vec![PartCourse::On, PartCourse::Back],
+            (true, false) => vec![PartCourse::On, PartCourse::Rest],
+            (false, _) => vec![PartCourse::Rest],
         })
         .collect();
     found.unexplored = count(&ways).saturating_sub(most);
     for chosen in combinations(&ways, most) {
-        if chosen.iter().all(|way| *way == Way::Rest) {
+        if chosen.iter().all(|way| *way == PartCourse::Rest) {
             continue;
         }
         let mut rate = incoming.clone();
@@ -148,9 +148,9 @@ pub(crate) fn directions(
         let mut chosen_modes = modes.to_vec();
         for (part, way) in parts.iter().zip(&chosen) {
             match way {
-                Way::On => rate.add(&part.rate, 1.0),
-                Way::Back => rate.add(&part.rate, -1.0),
-                Way::Rest => part.slides.iter().for_each(|contact| chosen_modes[*contact] = Mode::Stick),
+                PartCourse::On => rate.add(&part.rate, 1.0),
+                PartCourse::Back => rate.add(&part.rate, -1.0),
+                PartCourse::Rest => part.slides.iter().for_each(|contact| chosen_modes[*contact] = Mode::Stick),
             }
         }
         let Some(rate) = rate.normalised() else { continue };
@@ -166,13 +166,13 @@ pub(crate) fn directions(
 }
 
 /// A direction that a small step along it confirms.
-fn tried(here: Here<'_>, rate: Rate, modes: Vec<Mode>) -> Option<Choice> {
-    let Here { loading, state, force_scale, .. } = here;
+fn tried(here: SingularPoint<'_>, rate: Rate, modes: Vec<Mode>) -> Option<DirectionChoice> {
+    let SingularPoint { loading, state, force_scale, .. } = here;
     let power = |(contact, reaction): (usize, &Reaction)| {
         -vector::dot(&reaction.tangential, &loading.relative_rate(contact, state, &rate))
     };
     let dissipation = state.reactions.iter().enumerate().map(power).sum();
-    let candidate = Candidate {
+    let candidate = CandidateDirection {
         rate,
         forces: Vec::new(),
         modes,
@@ -184,7 +184,7 @@ fn tried(here: Here<'_>, rate: Rate, modes: Vec<Mode>) -> Option<Choice> {
     let confirmed = |step: &f64| confirm_by(loading, state, &candidate, force_scale, &[*step]);
     let (modes, later) = TRIALS.iter().find_map(confirmed)?;
     let potential_rate = potential_rate(loading, state, &candidate.rate, dissipation);
-    Some(Choice {
+    Some(DirectionChoice {
         load_sign: sign_of(later),
         potential_rate,
         dissipation,
@@ -200,8 +200,8 @@ fn tried(here: Here<'_>, rate: Rate, modes: Vec<Mode>) -> Option<Choice> {
 }
 
 /// The parts' motions, each in the sense in which the path comes.
-fn parts(here: Here<'_>, modes: &[Mode], incoming: &Rate, motions: usize) -> Option<Vec<Part>> {
-    let Here { loading, state, standings, .. } = here;
+fn parts(here: SingularPoint<'_>, modes: &[Mode], incoming: &Rate, motions: usize) -> Option<Vec<PartMotion>> {
+    let SingularPoint { loading, state, standings, .. } = here;
     let system = ModeSystem::new(loading, modes, state);
     let load = loading.structure.unknowns();
     let (scaled, sizes) = scaled_rows(&system, loading, state);
@@ -250,7 +250,7 @@ fn parts(here: Here<'_>, modes: &[Mode], incoming: &Rate, motions: usize) -> Opt
             moves && matches!(standings[*contact], Standing::OnCone { .. })
         };
         let slides = (0..modes.len()).filter(slides).collect();
-        parts.push(Part { rate, sign: value.signum(), slides });
+        parts.push(PartMotion { rate, sign: value.signum(), slides });
     }
     Some(parts)
 }

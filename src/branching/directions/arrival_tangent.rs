@@ -13,8 +13,8 @@
 //! J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem*, Academic Press 1992, section 3.3): it sticks, and no trial
 //! step need tell.
 
-use crate::branching::directions::candidate::Candidate;
-use crate::branching::directions::choice::Choice;
+use crate::branching::directions::candidate::CandidateDirection;
+use crate::branching::directions::choice::DirectionChoice;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::dot;
 use crate::mechanics::problem::loading::Loading;
@@ -49,7 +49,7 @@ impl<'a> Incoming<'a> {
     }
 
     /// Whether in a direction contacts that have come to rest stick, all else as it was.
-    pub(crate) fn is_stopped_in(&self, loading: Loading<'_>, state: &State, choice: &Choice) -> bool {
+    pub(crate) fn is_stopped_in(&self, loading: Loading<'_>, state: &State, choice: &DirectionChoice) -> bool {
         let Some(modes) = self.modes else { return false };
         let mut stops = false;
         let as_it_was = |(contact, (was, is)): (usize, (&Mode, &Mode))| match (was, is) {
@@ -65,7 +65,7 @@ impl<'a> Incoming<'a> {
     /// Whether a direction that may be taken in two modes at first order is known to be taken in the first.
     ///
     /// It is the incoming one, its kind is proven to be the only one, and only the contact that stops is in doubt.
-    pub(crate) fn tells(&self, candidate: &Candidate, is_proven: bool) -> bool {
+    pub(crate) fn tells(&self, candidate: &CandidateDirection, is_proven: bool) -> bool {
         let in_doubt =
             || candidate.alternatives.iter().filter(|alternatives| alternatives.len() > 1).flatten().flatten();
         is_proven
@@ -79,7 +79,7 @@ impl<'a> Incoming<'a> {
 #[cfg(test)]
 mod tests {
     use super::Incoming;
-    use crate::branching::directions::choice::Before;
+    use crate::branching::directions::choice::PriorMotion;
     use crate::branching::selection::decision::list;
     use crate::branching::selection::enumeration::directions;
     use crate::check::scenes::of_any_size::row_of_bars;
@@ -109,8 +109,8 @@ mod tests {
             let found = directions(loading, state, &standings, Some(known), rules.effort);
             told += found.candidates.iter().filter(|one| one.weak && known.tells(one, found.is_proven)).count();
             assert!(!found.candidates.iter().any(|one| known.tells(one, false)), "there is no telling without a proof");
-            let [by_trial, by_knowledge] =
-                [tried, known].map(|incoming| list(loading, state, &standings, Before::Incoming(incoming), rules).0);
+            let [by_trial, by_knowledge] = [tried, known]
+                .map(|incoming| list(loading, state, &standings, PriorMotion::Incoming(incoming), rules).0);
             assert_eq!(by_trial.len(), by_knowledge.len(), "increment {}", increment.index);
             for (one, other) in by_trial.iter().zip(&by_knowledge) {
                 assert_eq!((&one.modes, &one.rate), (&other.modes, &other.rate), "increment {}", increment.index);

@@ -12,7 +12,7 @@ use crate::step::corrector::cached_factorisation::AtHand;
 
 /// A feasible direction.
 #[derive(Debug, Clone)]
-pub struct Candidate {
+pub struct CandidateDirection {
     pub rate: Rate,
     /// Rates of the contacts' forces, those on one node together: see `node_forces::whole_rates`.
     pub forces: Vec<Vector>,
@@ -35,8 +35,8 @@ pub type Alternative = Vec<(usize, Mode)>;
 
 /// What was found at a point.
 #[derive(Debug, Clone, Default)]
-pub struct Found {
-    pub candidates: Vec<Candidate>,
+pub struct FoundDirections {
+    pub candidates: Vec<CandidateDirection>,
     /// A matrix whose principal minors are all positive proves that they are all.
     pub is_proven: bool,
     /// Modes that were not examined.
@@ -91,7 +91,7 @@ pub fn is_mechanism(loading: Loading<'_>, state: &State, rate: &Rate) -> bool {
 }
 
 /// Keeps one entry for one motion, whatever its modes.
-pub(crate) fn merge(found: &mut Found, candidate: Candidate) {
+pub(crate) fn merge(found: &mut FoundDirections, candidate: CandidateDirection) {
     for known in &mut found.candidates {
         let same_motion = (1.0 - known.rate.product(&candidate.rate)) < 0.5 * SAME * SAME;
         if same_motion && difference_of_forces(&known.forces, &candidate.forces, 1.0) <= SAME {

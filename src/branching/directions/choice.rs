@@ -26,7 +26,7 @@ pub enum Selection {
 
 /// A direction that exists.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Choice {
+pub struct DirectionChoice {
     pub rate: Rate,
     pub modes: Vec<Mode>,
     pub dissipation: f64,
@@ -52,7 +52,7 @@ pub struct Choice {
 
 /// What the path was doing before.
 #[derive(Debug, Clone, Copy)]
-pub enum Before<'a> {
+pub enum PriorMotion<'a> {
     Incoming(Incoming<'a>),
     /// A stage begins: the load is to rise; ties go to the motion that the pattern pushes.
     StageStart,
@@ -76,8 +76,8 @@ pub struct Rules<'a> {
 }
 
 /// Marks the way back. Several directions may run close to it; it is the closest.
-pub fn mark_retrace(loading: Loading<'_>, state: &State, options: &mut [Choice], incoming: &Rate) {
-    let off = |option: &Choice| off_reverse(loading, state, &option.rate, incoming);
+pub fn mark_retrace(loading: Loading<'_>, state: &State, options: &mut [DirectionChoice], incoming: &Rate) {
+    let off = |option: &DirectionChoice| off_reverse(loading, state, &option.rate, incoming);
     let back = options.iter_mut().filter_map(|option| Some((off(option)?, option)));
     if let Some((_, option)) = back.min_by(|a, b| a.0.total_cmp(&b.0)) {
         option.retrace = true;
@@ -114,7 +114,7 @@ pub(crate) fn off_reverse(loading: Loading<'_>, state: &State, rate: &Rate, inco
 
 /// Whether two or more directions share the sign of the load rate. `taken_sign` replaces the sign of the direction
 /// taken where its load rate is just zero (a smooth limit point: the sign that follows).
-pub fn is_bifurcation(options: &[Choice], taken: Option<usize>, taken_sign: Option<f64>) -> bool {
+pub fn is_bifurcation(options: &[DirectionChoice], taken: Option<usize>, taken_sign: Option<f64>) -> bool {
     let (mut rising, mut falling) = (0, 0);
     for (index, option) in options.iter().enumerate() {
         let sign = match taken_sign {
@@ -131,7 +131,7 @@ pub fn is_bifurcation(options: &[Choice], taken: Option<usize>, taken_sign: Opti
 }
 
 /// Whether the list says more than "on, or back".
-pub fn is_worth_listing(options: &[Choice]) -> bool {
+pub fn is_worth_listing(options: &[DirectionChoice]) -> bool {
     match options {
         [] | [_] => false,
         [first, second] => first.rate.product(&second.rate) > -1.0 + 1e-9 || first.modes != second.modes,

@@ -5,7 +5,10 @@
 //! The inequalities are those listed in `selection::enumeration`; `rate_options` writes them down, `rates` finds the rays.
 
 use crate::branching::directions::arrival_tangent::Incoming;
-use crate::branching::directions::candidate::{Alternative, Candidate, Found, WEAK, is_mechanism, merge, sort};
+use crate::branching::directions::candidate::{
+    Alternative, CandidateDirection, FoundDirections, WEAK, is_mechanism, merge, sort,
+};
+use crate::branching::directions::condensation_basis;
 use crate::complementarity::rate_search::branch_and_bound::{self, Effort, Ray};
 use crate::complementarity::rate_search::simultaneous_slips;
 use crate::complementarity::rate_search::slip_onset_direction::{self, Touch, Turning};
@@ -52,7 +55,7 @@ impl<'a> Condensed<'a> {
         let velocities: usize = changeable.iter().map(|entry| entry.velocities.len()).sum();
         // The columns themselves, and the matrices of their motions and reactions.
         let held = budget::take::<f64>(2 * (velocities + 1) * of_column);
-        let columns = system.columns(&changeable, incoming)?;
+        let columns = condensation_basis::columns(&system, &changeable, incoming)?;
         let normals = |contact: usize| loading.frame(contact, state).normal;
         let mut forms = Forms { columns: &columns, normals: &normals, rows: Vec::new(), is_force: Vec::new(), held };
         let (entities, outcomes) = changeable.iter().map(|entry| entry.options(loading, state, &mut forms)).unzip();
@@ -89,7 +92,7 @@ impl<'a> Condensed<'a> {
         state: &State,
         incoming: Option<&Rate>,
         effort: Effort<'_>,
-        found: &mut Found,
+        found: &mut FoundDirections,
     ) {
         let first = || {
             let mut first = vec![vec![0; self.changeable.len()]];
@@ -149,7 +152,7 @@ impl<'a> Condensed<'a> {
     }
 
     /// Where a node in a pocket is not pressed, first slips along one of its obstacles in a direction that is unknown.
-    fn add_slips_out_of_pockets(&self, held: &[Mode], state: &State, effort: Effort<'_>, found: &mut Found) {
+    fn add_slips_out_of_pockets(&self, held: &[Mode], state: &State, effort: Effort<'_>, found: &mut FoundDirections) {
         let normals = |contact: usize| self.loading.frame(contact, state).normal;
         let mut forms = Forms {
             columns: &self.columns,
@@ -192,7 +195,7 @@ impl<'a> Condensed<'a> {
         incoming: &Rate,
         held: &[Mode],
         state: &State,
-        found: &mut Found,
+        found: &mut FoundDirections,
     ) {
         let mut basis: Vec<Rate> = Vec::new();
         for motion in motions.iter().filter(|rate| is_mechanism(self.loading, state, rate)) {
@@ -224,7 +227,7 @@ impl<'a> Condensed<'a> {
         let (alternatives, dissipation) = (Vec::new(), 0.0);
         merge(
             found,
-            Candidate {
+            CandidateDirection {
                 rate: nearest,
                 forces,
                 modes,
@@ -258,7 +261,7 @@ impl<'a> Condensed<'a> {
     }
 
     /// Adds a ray as a candidate direction.
-    fn add(&self, ray: &Ray, turning: &[(usize, Vector)], held: &[Mode], state: &State, found: &mut Found) {
+    fn add(&self, ray: &Ray, turning: &[(usize, Vector)], held: &[Mode], state: &State, found: &mut FoundDirections) {
         let (mut rate, _) = self.combine(&ray.weights);
         let mut modes = held.to_vec();
         for ((entry, outcomes), choice) in self.changeable.iter().zip(&self.outcomes).zip(ray.chosen()) {
@@ -294,7 +297,10 @@ impl<'a> Condensed<'a> {
         let forces = whole_rates(self.loading, state, &rate);
         let just_held = |entry: &Changeable| entry.margin(&modes, &rate).is_some_and(|margin| margin <= force);
         let weak = ray.weak || self.changeable.iter().any(just_held);
-        merge(found, Candidate { rate, forces, modes, alternatives, weak, dissipation, at_hand: AtHand::default() });
+        merge(
+            found,
+            CandidateDirection { rate, forces, modes, alternatives, weak, dissipation, at_hand: AtHand::default() },
+        );
     }
 
     /// What each contact may do along a ray.

@@ -6,7 +6,7 @@
 //! an active set method. Only where that leads nowhere are combinations tried in turn, as many as there are up to a
 //! bound.
 
-use crate::branching::directions::candidate::Candidate;
+use crate::branching::directions::candidate::CandidateDirection;
 use crate::branching::directions::choice::sign_of;
 use crate::complementarity::rates::combinations;
 use crate::mechanics::contact::Mode;
@@ -19,6 +19,8 @@ use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::budget::{self, Taken};
 use crate::step::corrector::cost_counters::Work;
+use crate::step::corrector::newton;
+use crate::step::corrector::tangent;
 use crate::step::event_functions::{self, Watch};
 use crate::step::segment::may_turn;
 use nalgebra::DVector;
@@ -48,7 +50,7 @@ const TRIAL_TOLERANCE: f64 = 1e-11;
 const MOST_COMBINATIONS: u64 = 64;
 
 /// What a small step says of a direction that holds only at first order.
-enum Verdict {
+enum TrialVerdict {
     Holds(f64),
     /// With the contacts that are to blame, if it is they.
     Fails(Vec<usize>),
@@ -60,7 +62,7 @@ enum Verdict {
 pub(crate) fn confirm(
     loading: Loading<'_>,
     state: &State,
-    candidate: &Candidate,
+    candidate: &CandidateDirection,
     force_scale: f64,
 ) -> Option<(Vec<Mode>, f64)> {
     confirm_by(loading, state, candidate, force_scale, &TRIAL_STEPS)
@@ -70,7 +72,7 @@ pub(crate) fn confirm(
 pub(crate) fn confirm_by(
     loading: Loading<'_>,
     state: &State,
-    candidate: &Candidate,
+    candidate: &CandidateDirection,
     force_scale: f64,
     steps: &[f64],
 ) -> Option<(Vec<Mode>, f64)> {
@@ -172,18 +174,19 @@ fn stepped(
     let closing = ArcLengthEquation { from: state, step };
     let mut serving = None;
     let guess = system.iterate(state.advanced(rate, step));
-    let corrected = system.correct_from(guess, &closing, force_scale, &mut serving, &mut Work::default()).ok()?;
+    let corrected =
+        newton::correct_from(&system, guess, &closing, force_scale, &mut serving, &mut Work::default()).ok()?;
     let distance = state.distance(&corrected.state);
     may_turn(state.cosine_of_chord(&corrected.state, distance, rate)).ok()?;
     let rate = match serving {
-        Some(_) => system.tangent_and_error(&corrected, rate, &mut serving, &mut 0)?.rate,
+        Some(_) => tangent::tangent_and_error(&system, &corrected, rate, &mut serving, &mut 0)?.rate,
         None => system.tangent(&corrected, rate)?,
     };
     Some((corrected, rate))
 }
 
 /// The first combinations of alternatives, those with more sticking contacts first.
-fn in_order(candidate: &Candidate) -> Vec<Vec<usize>> {
+fn in_order(candidate: &CandidateDirection) -> Vec<Vec<usize>> {
     let places: Vec<Vec<usize>> =
         candidate.alternatives.iter().map(|alternatives| (0..alternatives.len()).collect()).collect();
     let mut all: Vec<Vec<usize>> = combinations::combinations(&places, MOST_COMBINATIONS).collect();
@@ -198,7 +201,7 @@ fn in_order(candidate: &Candidate) -> Vec<Vec<usize>> {
 struct Trial<'a> {
     loading: Loading<'a>,
     state: &'a State,
-    candidate: &'a Candidate,
+    candidate: &'a CandidateDirection,
     force_scale: f64,
     /// Arc lengths, tried one after another until it is clear.
     steps: &'a [f64],
@@ -215,9 +218,9 @@ impl Trial<'_> {
         let mut later_load = 0.0;
         for step in self.steps {
             match self.step(&modes, *step) {
-                Verdict::Holds(load) => return Ok((modes, load)),
-                Verdict::Fails(culprits) => return Err(culprits),
-                Verdict::Unclear(load) => later_load = load,
+                TrialVerdict::Holds(load) => return Ok((modes, load)),
+                TrialVerdict::Fails(culprits) => return Err(culprits),
+                TrialVerdict::Unclear(load) => later_load = load,
             }
         }
         Ok((modes, later_load))
@@ -226,9 +229,9 @@ impl Trial<'_> {
     /// Follows only what is zero at first order: whatever else ends the mode within the step is an event to come. The
     /// step is short, so that such events come after it as a rule: where many contacts change close together, a long one
     /// would judge a motion that does not happen.
-    fn step(&self, modes: &[Mode], step: f64) -> Verdict {
+    fn step(&self, modes: &[Mode], step: f64) -> TrialVerdict {
         let Self { loading, state, candidate, force_scale, .. } = *self;
-        let nobody = || Verdict::Fails(Vec::new());
+        let nobody = || TrialVerdict::Fails(Vec::new());
         let Some((corrected, rate)) = stepped(loading, state, &candidate.rate, modes, step, force_scale) else {
             return nobody();
         };
@@ -271,11 +274,11 @@ impl Trial<'_> {
             unclear |= grown <= clear;
         }
         if !culprits.is_empty() {
-            Verdict::Fails(culprits)
+            TrialVerdict::Fails(culprits)
         } else if unclear {
-            Verdict::Unclear(rate.load)
+            TrialVerdict::Unclear(rate.load)
         } else {
-            Verdict::Holds(rate.load)
+            TrialVerdict::Holds(rate.load)
         }
     }
 }

@@ -10,9 +10,11 @@
 //! `Π̇ = (f_int - f_held - s f)·u̇ - ṡ f·u`, and by equilibrium the bracket is the reactions, whose power is `-D` with the
 //! dissipation `D = -Σ r_t·u̇_t`: so `Π̇ = -D - ṡ f·u`, per unit arc length.
 
-use crate::branching::bifurcation::branch_directions::{Here, Told};
-use crate::branching::directions::candidate::{Found, is_mechanism};
-use crate::branching::directions::choice::{Before, Choice, Rules, Selection, mark_retrace, potential_rate, sign_of};
+use crate::branching::bifurcation::branch_directions::{SecondOrderFindings, SingularPoint};
+use crate::branching::directions::candidate::{FoundDirections, is_mechanism};
+use crate::branching::directions::choice::{
+    DirectionChoice, PriorMotion, Rules, Selection, mark_retrace, potential_rate, sign_of,
+};
 use crate::branching::directions::trial_step::confirm;
 use crate::branching::selection::enumeration::directions;
 use crate::branching::selection::second_order;
@@ -26,7 +28,7 @@ use crate::step::corrector::cached_factorisation::AtHand;
 /// The directions at a point and the one that is taken.
 #[derive(Debug, Clone)]
 pub struct Decision {
-    pub options: Vec<Choice>,
+    pub options: Vec<DirectionChoice>,
     /// Which of `options` is taken; `None` where the path ends.
     pub taken: Option<usize>,
     /// Why the path ends here, if it does.
@@ -50,12 +52,12 @@ pub fn list(
     loading: Loading<'_>,
     state: &State,
     standings: &[Standing],
-    before: Before<'_>,
+    before: PriorMotion<'_>,
     rules: Rules<'_>,
-) -> (Vec<Choice>, Found) {
+) -> (Vec<DirectionChoice>, FoundDirections) {
     let incoming = match before {
-        Before::Incoming(incoming) => Some(incoming),
-        Before::StageStart => None,
+        PriorMotion::Incoming(incoming) => Some(incoming),
+        PriorMotion::StageStart => None,
     };
     let mut found = directions(loading, state, standings, incoming, rules.effort);
     let candidates = std::mem::take(&mut found.candidates);
@@ -73,7 +75,7 @@ pub fn list(
         let at_hand = if modes == candidate.modes { candidate.at_hand } else { AtHand::default() };
         let load_sign = sign_of(if sign_of(candidate.rate.load) == 0.0 { later_load } else { candidate.rate.load });
         let potential_rate = potential_rate(loading, state, &candidate.rate, candidate.dissipation);
-        options.push(Choice {
+        options.push(DirectionChoice {
             rate: candidate.rate,
             modes,
             dissipation: candidate.dissipation,
@@ -98,7 +100,7 @@ pub fn decide(
     loading: Loading<'_>,
     state: &State,
     standings: &[Standing],
-    before: Before<'_>,
+    before: PriorMotion<'_>,
     rules: Rules<'_>,
 ) -> Decision {
     let (options, found) = list(loading, state, standings, before, rules);
@@ -108,17 +110,19 @@ pub fn decide(
     if !(ends || is_doubtful) || found.unexplored > 0 || rules.effort.cancel.is_cancelled() {
         return decision;
     }
-    let here = Here { loading, state, standings, force_scale: rules.force_scale };
-    let Some(Told { options, unclear }) = second_order::directions(here, before) else { return decision };
-    taken_of(loading, options, &Found { degenerate: unclear, ..Found::default() }, before, rules)
+    let here = SingularPoint { loading, state, standings, force_scale: rules.force_scale };
+    let Some(SecondOrderFindings { options, unclear }) = second_order::directions(here, before) else {
+        return decision;
+    };
+    taken_of(loading, options, &FoundDirections { degenerate: unclear, ..FoundDirections::default() }, before, rules)
 }
 
 /// Takes one of the directions that were found.
 fn taken_of(
     loading: Loading<'_>,
-    options: Vec<Choice>,
-    found: &Found,
-    before: Before<'_>,
+    options: Vec<DirectionChoice>,
+    found: &FoundDirections,
+    before: PriorMotion<'_>,
     rules: Rules<'_>,
 ) -> Decision {
     let odd = options.len() % 2 == 1;
@@ -127,8 +131,8 @@ fn taken_of(
     push.iter_mut().zip(&loading.pattern.supports).for_each(|(sum, value)| *sum += value);
     let pushed = Rate { displacement: push, load: 0.0, reactions: Vec::new() };
     let previous = match before {
-        Before::Incoming(incoming) => incoming.rate,
-        Before::StageStart => {
+        PriorMotion::Incoming(incoming) => incoming.rate,
+        PriorMotion::StageStart => {
             if found.unexplored > 0 && open.iter().all(|&index| options[index].load_sign <= 0.0) {
                 // The load is to rise, and the mode in which it does may be among those not examined.
                 open.clear();
@@ -161,7 +165,7 @@ fn taken_of(
 
 /// The direction that the rule puts first, among those that are eligible.
 pub fn preferred(
-    options: &[Choice],
+    options: &[DirectionChoice],
     previous: &Rate,
     rules: Rules<'_>,
     eligible: impl Fn(usize) -> bool,
@@ -172,7 +176,7 @@ pub fn preferred(
 }
 
 /// Whether the first of two directions goes before the second.
-fn is_preferred(first: &Choice, second: &Choice, previous: &Rate, rules: Rules<'_>) -> bool {
+fn is_preferred(first: &DirectionChoice, second: &DirectionChoice, previous: &Rate, rules: Rules<'_>) -> bool {
     match rules.selection {
         Selection::Straightest => is_straighter(first, second, previous, true),
         Selection::MaxDissipation | Selection::MinPotentialEnergy => {
@@ -191,7 +195,7 @@ fn is_preferred(first: &Choice, second: &Choice, previous: &Rate, rules: Rules<'
 
 /// Whether the first of two directions has the larger product (or cosine) with the way the path came, in displacement;
 /// where neither has, whether it alone keeps the sign of the load rate.
-fn is_straighter(first: &Choice, second: &Choice, previous: &Rate, by_cosine: bool) -> bool {
+fn is_straighter(first: &DirectionChoice, second: &DirectionChoice, previous: &Rate, by_cosine: bool) -> bool {
     let size = |rate: &Rate| {
         let size = dot(&rate.displacement, &rate.displacement).sqrt();
         if size > STILL * rate.size() { size } else { 0.0 }
@@ -199,7 +203,7 @@ fn is_straighter(first: &Choice, second: &Choice, previous: &Rate, by_cosine: bo
     let before = size(previous);
     let sizes = [first, second].map(|choice| size(&choice.rate));
     let largest = if by_cosine { 1.0 } else { sizes[0].max(sizes[1]) };
-    let along = |choice: &Choice, size: f64| {
+    let along = |choice: &DirectionChoice, size: f64| {
         let product = if size > 0.0 { dot(&choice.rate.displacement, &previous.displacement) } else { 0.0 };
         if by_cosine && size > 0.0 { product / size } else { product }
     };
@@ -207,7 +211,7 @@ fn is_straighter(first: &Choice, second: &Choice, previous: &Rate, by_cosine: bo
     if before > 0.0 && difference.abs() > TIE_OF_MOTIONS * largest * before {
         return difference > 0.0;
     }
-    let goes_on = |choice: &Choice| choice.load_sign * previous.load > 0.0;
+    let goes_on = |choice: &DirectionChoice| choice.load_sign * previous.load > 0.0;
     goes_on(first) && !goes_on(second)
 }
 
@@ -217,10 +221,10 @@ mod tests {
     use crate::complementarity::rate_search::branch_and_bound::Effort;
     use crate::resources::cancel::CancelFlag;
 
-    fn choice(displacement: [f64; 2], dissipation: f64, potential_rate: f64) -> Choice {
+    fn choice(displacement: [f64; 2], dissipation: f64, potential_rate: f64) -> DirectionChoice {
         let rate = Rate { displacement: displacement.to_vec(), load: 0.0, reactions: Vec::new() };
         let (modes, load_sign) = (Vec::new(), 1.0);
-        Choice {
+        DirectionChoice {
             rate,
             modes,
             dissipation,

@@ -22,7 +22,7 @@
 //! where it is not degenerate: an odd count is reported.
 
 use crate::branching::directions::arrival_tangent::Incoming;
-use crate::branching::directions::candidate::{Found, held_modes, resists_nothing};
+use crate::branching::directions::candidate::{FoundDirections, held_modes, resists_nothing};
 use crate::branching::directions::condensed_rate_problem::Condensed;
 use crate::branching::uniqueness::sparse_uniqueness;
 use crate::complementarity::rate_search::branch_and_bound::Effort;
@@ -39,10 +39,10 @@ pub fn directions(
     standings: &[Standing],
     incoming: Option<Incoming<'_>>,
     effort: Effort<'_>,
-) -> Found {
+) -> FoundDirections {
     let held = held_modes(loading, standings);
     let system = ModeSystem::new(loading, &held, state);
-    let mut found = Found::default();
+    let mut found = FoundDirections::default();
     if determinacy::is_not_available(loading, state) {
         found.corner_not_available = true;
         return found;
@@ -59,7 +59,7 @@ pub fn directions(
     condensed.enumerate(&held, state, incoming.map(|incoming| incoming.rate), effort, &mut found);
     if are_few && found.unexplored > 0 && loading.structure.layout().is_some() {
         // Where the search was cut there may be a proof.
-        let mut proven = Found::default();
+        let mut proven = FoundDirections::default();
         if sparse_uniqueness::directions(loading, state, standings, incoming, effort, &mut proven) && proven.is_proven {
             return proven;
         }

@@ -2,7 +2,7 @@
 
 use crate::check::verify::case::Case;
 use crate::check::verify::compare::{moved, worse, worst};
-use crate::check::verify::known::{Klarbring, OneBar};
+use crate::check::verify::known::{KlarbringSolution, OneBarSolution};
 use crate::check::verify::make::{load_above, plane_model};
 use crate::result::increment::Status;
 use crate::result::stop_reason::StopReason;
@@ -12,13 +12,13 @@ const COEFFICIENTS: [f64; 6] = [0.0, 1e-9, 1e-3, 1.0, 1e3, 1e6];
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     cases.extend(COEFFICIENTS.map(|friction| {
-        let node = Klarbring { friction, ..Klarbring::PUBLISHED };
+        let node = KlarbringSolution { friction, ..KlarbringSolution::PUBLISHED };
         let request = node.make().contact("node", "floor", friction).longest_step(1e6).request();
         Case::new("friction", format!("Klarbring's node, {friction:e}"), request)
             .exact(1e-10, move |path| node.error(path))
     }));
     cases.extend(COEFFICIENTS.map(|friction| {
-        let truss = OneBar::with_friction(friction);
+        let truss = OneBarSolution::with_friction(friction);
         let request = truss.make().load_scale(friction.max(1.0)).request();
         Case::new("friction", format!("one-bar truss, {friction:e}"), request)
             .ends(StopReason::Mechanism)
@@ -28,7 +28,7 @@ pub fn cases() -> Vec<Case> {
     for (along, coupling) in [(1.5, 0.75), (1.0, 0.8), (1.0, 0.9)] {
         for off in [0.0, 1e-12, -1e-12, 1e-9, -1e-9, 1e-6, -1e-6] {
             let friction = along / coupling * (1.0 + off);
-            let node = Klarbring { along, coupling, across: along, friction, ..Klarbring::PUBLISHED };
+            let node = KlarbringSolution { along, coupling, across: along, friction, ..KlarbringSolution::PUBLISHED };
             let name = format!("{along} / {coupling}, off by {off:e}");
             cases.push(Case::new("critical-friction", name, node.request()).exact(1e-10, move |path| node.error(path)));
         }

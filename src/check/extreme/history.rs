@@ -2,7 +2,7 @@
 
 use crate::check::verify::case::{AUTO, Case, ENERGY_BAR};
 use crate::check::verify::compare::{bisected, moved, points, relative, worse, worst};
-use crate::check::verify::known::{OneBar, VonMises};
+use crate::check::verify::known::{OneBarSolution, VonMisesSolution};
 use crate::check::verify::make::{NO_FORCES, displacement, load_above, plane_model};
 use crate::model::request::Component;
 use crate::result::increment::{Increment, PointKind};
@@ -25,7 +25,7 @@ pub fn cases() -> Vec<Case> {
 /// back for softer springs. Driven by q, or by the force. With springs of 1e-5 and less the turn is a cusp: q, of 1e4 and
 /// more, turns within a radius of the order of the spring's part, and the path may end there with `step_underflow`.
 fn snap_back(part: f64, driven: bool) -> Case {
-    let truss = VonMises { height: 0.5 };
+    let truss = VonMisesSolution { height: 0.5 };
     let stiffness = part * 2.0 * (1.0 - 1.0 / 0.5_f64.hypot(1.0));
     let make = truss
         .make()
@@ -34,7 +34,7 @@ fn snap_back(part: f64, driven: bool) -> Case {
         .spring(&["top", "apex"], [[0.0, 0.0], [0.0, stiffness]])
         .longest_step(0.05 / stiffness.min(0.1))
         .shortest_step(1e-13);
-    let until = VonMises::down(1.1);
+    let until = VonMisesSolution::down(1.1);
     let request = if driven {
         make.support("top", &[Component::X, Component::Y]).stage("push", &NO_FORCES, until).driven("top", [0.0, -1.0])
     } else {
@@ -106,7 +106,7 @@ fn cycle(strokes: usize, increments: usize) -> Case {
 /// The von Mises truss (h = 1/2) pushed to s = 0.03 (of 0.038) and let go, again and again: it comes back to where it was,
 /// with its work given back (to the bar of energies, which is wider than that of places).
 fn breathing(strokes: usize, increments: usize) -> Case {
-    let truss = VonMises { height: 0.5 };
+    let truss = VonMisesSolution { height: 0.5 };
     let mut make = truss.make();
     for stroke in 0..strokes {
         let sign = if stroke % 2 == 0 { -1.0 } else { 1.0 };
@@ -193,7 +193,7 @@ fn mechanisms() -> Vec<Case> {
         .request();
     let square = Case::new("mechanism", "a square of bars", square).refused("/model/nodes/c");
     // The bar of the one-bar truss is unstressed again at x = +a, and its tip free.
-    let truss = OneBar::with_friction(0.3);
+    let truss = OneBarSolution::with_friction(0.3);
     let unloaded = Case::new("mechanism", "a bar that is unstressed again", truss.make().request())
         .ends(StopReason::Mechanism)
         .exact(1e-9, move |path| path.last().map_or(f64::INFINITY, |end| (moved(end, "tip", 0) - 3.0).abs()));

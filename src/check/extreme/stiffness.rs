@@ -2,7 +2,7 @@
 
 use crate::check::verify::case::{AUTO, BOTH, Case};
 use crate::check::verify::compare::{changes, moved, of_stage, relative, worse, worst};
-use crate::check::verify::known::{Klarbring, OneBar};
+use crate::check::verify::known::{KlarbringSolution, OneBarSolution};
 use crate::check::verify::make::{displacement, load_above, plane_model};
 use crate::model::request::Component;
 use crate::result::increment::Increment;
@@ -48,7 +48,7 @@ fn in_series(ratio: f64) -> Case {
 /// The one-bar truss pulled through a bar of length 1 and EA = R that lies on the floor: the tip's loads are those of
 /// the one-bar truss, the bar's elongation is `s/R`.
 fn dragged(ratio: f64) -> Case {
-    let truss = OneBar::with_friction(0.3);
+    let truss = OneBarSolution::with_friction(0.3);
     let mut request =
         truss.make().node("hook", &[-0.5, 0.0]).support("hook", &[Component::Y]).bar("tip", "hook", ratio);
     request.0.model.stages.clear();
@@ -95,7 +95,7 @@ fn pulled_block(stiffness: f64) -> Case {
 /// Klarbring's node (μ = 0.8: loads rise) beside one whose stiffness and forces are R times as large: the same motion.
 /// Each node is held to 1e-10 of its own forces.
 fn side_by_side(ratio: f64) -> Case {
-    let first = Klarbring { friction: 0.8, ..Klarbring::PUBLISHED };
+    let first = KlarbringSolution { friction: 0.8, ..KlarbringSolution::PUBLISHED };
     let second = first.in_units(1.0, ratio);
     let request = plane_model()
         .node("first", &[0.0, 0.0])
@@ -118,7 +118,7 @@ fn side_by_side(ratio: f64) -> Case {
 /// Two one-bar trusses, the second with R times the stiffness and forces: the same motion, each by its own equations,
 /// which are not linear. It ends before the limit point, which both have at once.
 fn trusses_side_by_side(ratio: f64) -> Case {
-    let truss = OneBar::with_friction(0.3);
+    let truss = OneBarSolution::with_friction(0.3);
     let mut request = truss
         .make()
         .node("other pin", &[10.0, truss.height])

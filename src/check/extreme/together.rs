@@ -2,7 +2,7 @@
 
 use crate::check::verify::case::Case;
 use crate::check::verify::compare::{moved, of_stage, relative, worse, worst};
-use crate::check::verify::known::{Klarbring, VonMises};
+use crate::check::verify::known::{KlarbringSolution, VonMisesSolution};
 use crate::check::verify::make::{load_above, plane_model};
 use crate::result::increment::Status;
 
@@ -22,7 +22,7 @@ pub fn cases() -> Vec<Case> {
 /// The von Mises truss (h = 1/2) over a floor that its apex reaches at the limit point, or off it by a little: the load is
 /// that of the truss down to the floor and rises from there on, `r_n = s - P`.
 fn landing_at_the_limit(off: f64) -> Case {
-    let truss = VonMises { height: 0.5 };
+    let truss = VonMisesSolution { height: 0.5 };
     let floor = truss.height_at_limit() + off;
     let request = truss
         .make()
@@ -53,7 +53,7 @@ fn name(index: usize) -> String {
 
 /// Klarbring's nodes with `μ = 1/2 + i δ` (loads rise), `K = [[1, -1/4], [-1/4, 1]]`, pulled by one load: each as if alone.
 fn slips(number: usize, apart: f64) -> Case {
-    let alone = move |index: usize| Klarbring {
+    let alone = move |index: usize| KlarbringSolution {
         along: 1.0,
         coupling: 0.25,
         across: 1.0,
@@ -69,7 +69,7 @@ fn slips(number: usize, apart: f64) -> Case {
     })
 }
 
-fn row(number: usize, alone: impl Fn(usize) -> Klarbring, last: f64) -> crate::model::JobRequest {
+fn row(number: usize, alone: impl Fn(usize) -> KlarbringSolution, last: f64) -> crate::model::JobRequest {
     let names: Vec<String> = (0..number).map(name).collect();
     let mut make = plane_model().floor();
     for (index, name) in names.iter().enumerate() {
@@ -88,7 +88,8 @@ fn row(number: usize, alone: impl Fn(usize) -> Klarbring, last: f64) -> crate::m
 /// Two of Klarbring's nodes (μ = 1.5) whose slips let the load fall. Where they are the same, both slip at once, which
 /// dissipates more per arc length; else the first slips alone, and the second after the first has left the floor.
 fn falling_slips(apart: f64) -> Case {
-    let alone = move |index: usize| Klarbring { friction: 1.5 + index as f64 * apart, ..Klarbring::PUBLISHED };
+    let alone =
+        move |index: usize| KlarbringSolution { friction: 1.5 + index as f64 * apart, ..KlarbringSolution::PUBLISHED };
     Case::new("events-at-once", format!("two falling slips {apart:e} apart"), row(2, alone, 3.0)).exact(
         1e-10,
         move |path| {

@@ -2,7 +2,7 @@
 
 use crate::check::verify::case::Case;
 use crate::check::verify::compare::{moved, of_stage, relative, worse, worst};
-use crate::check::verify::known::Klarbring;
+use crate::check::verify::known::KlarbringSolution;
 use crate::check::verify::make::{displacement, load_above, plane_model};
 use crate::model::request::Component;
 use crate::result::increment::Status;
@@ -89,7 +89,7 @@ fn wedge(slope: f64, friction: f64) -> Case {
 
 /// Klarbring's node with the same contact n times over: the reactions add up to the one of a single contact.
 fn repeated(times: usize) -> Case {
-    let node = Klarbring::PUBLISHED;
+    let node = KlarbringSolution::PUBLISHED;
     let request = (0..times).fold(node.make(), |make, _| make.contact("node", "floor", node.friction)).request();
     Case::new("redundant-contacts", format!("{times} of them, the same"), request)
         .exact(1e-10, move |path| node.error(path))
@@ -97,7 +97,7 @@ fn repeated(times: usize) -> Case {
 
 /// A second floor through the same point, tilted against the slip by ε: the path changes by a multiple of ε.
 fn tilted(tilt: f64) -> Case {
-    let node = Klarbring { friction: 0.8, ..Klarbring::PUBLISHED };
+    let node = KlarbringSolution { friction: 0.8, ..KlarbringSolution::PUBLISHED };
     let request = node
         .make()
         .contact("node", "floor", node.friction)
@@ -112,7 +112,7 @@ fn tilted(tilt: f64) -> Case {
 
 /// A second floor a depth ε beneath, which is never reached.
 fn beneath(depth: f64) -> Case {
-    let node = Klarbring { friction: 0.8, ..Klarbring::PUBLISHED };
+    let node = KlarbringSolution { friction: 0.8, ..KlarbringSolution::PUBLISHED };
     let request = node
         .make()
         .contact("node", "floor", node.friction)

@@ -2,7 +2,7 @@
 
 use crate::check::verify::case::Case;
 use crate::check::verify::compare::{changes, moved, relative, worse, worst};
-use crate::check::verify::known::{Klarbring, OneBar};
+use crate::check::verify::known::{KlarbringSolution, OneBarSolution};
 use crate::check::verify::make::{load_above, plane_model};
 use crate::result::stop_reason::StopReason;
 
@@ -18,12 +18,12 @@ pub fn cases() -> Vec<Case> {
         (1e12, 1e-12),
         (1e-12, 1e-12),
     ] {
-        let node = Klarbring::PUBLISHED.in_units(length, force);
+        let node = KlarbringSolution::PUBLISHED.in_units(length, force);
         let name = |scene: &str| format!("{scene}, lengths {length:e}, forces {force:e}");
         cases.push(
             Case::new("units", name("Klarbring's node"), node.request()).exact(1e-10, move |path| node.error(path)),
         );
-        let truss = OneBar::with_friction(0.3).in_units(length, force);
+        let truss = OneBarSolution::with_friction(0.3).in_units(length, force);
         cases.push(
             Case::new("units", name("one-bar truss"), truss.make().request())
                 .ends(StopReason::Mechanism)
@@ -31,12 +31,12 @@ pub fn cases() -> Vec<Case> {
         );
     }
     for pull in [1e12, 1e-12] {
-        let node = Klarbring { pull, ..Klarbring::PUBLISHED };
+        let node = KlarbringSolution { pull, ..KlarbringSolution::PUBLISHED };
         cases.push(
             Case::new("units", format!("Klarbring's node, pattern of {pull:e}"), node.request())
                 .exact(1e-10, move |path| node.error(path)),
         );
-        let truss = OneBar { pull, ..OneBar::with_friction(0.3) };
+        let truss = OneBarSolution { pull, ..OneBarSolution::with_friction(0.3) };
         cases.push(
             Case::new("units", format!("one-bar truss, pattern of {pull:e}"), truss.make().request())
                 .ends(StopReason::Mechanism)

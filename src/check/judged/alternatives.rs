@@ -23,13 +23,13 @@ const STATIONARY: f64 = 1e-9;
 pub struct Alternatives {
     follows: bool,
     bifurcation: bool,
-    before: Vec<Kind>,
+    before: Vec<AlternativeKey>,
 }
 
 /// By what an alternative is known again at the next increment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Kind {
+struct AlternativeKey {
     /// Those that are not free: others may come into reach meanwhile.
     held: Vec<(Arc<str>, Arc<str>, Status)>,
     load: i8,
@@ -61,7 +61,7 @@ impl Alternatives {
                 | PointKind::SmoothBifurcation
                 | PointKind::ContactChange => false,
             };
-        let mut kinds: Vec<Kind> = Vec::with_capacity(directions.len());
+        let mut kinds: Vec<AlternativeKey> = Vec::with_capacity(directions.len());
         let mut found = Vec::new();
         for (index, (direction, is_open)) in (0_u64..).zip(directions.iter().zip(open)) {
             if direction.taken || direction.retrace || !is_open {
@@ -72,9 +72,9 @@ impl Alternatives {
             let held = rows.filter(|(_, status)| **status != Status::Free);
             let held: Vec<_> =
                 held.map(|(row, status)| (Arc::clone(&row.node), Arc::clone(&row.obstacle), *status)).collect();
-            let alike = |kind: &&Kind| kind.held == held && kind.load == load;
+            let alike = |kind: &&AlternativeKey| kind.held == held && kind.load == load;
             let place = kinds.iter().filter(alike).count();
-            let kind = Kind { held, load, place };
+            let kind = AlternativeKey { held, load, place };
             if !(same_stretch && self.before.contains(&kind)) {
                 found.push(index);
             }

@@ -3,7 +3,7 @@
 use crate::check::judged::alternatives::Alternatives;
 use crate::check::judged::increment::JudgedIncrement;
 use crate::check::judged::report::MeasureReport;
-use crate::check::measure::{History, HistoryError};
+use crate::check::measure::{HistoryError, JudgeHistory};
 use crate::continuation::path::checkpoint::{Checkpoint, CheckpointError};
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct JudgedCheckpoint {
     pub path: Checkpoint,
-    pub history: History,
+    pub history: JudgeHistory,
     /// What the measure has said of the path up to here.
     pub measure: MeasureReport,
     /// By what the directions are known that are not new at the next increment.

@@ -5,7 +5,7 @@ use crate::check::judged::checkpoint::{JudgedCheckpoint, JudgedCheckpointError};
 use crate::check::judged::increment::JudgedIncrement;
 use crate::check::judged::record::Recorder;
 use crate::check::judged::report::{JudgedReport, MeasureReport, OFF_MEASURE};
-use crate::check::measure::Judge;
+use crate::check::measure::{Judge, history};
 use crate::continuation::method_dispatch::TracedPath;
 use crate::continuation::path::iterator::Path;
 use crate::continuation::scene::Scene;
@@ -26,9 +26,9 @@ pub struct JudgedPath<'a> {
     /// Directions that appear first at the last increment.
     found: Vec<u64>,
     /// The last increment where it was left out: the last of the path is given after all.
-    left_out: Option<LeftOut>,
+    left_out: Option<PendingIncrement>,
     /// The path at the last increment given, where it has gone on from there.
-    put_down: Option<Option<Place>>,
+    put_down: Option<Option<PausedPath>>,
 }
 
 /// An increment of the path, and the increment itself where it is recorded.
@@ -41,13 +41,13 @@ pub struct Step {
 }
 
 /// An increment not given yet.
-struct LeftOut {
+struct PendingIncrement {
     judged: JudgedIncrement,
-    place: Option<Place>,
+    place: Option<PausedPath>,
 }
 
 /// A path put down where directions are listed.
-struct Place {
+struct PausedPath {
     checkpoint: JudgedCheckpoint,
     open: Vec<bool>,
 }
@@ -87,7 +87,7 @@ impl<'a> JudgedPath<'a> {
     ) -> Result<Self, JudgedCheckpointError> {
         let JudgedCheckpoint { path, history, measure: _, alternatives: _, left_out: _ } = checkpoint;
         let path = Path::follow(scene, path, direction, event, cancel)?;
-        let judge = judge(request, scene).taking_up(history)?;
+        let judge = history::take_up(judge(request, scene), history)?;
         let mut followed = Self::of(request, TracedPath::Exact(Box::new(path)), judge, fresh(request));
         followed.alternatives = Alternatives::of(true);
         Ok(followed)
@@ -106,10 +106,10 @@ impl<'a> JudgedPath<'a> {
     ) -> Result<Self, JudgedCheckpointError> {
         let JudgedCheckpoint { path, history, measure, alternatives, left_out } = checkpoint;
         let path = Path::resume(scene, path, cancel)?;
-        let judge = judge(request, scene).taking_up(history)?;
+        let judge = history::take_up(judge(request, scene), history)?;
         let path = TracedPath::Exact(Box::new(path));
         let mut resumed = Self { alternatives, ..Self::of(request, path, judge, measure) };
-        resumed.left_out = left_out.map(|judged| LeftOut { judged: *judged, place: resumed.place() });
+        resumed.left_out = left_out.map(|judged| PendingIncrement { judged: *judged, place: resumed.place() });
         Ok(resumed)
     }
 
@@ -128,7 +128,7 @@ impl<'a> JudgedPath<'a> {
     pub fn step(&mut self) -> Option<Step> {
         self.put_down = None;
         let Some(increment) = self.path.next() else {
-            let LeftOut { judged, place } = self.left_out.take()?;
+            let PendingIncrement { judged, place } = self.left_out.take()?;
             self.put_down = Some(place);
             self.off_measure = false;
             let Increment { index, diagnostics, .. } = judged.increment;
@@ -144,7 +144,7 @@ impl<'a> JudgedPath<'a> {
             self.left_out = None;
             return Some(Step { index, diagnostics, given: Some(judged) });
         }
-        self.left_out = Some(LeftOut { judged, place: self.place() });
+        self.left_out = Some(PendingIncrement { judged, place: self.place() });
         Some(Step { index, diagnostics, given: None })
     }
 
@@ -153,7 +153,7 @@ impl<'a> JudgedPath<'a> {
         let alternatives = self.alternatives.clone();
         Some(JudgedCheckpoint {
             path: path.checkpoint(),
-            history: self.judge.history(),
+            history: history::history_of(&self.judge),
             measure: self.measure,
             alternatives,
             left_out: None,
@@ -161,9 +161,9 @@ impl<'a> JudgedPath<'a> {
     }
 
     /// Put down here where directions are listed: what comes next may not lead to a point, and leave another state behind.
-    fn place(&self) -> Option<Place> {
+    fn place(&self) -> Option<PausedPath> {
         let open = self.open_directions();
-        if open.is_empty() { None } else { self.present().map(|checkpoint| Place { checkpoint, open }) }
+        if open.is_empty() { None } else { self.present().map(|checkpoint| PausedPath { checkpoint, open }) }
     }
 
     /// For each direction listed with the last increment, whether a path goes along it; empty where there is one way on,

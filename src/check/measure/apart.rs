@@ -5,8 +5,8 @@
 //! before it could have closed.
 
 use crate::check::measure::errors::{Errors, worse};
-use crate::check::measure::posted::{Contact, Loading, Posted};
-use crate::check::measure::vector::Vector;
+use crate::check::measure::posted::{Posted, PostedContact, PostedLoading};
+use crate::check::measure::vector::MeasuredVector;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -22,7 +22,7 @@ pub(super) struct Apart {
     /// Distance that the path has gone.
     travelled: f64,
     /// Contacts without a row, and perhaps some that have one by now; the one that may close first on top.
-    waiting: BinaryHeap<Reverse<Waiting>>,
+    waiting: BinaryHeap<Reverse<SeparatedContact>>,
     /// For each contact, whether it has a row.
     has_row: Vec<bool>,
     /// Those that have.
@@ -31,20 +31,20 @@ pub(super) struct Apart {
 
 /// A contact, and the distance that the path has to go before its gap can have closed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Waiting {
+struct SeparatedContact {
     until: f64,
     contact: usize,
 }
 
-impl Eq for Waiting {}
+impl Eq for SeparatedContact {}
 
-impl Ord for Waiting {
+impl Ord for SeparatedContact {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {
         self.until.total_cmp(&other.until).then(self.contact.cmp(&other.contact))
     }
 }
 
-impl PartialOrd for Waiting {
+impl PartialOrd for SeparatedContact {
     fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
         Some(self.cmp(other))
     }
@@ -52,11 +52,11 @@ impl PartialOrd for Waiting {
 
 impl Apart {
     pub fn new(posted: &Posted, length: f64) -> Self {
-        let of_stage = |contact: &Contact| {
+        let of_stage = |contact: &PostedContact| {
             let fastest = posted.stages.iter().map(|stage| stage.motion(contact).norm() * stage.load_scale);
             fastest.fold(0.0, f64::max)
         };
-        let fastest = |contact: &Contact| {
+        let fastest = |contact: &PostedContact| {
             if contact.motion.is_none() { length } else { length.hypot(of_stage(contact)) }
         };
         let fastest = posted.contacts.iter().map(fastest).collect();
@@ -66,7 +66,7 @@ impl Apart {
     }
 
     /// Begins with no rows at all, where everything is now.
-    pub fn begin(&mut self, posted: &Posted, loading: &Loading, displacements: &[Vector]) {
+    pub fn begin(&mut self, posted: &Posted, loading: &PostedLoading, displacements: &[MeasuredVector]) {
         let waiting = |(contact, posted_contact)| {
             let gap = posted.frame(posted_contact, loading, displacements).gap;
             Reverse(self.waiting(contact, gap))
@@ -77,9 +77,9 @@ impl Apart {
         self.rows.clear();
     }
 
-    fn waiting(&self, contact: usize, gap: f64) -> Waiting {
+    fn waiting(&self, contact: usize, gap: f64) -> SeparatedContact {
         let way = gap.max(0.0) / self.fastest[contact];
-        Waiting { until: self.travelled + way - ROUNDING * (self.travelled + way), contact }
+        SeparatedContact { until: self.travelled + way - ROUNDING * (self.travelled + way), contact }
     }
 
     /// From now on these contacts have rows, and all others none.
@@ -89,15 +89,16 @@ impl Apart {
         rows.iter().for_each(|contact| self.has_row[*contact] = true);
         // They wait again; one that has never been taken off waits twice, and does no harm.
         let lost = before.iter().filter(|contact| !self.has_row[**contact]);
-        self.waiting.extend(lost.map(|contact| Reverse(Waiting { until: f64::NEG_INFINITY, contact: *contact })));
+        self.waiting
+            .extend(lost.map(|contact| Reverse(SeparatedContact { until: f64::NEG_INFINITY, contact: *contact })));
     }
 
     /// Takes into `errors` the gaps that are not open at the end of an increment of this length.
     pub fn judge(
         &mut self,
         posted: &Posted,
-        loading: &Loading,
-        displacements: &[Vector],
+        loading: &PostedLoading,
+        displacements: &[MeasuredVector],
         distance: f64,
         errors: &mut Errors,
     ) {
@@ -108,11 +109,12 @@ impl Apart {
         if !self.travelled.is_finite() {
             // An error without bound already, of `arc_length`.
             self.travelled = 0.0;
-            self.waiting = self.waiting.drain().map(|Reverse(one)| Reverse(Waiting { until: 0.0, ..one })).collect();
+            self.waiting =
+                self.waiting.drain().map(|Reverse(one)| Reverse(SeparatedContact { until: 0.0, ..one })).collect();
         }
         let mut looked_at = Vec::new();
         while self.waiting.peek().is_some_and(|Reverse(first)| first.until <= self.travelled) {
-            let Some(Reverse(Waiting { contact, .. })) = self.waiting.pop() else { break };
+            let Some(Reverse(SeparatedContact { contact, .. })) = self.waiting.pop() else { break };
             if self.has_row[contact] {
                 continue;
             }

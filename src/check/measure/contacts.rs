@@ -1,8 +1,8 @@
 //! One contact against the laws of contact and friction.
 
 use crate::check::measure::errors::{Errors, worse};
-use crate::check::measure::obstacles::Frame;
-use crate::check::measure::vector::{Vector, angle};
+use crate::check::measure::obstacles::MeasuredFrame;
+use crate::check::measure::vector::{MeasuredVector, angle};
 use crate::result::increment::{ContactState, Status};
 
 /// A traction within this part of `μ r_n` of the cone is on it.
@@ -11,19 +11,19 @@ const ON_THE_CONE: f64 = 1e-6;
 /// A contact at the end of an increment.
 pub(super) struct Seen<'a> {
     pub state: &'a ContactState,
-    pub frame: &'a Frame,
+    pub frame: &'a MeasuredFrame,
     pub friction: f64,
     /// Motion of the node against the obstacle in the increment (length).
-    pub motion: Vector,
+    pub motion: MeasuredVector,
     /// `-r_t/|r_t|` in space where the increment began, if the contact was on its cone there.
-    pub direction_before: Option<Vector>,
+    pub direction_before: Option<MeasuredVector>,
     pub dimension: usize,
 }
 
 impl Seen<'_> {
     /// Takes the contact's errors into `errors`; answers its direction of slip at the end, where it is on its cone.
     /// `length` and `force` make lengths and forces dimensionless.
-    pub fn judge(&self, length: f64, force: f64, errors: &mut Errors) -> Option<Vector> {
+    pub fn judge(&self, length: f64, force: f64, errors: &mut Errors) -> Option<MeasuredVector> {
         let Self { state, frame, friction, .. } = *self;
         let beyond_rounding =
             |error: f64| if error.abs() <= frame.rounding { 0.0 } else { (error.abs() - frame.rounding) / length };
@@ -95,7 +95,7 @@ fn natural_map(traction: [f64; 2], slip: [f64; 2], radius: f64) -> f64 {
 }
 
 /// The whole force of an obstacle on its node.
-pub(super) fn force(state: &ContactState, frame: &Frame) -> Vector {
+pub(super) fn force(state: &ContactState, frame: &MeasuredFrame) -> MeasuredVector {
     let component = |k: usize| state.tangential_reaction.get(k).copied().unwrap_or(0.0);
     frame.in_space([component(0), component(1)]) + frame.normal * state.normal_reaction
 }

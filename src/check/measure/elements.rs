@@ -1,15 +1,15 @@
 //! Forces and strain energy of the posted elements, for the measure alone.
 
-use crate::check::measure::vector::{Vector, largest, padded};
+use crate::check::measure::vector::{MeasuredVector, largest, padded};
 use crate::model::request::{Element as Posted, Model, Strain};
 
 /// An element with its nodes numbered.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Element {
+pub(super) enum MeasuredElement {
     Bar {
         ends: [usize; 2],
         /// From the first end to the second, undeformed.
-        reference: Vector,
+        reference: MeasuredVector,
         /// Its length.
         before: f64,
         rest: f64,
@@ -22,17 +22,17 @@ pub(super) enum Element {
         /// `None`: the ground.
         other: Option<usize>,
         /// Its rows.
-        stiffness: [Vector; 3],
+        stiffness: [MeasuredVector; 3],
     },
 }
 
 /// What the nodes do to an element: a force on the second node, the opposite on the first; and its energy.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Response {
+pub(super) struct ElementResponse {
     pub first: Option<usize>,
     pub second: usize,
     /// On the second node.
-    pub force: Vector,
+    pub force: MeasuredVector,
     pub energy: f64,
     /// What the rounding of the displacements (and of a bar's places, over its length) puts into the force.
     pub rounding: f64,
@@ -41,7 +41,7 @@ pub(super) struct Response {
 /// Multiple of unit round-off that a difference of two rounded numbers, made from rounded ones, may be off by.
 const ROUNDINGS: f64 = 16.0;
 
-impl Element {
+impl MeasuredElement {
     /// `None` where a node is unknown.
     pub fn new(model: &Model, posted: &Posted) -> Option<Self> {
         let index = |name: &String| model.nodes.get_index_of(name);
@@ -55,7 +55,7 @@ impl Element {
                 Some(Self::Bar { ends, reference, before, rest, stiffness, prestress, strain })
             }
             Posted::Spring { nodes, stiffness } => {
-                let row = |k: usize| stiffness.get(k).map_or_else(Vector::zeros, |row| padded(row));
+                let row = |k: usize| stiffness.get(k).map_or_else(MeasuredVector::zeros, |row| padded(row));
                 let other = nodes.get(1).map(|name| index(name).ok_or(())).transpose().ok()?;
                 Some(Self::Spring { node: index(nodes.first()?)?, other, stiffness: [row(0), row(1), row(2)] })
             }
@@ -67,11 +67,11 @@ impl Element {
     pub fn stiffness(&self) -> f64 {
         match self {
             Self::Bar { rest, stiffness, .. } => stiffness / rest,
-            Self::Spring { stiffness, .. } => stiffness.iter().map(Vector::norm).fold(0.0, f64::max),
+            Self::Spring { stiffness, .. } => stiffness.iter().map(MeasuredVector::norm).fold(0.0, f64::max),
         }
     }
 
-    pub fn response(&self, u: &[Vector]) -> Response {
+    pub fn response(&self, u: &[MeasuredVector]) -> ElementResponse {
         match self {
             Self::Bar { ends, reference, before, rest, stiffness, prestress, strain } => {
                 let change = u[ends[1]] - u[ends[0]];
@@ -100,19 +100,19 @@ impl Element {
                 let tangent = stiffness / rest * stretch.max(1.0).powi(2);
                 let moved = largest(&u[ends[0]]).max(largest(&u[ends[1]]));
                 let rounding = ROUNDINGS * f64::EPSILON * tangent * moved;
-                Response { first: Some(ends[0]), second: ends[1], force, energy, rounding }
+                ElementResponse { first: Some(ends[0]), second: ends[1], force, energy, rounding }
             }
             Self::Spring { node, other, stiffness } => {
                 let relative = match other {
                     Some(other) => u[*node] - u[*other],
                     None => u[*node],
                 };
-                let force = Vector::from(stiffness.map(|row| row.dot(&relative)));
-                let row = |row: &Vector| row.iter().map(|value| value.abs()).sum::<f64>();
+                let force = MeasuredVector::from(stiffness.map(|row| row.dot(&relative)));
+                let row = |row: &MeasuredVector| row.iter().map(|value| value.abs()).sum::<f64>();
                 let most = stiffness.iter().map(row).fold(0.0, f64::max);
                 let moved = largest(&u[*node]).max(other.map_or(0.0, |other| largest(&u[other])));
                 let rounding = ROUNDINGS * f64::EPSILON * most * moved;
-                Response { first: *other, second: *node, force, energy: 0.5 * force.dot(&relative), rounding }
+                ElementResponse { first: *other, second: *node, force, energy: 0.5 * force.dot(&relative), rounding }
             }
         }
     }

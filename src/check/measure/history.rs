@@ -2,8 +2,8 @@
 //! direction, is judged as if it had not been put down.
 
 use crate::check::measure::Judge;
-use crate::check::measure::posted::{Loading, Posted};
-use crate::check::measure::vector::Vector;
+use crate::check::measure::posted::{Posted, PostedLoading};
+use crate::check::measure::vector::MeasuredVector;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -12,21 +12,21 @@ const VERSION: u32 = 2;
 
 /// The point before, as far as the next increment is judged by it.
 #[derive(Debug, Clone)]
-pub(super) struct Before {
-    pub displacements: Vec<Vector>,
-    pub shifts: Vec<Vector>,
+pub(super) struct PreviousPoint {
+    pub displacements: Vec<MeasuredVector>,
+    pub shifts: Vec<MeasuredVector>,
     /// `-r_t/|r_t|` in space of the contacts that are on their cones; in 3D only.
-    pub directions: BTreeMap<usize, Vector>,
+    pub directions: BTreeMap<usize, MeasuredVector>,
     /// Load factor in the running stage.
     pub load: f64,
     pub arc_length: f64,
 }
 
-impl Before {
+impl PreviousPoint {
     pub fn at_rest(posted: &Posted) -> Self {
         Self {
-            displacements: vec![Vector::zeros(); posted.nodes.len()],
-            shifts: vec![Vector::zeros(); posted.moving],
+            displacements: vec![MeasuredVector::zeros(); posted.nodes.len()],
+            shifts: vec![MeasuredVector::zeros(); posted.moving],
             directions: BTreeMap::new(),
             load: 0.0,
             arc_length: 0.0,
@@ -37,16 +37,16 @@ impl Before {
 /// What a [`Judge`] remembers, in the user's units. Written as JSON it reads back to the same bits.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct History {
+pub struct JudgeHistory {
     version: u32,
     /// Loads at which the stages before ended.
     reached: Vec<f64>,
     load: f64,
     arc_length: f64,
     /// One a node.
-    displacements: Vec<Vector>,
+    displacements: Vec<MeasuredVector>,
     /// Directions of slip of the contacts that have one, in order.
-    directions: Vec<(usize, Vector)>,
+    directions: Vec<(usize, MeasuredVector)>,
     largest_force: f64,
     largest_energy: f64,
 }
@@ -60,58 +60,61 @@ pub enum HistoryError {
     OtherModel { what: &'static str, found: usize, expected: usize },
 }
 
-impl Judge {
-    pub fn history(&self) -> History {
-        History {
-            version: VERSION,
-            reached: self.reached.clone(),
-            load: self.before.load,
-            arc_length: self.before.arc_length,
-            displacements: self.before.displacements.clone(),
-            directions: self.before.directions.iter().map(|(contact, direction)| (*contact, *direction)).collect(),
-            largest_force: self.largest_force,
-            largest_energy: self.largest_energy,
-        }
+pub fn history_of(judge: &Judge) -> JudgeHistory {
+    JudgeHistory {
+        version: VERSION,
+        reached: judge.reached.clone(),
+        load: judge.before.load,
+        arc_length: judge.before.arc_length,
+        displacements: judge.before.displacements.clone(),
+        directions: judge.before.directions.iter().map(|(contact, direction)| (*contact, *direction)).collect(),
+        largest_force: judge.largest_force,
+        largest_energy: judge.largest_energy,
     }
+}
 
-    /// The judge with what it, or another of the same model, remembered.
-    ///
-    /// # Errors
-    /// A history of another model, or of another version of this program.
-    pub fn taking_up(mut self, history: History) -> Result<Self, HistoryError> {
-        let History { version, reached, load, arc_length, displacements, directions, largest_force, largest_energy } =
-            history;
-        if version != VERSION {
-            return Err(HistoryError::Version { found: version });
-        }
-        let posted = &self.posted;
-        let contacts = posted.contacts.len();
-        for (what, found, expected) in [
-            ("nodes", displacements.len(), posted.nodes.len()),
-            ("contacts", directions.iter().fold(contacts, |most, (contact, _)| most.max(contact + 1)), contacts),
-            ("finished stages", reached.len(), reached.len().min(posted.stages.len().saturating_sub(1))),
-        ] {
-            if found != expected {
-                return Err(HistoryError::OtherModel { what, found, expected });
-            }
-        }
-        let mut held = Loading::none(posted);
-        let mut loading = held.clone();
-        for (stage, load) in posted.stages.iter().zip(&reached) {
-            loading.set(&held, stage, *load);
-            std::mem::swap(&mut held, &mut loading);
-        }
-        loading.set(&held, &posted.stages[reached.len()], load);
-        self.stage = reached.len();
-        self.reached = reached;
-        self.held = held;
-        let mut before =
-            Before { displacements, shifts: loading.shifts.clone(), load, arc_length, ..Before::at_rest(posted) };
-        before.directions.extend(directions);
-        self.before = before;
-        self.apart.begin(&self.posted, &loading, &self.before.displacements);
-        self.largest_force = largest_force;
-        self.largest_energy = largest_energy;
-        Ok(self)
+/// The judge with what it, or another of the same model, remembered.
+///
+/// # Errors
+/// A history of another model, or of another version of this program.
+pub fn take_up(mut judge: Judge, history: JudgeHistory) -> Result<Judge, HistoryError> {
+    let JudgeHistory { version, reached, load, arc_length, displacements, directions, largest_force, largest_energy } =
+        history;
+    if version != VERSION {
+        return Err(HistoryError::Version { found: version });
     }
+    let posted = &judge.posted;
+    let contacts = posted.contacts.len();
+    for (what, found, expected) in [
+        ("nodes", displacements.len(), posted.nodes.len()),
+        ("contacts", directions.iter().fold(contacts, |most, (contact, _)| most.max(contact + 1)), contacts),
+        ("finished stages", reached.len(), reached.len().min(posted.stages.len().saturating_sub(1))),
+    ] {
+        if found != expected {
+            return Err(HistoryError::OtherModel { what, found, expected });
+        }
+    }
+    let mut held = PostedLoading::none(posted);
+    let mut loading = held.clone();
+    for (stage, load) in posted.stages.iter().zip(&reached) {
+        loading.set(&held, stage, *load);
+        std::mem::swap(&mut held, &mut loading);
+    }
+    loading.set(&held, &posted.stages[reached.len()], load);
+    judge.stage = reached.len();
+    judge.reached = reached;
+    judge.held = held;
+    let mut before = PreviousPoint {
+        displacements,
+        shifts: loading.shifts.clone(),
+        load,
+        arc_length,
+        ..PreviousPoint::at_rest(posted)
+    };
+    before.directions.extend(directions);
+    judge.before = before;
+    judge.apart.begin(&judge.posted, &loading, &judge.before.displacements);
+    judge.largest_force = largest_force;
+    judge.largest_energy = largest_energy;
+    Ok(judge)
 }

@@ -49,19 +49,19 @@ pub(crate) mod rows;
 pub(crate) mod vector;
 
 pub use errors::{Errors, Largest, Maxima};
-pub use history::{History, HistoryError};
+pub use history::{HistoryError, JudgeHistory};
 
 use crate::model::JobRequest;
 use crate::result::increment::Increment;
 use apart::Apart;
 use contacts::Seen;
-use elements::Element;
+use elements::MeasuredElement;
 use errors::worse;
-use history::Before;
-use obstacles::Frame;
-use posted::{Loading, Posted};
-use rows::{Change, Rows};
-use vector::{Vector, largest, padded};
+use history::PreviousPoint;
+use obstacles::MeasuredFrame;
+use posted::{Posted, PostedLoading};
+use rows::{ContactRows, RowChange};
+use vector::{MeasuredVector, largest, padded};
 
 /// Forces below this part of what the stiffest element takes to be stretched by the displacement scale are none.
 const NO_FORCE: f64 = 1e-20;
@@ -79,12 +79,12 @@ pub struct Judge {
     stage: usize,
     /// Loads at which the stages before ended.
     reached: Vec<f64>,
-    held: Loading,
-    before: Before,
+    held: PostedLoading,
+    before: PreviousPoint,
     largest_force: f64,
     largest_energy: f64,
     initial_strain: f64,
-    rows: Rows,
+    rows: ContactRows,
     apart: Apart,
     /// What the increment at hand is computed in.
     work: Workspace,
@@ -92,13 +92,13 @@ pub struct Judge {
 
 #[derive(Debug, Clone)]
 struct Workspace {
-    loading: Loading,
-    displacements: Vec<Vector>,
+    loading: PostedLoading,
+    displacements: Vec<MeasuredVector>,
     /// Unbalanced force, one a node.
-    balance: Vec<Vector>,
+    balance: Vec<MeasuredVector>,
     /// What rounding puts into it.
     rounding: Vec<f64>,
-    frames: Vec<Frame>,
+    frames: Vec<MeasuredFrame>,
 }
 
 impl Judge {
@@ -106,12 +106,12 @@ impl Judge {
     /// dimensionless, `load_scales` the load factor, one a stage.
     pub fn new(request: &JobRequest, displacement_scale: f64, load_scales: &[f64]) -> Self {
         let posted = Posted::new(request, load_scales);
-        let none = Loading::none(&posted);
+        let none = PostedLoading::none(&posted);
         let nodes = posted.nodes.len();
         let (displacements, balance, rounding) =
-            (vec![Vector::zeros(); nodes], vec![Vector::zeros(); nodes], vec![0.0; nodes]);
+            (vec![MeasuredVector::zeros(); nodes], vec![MeasuredVector::zeros(); nodes], vec![0.0; nodes]);
         let frames = Vec::new();
-        let stiffest = posted.elements.iter().map(Element::stiffness).fold(0.0, f64::max);
+        let stiffest = posted.elements.iter().map(MeasuredElement::stiffness).fold(0.0, f64::max);
         let no_force = (NO_FORCE * stiffest * displacement_scale).max(f64::MIN_POSITIVE);
         let mut apart = Apart::new(&posted, displacement_scale);
         apart.begin(&posted, &none, &displacements);
@@ -122,11 +122,11 @@ impl Judge {
             stage: 0,
             reached: Vec::new(),
             held: none.clone(),
-            before: Before::at_rest(&posted),
+            before: PreviousPoint::at_rest(&posted),
             largest_force: 0.0,
             largest_energy: 0.0,
             initial_strain,
-            rows: Rows::new(request),
+            rows: ContactRows::new(request),
             apart,
             work: Workspace { loading: none, displacements, balance, rounding, frames },
             posted,
@@ -152,7 +152,7 @@ impl Judge {
         for ((state, index), frame) in increment.contacts.iter().zip(self.rows.contacts()).zip(&self.work.frames) {
             let contact = self.posted.contacts[*index];
             let moved = self.work.displacements[contact.node] - self.before.displacements[contact.node];
-            let before = contact.motion.map_or_else(Vector::zeros, |place| self.before.shifts[place]);
+            let before = contact.motion.map_or_else(MeasuredVector::zeros, |place| self.before.shifts[place]);
             let shifted = self.work.loading.shift(&contact) - before;
             let seen = Seen {
                 state,
@@ -190,15 +190,15 @@ impl Judge {
         self.work.loading.set(&self.held, &posted.stages[self.stage], increment.load_factor);
         let mut fits = known.is_some();
         match self.rows.read(&increment.contacts) {
-            Change::None => {}
-            Change::Others => self.apart.rows_are(self.rows.contacts()),
-            Change::Unknown => fits = false,
+            RowChange::None => {}
+            RowChange::Others => self.apart.rows_are(self.rows.contacts()),
+            RowChange::Unknown => fits = false,
         }
         for (index, (node, displacement)) in posted.nodes.iter().zip(&mut self.work.displacements).enumerate() {
             let in_place = increment.displacements.get_index(index).filter(|(name, _)| ***name == node.name);
             let found = in_place.map(|(_, values)| values).or_else(|| increment.displacements.get(node.name.as_str()));
             let found = found.filter(|values| values.len() == posted.dimension);
-            *displacement = found.map_or_else(Vector::zeros, padded);
+            *displacement = found.map_or_else(MeasuredVector::zeros, padded);
             fits &= found.is_some();
         }
         fits

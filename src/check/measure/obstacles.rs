@@ -3,81 +3,87 @@
 //! A frame is the gap, the unit normal into the free side, and the tangents: in 2D `(n_y, -n_x)`; in 3D
 //! `t1 = (e_k - n_k n)/|.|` with `k` the first of the smallest `|n_k|`, and `t2 = n x t1`.
 
-use crate::check::measure::vector::{Vector, largest, padded};
+use crate::check::measure::vector::{MeasuredVector, largest, padded};
 use crate::model::request::{Obstacle as Posted, Side};
 
 /// An obstacle at rest.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Obstacle {
+pub(super) struct MeasuredObstacle {
     /// A point of a plane, or a ball's centre.
-    place: Vector,
-    shape: Shape,
+    place: MeasuredVector,
+    shape: ObstacleShape,
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Shape {
+enum ObstacleShape {
     /// Unit normal into the free side.
-    Plane(Vector),
+    Plane(MeasuredVector),
     /// `sign` is 1 where the free side is outside.
     Ball { radius: f64, sign: f64 },
 }
 
 /// How the obstacle lies to a node.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Frame {
+pub(super) struct MeasuredFrame {
     pub gap: f64,
     /// What rounding of the coordinates may put into the gap.
     pub rounding: f64,
-    pub normal: Vector,
+    pub normal: MeasuredVector,
     /// `dimension - 1` of them; the other is zero.
-    pub tangents: [Vector; 2],
+    pub tangents: [MeasuredVector; 2],
 }
 
-impl Obstacle {
+impl MeasuredObstacle {
     pub fn new(posted: &Posted) -> Self {
         match posted {
             Posted::Plane { point, normal } => {
                 let normal = padded(normal);
-                Self { place: padded(point), shape: Shape::Plane(normal * (1.0 / normal.norm())) }
+                Self { place: padded(point), shape: ObstacleShape::Plane(normal * (1.0 / normal.norm())) }
             }
             Posted::Ball { center, radius, side } => {
                 let sign = if *side == Side::Outside { 1.0 } else { -1.0 };
-                Self { place: padded(center), shape: Shape::Ball { radius: *radius, sign } }
+                Self { place: padded(center), shape: ObstacleShape::Ball { radius: *radius, sign } }
             }
         }
     }
 
     /// The frame of this obstacle moved by `shift`, at a node at `place` moved by `displacement`.
-    pub fn frame(&self, dimension: usize, shift: &Vector, place: &Vector, displacement: &Vector) -> Frame {
+    pub fn frame(
+        &self,
+        dimension: usize,
+        shift: &MeasuredVector,
+        place: &MeasuredVector,
+        displacement: &MeasuredVector,
+    ) -> MeasuredFrame {
         let from = (place - self.place) + (displacement - shift);
         let (gap, normal, size) = match self.shape {
-            Shape::Plane(normal) => (from.dot(&normal), normal, 0.0),
-            Shape::Ball { radius, sign } => {
+            ObstacleShape::Plane(normal) => (from.dot(&normal), normal, 0.0),
+            ObstacleShape::Ball { radius, sign } => {
                 let distance = from.norm();
-                let normal = if distance > 0.0 { from * (sign / distance) } else { Vector::x() };
+                let normal = if distance > 0.0 { from * (sign / distance) } else { MeasuredVector::x() };
                 (sign * (distance - radius), normal, radius)
             }
         };
         let reach = [place, &self.place, displacement, shift].into_iter().map(largest).fold(size, f64::max);
-        Frame { gap, rounding: 16.0 * f64::EPSILON * reach, normal, tangents: tangents(dimension, &normal) }
+        MeasuredFrame { gap, rounding: 16.0 * f64::EPSILON * reach, normal, tangents: tangents(dimension, &normal) }
     }
 }
 
-impl Frame {
+impl MeasuredFrame {
     /// The vector with these components along the tangents.
-    pub fn in_space(&self, components: [f64; 2]) -> Vector {
+    pub fn in_space(&self, components: [f64; 2]) -> MeasuredVector {
         self.tangents[0] * components[0] + self.tangents[1] * components[1]
     }
 
     /// Components of a vector along the tangents.
-    pub fn along(&self, vector: &Vector) -> [f64; 2] {
+    pub fn along(&self, vector: &MeasuredVector) -> [f64; 2] {
         self.tangents.map(|tangent| tangent.dot(vector))
     }
 }
 
-fn tangents(dimension: usize, normal: &Vector) -> [Vector; 2] {
+fn tangents(dimension: usize, normal: &MeasuredVector) -> [MeasuredVector; 2] {
     if dimension == 2 {
-        return [Vector::new(normal.y, -normal.x, 0.0), Vector::zeros()];
+        return [MeasuredVector::new(normal.y, -normal.x, 0.0), MeasuredVector::zeros()];
     }
     let mut axis = 0;
     for k in 1..3 {

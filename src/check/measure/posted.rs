@@ -1,33 +1,33 @@
 //! The posted model with its names replaced by numbers, so that judging an increment looks nothing up.
 
-use crate::check::measure::elements::Element;
-use crate::check::measure::obstacles::{Frame, Obstacle};
-use crate::check::measure::vector::{Vector, padded};
+use crate::check::measure::elements::MeasuredElement;
+use crate::check::measure::obstacles::{MeasuredFrame, MeasuredObstacle};
+use crate::check::measure::vector::{MeasuredVector, padded};
 use crate::model::request::JobRequest;
 use indexmap::{IndexMap, IndexSet};
 
 #[derive(Debug, Clone)]
 pub(super) struct Posted {
     pub dimension: usize,
-    pub nodes: Vec<Node>,
-    pub elements: Vec<Element>,
-    pub obstacles: Vec<Obstacle>,
-    pub contacts: Vec<Contact>,
+    pub nodes: Vec<PostedNode>,
+    pub elements: Vec<MeasuredElement>,
+    pub obstacles: Vec<MeasuredObstacle>,
+    pub contacts: Vec<PostedContact>,
     /// Obstacles that move in some stage.
     pub moving: usize,
-    pub stages: Vec<Stage>,
+    pub stages: Vec<PostedStage>,
 }
 
 #[derive(Debug, Clone)]
-pub(super) struct Node {
+pub(super) struct PostedNode {
     pub name: String,
-    pub place: Vector,
+    pub place: MeasuredVector,
     /// Components that a support holds.
     pub held: [bool; 3],
 }
 
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Contact {
+pub(super) struct PostedContact {
     pub node: usize,
     pub obstacle: usize,
     /// Its obstacle's place among those that move.
@@ -36,24 +36,24 @@ pub(super) struct Contact {
 }
 
 #[derive(Debug, Clone)]
-pub(super) struct Stage {
+pub(super) struct PostedStage {
     pub name: String,
-    forces: Pattern,
-    displacements: Pattern,
-    motions: Pattern,
+    forces: PostedLoadPattern,
+    displacements: PostedLoadPattern,
+    motions: PostedLoadPattern,
     /// Load factor of one dimensionless load.
     pub load_scale: f64,
 }
 
 /// Nodes or moving obstacles and what the load factor multiplies there.
-type Pattern = Vec<(usize, Vector)>;
+type PostedLoadPattern = Vec<(usize, MeasuredVector)>;
 
 /// What acts on the structure: one vector a node, one a node, one a moving obstacle.
 #[derive(Debug, Clone)]
-pub(super) struct Loading {
-    pub forces: Vec<Vector>,
-    pub displacements: Vec<Vector>,
-    pub shifts: Vec<Vector>,
+pub(super) struct PostedLoading {
+    pub forces: Vec<MeasuredVector>,
+    pub displacements: Vec<MeasuredVector>,
+    pub shifts: Vec<MeasuredVector>,
 }
 
 impl Posted {
@@ -64,7 +64,7 @@ impl Posted {
             for component in model.supports.get(name).into_iter().flatten() {
                 held[component.index()] = true;
             }
-            Node { name: name.clone(), place: padded(place), held }
+            PostedNode { name: name.clone(), place: padded(place), held }
         };
         let moved = model.stages.iter().flat_map(|stage| stage.obstacle_motion.keys());
         let moving: IndexSet<&str> = moved.map(String::as_str).collect();
@@ -72,10 +72,10 @@ impl Posted {
             let node = model.nodes.get_index_of(&contact.node)?;
             let obstacle = model.obstacles.get_index_of(&contact.obstacle)?;
             let motion = moving.get_index_of(contact.obstacle.as_str());
-            Some(Contact { node, obstacle, motion, friction: contact.friction })
+            Some(PostedContact { node, obstacle, motion, friction: contact.friction })
         };
         let scales = load_scales.iter().copied().chain(std::iter::repeat(1.0));
-        let stage = |(stage, load_scale): (&crate::model::request::Stage, f64)| Stage {
+        let stage = |(stage, load_scale): (&crate::model::request::Stage, f64)| PostedStage {
             name: stage.name.clone(),
             forces: pattern(&stage.forces, &|name| model.nodes.get_index_of(name)),
             displacements: pattern(&stage.displacements, &|name| model.nodes.get_index_of(name)),
@@ -85,8 +85,8 @@ impl Posted {
         Self {
             dimension: model.dimension,
             nodes: model.nodes.iter().map(node).collect(),
-            elements: model.elements.iter().filter_map(|element| Element::new(model, element)).collect(),
-            obstacles: model.obstacles.values().map(Obstacle::new).collect(),
+            elements: model.elements.iter().filter_map(|element| MeasuredElement::new(model, element)).collect(),
+            obstacles: model.obstacles.values().map(MeasuredObstacle::new).collect(),
             contacts: model.contacts.iter().filter_map(contact).collect(),
             moving: moving.len(),
             stages: model.stages.iter().zip(scales).map(stage).collect(),
@@ -96,42 +96,47 @@ impl Posted {
 
 impl Posted {
     /// How a contact's obstacle lies to its node.
-    pub fn frame(&self, contact: &Contact, loading: &Loading, displacements: &[Vector]) -> Frame {
+    pub fn frame(
+        &self,
+        contact: &PostedContact,
+        loading: &PostedLoading,
+        displacements: &[MeasuredVector],
+    ) -> MeasuredFrame {
         let place = &self.nodes[contact.node].place;
         let obstacle = &self.obstacles[contact.obstacle];
         obstacle.frame(self.dimension, &loading.shift(contact), place, &displacements[contact.node])
     }
 }
 
-fn pattern(posted: &IndexMap<String, Vec<f64>>, number: &dyn Fn(&str) -> Option<usize>) -> Pattern {
+fn pattern(posted: &IndexMap<String, Vec<f64>>, number: &dyn Fn(&str) -> Option<usize>) -> PostedLoadPattern {
     posted.iter().filter_map(|(name, values)| Some((number(name)?, padded(values)))).collect()
 }
 
-impl Stage {
+impl PostedStage {
     /// Motion of a contact's obstacle by unit load factor (length).
-    pub fn motion(&self, contact: &Contact) -> Vector {
-        let of_this = |(place, _): &&(usize, Vector)| Some(*place) == contact.motion;
-        self.motions.iter().find(of_this).map_or_else(Vector::zeros, |(_, motion)| *motion)
+    pub fn motion(&self, contact: &PostedContact) -> MeasuredVector {
+        let of_this = |(place, _): &&(usize, MeasuredVector)| Some(*place) == contact.motion;
+        self.motions.iter().find(of_this).map_or_else(MeasuredVector::zeros, |(_, motion)| *motion)
     }
 }
 
-impl Loading {
+impl PostedLoading {
     pub fn none(posted: &Posted) -> Self {
         let nodes = posted.nodes.len();
         Self {
-            forces: vec![Vector::zeros(); nodes],
-            displacements: vec![Vector::zeros(); nodes],
-            shifts: vec![Vector::zeros(); posted.moving],
+            forces: vec![MeasuredVector::zeros(); nodes],
+            displacements: vec![MeasuredVector::zeros(); nodes],
+            shifts: vec![MeasuredVector::zeros(); posted.moving],
         }
     }
 
     /// How far a contact's obstacle has moved.
-    pub fn shift(&self, contact: &Contact) -> Vector {
-        contact.motion.map_or_else(Vector::zeros, |place| self.shifts[place])
+    pub fn shift(&self, contact: &PostedContact) -> MeasuredVector {
+        contact.motion.map_or_else(MeasuredVector::zeros, |place| self.shifts[place])
     }
 
     /// Becomes what is held with a stage under a load factor on top.
-    pub fn set(&mut self, held: &Self, stage: &Stage, load: f64) {
+    pub fn set(&mut self, held: &Self, stage: &PostedStage, load: f64) {
         let all = [
             (&mut self.forces, &held.forces, &stage.forces),
             (&mut self.displacements, &held.displacements, &stage.displacements),

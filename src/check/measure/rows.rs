@@ -6,7 +6,7 @@ use std::collections::HashMap;
 
 /// The contacts of the last increment's rows.
 #[derive(Debug, Clone)]
-pub(super) struct Rows {
+pub(super) struct ContactRows {
     /// Node and obstacle of every contact of the model.
     names: Vec<(String, String)>,
     /// By node and obstacle, the contacts of these names, in order.
@@ -16,7 +16,7 @@ pub(super) struct Rows {
 }
 
 /// What is different from the rows of the increment before.
-pub(super) enum Change {
+pub(super) enum RowChange {
     None,
     /// They are of other contacts.
     Others,
@@ -24,7 +24,7 @@ pub(super) enum Change {
     Unknown,
 }
 
-impl Rows {
+impl ContactRows {
     pub fn new(request: &JobRequest) -> Self {
         let mut named: HashMap<String, HashMap<String, Vec<usize>>> = HashMap::new();
         let mut names = Vec::with_capacity(request.model.contacts.len());
@@ -41,13 +41,13 @@ impl Rows {
     }
 
     /// Goes to the rows of the next increment.
-    pub fn read(&mut self, rows: &[ContactState]) -> Change {
+    pub fn read(&mut self, rows: &[ContactState]) -> RowChange {
         let is_of = |(row, contact): (&ContactState, &usize)| {
             let (node, obstacle) = &self.names[*contact];
             **node == *row.node && **obstacle == *row.obstacle
         };
         if rows.len() == self.contacts.len() && rows.iter().zip(&self.contacts).all(is_of) {
-            return Change::None;
+            return RowChange::None;
         }
         let mut next = 0;
         let found = rows.iter().map(|row| {
@@ -60,9 +60,9 @@ impl Rows {
         match found {
             Some(found) => {
                 self.contacts = found;
-                Change::Others
+                RowChange::Others
             }
-            None => Change::Unknown,
+            None => RowChange::Unknown,
         }
     }
 }

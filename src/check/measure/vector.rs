@@ -2,23 +2,23 @@
 
 use nalgebra::Vector3;
 
-pub(super) type Vector = Vector3<f64>;
+pub(super) type MeasuredVector = Vector3<f64>;
 
 /// Of two or three components; what is missing is 0.
-pub(super) fn padded(values: &[f64]) -> Vector {
-    let mut vector = Vector::zeros();
+pub(super) fn padded(values: &[f64]) -> MeasuredVector {
+    let mut vector = MeasuredVector::zeros();
     vector.iter_mut().zip(values).for_each(|(to, from)| *to = *from);
     vector
 }
 
 /// The largest component; one that is not a number is passed over.
-pub(super) fn largest(a: &Vector) -> f64 {
+pub(super) fn largest(a: &MeasuredVector) -> f64 {
     a.x.abs().max(a.y.abs()).max(a.z.abs())
 }
 
 /// Angle between two vectors, exact for small ones (W. Kahan, *How Futile are Mindless Assessments of Roundoff*, 2006,
 /// section 12).
-pub(super) fn angle(a: &Vector, b: &Vector) -> f64 {
+pub(super) fn angle(a: &MeasuredVector, b: &MeasuredVector) -> f64 {
     let (a, b) = (a * (1.0 / a.norm()), b * (1.0 / b.norm()));
     2.0 * (a - b).norm().atan2((a + b).norm())
 }

@@ -37,14 +37,14 @@ pub struct Case {
     pub methods: &'static [Method],
     /// Takes more than seconds.
     pub long: bool,
-    ending: Ending,
+    ending: ExpectedEnding,
     bar: f64,
     error: PathError,
 }
 
 /// How a case has to end.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Ending {
+pub(crate) enum ExpectedEnding {
     Stops(StopReason),
     /// Every stage ends, or the path stops before for this reason.
     MayStop(StopReason),
@@ -54,7 +54,7 @@ pub(crate) enum Ending {
 
 /// What became of a case.
 #[derive(Debug, Clone, Serialize)]
-pub struct Row {
+pub struct CaseRow {
     pub family: &'static str,
     pub case: String,
     pub method: Method,
@@ -73,7 +73,7 @@ pub struct Row {
     pub pass: bool,
 }
 
-impl Row {
+impl CaseRow {
     /// As in a request.
     pub fn method_name(&self) -> &'static str {
         match self.method {
@@ -92,7 +92,7 @@ impl Case {
             request,
             methods: BOTH,
             long: false,
-            ending: Ending::Stops(StopReason::StagesCompleted),
+            ending: ExpectedEnding::Stops(StopReason::StagesCompleted),
             bar: 1e-10,
             error: Arc::new(|_| 0.0),
         }
@@ -104,17 +104,17 @@ impl Case {
     }
 
     pub(crate) fn ends(mut self, reason: StopReason) -> Self {
-        self.ending = Ending::Stops(reason);
+        self.ending = ExpectedEnding::Stops(reason);
         self
     }
 
     pub(crate) fn or_ends(mut self, reason: StopReason) -> Self {
-        self.ending = Ending::MayStop(reason);
+        self.ending = ExpectedEnding::MayStop(reason);
         self
     }
 
     pub(crate) fn refused(mut self, pointer: &'static str) -> Self {
-        (self.ending, self.methods) = (Ending::Refused(pointer), AUTO);
+        (self.ending, self.methods) = (ExpectedEnding::Refused(pointer), AUTO);
         self
     }
 
@@ -127,7 +127,7 @@ impl Case {
     pub(crate) fn with_steps(self) -> Vec<Self> {
         let elements = &self.request.model.elements;
         let linear = elements.iter().all(|element| matches!(element, Element::Spring { .. }));
-        if !linear || !self.request.analysis.arc_length.jump || matches!(self.ending, Ending::Refused(_)) {
+        if !linear || !self.request.analysis.arc_length.jump || matches!(self.ending, ExpectedEnding::Refused(_)) {
             return vec![self];
         }
         let mut in_steps = self.clone();
@@ -137,10 +137,10 @@ impl Case {
     }
 
     /// Solves the case by a method and judges it.
-    pub fn solve(&self, method: Method) -> Row {
+    pub fn solve(&self, method: Method) -> CaseRow {
         let mut request = self.request.clone();
         request.analysis.method = method;
-        let mut row = Row {
+        let mut row = CaseRow {
             family: self.family,
             case: self.name.clone(),
             method,
@@ -159,8 +159,8 @@ impl Case {
                 let first = errors.0.first().map_or("", |error| error.pointer.as_str());
                 row.stop_reason = format!("refused at {first}");
                 row.pass = match self.ending {
-                    Ending::Refused(pointer) => errors.0.first().is_some_and(|error| error.pointer == pointer),
-                    Ending::Stops(_) | Ending::MayStop(_) => false,
+                    ExpectedEnding::Refused(pointer) => errors.0.first().is_some_and(|error| error.pointer == pointer),
+                    ExpectedEnding::Stops(_) | ExpectedEnding::MayStop(_) => false,
                 };
                 return row;
             }
@@ -178,9 +178,9 @@ impl Case {
         let Some(report) = path.report() else { return row };
         let error = (self.error)(&increments);
         let ended = match self.ending {
-            Ending::Stops(reason) => report.stop_reason == reason,
-            Ending::MayStop(reason) => [StopReason::StagesCompleted, reason].contains(&report.stop_reason),
-            Ending::Refused(_) => false,
+            ExpectedEnding::Stops(reason) => report.stop_reason == reason,
+            ExpectedEnding::MayStop(reason) => [StopReason::StagesCompleted, reason].contains(&report.stop_reason),
+            ExpectedEnding::Refused(_) => false,
         };
         row.stop_reason = serde_json::to_value(report.stop_reason)
             .ok()

@@ -9,7 +9,7 @@ use crate::result::increment::{Increment, PointKind, Status};
 /// Klarbring's node (formulation, section 4): `K = [[a, -b], [-b, c]]` on the floor, pressed by `p`, pulled by `S = s f`.
 /// Stuck to `S = μ p`; slip at `u_x = x`: `r_n = p - b x`, `S = a x + μ r_n`; free from `x = p/b` on: `K u = (S, -p)`.
 #[derive(Debug, Clone, Copy)]
-pub struct Klarbring {
+pub struct KlarbringSolution {
     pub along: f64,
     pub coupling: f64,
     pub across: f64,
@@ -19,7 +19,7 @@ pub struct Klarbring {
     pub pull: f64,
 }
 
-impl Klarbring {
+impl KlarbringSolution {
     pub const PUBLISHED: Self = Self { along: 1.0, coupling: 0.8, across: 1.0, friction: 1.5, press: 1.0, pull: 1.0 };
 
     /// The same with lengths and forces in other units.
@@ -107,7 +107,7 @@ impl Klarbring {
 /// The one-bar truss (formulation, section 4): pin at (0, h), tip from (-a, 0) on the floor, force `S = s f` along x.
 /// Slipping at x: `S = P (μ h - x)/L`, `P = EA (1 - L/L0)`; the limit points are zeros of `dS/dx`.
 #[derive(Debug, Clone, Copy)]
-pub struct OneBar {
+pub struct OneBarSolution {
     pub stiffness: f64,
     pub height: f64,
     pub start: f64,
@@ -115,7 +115,7 @@ pub struct OneBar {
     pub pull: f64,
 }
 
-impl OneBar {
+impl OneBarSolution {
     pub const fn with_friction(friction: f64) -> Self {
         Self { stiffness: 1.0, height: 1.0, start: 1.5, friction, pull: 1.0 }
     }
@@ -191,11 +191,11 @@ impl OneBar {
 /// `P = 2 y (1/L - 1/L0)`, `y = h - v`, `L² = 1 + y²`. Largest where `cos³ θ = cos α` (angles of the bars with and without
 /// load): `y = sqrt(cos^(-2/3) α - 1)`.
 #[derive(Debug, Clone, Copy)]
-pub struct VonMises {
+pub struct VonMisesSolution {
     pub height: f64,
 }
 
-impl VonMises {
+impl VonMisesSolution {
     pub fn make(&self) -> Make {
         plane_model()
             .node("left", &[-1.0, 0.0])

@@ -12,4 +12,4 @@ pub(crate) mod known;
 pub(crate) mod make;
 pub(crate) mod published;
 
-pub use case::{Case, ENERGY_BAR, Row, STATE_BAR};
+pub use case::{Case, CaseRow, ENERGY_BAR, STATE_BAR};

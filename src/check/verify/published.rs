@@ -7,7 +7,7 @@ use crate::check::scenes::exact::tractrix::Tractrix;
 use crate::check::scenes::exact::turning_drag::turning_drag;
 use crate::check::verify::case::{AUTO, Case};
 use crate::check::verify::compare::{moved, of_stage, points, relative, worse, worst};
-use crate::check::verify::known::{Klarbring, OneBar, VonMises};
+use crate::check::verify::known::{KlarbringSolution, OneBarSolution, VonMisesSolution};
 use crate::check::verify::make::{Make, space_model};
 use crate::model::request::{Component, Strain, Until};
 use crate::model::{self, JobRequest};
@@ -24,12 +24,12 @@ pub fn cases() -> Vec<Case> {
         }
     };
     for (name, friction) in [("one-bar-truss", 0.3), ("one-bar-truss-rough", 1.0)] {
-        let truss = OneBar::with_friction(friction);
+        let truss = OneBarSolution::with_friction(friction);
         add(name, "loads, limit points", &|case| {
             case.ends(StopReason::Mechanism).exact(1e-10, move |path| truss.error(path))
         });
     }
-    add("klarbring", "loads, corners", &|case| case.exact(1e-10, |path| Klarbring::PUBLISHED.error(path)));
+    add("klarbring", "loads, corners", &|case| case.exact(1e-10, |path| KlarbringSolution::PUBLISHED.error(path)));
     add("von-mises-truss", "loads, limit points", &|case| case.by(AUTO).exact(1e-10, von_mises));
     add("arch-type-truss", "limit point, landing", &|case| case.exact(2e-8, arch));
     add("two-snapping-bars", "eight events", &|case| case.exact(1e-7, |path| events(path, TWO_BARS)));
@@ -71,7 +71,7 @@ fn in_order<'a>(found: impl Iterator<Item = &'a Increment>, exact: &[f64]) -> f6
 }
 
 fn von_mises(path: &[Increment]) -> f64 {
-    let truss = VonMises { height: 0.5 };
+    let truss = VonMisesSolution { height: 0.5 };
     let largest = truss.load(truss.height - truss.height_at_limit());
     let loads =
         path.iter().map(|increment| relative(increment.load_factor, truss.load(-moved(increment, "apex", 1)), largest));
@@ -90,18 +90,18 @@ fn arch(path: &[Increment]) -> f64 {
     worse(of(SmoothLimit, 0.42302607, 0.0095675907), of(NonsmoothLimit, 0.5, 0.0093190033))
 }
 
-struct Event {
+struct PublishedEvent {
     kind: PointKind,
     load: f64,
     tips: &'static [f64],
 }
 
-const fn event(kind: PointKind, load: f64, tips: &'static [f64]) -> Event {
-    Event { kind, load, tips }
+const fn event(kind: PointKind, load: f64, tips: &'static [f64]) -> PublishedEvent {
+    PublishedEvent { kind, load, tips }
 }
 
 /// From exhaustive enumeration (formulation, section 4).
-const TWO_BARS: &[Event] = &[
+const TWO_BARS: &[PublishedEvent] = &[
     event(SmoothLimit, 0.28211874, &[]),
     event(ContactChange, 0.25042031, &[1.31698808, 1.06627516]),
     event(SmoothLimit, 0.08721128, &[]),
@@ -112,7 +112,7 @@ const TWO_BARS: &[Event] = &[
     event(SmoothLimit, -0.12023872, &[]),
 ];
 
-const THREE_BARS: &[Event] = &[
+const THREE_BARS: &[PublishedEvent] = &[
     event(SmoothLimit, 0.28149415, &[]),
     event(ContactChange, 0.27788274, &[1.12049462, 1.00538708, 0.92552688]),
     event(ContactChange, 0.25572830, &[1.30940240, 1.03835228, 0.92552688]),
@@ -121,7 +121,7 @@ const THREE_BARS: &[Event] = &[
     event(ContactChange, 0.10141537, &[2.30487757, 1.03835228, 0.84049798]),
 ];
 
-fn events(path: &[Increment], exact: &[Event]) -> f64 {
+fn events(path: &[Increment], exact: &[PublishedEvent]) -> f64 {
     let is_event =
         |increment: &&Increment| matches!(increment.point.kind, SmoothLimit | NonsmoothLimit | ContactChange);
     let found: Vec<&Increment> = path.iter().filter(is_event).take(exact.len()).collect();

@@ -38,11 +38,13 @@ pub(crate) mod solver;
 pub(crate) mod stationarity;
 pub(crate) mod unboundedness;
 
-pub use crate::complementarity::mpec::program::counts::{Counts, Iterate};
+pub use crate::complementarity::mpec::program::counts::{SolverCounts, SolverIterate};
 pub use program::activity::Activities;
 pub use program::cone::ConeActivity;
 pub use program::problem::Problem;
 pub use program::sparse_rows::SparseRows;
-pub use result::{Growth, InputError, Multipliers, PairActivity, Quantity, Solution, StationarityKind, Status};
+pub use result::{
+    Growth, Multipliers, PairActivity, ProgramInputError, ProgramSolution, Quantity, SolveStatus, StationarityKind,
+};
 pub use settings::{Finish, Settings};
 pub use solver::{follow_branch, solve};

@@ -11,14 +11,14 @@
 use nalgebra::DVector;
 
 use crate::complementarity::mpec::program::cone;
-use crate::complementarity::mpec::program::evaluation::Evaluation;
+use crate::complementarity::mpec::program::evaluation::ProgramEvaluation;
 use crate::complementarity::mpec::program::problem::Problem;
 use crate::complementarity::mpec::quadratic_program::driver::StepSolver;
 use crate::complementarity::mpec::result::StationarityKind;
 use crate::complementarity::mpec::settings::{Finish, Settings};
 use crate::complementarity::mpec::smooth_program::cone_rows::ConeTreatment;
-use crate::complementarity::mpec::smooth_program::pair_treatment::{PairTreatment, Pattern};
-use crate::complementarity::mpec::smooth_program::relaxation::{Multipliers, Rows};
+use crate::complementarity::mpec::smooth_program::pair_treatment::{PairTreatment, TreatmentPattern};
+use crate::complementarity::mpec::smooth_program::relaxation::{Multipliers, SmoothProgramRows};
 use crate::complementarity::mpec::smooth_program::sqp::{self, SqpEnd, SqpOutcome, SqpSettings};
 use crate::complementarity::mpec::stationarity::{self, NoVerdict};
 use crate::resources::cancel::CancelFlag;
@@ -36,15 +36,15 @@ const WORTHWHILE: f64 = 1e-10;
 const ENUMERATION_CEILING: usize = 10;
 /// A point that a search over branches or a regularised program ended at.
 #[derive(Debug, Clone)]
-pub struct Candidate {
+pub struct CandidatePoint {
     pub end: SqpEnd,
     pub x: DVector<f64>,
-    pub at: Evaluation,
+    pub at: ProgramEvaluation,
     pub multipliers: Multipliers,
     pub stationarity: StationarityKind,
 }
 
-impl Candidate {
+impl CandidatePoint {
     /// Largest violation, complementarity included.
     pub fn infeasibility(&self) -> f64 {
         self.at.largest_violation().max(self.at.largest_product())
@@ -69,9 +69,9 @@ impl Candidate {
 }
 
 /// The branch whose zero members are the smaller ones.
-pub fn nearest_pattern(at: &Evaluation) -> Pattern {
+pub fn nearest_pattern(at: &ProgramEvaluation) -> TreatmentPattern {
     let pairs = at.first.iter().zip(at.second.iter());
-    Pattern {
+    TreatmentPattern {
         pairs: pairs.map(|(a, b)| if a <= b { PairTreatment::FirstZero } else { PairTreatment::SecondZero }).collect(),
         cones: at.cones.pairs().map(|(a, b)| ConeTreatment::nearest(a, b)).collect(),
     }
@@ -79,7 +79,7 @@ pub fn nearest_pattern(at: &Evaluation) -> Pattern {
 
 /// The branch nearest to a point, then those around it: all of them where there are few scalar pairs (at most `limit`) and
 /// no cones, else those that differ in one pair.
-pub fn patterns_around(at: &Evaluation, limit: usize) -> Vec<Pattern> {
+pub fn patterns_around(at: &ProgramEvaluation, limit: usize) -> Vec<TreatmentPattern> {
     let nearest = nearest_pattern(at);
     let pairs = nearest.pairs.len();
     let flips: Vec<Vec<usize>> = if pairs <= limit.min(ENUMERATION_CEILING) && nearest.cones.is_empty() {
@@ -102,7 +102,7 @@ pub fn patterns_around(at: &Evaluation, limit: usize) -> Vec<Pattern> {
         }
         pattern
     };
-    let mut patterns: Vec<Pattern> = flips.into_iter().map(flipped).collect();
+    let mut patterns: Vec<TreatmentPattern> = flips.into_iter().map(flipped).collect();
     for (pair, (a, b)) in at.cones.pairs().enumerate().take(1 << ENUMERATION_CEILING) {
         for treatment in nearest.cones[pair].others(a, b) {
             let mut pattern = nearest.clone();
@@ -114,7 +114,7 @@ pub fn patterns_around(at: &Evaluation, limit: usize) -> Vec<Pattern> {
 }
 
 /// True where every pair's smaller member is small beside the larger, and every cone pair nearly complementary.
-pub fn is_clear(at: &Evaluation) -> bool {
+pub fn is_clear(at: &ProgramEvaluation) -> bool {
     let largest = |v: &[f64]| v.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     at.first.iter().zip(at.second.iter()).all(|(a, b)| a.min(*b) <= CLEAR_RATIO * a.max(*b))
         && at.cones.pairs().all(|(a, b)| cone::natural_residual(a, b) <= CLEAR_RATIO * largest(a).max(largest(b)))
@@ -126,23 +126,23 @@ pub fn descend<P: Problem + ?Sized>(
     problem: &P,
     bounds: &(DVector<f64>, DVector<f64>),
     start: &DVector<f64>,
-    mut pattern: Pattern,
+    mut pattern: TreatmentPattern,
     settings: &Settings,
     steps: &mut StepSolver,
     cancel: &CancelFlag,
-) -> Candidate {
+) -> CandidatePoint {
     let mut stop_when_settled = settings.finish == Finish::PatternSettled;
     let cone_sizes = problem.cone_sizes();
     let mut changes_left = 2 * problem.pairs() + 3 * cone_sizes.len() + 8;
     let mut start = start.clone();
-    let mut best: Option<Candidate> = None;
+    let mut best: Option<CandidatePoint> = None;
     loop {
         steps.counts.branches += 1;
         let sequence =
             SqpSettings { tolerance: settings.tolerance, iteration_limit: settings.iteration_limit, stop_when_settled };
-        let rows = Rows::new(problem.equalities(), problem.inequalities(), &cone_sizes, pattern.clone());
+        let rows = SmoothProgramRows::new(problem.equalities(), problem.inequalities(), &cone_sizes, pattern.clone());
         let outcome = sqp::solve(problem, &rows, bounds, &start, sequence, steps, cancel);
-        let mut candidate = Candidate {
+        let mut candidate = CandidatePoint {
             end: outcome.end,
             x: outcome.x,
             at: outcome.at,
@@ -191,7 +191,7 @@ pub fn descend<P: Problem + ?Sized>(
 }
 
 /// Members of a pair at a settled point that may both be zero: what is left violated says how far they may still move.
-fn uncertain(at: &Evaluation, settings: &Settings) -> f64 {
+fn uncertain(at: &ProgramEvaluation, settings: &Settings) -> f64 {
     settings.biactive_tolerance.max(LEEWAY * at.largest_violation())
 }
 
@@ -202,12 +202,13 @@ pub fn follow<P: Problem + ?Sized>(
     problem: &P,
     bounds: &(DVector<f64>, DVector<f64>),
     start: &DVector<f64>,
-    pattern: &Pattern,
+    pattern: &TreatmentPattern,
     settings: &Settings,
     steps: &mut StepSolver,
     cancel: &CancelFlag,
-) -> Candidate {
-    let rows = Rows::new(problem.equalities(), problem.inequalities(), &problem.cone_sizes(), pattern.clone());
+) -> CandidatePoint {
+    let rows =
+        SmoothProgramRows::new(problem.equalities(), problem.inequalities(), &problem.cone_sizes(), pattern.clone());
     let (tolerance, iteration_limit) = (settings.tolerance, settings.iteration_limit);
     let mut start = start.clone();
     let mut stop_when_settled = settings.finish == Finish::PatternSettled;
@@ -233,19 +234,19 @@ pub fn follow<P: Problem + ?Sized>(
             (false, _) => StationarityKind::Unknown,
         };
         let SqpOutcome { end, x, at, multipliers } = outcome;
-        return Candidate { end, x, at, multipliers, stationarity };
+        return CandidatePoint { end, x, at, multipliers, stationarity };
     }
 }
 
 /// Classifies a converged point; returns the branch that leads down from it.
 fn judge<P: Problem + ?Sized>(
     problem: &P,
-    pattern: &Pattern,
-    candidate: &mut Candidate,
+    pattern: &TreatmentPattern,
+    candidate: &mut CandidatePoint,
     settings: &Settings,
     steps: &mut StepSolver,
     cancel: &CancelFlag,
-) -> Result<Option<Pattern>, SqpEnd> {
+) -> Result<Option<TreatmentPattern>, SqpEnd> {
     let converged = candidate.end == SqpEnd::Converged;
     let verdict = stationarity::classify(
         problem,

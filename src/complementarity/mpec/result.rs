@@ -1,6 +1,6 @@
 //! What a solve returns.
 
-use crate::complementarity::mpec::program::counts::{Counts, Iterate};
+use crate::complementarity::mpec::program::counts::{SolverCounts, SolverIterate};
 use nalgebra::DVector;
 use thiserror::Error;
 
@@ -11,8 +11,8 @@ pub use crate::complementarity::mpec::smooth_program::relaxation::Multipliers;
 
 /// Why a solve ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Status {
-    /// Feasible, complementary, and stationary in the sense of [`Solution::stationarity`].
+pub enum SolveStatus {
+    /// Feasible, complementary, and stationary in the sense of [`ProgramSolution::stationarity`].
     Solved,
     /// [`crate::complementarity::mpec::Finish::PatternSettled`]: the pattern is certain, the point is not refined.
     PatternSettled,
@@ -67,8 +67,8 @@ pub enum StationarityKind {
 
 /// A point and what is known of it.
 #[derive(Debug, Clone)]
-pub struct Solution {
-    pub status: Status,
+pub struct ProgramSolution {
+    pub status: SolveStatus,
     /// The variables.
     pub x: DVector<f64>,
     pub objective: f64,
@@ -82,16 +82,16 @@ pub struct Solution {
     pub largest_violation: f64,
     /// Largest `|a_i b_i|`, of the cone pairs `|A_i·B_i|`.
     pub largest_product: f64,
-    pub counts: Counts,
+    pub counts: SolverCounts,
     /// The last `ε` visited; `None` where the start's own pattern was enough.
     pub last_relaxation: Option<f64>,
     /// One a step of sequential quadratic programming, in order; empty unless asked for.
-    pub iterates: Vec<Iterate>,
+    pub iterates: Vec<SolverIterate>,
 }
 
 /// Misuse.
 #[derive(Debug, Clone, PartialEq, Error)]
-pub enum InputError {
+pub enum ProgramInputError {
     #[error("the start has {found} variables, the problem {expected}")]
     StartLength { expected: usize, found: usize },
     #[error("the bounds have {lower} and {upper} entries, the problem {expected} variables")]

@@ -20,7 +20,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::algebra::Factorisation;
 use crate::complementarity::mpec::program::cone;
-use crate::complementarity::mpec::program::evaluation::{Evaluation, Quantity};
+use crate::complementarity::mpec::program::evaluation::{ProgramEvaluation, Quantity};
 use crate::complementarity::mpec::program::problem::Problem;
 use crate::resources::cancel::CancelFlag;
 
@@ -72,7 +72,7 @@ pub fn polish<P: Problem + ?Sized>(
     if start.len() != problem.variables() || start.iter().any(|value| !value.is_finite()) {
         return Err(Quantity::Start);
     }
-    let mut at = Evaluation::new(problem);
+    let mut at = ProgramEvaluation::new(problem);
     at.update_values(problem, start)?;
     let mut x = start.clone();
     let mut values = residual(&at, &x, closing);
@@ -116,7 +116,7 @@ pub fn polish<P: Problem + ?Sized>(
 /// where none does.
 fn shortened<P: Problem + ?Sized>(
     problem: &P,
-    at: &mut Evaluation,
+    at: &mut ProgramEvaluation,
     x: &DVector<f64>,
     step: &DVector<f64>,
     values: &DVector<f64>,
@@ -137,7 +137,7 @@ fn shortened<P: Problem + ?Sized>(
     None
 }
 
-fn residual(at: &Evaluation, x: &DVector<f64>, closing: Option<Closing<'_>>) -> DVector<f64> {
+fn residual(at: &ProgramEvaluation, x: &DVector<f64>, closing: Option<Closing<'_>>) -> DVector<f64> {
     let mut values: Vec<f64> = at.equality.iter().copied().collect();
     values.extend(at.first.iter().zip(at.second.iter()).map(|(a, b)| a.min(*b)));
     for (a, b) in at.cones.pairs() {
@@ -148,7 +148,7 @@ fn residual(at: &Evaluation, x: &DVector<f64>, closing: Option<Closing<'_>>) -> 
     DVector::from_vec(values)
 }
 
-fn jacobian(at: &Evaluation, x: &DVector<f64>, closing: Option<Closing<'_>>) -> DMatrix<f64> {
+fn jacobian(at: &ProgramEvaluation, x: &DVector<f64>, closing: Option<Closing<'_>>) -> DMatrix<f64> {
     let variables = x.len();
     let (equalities, pairs, in_cones) = (at.equality.len(), at.first.len(), at.cones.first.len());
     let rows = equalities + pairs + in_cones + usize::from(closing.is_some());

@@ -40,7 +40,7 @@ pub struct Settings {
     pub whole_sequence: bool,
     /// Every quadratic program by the interior-point method, none by the working set of the one before.
     pub interior_only: bool,
-    /// Iterates are kept: see [`crate::complementarity::mpec::Solution::iterates`].
+    /// Iterates are kept: see [`crate::complementarity::mpec::ProgramSolution::iterates`].
     pub keep_iterates: bool,
 }
 

@@ -15,16 +15,16 @@
 use nalgebra::DVector;
 
 use crate::complementarity::mpec::input_validation::check_input;
-use crate::complementarity::mpec::piecewise_descent::{self, Candidate};
+use crate::complementarity::mpec::piecewise_descent::{self, CandidatePoint};
 use crate::complementarity::mpec::program::activity::{Activities, PairActivity};
 use crate::complementarity::mpec::program::cone::ConeActivity;
-use crate::complementarity::mpec::program::evaluation::{Evaluation, Quantity};
+use crate::complementarity::mpec::program::evaluation::{ProgramEvaluation, Quantity};
 use crate::complementarity::mpec::program::problem::Problem;
 use crate::complementarity::mpec::quadratic_program::driver::StepSolver;
-use crate::complementarity::mpec::result::{InputError, Solution, StationarityKind, Status};
+use crate::complementarity::mpec::result::{ProgramInputError, ProgramSolution, SolveStatus, StationarityKind};
 use crate::complementarity::mpec::settings::Settings;
-use crate::complementarity::mpec::smooth_program::pair_treatment::Pattern;
-use crate::complementarity::mpec::smooth_program::relaxation::Rows;
+use crate::complementarity::mpec::smooth_program::pair_treatment::TreatmentPattern;
+use crate::complementarity::mpec::smooth_program::relaxation::SmoothProgramRows;
 use crate::complementarity::mpec::smooth_program::sqp::{self, SqpEnd, SqpSettings};
 use crate::complementarity::mpec::unboundedness;
 use crate::resources::cancel::CancelFlag;
@@ -38,35 +38,35 @@ const LEVEL_LIMIT: usize = 200;
 
 /// Solves `problem` from `start`.
 ///
-/// Numerical trouble is a [`Status`], never an error.
+/// Numerical trouble is a [`SolveStatus`], never an error.
 ///
 /// # Errors
-/// [`InputError`] for a start or bounds that do not fit the problem, or settings out of range.
+/// [`ProgramInputError`] for a start or bounds that do not fit the problem, or settings out of range.
 pub fn solve<P: Problem + ?Sized>(
     problem: &P,
     start: &DVector<f64>,
     settings: &Settings,
     cancel: &CancelFlag,
-) -> Result<Solution, InputError> {
+) -> Result<ProgramSolution, ProgramInputError> {
     solve_by(problem, start, settings, cancel, |run, at| run.go(start, at))
 }
 
 /// Follows one branch from `start` to its own optimum and looks at no other: the branch in which the given member of each
 /// pair is zero (of the pairs without such an entry, and of cone pairs, the member that is smaller at the start).
 ///
-/// Where nothing holds the branch up on the way, its solution is the problem's: [`Status::PatternSettled`] or
-/// [`Status::Solved`], of kind [`StationarityKind::OneBranch`] where a pair is zero to rounding and another branch might
-/// lead further. [`Status::Feasible`] where the branch ends before, at a pair that has to change.
+/// Where nothing holds the branch up on the way, its solution is the problem's: [`SolveStatus::PatternSettled`] or
+/// [`SolveStatus::Solved`], of kind [`StationarityKind::OneBranch`] where a pair is zero to rounding and another branch might
+/// lead further. [`SolveStatus::Feasible`] where the branch ends before, at a pair that has to change.
 ///
 /// # Errors
-/// [`InputError`] for a start or bounds that do not fit the problem, or settings out of range.
+/// [`ProgramInputError`] for a start or bounds that do not fit the problem, or settings out of range.
 pub fn follow_branch<P: Problem + ?Sized>(
     problem: &P,
     start: &DVector<f64>,
     zero_members: &[PairActivity],
     settings: &Settings,
     cancel: &CancelFlag,
-) -> Result<Solution, InputError> {
+) -> Result<ProgramSolution, ProgramInputError> {
     solve_by(problem, start, settings, cancel, |run, at| {
         run.steps.is_elastic = false;
         let pattern = piecewise_descent::nearest_pattern(at).with_zeros(zero_members);
@@ -83,27 +83,28 @@ fn solve_by<'a, P: Problem + ?Sized>(
     start: &DVector<f64>,
     settings: &'a Settings,
     cancel: &'a CancelFlag,
-    search: impl FnOnce(&mut Run<'a, P>, &Evaluation) -> Option<Status>,
-) -> Result<Solution, InputError> {
+    search: impl FnOnce(&mut SolveInProgress<'a, P>, &ProgramEvaluation) -> Option<SolveStatus>,
+) -> Result<ProgramSolution, ProgramInputError> {
     let bounds = problem.bounds();
     check_input(problem, start, &bounds, settings)?;
     let mut steps = StepSolver::default();
     steps.interior_only = settings.interior_only;
     steps.iterates = settings.keep_iterates.then(Vec::new);
-    let mut run = Run { problem, bounds, settings, cancel, steps, best: None, seen: Ends::default() };
-    let mut at = Evaluation::new(problem);
+    let mut run =
+        SolveInProgress { problem, bounds, settings, cancel, steps, best: None, seen: InfeasibleEnds::default() };
+    let mut at = ProgramEvaluation::new(problem);
     let is_finite = start.iter().all(|value| value.is_finite());
     let values = if is_finite { at.update_values(problem, start) } else { Err(Quantity::Start) };
     let stopped = match values {
         Ok(()) => search(&mut run, &at),
-        Err(quantity) => Some(Status::NotFinite(quantity)),
+        Err(quantity) => Some(SolveStatus::NotFinite(quantity)),
     };
     Ok(run.finish(start, stopped))
 }
 
 /// Ends that matter for the status when no point is feasible.
 #[derive(Debug, Clone, Copy, Default)]
-struct Ends {
+struct InfeasibleEnds {
     infeasible: bool,
     iteration_limit: bool,
     unbounded: bool,
@@ -111,19 +112,19 @@ struct Ends {
 }
 
 /// A solve under way.
-struct Run<'a, P: Problem + ?Sized> {
+struct SolveInProgress<'a, P: Problem + ?Sized> {
     problem: &'a P,
     bounds: (DVector<f64>, DVector<f64>),
     settings: &'a Settings,
     cancel: &'a CancelFlag,
     steps: StepSolver,
-    best: Option<Candidate>,
-    seen: Ends,
+    best: Option<CandidatePoint>,
+    seen: InfeasibleEnds,
 }
 
-impl<P: Problem + ?Sized> Run<'_, P> {
+impl<P: Problem + ?Sized> SolveInProgress<'_, P> {
     /// Runs to the end; the reason where it was stopped before its time.
-    fn go(&mut self, start: &DVector<f64>, at: &Evaluation) -> Option<Status> {
+    fn go(&mut self, start: &DVector<f64>, at: &ProgramEvaluation) -> Option<SolveStatus> {
         let unpaired = self.problem.pairs() == 0 && at.cones.count() == 0;
         let may_search = self.settings.warm_start && !self.settings.whole_sequence && piecewise_descent::is_clear(at);
         if (unpaired || may_search)
@@ -147,7 +148,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
 
     /// The last resort where no feasible point was found: the branch nearest to the least infeasible one, then
     /// those that differ in one pair; all of them where there are few pairs.
-    fn try_other_branches(&mut self) -> Option<Status> {
+    fn try_other_branches(&mut self) -> Option<SolveStatus> {
         let best = self.best.as_ref().filter(|best| !best.is_feasible(self.settings.tolerance))?;
         let x = best.x.clone();
         for pattern in piecewise_descent::patterns_around(&best.at, self.settings.enumeration_limit) {
@@ -162,8 +163,8 @@ impl<P: Problem + ?Sized> Run<'_, P> {
     fn regularise(&mut self, start: &DVector<f64>, first_relaxation: f64) -> Option<Over> {
         let mut x = start.clone();
         let mut relaxation = first_relaxation;
-        let mut last_searched: Option<Pattern> = None;
-        let mut last_pattern: Option<Pattern> = None;
+        let mut last_searched: Option<TreatmentPattern> = None;
+        let mut last_pattern: Option<TreatmentPattern> = None;
         let cone_sizes = self.problem.cone_sizes();
         let sequence = SqpSettings {
             tolerance: self.settings.tolerance,
@@ -173,11 +174,12 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         for _ in 0..LEVEL_LIMIT {
             self.steps.counts.relaxation_levels += 1;
             self.steps.relaxation = Some(relaxation);
-            let treatments = Pattern::relaxed(self.problem.pairs(), cone_sizes.len(), relaxation);
-            let rows = Rows::new(self.problem.equalities(), self.problem.inequalities(), &cone_sizes, treatments);
+            let treatments = TreatmentPattern::relaxed(self.problem.pairs(), cone_sizes.len(), relaxation);
+            let rows =
+                SmoothProgramRows::new(self.problem.equalities(), self.problem.inequalities(), &cone_sizes, treatments);
             let outcome = sqp::solve(self.problem, &rows, &self.bounds, &x, sequence, &mut self.steps, self.cancel);
             match outcome.end {
-                SqpEnd::Cancelled => return Some(Over::Stopped(Status::Cancelled)),
+                SqpEnd::Cancelled => return Some(Over::Stopped(SolveStatus::Cancelled)),
                 SqpEnd::NotFinite(quantity) => {
                     self.seen.not_finite = Some(quantity);
                     return None;
@@ -211,12 +213,12 @@ impl<P: Problem + ?Sized> Run<'_, P> {
     }
 
     /// Descends from the branch nearest to `x`; an end where the point is final or the solve has to stop.
-    fn search(&mut self, x: &DVector<f64>, at: &Evaluation) -> Option<Over> {
+    fn search(&mut self, x: &DVector<f64>, at: &ProgramEvaluation) -> Option<Over> {
         self.search_from(x, piecewise_descent::nearest_pattern(at))
     }
 
     /// Descends from the branch `pair_treatment`.
-    fn search_from(&mut self, x: &DVector<f64>, pattern: Pattern) -> Option<Over> {
+    fn search_from(&mut self, x: &DVector<f64>, pattern: TreatmentPattern) -> Option<Over> {
         let candidate = piecewise_descent::descend(
             self.problem,
             &self.bounds,
@@ -230,9 +232,9 @@ impl<P: Problem + ?Sized> Run<'_, P> {
     }
 
     /// Keeps a point that is better than the last; an end where it is final or the solve has to stop.
-    fn accept(&mut self, candidate: Candidate) -> Option<Over> {
+    fn accept(&mut self, candidate: CandidatePoint) -> Option<Over> {
         let over = match candidate.end {
-            SqpEnd::Cancelled => Some(Over::Stopped(Status::Cancelled)),
+            SqpEnd::Cancelled => Some(Over::Stopped(SolveStatus::Cancelled)),
             SqpEnd::Infeasible => {
                 self.seen.infeasible = true;
                 None
@@ -262,7 +264,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         over
     }
 
-    fn finish(mut self, start: &DVector<f64>, stopped: Option<Status>) -> Solution {
+    fn finish(mut self, start: &DVector<f64>, stopped: Option<SolveStatus>) -> ProgramSolution {
         let tolerance = self.settings.tolerance;
         let Some(candidate) = self.best.take() else {
             return empty_solution(self.problem, start, stopped.unwrap_or(self.seen.status()), self.steps);
@@ -270,9 +272,9 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         let is_feasible = candidate.is_feasible(tolerance);
         let status = match (stopped, candidate.end) {
             (Some(status), _) => status,
-            (None, SqpEnd::Settled) => Status::PatternSettled,
-            (None, SqpEnd::NotFinite(quantity)) => Status::NotFinite(quantity),
-            (None, SqpEnd::Unbounded) if is_feasible => Status::Unbounded,
+            (None, SqpEnd::Settled) => SolveStatus::PatternSettled,
+            (None, SqpEnd::NotFinite(quantity)) => SolveStatus::NotFinite(quantity),
+            (None, SqpEnd::Unbounded) if is_feasible => SolveStatus::Unbounded,
             (
                 None,
                 SqpEnd::Converged
@@ -283,20 +285,20 @@ impl<P: Problem + ?Sized> Run<'_, P> {
                 | SqpEnd::Cancelled,
             ) => match (is_feasible, candidate.stationarity) {
                 (false, _) => self.seen.status(),
-                (true, StationarityKind::Unknown) => Status::Feasible,
-                (true, _) if !self.settings.looks_beyond => Status::Solved,
+                (true, StationarityKind::Unknown) => SolveStatus::Feasible,
+                (true, _) if !self.settings.looks_beyond => SolveStatus::Solved,
                 (true, _) => {
                     let (problem, bounds, steps) = (self.problem, &self.bounds, &mut self.steps);
                     unboundedness::without_end(problem, bounds, &candidate, self.settings, steps, self.cancel)
-                        .map_or(Status::Solved, Status::UnboundedIterates)
+                        .map_or(SolveStatus::Solved, SolveStatus::UnboundedIterates)
                 }
             },
         };
         let both_zero = self.settings.biactive_tolerance;
         // A settled pattern is not refined: what its point leaves violated says how near the cones' boundary is near.
-        let left = if status == Status::PatternSettled { 10.0 * candidate.at.largest_violation() } else { 0.0 };
+        let left = if status == SolveStatus::PatternSettled { 10.0 * candidate.at.largest_violation() } else { 0.0 };
         let activities = Activities::of(&candidate.at, both_zero, both_zero.max(left));
-        Solution {
+        ProgramSolution {
             status,
             objective: candidate.at.objective,
             activity: activities.pairs,
@@ -316,11 +318,11 @@ impl<P: Problem + ?Sized> Run<'_, P> {
 /// Why a solve need not go on.
 enum Over {
     Found,
-    Stopped(Status),
+    Stopped(SolveStatus),
 }
 
 impl Over {
-    fn reason(self) -> Option<Status> {
+    fn reason(self) -> Option<SolveStatus> {
         match self {
             Self::Found => None,
             Self::Stopped(status) => Some(status),
@@ -328,23 +330,23 @@ impl Over {
     }
 }
 
-impl Ends {
-    fn status(self) -> Status {
+impl InfeasibleEnds {
+    fn status(self) -> SolveStatus {
         if let Some(quantity) = self.not_finite {
-            Status::NotFinite(quantity)
+            SolveStatus::NotFinite(quantity)
         } else if self.infeasible {
-            Status::Infeasible
+            SolveStatus::Infeasible
         } else if self.iteration_limit {
-            Status::IterationLimit
+            SolveStatus::IterationLimit
         } else if self.unbounded {
-            Status::Unbounded
+            SolveStatus::Unbounded
         } else {
-            Status::NoProgress
+            SolveStatus::NoProgress
         }
     }
 }
 
-fn is_better(candidate: &Candidate, best: &Candidate, tolerance: f64) -> bool {
+fn is_better(candidate: &CandidatePoint, best: &CandidatePoint, tolerance: f64) -> bool {
     match (candidate.is_feasible(tolerance), best.is_feasible(tolerance)) {
         (true, false) => true,
         (false, true) => false,
@@ -357,10 +359,10 @@ fn is_better(candidate: &Candidate, best: &Candidate, tolerance: f64) -> bool {
 fn empty_solution<P: Problem + ?Sized>(
     problem: &P,
     start: &DVector<f64>,
-    status: Status,
+    status: SolveStatus,
     steps: StepSolver,
-) -> Solution {
-    Solution {
+) -> ProgramSolution {
+    ProgramSolution {
         status,
         x: start.clone(),
         objective: f64::NAN,

@@ -24,7 +24,7 @@
 use nalgebra::DVector;
 
 use crate::complementarity::mpec::program::cone::ConeActivity;
-use crate::complementarity::mpec::program::evaluation::{Evaluation, Quantity};
+use crate::complementarity::mpec::program::evaluation::{ProgramEvaluation, Quantity};
 use crate::complementarity::mpec::program::problem::Problem;
 use crate::complementarity::mpec::program::sparse_rows::SparseRows;
 use crate::complementarity::mpec::quadratic_program::driver::StepSolver;
@@ -32,8 +32,8 @@ use crate::complementarity::mpec::quadratic_program::interior_point::{QuadraticF
 use crate::complementarity::mpec::result::StationarityKind;
 use crate::complementarity::mpec::settings::Settings;
 use crate::complementarity::mpec::smooth_program::cone_rows::ConeTreatment;
-use crate::complementarity::mpec::smooth_program::pair_treatment::{PairTreatment, Pattern};
-use crate::complementarity::mpec::smooth_program::relaxation::{Multipliers, Rows};
+use crate::complementarity::mpec::smooth_program::pair_treatment::{PairTreatment, TreatmentPattern};
+use crate::complementarity::mpec::smooth_program::relaxation::{Multipliers, SmoothProgramRows};
 use crate::resources::cancel::CancelFlag;
 
 /// Length of a projected gradient that counts as zero, relative to `1 + ‖∇f‖∞`.
@@ -44,12 +44,12 @@ const ENUMERATION_CEILING: usize = 16;
 
 /// What is known of a point.
 #[derive(Debug, Clone)]
-pub struct Verdict {
+pub struct StationarityVerdict {
     pub kind: StationarityKind,
     /// Multipliers that prove the kind, where it is proved by multipliers.
     pub multipliers: Option<Multipliers>,
     /// A branch with first-order descent.
-    pub descent: Option<Pattern>,
+    pub descent: Option<TreatmentPattern>,
 }
 
 /// Why no verdict was reached.
@@ -60,18 +60,22 @@ pub enum NoVerdict {
 }
 
 /// The pairs that are biactive at `at`.
-pub fn biactive(at: &Evaluation, tolerance: f64) -> Vec<usize> {
+pub fn biactive(at: &ProgramEvaluation, tolerance: f64) -> Vec<usize> {
     (0..at.first.len()).filter(|&i| at.first[i] <= tolerance && at.second[i] <= tolerance).collect()
 }
 
 /// Whether any pair or cone pair is.
-pub fn is_biactive(at: &Evaluation, tolerance: f64) -> bool {
+pub fn is_biactive(at: &ProgramEvaluation, tolerance: f64) -> bool {
     !biactive(at, tolerance).is_empty()
         || at.cones.pairs().any(|(a, b)| ConeActivity::of(a, b, tolerance).is_biactive())
 }
 
 /// The branches that meet at each biactive cone pair, and whether that is all of them.
-fn cone_branches(at: &Evaluation, pattern: &Pattern, tolerance: f64) -> (Vec<(usize, Vec<ConeTreatment>)>, bool) {
+fn cone_branches(
+    at: &ProgramEvaluation,
+    pattern: &TreatmentPattern,
+    tolerance: f64,
+) -> (Vec<(usize, Vec<ConeTreatment>)>, bool) {
     let mut complete = true;
     let mut branches = Vec::new();
     for (pair, (a, b)) in at.cones.pairs().enumerate() {
@@ -99,18 +103,18 @@ fn cone_branches(at: &Evaluation, pattern: &Pattern, tolerance: f64) -> (Vec<(us
     (branches, complete)
 }
 
-struct Judge<'a> {
-    at: &'a Evaluation,
+struct StationarityTest<'a> {
+    at: &'a ProgramEvaluation,
     x: &'a DVector<f64>,
     bounds: &'a (DVector<f64>, DVector<f64>),
     cancel: &'a CancelFlag,
 }
 
-impl Judge<'_> {
+impl StationarityTest<'_> {
     /// Projected gradient, its first-order decrease and the multipliers under the given treatments.
-    fn project(&self, treatments: Pattern, steps: &mut StepSolver) -> Result<Option<Projection>, NoVerdict> {
+    fn project(&self, treatments: TreatmentPattern, steps: &mut StepSolver) -> Result<Option<Projection>, NoVerdict> {
         let sizes: Vec<usize> = self.at.cones.pairs().map(|(a, _)| a.len()).collect();
-        let rows = Rows::new(self.at.equality.len(), self.at.inequality.len(), &sizes, treatments);
+        let rows = SmoothProgramRows::new(self.at.equality.len(), self.at.inequality.len(), &sizes, treatments);
         let n = self.x.len();
         let program: QuadraticProgram = rows.linearise(self.at, self.x, self.bounds, SparseRows::identity(n));
         steps.forget();
@@ -149,13 +153,13 @@ struct Projection {
 pub fn classify<P: Problem + ?Sized>(
     problem: &P,
     x: &DVector<f64>,
-    pattern: &Pattern,
+    pattern: &TreatmentPattern,
     multipliers: Option<&Multipliers>,
     settings: &Settings,
     steps: &mut StepSolver,
     cancel: &CancelFlag,
-) -> Result<Verdict, NoVerdict> {
-    let mut at = Evaluation::new(problem);
+) -> Result<StationarityVerdict, NoVerdict> {
+    let mut at = ProgramEvaluation::new(problem);
     at.update_values(problem, x).map_err(NoVerdict::NotFinite)?;
     let both = biactive(&at, settings.biactive_tolerance);
     let signs_hold = |multipliers: &Multipliers| {
@@ -165,33 +169,64 @@ pub fn classify<P: Problem + ?Sized>(
     };
     let (cones, cones_complete) = cone_branches(&at, pattern, settings.biactive_tolerance);
     if cones.is_empty() && multipliers.is_some_and(signs_hold) {
-        return Ok(Verdict { kind: StationarityKind::Strong, multipliers: None, descent: None });
+        return Ok(StationarityVerdict { kind: StationarityKind::Strong, multipliers: None, descent: None });
     }
     at.update_derivatives(problem, x).map_err(NoVerdict::NotFinite)?;
     let bounds = problem.bounds();
-    let judge = Judge { at: &at, x, bounds: &bounds, cancel };
-    let with_biactive = |choose: &dyn Fn(usize) -> PairTreatment| {
-        let mut treatments = pattern.clone();
-        for (place, &i) in both.iter().enumerate() {
-            treatments.pairs[i] = choose(place);
-        }
-        treatments
-    };
-
+    let judge = StationarityTest { at: &at, x, bounds: &bounds, cancel };
     if cones.is_empty()
-        && let Some(relaxed) = judge.project(with_biactive(&|_| PairTreatment::BothFree), steps)?
+        && let Some(relaxed) = judge.project(with_biactive(pattern, &both, &|_| PairTreatment::BothFree), steps)?
         && relaxed.is_zero
     {
         let multipliers = Some(relaxed.multipliers);
-        return Ok(Verdict { kind: StationarityKind::Strong, multipliers, descent: None });
+        return Ok(StationarityVerdict { kind: StationarityKind::Strong, multipliers, descent: None });
     }
 
-    let mut best: Option<(f64, Pattern)> = None;
+    let BranchProjections { best, stationary, all_judged } =
+        project_onto_branches(&judge, pattern, &both, &cones, settings.enumeration_limit, steps)?;
+    let descent = |best: Option<(f64, TreatmentPattern)>| best.map(|(_, treatments)| treatments);
+    if !cones.is_empty() {
+        let kind = match (all_judged && cones_complete && best.is_none(), &stationary) {
+            (true, _) => StationarityKind::Branch,
+            (false, Some(_)) => StationarityKind::OneBranch,
+            (false, None) => StationarityKind::Unknown,
+        };
+        return Ok(StationarityVerdict { kind, multipliers: stationary, descent: descent(best) });
+    }
+    let tight = judge.project(with_biactive(pattern, &both, &|_| PairTreatment::BothZero), steps)?;
+    let weak = match &tight {
+        Some(projection) if projection.is_zero => sign_kind(&projection.multipliers, &both, settings.tolerance),
+        Some(_) | None => StationarityKind::Unknown,
+    };
+    let kind = if all_judged && best.is_none() { StationarityKind::Branch } else { weak };
+    let multipliers = tight.filter(|projection| projection.is_zero).map(|projection| projection.multipliers);
+    Ok(StationarityVerdict { kind, multipliers, descent: descent(best) })
+}
+
+/// What the projections onto the branches that meet at a point tell.
+struct BranchProjections {
+    /// The branch along which the objective falls most, if it does along one, with that objective.
+    best: Option<(f64, TreatmentPattern)>,
+    /// Multipliers of the first branch that is stationary.
+    stationary: Option<Multipliers>,
+    all_judged: bool,
+}
+
+/// Projects onto every branch, if they are not too many.
+fn project_onto_branches(
+    judge: &StationarityTest<'_>,
+    pattern: &TreatmentPattern,
+    both: &[usize],
+    cones: &[(usize, Vec<ConeTreatment>)],
+    enumeration_limit: usize,
+    steps: &mut StepSolver,
+) -> Result<BranchProjections, NoVerdict> {
+    let mut best: Option<(f64, TreatmentPattern)> = None;
     let mut stationary: Option<Multipliers> = None;
     let choices: Vec<usize> =
         both.iter().map(|_| 2).chain(cones.iter().map(|(_, treatments)| treatments.len())).collect();
     let branches = choices.iter().try_fold(1_usize, |count, choices| count.checked_mul(*choices));
-    let bound = 1 << settings.enumeration_limit.min(ENUMERATION_CEILING);
+    let bound = 1 << enumeration_limit.min(ENUMERATION_CEILING);
     let branches = branches.filter(|branches| *branches <= bound);
     let mut all_judged = branches.is_some();
     if let Some(branches) = branches {
@@ -200,7 +235,7 @@ pub fn classify<P: Problem + ?Sized>(
             let digit = |place: usize| branch / choices[..place].iter().product::<usize>() % choices[place];
             let zero_member =
                 |place: usize| if digit(place) == 0 { PairTreatment::FirstZero } else { PairTreatment::SecondZero };
-            let mut treatments = with_biactive(&zero_member);
+            let mut treatments = with_biactive(pattern, both, &zero_member);
             for (place, (pair, of_cone)) in cones.iter().enumerate() {
                 treatments.cones[*pair] = of_cone[digit(both.len() + place)];
             }
@@ -217,23 +252,20 @@ pub fn classify<P: Problem + ?Sized>(
             }
         }
     }
-    let descent = |best: Option<(f64, Pattern)>| best.map(|(_, treatments)| treatments);
-    if !cones.is_empty() {
-        let kind = match (all_judged && cones_complete && best.is_none(), &stationary) {
-            (true, _) => StationarityKind::Branch,
-            (false, Some(_)) => StationarityKind::OneBranch,
-            (false, None) => StationarityKind::Unknown,
-        };
-        return Ok(Verdict { kind, multipliers: stationary, descent: descent(best) });
+    Ok(BranchProjections { best, stationary, all_judged })
+}
+
+/// A pattern with the biactive pairs treated by their place among these.
+fn with_biactive(
+    pattern: &TreatmentPattern,
+    both: &[usize],
+    choose: &dyn Fn(usize) -> PairTreatment,
+) -> TreatmentPattern {
+    let mut treatments = pattern.clone();
+    for (place, &i) in both.iter().enumerate() {
+        treatments.pairs[i] = choose(place);
     }
-    let tight = judge.project(with_biactive(&|_| PairTreatment::BothZero), steps)?;
-    let weak = match &tight {
-        Some(projection) if projection.is_zero => sign_kind(&projection.multipliers, &both, settings.tolerance),
-        Some(_) | None => StationarityKind::Unknown,
-    };
-    let kind = if all_judged && best.is_none() { StationarityKind::Branch } else { weak };
-    let multipliers = tight.filter(|projection| projection.is_zero).map(|projection| projection.multipliers);
-    Ok(Verdict { kind, multipliers, descent: descent(best) })
+    treatments
 }
 
 /// The kind that the signs of the tightened program's multipliers prove.

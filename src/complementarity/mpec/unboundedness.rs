@@ -10,13 +10,13 @@
 
 use nalgebra::DVector;
 
-use crate::complementarity::mpec::piecewise_descent::{self, Candidate};
-use crate::complementarity::mpec::program::evaluation::Evaluation;
+use crate::complementarity::mpec::piecewise_descent::{self, CandidatePoint};
+use crate::complementarity::mpec::program::evaluation::ProgramEvaluation;
 use crate::complementarity::mpec::program::problem::Problem;
 use crate::complementarity::mpec::quadratic_program::driver::StepSolver;
 use crate::complementarity::mpec::result::Growth;
 use crate::complementarity::mpec::settings::Settings;
-use crate::complementarity::mpec::smooth_program::relaxation::Rows;
+use crate::complementarity::mpec::smooth_program::relaxation::SmoothProgramRows;
 use crate::complementarity::mpec::smooth_program::sqp::{self, SqpEnd, SqpSettings};
 use crate::resources::cancel::CancelFlag;
 
@@ -35,13 +35,13 @@ const ROUNDING: f64 = 1e-13;
 pub fn without_end<P: Problem + ?Sized>(
     problem: &P,
     bounds: &(DVector<f64>, DVector<f64>),
-    candidate: &Candidate,
+    candidate: &CandidatePoint,
     settings: &Settings,
     steps: &mut StepSolver,
     cancel: &CancelFlag,
 ) -> Option<Growth> {
     let x = &candidate.x;
-    let mut at = Evaluation::new(problem);
+    let mut at = ProgramEvaluation::new(problem);
     at.update_values(problem, x).ok()?;
     at.update_derivatives(problem, x).ok()?;
     let gain = gains(&at, candidate);
@@ -50,7 +50,7 @@ pub fn without_end<P: Problem + ?Sized>(
     let mut growing: Vec<usize> = (0..x.len()).filter(|&j| gain[j] > GAINS * size).collect();
     growing.sort_by(|a, b| gain[*b].total_cmp(&gain[*a]).then(a.cmp(b)));
     let pattern = piecewise_descent::nearest_pattern(&at);
-    let rows = Rows::new(problem.equalities(), problem.inequalities(), &problem.cone_sizes(), pattern);
+    let rows = SmoothProgramRows::new(problem.equalities(), problem.inequalities(), &problem.cone_sizes(), pattern);
     let (tolerance, iteration_limit) = (settings.tolerance, settings.iteration_limit);
     let sequence = SqpSettings { tolerance, iteration_limit, stop_when_settled: false };
     growing.into_iter().take(MOST_VARIABLES).find_map(|variable| {
@@ -81,7 +81,7 @@ pub fn without_end<P: Problem + ?Sized>(
 }
 
 /// What growing each variable by itself gains at first order: `-r_j x_j`, `r` the gradient of the Lagrangian.
-fn gains(at: &Evaluation, candidate: &Candidate) -> DVector<f64> {
+fn gains(at: &ProgramEvaluation, candidate: &CandidatePoint) -> DVector<f64> {
     let multipliers = &candidate.multipliers;
     let mut rest = at.gradient.clone();
     rest -= at.equality_jacobian.tr_mul(&multipliers.equality);

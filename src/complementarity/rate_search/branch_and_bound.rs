@@ -7,8 +7,11 @@
 //! on the sign of the load rate. Every ray comes from the exact equations of its combination, so that the search decides
 //! only where to look.
 
+use crate::complementarity::rate_search::single_combination;
+use crate::complementarity::rate_search::unbranched;
 use crate::complementarity::rates::lemke::lemke;
 use crate::complementarity::rates::rate_problem::{Choice, Entity, RateProblem, Signed};
+use crate::complementarity::rates::simplex_dictionary::simplex;
 use crate::complementarity::rates::simplex_dictionary::{Dictionary, Feasibility};
 use crate::resources::budget::{self, Taken};
 use crate::resources::cancel::CancelFlag;
@@ -92,7 +95,7 @@ fn explore_by(
     effort: Effort<'_>,
     further: impl Fn(&RateProblem, &CancelFlag) -> Vec<Vec<usize>>,
 ) -> Findings {
-    let mut search = Search {
+    let mut search = BranchAndBound {
         problem,
         findings: Findings::default(),
         seen: BTreeSet::new(),
@@ -102,14 +105,14 @@ fn explore_by(
         coupling: DMatrix::zeros(0, 0),
         cost: 1 + (problem.forms.nrows() * problem.weights()) as u64 / UNIT_OF_WORK,
     };
-    if !search.certified_at_once() {
+    if !unbranched::certified_at_once(&mut search) {
         for chosen in first() {
-            search.examine(&chosen);
+            single_combination::examine(&mut search, &chosen);
         }
         search.branch();
         if search.findings.unexplored > 0 {
             for chosen in further(problem, effort.cancel) {
-                search.examine(&chosen);
+                single_combination::examine(&mut search, &chosen);
             }
         }
     }
@@ -120,7 +123,7 @@ fn explore_by(
 }
 
 /// Decided entities and the cone that is left.
-pub(crate) struct Node {
+pub(crate) struct SearchNode {
     pub chosen: Vec<Option<usize>>,
     pub dictionary: Dictionary,
     /// Sign of the load rate.
@@ -133,12 +136,12 @@ pub(crate) struct Node {
 
 /// A child that has not been looked at.
 struct Task {
-    parent: Rc<Node>,
+    parent: Rc<SearchNode>,
     decision: Option<(usize, usize)>,
 }
 
 /// The search as far as it has come.
-pub(crate) struct Search<'a> {
+pub(crate) struct BranchAndBound<'a> {
     pub problem: &'a RateProblem,
     pub findings: Findings,
     /// Combinations whose equations were solved.
@@ -154,7 +157,7 @@ pub(crate) struct Search<'a> {
     pub cost: u64,
 }
 
-impl Search<'_> {
+impl BranchAndBound<'_> {
     fn branch(&mut self) {
         self.common = self.problem.entities.iter().map(Entity::common).collect();
         let Some(dictionary) = Dictionary::new(self.problem, &self.common) else {
@@ -166,16 +169,16 @@ impl Search<'_> {
             let mut dictionary = dictionary.clone();
             dictionary.require(None, sign);
             let chosen = vec![None; self.problem.entities.len()];
-            Task { parent: Rc::new(Node { chosen, dictionary, sign, in_set: false, last: None }), decision: None }
+            Task { parent: Rc::new(SearchNode { chosen, dictionary, sign, in_set: false, last: None }), decision: None }
         };
-        let settled = self.settled_signs();
+        let settled = unbranched::settled_signs(self);
         let mut tasks: Vec<Task> = [-1.0, 1.0].into_iter().filter(|sign| !settled.contains(sign)).map(root).collect();
         if tasks.is_empty() {
             // Rays along which the load rests are left.
             let mut dictionary = dictionary.clone();
             if dictionary.rest_load() {
                 let chosen = vec![None; self.problem.entities.len()];
-                let node = Node { chosen, dictionary, sign: 1.0, in_set: false, last: None };
+                let node = SearchNode { chosen, dictionary, sign: 1.0, in_set: false, last: None };
                 tasks.push(Task { parent: Rc::new(node), decision: None });
             }
         }
@@ -223,7 +226,7 @@ impl Search<'_> {
     /// Closes a node or gives its children, the most promising last.
     fn look_at(&mut self, task: Task) -> Vec<Task> {
         let Some(mut node) = decide(self.problem, task) else { return Vec::new() };
-        if node.dictionary.feasibility() == Feasibility::OnlyLines
+        if simplex::feasibility(&mut node.dictionary) == Feasibility::OnlyLines
             && !node.dictionary.is_lines_only()
             && !node.dictionary.leave_lines()
         {
@@ -232,10 +235,10 @@ impl Search<'_> {
         let open: Vec<usize> = (0..node.chosen.len()).filter(|&index| node.chosen[index].is_none()).collect();
         if open.is_empty() {
             let chosen: Vec<usize> = node.chosen.iter().flatten().copied().collect();
-            self.examine(&chosen);
+            single_combination::examine(self, &chosen);
             return Vec::new();
         }
-        node.dictionary.drop_forced();
+        simplex::drop_forced(&mut node.dictionary);
         let dictionary = &node.dictionary;
         let dimension = dictionary.dimension() + usize::from(!dictionary.is_lines_only());
         if dimension == 0 {
@@ -249,18 +252,18 @@ impl Search<'_> {
                 options[entity] = (0..choices.len()).filter(|&index| fits(dictionary, &choices[index])).collect();
             }
             if options.iter().all(|options| !options.is_empty()) {
-                self.examine_all(&options);
+                single_combination::examine_all(self, &options);
             }
             return Vec::new();
         }
-        if self.certified_below(&node, &open) {
+        if unbranched::certified_below(self, &node, &open) {
             return Vec::new();
         }
         if !node.in_set
             && let Some(filled) = self.filled(&node)
         {
             // Whatever is left solves the problem: a set of more than one dimension.
-            self.examine(&filled);
+            single_combination::examine(self, &filled);
             node.in_set = true;
         }
         let entity = self.next(&node, &open);
@@ -278,7 +281,7 @@ impl Search<'_> {
     /// The entity to decide next. Of those that do not fit the node's point, the one that feels the last decision most:
     /// a decision that cannot be is then refuted near by, in a few nodes. Where all fit, the first that still decides
     /// something.
-    fn next(&self, node: &Node, open: &[usize]) -> usize {
+    fn next(&self, node: &SearchNode, open: &[usize]) -> usize {
         let mut next: Option<((f64, f64), usize)> = None;
         for &entity in open {
             let fit = self.problem.entities[entity]
@@ -302,7 +305,7 @@ impl Search<'_> {
     }
 
     /// A combination under which everything left is a solution, if there is one.
-    fn filled(&self, node: &Node) -> Option<Vec<usize>> {
+    fn filled(&self, node: &SearchNode) -> Option<Vec<usize>> {
         node.chosen
             .iter()
             .zip(self.problem.entities.iter().zip(&self.common))
@@ -335,9 +338,9 @@ fn fits(dictionary: &Dictionary, choice: &Choice) -> bool {
 }
 
 /// The node of a task; `None` where nothing but zero is left.
-fn decide(problem: &RateProblem, task: Task) -> Option<Node> {
+fn decide(problem: &RateProblem, task: Task) -> Option<SearchNode> {
     let parent = &task.parent;
-    let mut node = Node {
+    let mut node = SearchNode {
         chosen: parent.chosen.clone(),
         dictionary: parent.dictionary.clone(),
         sign: parent.sign,

@@ -21,6 +21,7 @@ use crate::complementarity::rate_search::slip_onset_direction::{SECTORS, Touch, 
 use crate::complementarity::rates::combinations::{combinations, count};
 use crate::complementarity::rates::gauss_seidel::{Local, own_column, rising};
 use crate::complementarity::rates::rate_problem::{RateProblem, Signed};
+use crate::complementarity::rates::ray;
 use crate::resources::budget;
 use crate::resources::cancel::CancelFlag;
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2, Vector3};
@@ -58,13 +59,13 @@ enum Own {
 pub(crate) fn slips(problem: &RateProblem, touches: &[Touch], cancel: &CancelFlag) -> AtOnce {
     let nothing = AtOnce { rays: Vec::new(), complete: false };
     let Some(rising) = rising(problem) else { return nothing };
-    let Some(system) = System::new(problem, touches) else { return nothing };
+    let Some(system) = SlipEquations::new(problem, touches) else { return nothing };
     let mut complete = system.is_decoupled();
     let mut rays: Vec<Turning> = Vec::new();
     for load in [rising, -rising] {
         let mut weights = DVector::zeros(problem.weights());
         weights[problem.weights() - 1] = load;
-        let alone: Vec<Vec<Solution>> = system.nodes.iter().map(|node| node.solutions(problem, &weights)).collect();
+        let alone: Vec<Vec<NodeSolution>> = system.nodes.iter().map(|node| node.solutions(problem, &weights)).collect();
         let places: Vec<Vec<usize>> = alone.iter().map(|one| (0..one.len().max(1)).collect()).collect();
         complete &= count(&places) <= MOST_STARTS;
         for chosen in combinations(&places, MOST_STARTS) {
@@ -93,7 +94,7 @@ pub(crate) fn slips(problem: &RateProblem, touches: &[Touch], cancel: &CancelFla
 }
 
 /// A touching node with the columns of its velocities.
-struct Node<'a> {
+struct TouchingNode<'a> {
     touch: &'a Touch,
     columns: [usize; 3],
     /// Reaction rates for its own velocities, (normal, first tangent, second tangent).
@@ -102,35 +103,35 @@ struct Node<'a> {
 
 /// What one node does with the others as they are.
 #[derive(Clone, Copy)]
-struct Solution {
+struct NodeSolution {
     own: Own,
     velocity: Vector3<f64>,
 }
 
 /// What every entity does: an option, or what a touching node does.
-struct Pattern {
+struct OptionPattern {
     chosen: Vec<usize>,
     own: Vec<Own>,
 }
 
 /// An equation's derivative by the weights, and by the angle in a column.
-type Row = (DVector<f64>, Option<(usize, f64)>);
+type EquationGradient = (DVector<f64>, Option<(usize, f64)>);
 
-struct System<'a> {
+struct SlipEquations<'a> {
     problem: &'a RateProblem,
-    nodes: Vec<Node<'a>>,
+    nodes: Vec<TouchingNode<'a>>,
     /// The other entities.
     others: Vec<(usize, Local)>,
 }
 
-impl<'a> System<'a> {
+impl<'a> SlipEquations<'a> {
     /// `None` where some entity is no plain contact.
     fn new(problem: &'a RateProblem, touches: &'a [Touch]) -> Option<Self> {
         let node = |touch: &'a Touch| {
             let [normal, first, second] = touch.velocities.map(|form| own_column(problem, form));
             let columns = [normal?, first?, second?];
             let stiffness = Matrix3::from_fn(|row, column| problem.forms[(touch.forces[row], columns[column])]);
-            Some(Node { touch, columns, stiffness })
+            Some(TouchingNode { touch, columns, stiffness })
         };
         let nodes = touches.iter().map(node).collect::<Option<Vec<_>>>()?;
         let is_other = |entity: &usize| touches.iter().all(|touch| touch.entity != *entity);
@@ -145,7 +146,7 @@ impl<'a> System<'a> {
     /// nothing moves without the load, and what each does alone is all that it may do.
     fn is_decoupled(&self) -> bool {
         let last = self.problem.weights() - 1;
-        let apart = |node: &Node<'_>| {
+        let apart = |node: &TouchingNode<'_>| {
             let rows = node.touch.forces.map(|form| self.problem.forms.row(form));
             let largest = rows.iter().fold(0.0_f64, |largest, row| largest.max(row.amax()));
             let others = (0..last).filter(|column| !node.columns.contains(column));
@@ -155,9 +156,9 @@ impl<'a> System<'a> {
     }
 
     /// Sweeps until nothing changes much.
-    fn swept(&self, mut weights: DVector<f64>, cancel: &CancelFlag) -> Option<(Pattern, DVector<f64>)> {
+    fn swept(&self, mut weights: DVector<f64>, cancel: &CancelFlag) -> Option<(OptionPattern, DVector<f64>)> {
         let mut pattern =
-            Pattern { chosen: vec![0; self.problem.entities.len()], own: vec![Own::Stick; self.nodes.len()] };
+            OptionPattern { chosen: vec![0; self.problem.entities.len()], own: vec![Own::Stick; self.nodes.len()] };
         for _ in 0..MOST_SWEEPS {
             if cancel.is_cancelled() {
                 return None;
@@ -188,7 +189,7 @@ impl<'a> System<'a> {
     }
 
     /// Newton's method on weights and angles; the ray, if it satisfies all inequalities.
-    fn refined(&self, mut pattern: Pattern, mut weights: DVector<f64>) -> Option<Turning> {
+    fn refined(&self, mut pattern: OptionPattern, mut weights: DVector<f64>) -> Option<Turning> {
         let count = weights.len();
         let mut smallest = f64::INFINITY;
         for _ in 0..MOST_ITERATIONS {
@@ -217,12 +218,12 @@ impl<'a> System<'a> {
     }
 
     /// Values and derivatives of what is zero under a pattern; the last weight is held.
-    fn equations(&self, pattern: &Pattern, weights: &DVector<f64>) -> Option<(DMatrix<f64>, DVector<f64>)> {
+    fn equations(&self, pattern: &OptionPattern, weights: &DVector<f64>) -> Option<(DMatrix<f64>, DVector<f64>)> {
         let count = weights.len();
         let angles = pattern.own.iter().filter(|own| matches!(own, Own::Slip { .. })).count();
         let _rows = budget::take::<f64>(count * (count + angles));
         budget::spend(4 * count * (count + angles));
-        let mut rows: Vec<Row> = Vec::new();
+        let mut rows: Vec<EquationGradient> = Vec::new();
         let plain = |form: usize| (self.problem.forms.row(form).transpose(), None);
         for (entity, _) in &self.others {
             let zero = &self.problem.entities[*entity].options[pattern.chosen[*entity]].zero;
@@ -269,13 +270,13 @@ impl<'a> System<'a> {
         Some((matrix, values))
     }
 
-    fn ray(&self, pattern: &Pattern, weights: &DVector<f64>) -> Option<Turning> {
-        let size = self.problem.size(weights);
+    fn ray(&self, pattern: &OptionPattern, weights: &DVector<f64>) -> Option<Turning> {
+        let size = ray::size(&self.problem, weights);
         if !(size.is_finite() && size > 0.0) {
             return None;
         }
         let weights = weights / size;
-        let along = self.problem.along(&weights);
+        let along = ray::forms_along(&self.problem, &weights);
         let force = along.force_tolerance();
         let mut chosen = pattern.chosen.clone();
         let mut slips = Vec::new();
@@ -323,12 +324,12 @@ impl<'a> System<'a> {
     }
 }
 
-impl Node<'_> {
+impl TouchingNode<'_> {
     fn velocity(&self, weights: &DVector<f64>) -> Vector3<f64> {
         Vector3::from(self.columns.map(|column| weights[column]))
     }
 
-    fn place(&self, weights: &mut DVector<f64>, solution: &Solution) {
+    fn place(&self, weights: &mut DVector<f64>, solution: &NodeSolution) {
         self.columns.iter().zip(solution.velocity.iter()).for_each(|(column, value)| weights[*column] = *value);
     }
 
@@ -356,7 +357,7 @@ impl Node<'_> {
     }
 
     /// All that the node may do with the others as they are.
-    fn solutions(&self, problem: &RateProblem, weights: &DVector<f64>) -> Vec<Solution> {
+    fn solutions(&self, problem: &RateProblem, weights: &DVector<f64>) -> Vec<NodeSolution> {
         let mut held = weights.clone();
         self.columns.iter().for_each(|column| held[*column] = 0.0);
         let load = self.forces(problem, &held);
@@ -365,7 +366,7 @@ impl Node<'_> {
         let traction = load.fixed_rows::<2>(1).into_owned();
         let mut found = Vec::new();
         if friction * load[0] - traction.norm() >= -ROUND_OFF * size {
-            found.push(Solution { own: Own::Stick, velocity: Vector3::zeros() });
+            found.push(NodeSolution { own: Own::Stick, velocity: Vector3::zeros() });
         }
         let at = |angle: f64| {
             let direction = Vector2::new(angle.cos(), angle.sin());
@@ -393,13 +394,13 @@ impl Node<'_> {
             let (_, speed, pressed) = at(angle);
             if speed > 0.0 && speed.is_finite() && pressed > ROUND_OFF * size {
                 let velocity = Vector3::new(0.0, speed * angle.cos(), speed * angle.sin());
-                found.push(Solution { own: Own::Slip { angle }, velocity });
+                found.push(NodeSolution { own: Own::Slip { angle }, velocity });
             }
         }
         if let Some(velocity) = self.stiffness.lu().solve(&-load)
             && velocity[0] >= -ROUND_OFF * velocity.amax()
         {
-            found.push(Solution { own: Own::Free, velocity });
+            found.push(NodeSolution { own: Own::Free, velocity });
         }
         found
     }

@@ -1,7 +1,8 @@
 //! Examining combinations: each one's exact line, and the rays that it holds.
 
-use crate::complementarity::rate_search::branch_and_bound::{Ray, Search};
+use crate::complementarity::rate_search::branch_and_bound::{BranchAndBound, Ray};
 use crate::complementarity::rates::combinations::{combinations, count};
+use crate::complementarity::rates::ray;
 use crate::complementarity::rates::ray::{Along, Line};
 use nalgebra::DVector;
 
@@ -24,106 +25,104 @@ pub(crate) enum Examined {
     Before,
 }
 
-impl Search<'_> {
-    pub(crate) fn examine(&mut self, chosen: &[usize]) -> Examined {
-        if !self.seen.insert(chosen.to_vec()) {
-            return Examined::Before;
+pub(crate) fn examine(search: &mut BranchAndBound<'_>, chosen: &[usize]) -> Examined {
+    if !search.seen.insert(chosen.to_vec()) {
+        return Examined::Before;
+    }
+    search.held.add::<usize>(chosen.len());
+    search.findings.examined += search.cost;
+    match ray::line(&search.problem, chosen) {
+        Line::Nothing => Examined::Nothing,
+        Line::Along(weights) => {
+            let along = ray::forms_along(&search.problem, &weights);
+            let second = along.violated(chosen);
+            let along = along.reversed();
+            let first = along.violated(chosen);
+            let is_ray = first.is_empty() || second.is_empty();
+            if first.is_empty() {
+                keep(search, chosen, -&weights, &along);
+            }
+            if second.is_empty() {
+                keep(search, chosen, weights, &along.reversed());
+            }
+            match is_ray {
+                true => Examined::Rays,
+                false if first.len() < second.len() => Examined::Violated(first),
+                false => Examined::Violated(second),
+            }
         }
-        self.held.add::<usize>(chosen.len());
-        self.findings.examined += self.cost;
-        match self.problem.line(chosen) {
-            Line::Nothing => Examined::Nothing,
-            Line::Along(weights) => {
-                let along = self.problem.along(&weights);
-                let second = along.violated(chosen);
-                let along = along.reversed();
-                let first = along.violated(chosen);
-                let is_ray = first.is_empty() || second.is_empty();
-                if first.is_empty() {
-                    self.keep(chosen, -&weights, &along);
-                }
-                if second.is_empty() {
-                    self.keep(chosen, weights, &along.reversed());
-                }
-                match is_ray {
-                    true => Examined::Rays,
-                    false if first.len() < second.len() => Examined::Violated(first),
-                    false => Examined::Violated(second),
-                }
+        Line::Plane(basis) => {
+            search.findings.degenerate = true;
+            for weights in ray::edges(&search.problem, chosen, &basis) {
+                let along = ray::forms_along(&search.problem, &weights);
+                keep(search, chosen, weights, &along);
             }
-            Line::Plane(basis) => {
-                self.findings.degenerate = true;
-                for weights in self.problem.edges(chosen, &basis) {
-                    let along = self.problem.along(&weights);
-                    self.keep(chosen, weights, &along);
-                }
-                if self.findings.planes.len() < MOST_PLANES {
-                    self.held.add::<f64>(basis.len());
-                    self.findings.planes.push(basis);
-                }
-                Examined::Nothing
+            if search.findings.planes.len() < MOST_PLANES {
+                search.held.add::<f64>(basis.len());
+                search.findings.planes.push(basis);
             }
-            Line::Still | Line::NotFinite => {
-                self.findings.degenerate = true;
-                Examined::Nothing
-            }
+            Examined::Nothing
+        }
+        Line::Still | Line::NotFinite => {
+            search.findings.degenerate = true;
+            Examined::Nothing
         }
     }
+}
 
-    fn keep(&mut self, chosen: &[usize], weights: DVector<f64>, along: &Along<'_>) {
-        let size = weights.amax();
-        if !self.findings.rays.iter().any(|ray| (&ray.weights - &weights).amax() <= SAME * size) {
-            let fitting = along.fitting(chosen);
-            let weak = along.is_weak(&fitting);
-            // A list of its own for each entity, twice.
-            self.held.add::<f64>(weights.len() + 8 * chosen.len());
-            let in_doubt = along.in_doubt(chosen);
-            self.findings.rays.push(Ray { weights, fitting, in_doubt, weak });
-        }
+fn keep(search: &mut BranchAndBound<'_>, chosen: &[usize], weights: DVector<f64>, along: &Along<'_>) {
+    let size = weights.amax();
+    if !search.findings.rays.iter().any(|ray| (&ray.weights - &weights).amax() <= SAME * size) {
+        let fitting = along.fitting(chosen);
+        let weak = along.is_weak(&fitting);
+        // A list of its own for each entity, twice.
+        search.held.add::<f64>(weights.len() + 8 * chosen.len());
+        let in_doubt = along.in_doubt(chosen);
+        search.findings.rays.push(Ray { weights, fitting, in_doubt, weak });
     }
+}
 
-    /// Examines the combinations of the options given for each entity, which all fit one line, hold first.
-    ///
-    /// Where many options are in doubt there are too many combinations to try: what the first one violates is changed,
-    /// and so on until a combination holds.
-    pub(crate) fn examine_all(&mut self, options: &[Vec<usize>]) {
-        let mut places = vec![0; options.len()];
-        let mut settled = false;
-        for _ in 0..MOST_LABELS as usize + options.len() {
-            let chosen: Vec<usize> = options.iter().zip(&places).map(|(options, &place)| options[place]).collect();
-            settled |= self.findings.rays.iter().any(|ray| ray.is_under(&chosen));
-            match self.examine(&chosen) {
-                Examined::Violated(violated) => {
-                    // One that has no other option refutes them all.
-                    settled |= violated.iter().any(|&entity| options[entity].len() == 1);
-                    if settled {
-                        break;
-                    }
-                    violated.iter().for_each(|&entity| places[entity] = (places[entity] + 1) % options[entity].len());
-                }
-                Examined::Rays => {
-                    settled = true;
+/// Examines the combinations of the options given for each entity, which all fit one line, hold first.
+///
+/// Where many options are in doubt there are too many combinations to try: what the first one violates is changed,
+/// and so on until a combination holds.
+pub(crate) fn examine_all(search: &mut BranchAndBound<'_>, options: &[Vec<usize>]) {
+    let mut places = vec![0; options.len()];
+    let mut settled = false;
+    for _ in 0..MOST_LABELS as usize + options.len() {
+        let chosen: Vec<usize> = options.iter().zip(&places).map(|(options, &place)| options[place]).collect();
+        settled |= search.findings.rays.iter().any(|ray| ray.is_under(&chosen));
+        match examine(search, &chosen) {
+            Examined::Violated(violated) => {
+                // One that has no other option refutes them all.
+                settled |= violated.iter().any(|&entity| options[entity].len() == 1);
+                if settled {
                     break;
                 }
-                Examined::Nothing | Examined::Before => break,
+                violated.iter().for_each(|&entity| places[entity] = (places[entity] + 1) % options[entity].len());
             }
+            Examined::Rays => {
+                settled = true;
+                break;
+            }
+            Examined::Nothing | Examined::Before => break,
         }
-        let total = count(options);
-        for chosen in combinations(options, MOST_LABELS) {
-            let known = self.findings.rays.iter().find(|ray| ray.is_under(&chosen));
-            match known.map(|ray| -&ray.weights) {
-                None => settled |= matches!(self.examine(&chosen), Examined::Rays),
-                // Its line is the known one; the other sense may be feasible under this combination only.
-                Some(reversed) => {
-                    let along = self.problem.along(&reversed);
-                    if along.violated(&chosen).is_empty() {
-                        self.keep(&chosen, reversed, &along);
-                    }
+    }
+    let total = count(options);
+    for chosen in combinations(options, MOST_LABELS) {
+        let known = search.findings.rays.iter().find(|ray| ray.is_under(&chosen));
+        match known.map(|ray| -&ray.weights) {
+            None => settled |= matches!(examine(search, &chosen), Examined::Rays),
+            // Its line is the known one; the other sense may be feasible under this combination only.
+            Some(reversed) => {
+                let along = ray::forms_along(&search.problem, &reversed);
+                if along.violated(&chosen).is_empty() {
+                    keep(search, &chosen, reversed, &along);
                 }
             }
         }
-        if total > MOST_LABELS && !settled {
-            self.findings.unexplored = self.findings.unexplored.saturating_add(total - MOST_LABELS);
-        }
+    }
+    if total > MOST_LABELS && !settled {
+        search.findings.unexplored = search.findings.unexplored.saturating_add(total - MOST_LABELS);
     }
 }

@@ -7,6 +7,7 @@
 //! SIAM J. Control 9 (1971) 385, doi:10.1137/0309028), and plain again where that does not settle.
 
 use crate::complementarity::rates::rate_problem::{Entity, RateProblem, Touching};
+use crate::complementarity::rates::ray;
 use crate::resources::budget;
 use crate::resources::cancel::CancelFlag;
 use nalgebra::{DMatrix, DVector};
@@ -178,7 +179,7 @@ fn settle(
             return None;
         }
         unchanged = if same { unchanged + 1 } else { 0 };
-        if same && change <= SETTLED * largest || unchanged >= enough && problem.is_feasible(&chosen) {
+        if same && change <= SETTLED * largest || unchanged >= enough && ray::is_feasible(problem, &chosen) {
             return Some(chosen);
         }
         if unchanged >= enough {

@@ -55,7 +55,7 @@ pub fn lemke(problem: &RateProblem, cancel: &CancelFlag) -> Vec<Vec<usize>> {
             if cancel.is_cancelled() || left == 0 {
                 return found;
             }
-            let Some(positive) = Table::new(&matrix, &constant, &cover).solve(&mut left) else { continue };
+            let Some(positive) = LemkeTableau::new(&matrix, &constant, &cover).solve(&mut left) else { continue };
             let chosen = options(&locals, &positive);
             if known.insert(chosen.clone()) {
                 found.push(chosen);
@@ -138,13 +138,13 @@ fn options(locals: &[Local], positive: &[bool]) -> Vec<usize> {
 }
 
 /// `[w | z | z0 | q]`, a row for each basic variable; the columns of `w` hold the inverse of the basis.
-struct Table {
+struct LemkeTableau {
     rows: DMatrix<f64>,
     basic: Vec<usize>,
     _held: Taken,
 }
 
-impl Table {
+impl LemkeTableau {
     fn new(matrix: &DMatrix<f64>, constant: &[f64], cover: &[f64]) -> Self {
         let count = constant.len();
         let held = budget::take::<f64>(count * (2 * count + 2));

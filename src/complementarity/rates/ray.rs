@@ -46,94 +46,92 @@ impl Forces {
     }
 }
 
-impl RateProblem {
-    /// Arc length of a vector of weights.
-    pub(crate) fn size(&self, weights: &DVector<f64>) -> f64 {
-        (&self.motion * weights).norm()
-    }
+/// Arc length of a vector of weights.
+pub(crate) fn size(problem: &RateProblem, weights: &DVector<f64>) -> f64 {
+    (&problem.motion * weights).norm()
+}
 
-    pub(crate) fn line(&self, chosen: &[usize]) -> Line {
-        let choices = || self.entities.iter().zip(chosen).map(|(entity, &choice)| &entity.options[choice]);
-        let rows: Vec<usize> = choices().flat_map(|choice| choice.zero.iter().copied()).collect();
-        // Its scaled copy, and the basis.
-        let _held = budget::take::<f64>(3 * rows.len() * self.weights());
-        budget::spend(rows.len() * self.weights());
-        let equations = self.forms.select_rows(&rows);
-        let Some(basis) = null_space(&equations, RANK) else { return Line::NotFinite };
-        if basis.ncols() > 1 {
-            return Line::Plane(basis);
-        }
-        if basis.ncols() == 0 {
-            return Line::Nothing;
-        }
-        let weights: DVector<f64> = basis.column(0).into_owned();
-        let size = self.size(&weights);
-        let largest = (&self.reactions * &weights).amax();
-        if size.is_nan() || size <= WEAK * largest {
-            return Line::Still;
-        }
-        let weights = weights / size;
-        if weights.iter().all(|weight| weight.is_finite()) { Line::Along(weights) } else { Line::NotFinite }
+pub(crate) fn line(problem: &RateProblem, chosen: &[usize]) -> Line {
+    let choices = || problem.entities.iter().zip(chosen).map(|(entity, &choice)| &entity.options[choice]);
+    let rows: Vec<usize> = choices().flat_map(|choice| choice.zero.iter().copied()).collect();
+    // Its scaled copy, and the basis.
+    let _held = budget::take::<f64>(3 * rows.len() * problem.weights());
+    budget::spend(rows.len() * problem.weights());
+    let equations = problem.forms.select_rows(&rows);
+    let Some(basis) = null_space(&equations, RANK) else { return Line::NotFinite };
+    if basis.ncols() > 1 {
+        return Line::Plane(basis);
     }
-
-    /// Whether a combination has a ray, or more than a line.
-    pub(crate) fn is_feasible(&self, chosen: &[usize]) -> bool {
-        match self.line(chosen) {
-            Line::Along(weights) => {
-                let along = self.along(&weights);
-                along.violated(chosen).is_empty() || along.reversed().violated(chosen).is_empty()
-            }
-            Line::Plane(_) => true,
-            Line::Nothing | Line::Still | Line::NotFinite => false,
-        }
+    if basis.ncols() == 0 {
+        return Line::Nothing;
     }
-
-    fn forces(&self, weights: &DVector<f64>) -> Forces {
-        let largest = (&self.reactions * weights).amax();
-        // Where no force changes, what is left is the rounding of the sums.
-        let mut terms = vec![0.0; self.reactions.nrows()];
-        for (column, weight) in self.reactions.column_iter().zip(weights.iter()) {
-            terms.iter_mut().zip(column.iter()).for_each(|(sum, value)| *sum += (value * weight).abs());
-        }
-        let rounding = ROUNDING * terms.into_iter().fold(0.0, f64::max);
-        Forces { largest, rounding: rounding.max(f64::MIN_POSITIVE) }
+    let weights: DVector<f64> = basis.column(0).into_owned();
+    let size = size(problem, &weights);
+    let largest = (&problem.reactions * &weights).amax();
+    if size.is_nan() || size <= WEAK * largest {
+        return Line::Still;
     }
+    let weights = weights / size;
+    if weights.iter().all(|weight| weight.is_finite()) { Line::Along(weights) } else { Line::NotFinite }
+}
 
-    /// The edges, of unit arc length, of what a combination leaves of a plane: along each some inequality holds with
-    /// equality. None where the plane has another dimension than two.
-    pub(crate) fn edges(&self, chosen: &[usize], basis: &DMatrix<f64>) -> Vec<DVector<f64>> {
-        if basis.ncols() != 2 {
-            return Vec::new();
+/// Whether a combination has a ray, or more than a line.
+pub(crate) fn is_feasible(problem: &RateProblem, chosen: &[usize]) -> bool {
+    match line(problem, chosen) {
+        Line::Along(weights) => {
+            let along = forms_along(problem, &weights);
+            along.violated(chosen).is_empty() || along.reversed().violated(chosen).is_empty()
         }
-        let choices = self.entities.iter().zip(chosen).map(|(entity, &choice)| &entity.options[choice]);
-        let mut edges: Vec<DVector<f64>> = Vec::new();
-        for signed in choices.flat_map(|choice| &choice.nonnegative) {
-            budget::spend((self.motion.nrows() + self.reactions.nrows()) * self.weights());
-            let row = self.forms.row(signed.form);
-            let parts = [0, 1].map(|column| row.transpose().dot(&basis.column(column)));
-            if parts[0].abs().max(parts[1].abs()) <= WEAK * row.amax() * basis.amax() {
-                continue;
-            }
-            let along = basis.column(0) * parts[1] - basis.column(1) * parts[0];
-            let size = self.size(&along);
-            if !(size.is_finite() && size > WEAK * (&self.reactions * &along).amax()) {
-                continue;
-            }
-            for weights in [-&along / size, &along / size] {
-                let is_new = |known: &DVector<f64>| (known - &weights).amax() > WEAK * weights.amax();
-                if edges.iter().all(is_new) && self.along(&weights).violated(chosen).is_empty() {
-                    edges.push(weights);
-                }
+        Line::Plane(_) => true,
+        Line::Nothing | Line::Still | Line::NotFinite => false,
+    }
+}
+
+fn forces(problem: &RateProblem, weights: &DVector<f64>) -> Forces {
+    let largest = (&problem.reactions * weights).amax();
+    // Where no force changes, what is left is the rounding of the sums.
+    let mut terms = vec![0.0; problem.reactions.nrows()];
+    for (column, weight) in problem.reactions.column_iter().zip(weights.iter()) {
+        terms.iter_mut().zip(column.iter()).for_each(|(sum, value)| *sum += (value * weight).abs());
+    }
+    let rounding = ROUNDING * terms.into_iter().fold(0.0, f64::max);
+    Forces { largest, rounding: rounding.max(f64::MIN_POSITIVE) }
+}
+
+/// The edges, of unit arc length, of what a combination leaves of a plane: along each some inequality holds with
+/// equality. None where the plane has another dimension than two.
+pub(crate) fn edges(problem: &RateProblem, chosen: &[usize], basis: &DMatrix<f64>) -> Vec<DVector<f64>> {
+    if basis.ncols() != 2 {
+        return Vec::new();
+    }
+    let choices = problem.entities.iter().zip(chosen).map(|(entity, &choice)| &entity.options[choice]);
+    let mut edges: Vec<DVector<f64>> = Vec::new();
+    for signed in choices.flat_map(|choice| &choice.nonnegative) {
+        budget::spend((problem.motion.nrows() + problem.reactions.nrows()) * problem.weights());
+        let row = problem.forms.row(signed.form);
+        let parts = [0, 1].map(|column| row.transpose().dot(&basis.column(column)));
+        if parts[0].abs().max(parts[1].abs()) <= WEAK * row.amax() * basis.amax() {
+            continue;
+        }
+        let along = basis.column(0) * parts[1] - basis.column(1) * parts[0];
+        let size = size(problem, &along);
+        if !(size.is_finite() && size > WEAK * (&problem.reactions * &along).amax()) {
+            continue;
+        }
+        for weights in [-&along / size, &along / size] {
+            let is_new = |known: &DVector<f64>| (known - &weights).amax() > WEAK * weights.amax();
+            if edges.iter().all(is_new) && forms_along(problem, &weights).violated(chosen).is_empty() {
+                edges.push(weights);
             }
         }
-        edges
     }
+    edges
+}
 
-    /// What the forms are along a vector of weights of unit arc length.
-    pub(crate) fn along(&self, weights: &DVector<f64>) -> Along<'_> {
-        budget::spend((self.forms.nrows() + 2 * self.reactions.nrows()) * self.weights());
-        Along { problem: self, values: &self.forms * weights, forces: self.forces(weights) }
-    }
+/// What the forms are along a vector of weights of unit arc length.
+pub(crate) fn forms_along<'a>(problem: &'a RateProblem, weights: &DVector<f64>) -> Along<'a> {
+    budget::spend((problem.forms.nrows() + 2 * problem.reactions.nrows()) * problem.weights());
+    Along { problem, values: &problem.forms * weights, forces: forces(problem, weights) }
 }
 
 /// A vector of weights of unit arc length as the entities see it.

@@ -15,6 +15,7 @@
 
 use crate::algebra::sparse::SparseFactorisation;
 use crate::algebra::{Factorisation, SystemFactorisation};
+use crate::branching::directions::condensation_basis;
 use crate::mechanics::contact::vector::dot;
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::equations::{Kind, ModeSystem};
@@ -37,7 +38,7 @@ pub(crate) struct Complementary {
 }
 
 /// The contacts that may change, as far as they are known.
-struct Changing {
+struct ActiveSetCandidates {
     contacts: Vec<usize>,
     /// Whether each is changed.
     are_changed: Vec<bool>,
@@ -45,140 +46,140 @@ struct Changing {
     columns: Vec<Rate>,
 }
 
-impl ModeSystem<'_> {
-    /// The contacts that change at about the state that one iteration of this system led to, with its factorisation; the
-    /// `first` are known to break their modes. `broken` tells those that do so at a state, and nothing where something else
-    /// is broken, and the path has about the direction `rate` there. `None` where that is not found.
-    pub(crate) fn complementary(
-        &self,
-        state: &State,
-        rate: &Rate,
-        factorisation: &SystemFactorisation,
-        first: &[usize],
-        broken: impl Fn(&State) -> Option<Vec<usize>>,
-    ) -> Option<Complementary> {
-        let SystemFactorisation::Sparse(factorisation) = factorisation else { return None };
-        let mut changing = Changing { contacts: Vec::new(), are_changed: Vec::new(), columns: Vec::new() };
-        self.join(&mut changing, first, state, factorisation)?;
-        for _ in 0..MOST_SETS {
-            let (end, mut wrong) = self.with_changes(&changing, state)?;
-            // Those that are changed already are judged by what they changed to.
-            let is_changed = |contact: &usize| {
-                changing.contacts.iter().position(|other| other == contact).is_some_and(|at| changing.are_changed[at])
-            };
-            let others: Vec<usize> = broken(&end)?.into_iter().filter(|contact| !is_changed(contact)).collect();
-            if wrong.is_empty() && others.is_empty() {
-                let leaves_no_choice = self.leaves_no_choice(&changing, state, rate);
-                let changed = changing.contacts.into_iter().zip(changing.are_changed);
-                let changed = changed.filter_map(|(contact, is_changed)| is_changed.then_some(contact)).collect();
-                return Some(Complementary { changed, state: end, leaves_no_choice });
-            }
-            let mut joining = Vec::new();
-            for contact in others {
-                match changing.contacts.iter().position(|other| *other == contact) {
-                    Some(at) => wrong.push(at),
-                    None => joining.push(contact),
-                }
-            }
-            wrong.iter().for_each(|at| changing.are_changed[*at] ^= true);
-            self.join(&mut changing, &joining, state, factorisation)?;
-        }
-        None
-    }
-
-    /// More contacts change.
-    fn join(
-        &self,
-        changing: &mut Changing,
-        contacts: &[usize],
-        state: &State,
-        factorisation: &SparseFactorisation,
-    ) -> Option<()> {
-        if changing.contacts.len() + contacts.len() > MOST_CHANGING {
-            return None;
-        }
-        let normal = |contact: usize| self.loading.frame(contact, state).normal;
-        let mut values = Vec::with_capacity(contacts.len() * self.size);
-        for contact in contacts {
-            let is_closed = self.modes[*contact].is_active();
-            let right = if is_closed { Self::moving } else { Self::pushed };
-            values.extend_from_slice(right(self, *contact, &normal(*contact)).as_slice());
-        }
-        if !factorisation.solve_all_once(&mut values, contacts.len()) || !values.iter().all(|value| value.is_finite()) {
-            return None;
-        }
-        let iterate = self.iterate(state.clone());
-        for (contact, values) in contacts.iter().zip(values.chunks_exact(self.size)) {
-            let mut rate = self.rate_at(&iterate, &DVector::from_column_slice(values), Kind::Rates);
-            if self.modes[*contact] == Mode::Free {
-                let normal = normal(*contact);
-                rate.reactions[*contact].add(1.0, &Reaction::of(&normal, &normal));
-            }
-            changing.columns.push(rate);
-            changing.contacts.push(*contact);
-            changing.are_changed.push(true);
-        }
-        Some(())
-    }
-
-    /// Whether at a load that is held the gaps of the open contacts by forces there, and the forces of the closed ones by
-    /// gaps, are positive definite: then (additivity of inertia) the tangent has as many negative eigenvalues with all of
-    /// these contacts held as with all of them free.
-    fn leaves_no_choice(&self, changing: &Changing, state: &State, rate: &Rate) -> bool {
-        [false, true].into_iter().all(|are_closed| {
-            let contacts: Vec<usize> = (0..changing.contacts.len())
-                .filter(|at| self.modes[changing.contacts[*at]].is_active() == are_closed)
-                .collect();
-            let matrix = DMatrix::from_fn(contacts.len(), contacts.len(), |row, column| {
-                let (contact, column) = (changing.contacts[contacts[row]], &changing.columns[contacts[column]]);
-                // The columns have the arc length held.
-                let along = self.left_over_by(contact, rate, state) * column.load / rate.load;
-                self.left_over_by(contact, column, state) - along
-            });
-            Cholesky::new(matrix).is_some()
-        })
-    }
-
-    /// The rate of what a contact leaves over: the force of one that is closed, the gap of one that is not.
-    fn left_over_by(&self, contact: usize, rate: &Rate, state: &State) -> f64 {
-        if self.modes[contact].is_active() {
-            rate.reactions[contact].normal
-        } else {
-            let normal = self.loading.frame(contact, state).normal;
-            dot(&normal, &self.loading.relative_rate(contact, state, rate))
-        }
-    }
-
-    /// The state at which nothing is left over of those that are changed, and which of them have the wrong sign there.
-    fn with_changes(&self, changing: &Changing, state: &State) -> Option<(State, Vec<usize>)> {
-        let changed: Vec<usize> = (0..changing.contacts.len()).filter(|at| changing.are_changed[*at]).collect();
-        let count = changed.len();
-        if count == 0 {
-            return Some((state.clone(), Vec::new()));
-        }
-        let entry = |row: usize, column: usize| {
-            self.left_over_by(changing.contacts[changed[row]], &changing.columns[changed[column]], state)
+/// The contacts that change at about the state that one iteration of this system led to, with its factorisation; the
+/// `first` are known to break their modes. `broken` tells those that do so at a state, and nothing where something else
+/// is broken, and the path has about the direction `rate` there. `None` where that is not found.
+pub(crate) fn complementary(
+    system: &ModeSystem<'_>,
+    state: &State,
+    rate: &Rate,
+    factorisation: &SystemFactorisation,
+    first: &[usize],
+    broken: impl Fn(&State) -> Option<Vec<usize>>,
+) -> Option<Complementary> {
+    let SystemFactorisation::Sparse(factorisation) = factorisation else { return None };
+    let mut changing = ActiveSetCandidates { contacts: Vec::new(), are_changed: Vec::new(), columns: Vec::new() };
+    join(system, &mut changing, first, state, factorisation)?;
+    for _ in 0..MOST_SETS {
+        let (end, mut wrong) = with_changes(system, &changing, state)?;
+        // Those that are changed already are judged by what they changed to.
+        let is_changed = |contact: &usize| {
+            changing.contacts.iter().position(|other| other == contact).is_some_and(|at| changing.are_changed[at])
         };
-        let left_over = |row: usize| {
-            let contact = changing.contacts[changed[row]];
-            let is_closed = self.modes[contact].is_active();
-            if is_closed { state.reactions[contact].normal } else { self.loading.gap(contact, state) }
-        };
-        let matrix = DMatrix::from_fn(count, count, entry);
-        let mut parts = DVector::from_fn(count, |row, _| -left_over(row));
-        if !Factorisation::new(matrix)?.solve(&mut parts) {
-            return None;
+        let others: Vec<usize> = broken(&end)?.into_iter().filter(|contact| !is_changed(contact)).collect();
+        if wrong.is_empty() && others.is_empty() {
+            let leaves_no_choice = leaves_no_choice(system, &changing, state, rate);
+            let changed = changing.contacts.into_iter().zip(changing.are_changed);
+            let changed = changed.filter_map(|(contact, is_changed)| is_changed.then_some(contact)).collect();
+            return Some(Complementary { changed, state: end, leaves_no_choice });
         }
-        let mut end = state.clone();
-        changed.iter().zip(parts.iter()).for_each(|(at, part)| end.advance(&changing.columns[*at], *part));
-        let wrong = changed.iter().zip(parts.iter()).filter(|(_, part)| **part < 0.0).map(|(at, _)| *at).collect();
-        Some((end, wrong))
+        let mut joining = Vec::new();
+        for contact in others {
+            match changing.contacts.iter().position(|other| *other == contact) {
+                Some(at) => wrong.push(at),
+                None => joining.push(contact),
+            }
+        }
+        wrong.iter().for_each(|at| changing.are_changed[*at] ^= true);
+        join(system, &mut changing, &joining, state, factorisation)?;
     }
+    None
+}
+
+/// More contacts change.
+fn join(
+    system: &ModeSystem<'_>,
+    changing: &mut ActiveSetCandidates,
+    contacts: &[usize],
+    state: &State,
+    factorisation: &SparseFactorisation,
+) -> Option<()> {
+    if changing.contacts.len() + contacts.len() > MOST_CHANGING {
+        return None;
+    }
+    let normal = |contact: usize| system.loading.frame(contact, state).normal;
+    let mut values = Vec::with_capacity(contacts.len() * system.size);
+    for contact in contacts {
+        let is_closed = system.modes[*contact].is_active();
+        let right = if is_closed { condensation_basis::moving } else { condensation_basis::pushed };
+        values.extend_from_slice(right(system, *contact, &normal(*contact)).as_slice());
+    }
+    if !factorisation.solve_all_once(&mut values, contacts.len()) || !values.iter().all(|value| value.is_finite()) {
+        return None;
+    }
+    let iterate = system.iterate(state.clone());
+    for (contact, values) in contacts.iter().zip(values.chunks_exact(system.size)) {
+        let mut rate = system.rate_at(&iterate, &DVector::from_column_slice(values), Kind::Rates);
+        if system.modes[*contact] == Mode::Free {
+            let normal = normal(*contact);
+            rate.reactions[*contact].add(1.0, &Reaction::of(&normal, &normal));
+        }
+        changing.columns.push(rate);
+        changing.contacts.push(*contact);
+        changing.are_changed.push(true);
+    }
+    Some(())
+}
+
+/// Whether at a load that is held the gaps of the open contacts by forces there, and the forces of the closed ones by
+/// gaps, are positive definite: then (additivity of inertia) the tangent has as many negative eigenvalues with all of
+/// these contacts held as with all of them free.
+fn leaves_no_choice(system: &ModeSystem<'_>, changing: &ActiveSetCandidates, state: &State, rate: &Rate) -> bool {
+    [false, true].into_iter().all(|are_closed| {
+        let contacts: Vec<usize> = (0..changing.contacts.len())
+            .filter(|at| system.modes[changing.contacts[*at]].is_active() == are_closed)
+            .collect();
+        let matrix = DMatrix::from_fn(contacts.len(), contacts.len(), |row, column| {
+            let (contact, column) = (changing.contacts[contacts[row]], &changing.columns[contacts[column]]);
+            // The columns have the arc length held.
+            let along = left_over_by(system, contact, rate, state) * column.load / rate.load;
+            left_over_by(system, contact, column, state) - along
+        });
+        Cholesky::new(matrix).is_some()
+    })
+}
+
+/// The rate of what a contact leaves over: the force of one that is closed, the gap of one that is not.
+fn left_over_by(system: &ModeSystem<'_>, contact: usize, rate: &Rate, state: &State) -> f64 {
+    if system.modes[contact].is_active() {
+        rate.reactions[contact].normal
+    } else {
+        let normal = system.loading.frame(contact, state).normal;
+        dot(&normal, &system.loading.relative_rate(contact, state, rate))
+    }
+}
+
+/// The state at which nothing is left over of those that are changed, and which of them have the wrong sign there.
+fn with_changes(system: &ModeSystem<'_>, changing: &ActiveSetCandidates, state: &State) -> Option<(State, Vec<usize>)> {
+    let changed: Vec<usize> = (0..changing.contacts.len()).filter(|at| changing.are_changed[*at]).collect();
+    let count = changed.len();
+    if count == 0 {
+        return Some((state.clone(), Vec::new()));
+    }
+    let entry = |row: usize, column: usize| {
+        left_over_by(system, changing.contacts[changed[row]], &changing.columns[changed[column]], state)
+    };
+    let left_over = |row: usize| {
+        let contact = changing.contacts[changed[row]];
+        let is_closed = system.modes[contact].is_active();
+        if is_closed { state.reactions[contact].normal } else { system.loading.gap(contact, state) }
+    };
+    let matrix = DMatrix::from_fn(count, count, entry);
+    let mut parts = DVector::from_fn(count, |row, _| -left_over(row));
+    if !Factorisation::new(matrix)?.solve(&mut parts) {
+        return None;
+    }
+    let mut end = state.clone();
+    changed.iter().zip(parts.iter()).for_each(|(at, part)| end.advance(&changing.columns[*at], *part));
+    let wrong = changed.iter().zip(parts.iter()).filter(|(_, part)| **part < 0.0).map(|(at, _)| *at).collect();
+    Some((end, wrong))
 }
 
 #[cfg(test)]
 mod tests {
+    use super::complementary;
     use crate::check::scenes::lattice::LatticeArch;
+    use crate::continuation::contact_changes::simultaneous;
     use crate::continuation::path::iterator::Path;
     use crate::continuation::scene::Scene;
     use crate::mechanics::contact::Mode;
@@ -187,7 +188,9 @@ mod tests {
     use crate::mechanics::problem::state::State;
     use crate::resources::cancel::CancelFlag;
     use crate::step::corrector::cost_counters::Work;
-    use crate::step::segment::Start;
+    use crate::step::corrector::newton;
+    use crate::step::corrector::single_iteration;
+    use crate::step::segment::StepStart;
     use std::collections::BTreeSet;
 
     /// Where an arch lands on several contacts at a time, its equations linearised without them tell about where the arch
@@ -206,7 +209,7 @@ mod tests {
             let step = path.trace.at.step;
             let closing = ArcLengthEquation { from: &here.state, step };
             let forces = path.trace.at.totals.force_scale;
-            let start = Start {
+            let start = StepStart {
                 loading,
                 state: &here.state,
                 rate,
@@ -216,17 +219,19 @@ mod tests {
                 is_singular: false,
                 beside: None,
             };
-            let broken = |state: &State| start.broken(&here.modes, state, forces);
+            let broken = |state: &State| simultaneous::broken(&start, &here.modes, state, forces);
             let system = ModeSystem::new(loading, &here.modes, &here.state);
             let guess = here.state.advanced(rate, step);
-            let Some((far, factorisation)) = system.iterated_once(guess, &closing, &mut Work::default()) else {
+            let Some((far, factorisation)) =
+                single_iteration::iterated_once(&system, guess, &closing, &mut Work::default())
+            else {
                 continue;
             };
             let Some(first) = broken(&far).filter(|first| first.len() > 1) else { continue };
-            let along = system.direction_about(&far, &factorisation, rate).expect("a direction");
-            let Some(foreseen) = system.complementary(&far, &along, &factorisation, &first, broken) else { continue };
+            let along = single_iteration::direction_about(&system, &far, &factorisation, rate).expect("a direction");
+            let Some(foreseen) = complementary(&system, &far, &along, &factorisation, &first, broken) else { continue };
             let asked: BTreeSet<usize> = first.iter().chain(&foreseen.changed).copied().collect();
-            let counted = start.negative_where_held_or_free(&asked, &far, &mut Work::default());
+            let counted = simultaneous::negative_where_held_or_free(&start, &asked, &far, &mut Work::default());
             assert_eq!(foreseen.leaves_no_choice, counted.is_some(), "{asked:?}");
             choices += u32::from(!foreseen.leaves_no_choice);
             let mut modes = here.modes.clone();
@@ -240,7 +245,7 @@ mod tests {
                 assert!(none.abs() < 1e-9 && some > -1e-9, "contact {contact} of {first:?}: gap {gap}, force {force}");
             }
             let system = ModeSystem::new(loading, &modes, &here.state);
-            let Ok(end) = system.correct(foreseen.state.clone(), &closing, forces) else { continue };
+            let Ok(end) = newton::correct(&system, foreseen.state.clone(), &closing, forces) else { continue };
             looks += 1;
             most = most.max(end.state.distance(&foreseen.state) / far.distance(&foreseen.state));
         }

@@ -6,8 +6,8 @@
 //! so are the signs that tell of bifurcations. Along stretches of bifurcations the increments are kept, because from any of
 //! them another direction can be followed.
 
-use crate::continuation::contact_changes::prediction::Foreseen;
-use crate::continuation::path_state::trace::Trace;
+use crate::continuation::contact_changes::prediction::ForeseenChange;
+use crate::continuation::path_state::trace::PathTrace;
 use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::linearity::is_straight;
 use crate::mechanics::problem::node_forces;
@@ -23,7 +23,7 @@ const CONSTANT_BOUND: f64 = 1e-14;
 const ZERO: f64 = 1e-12;
 
 /// The next event, where the path is straight up to there and a little farther.
-pub(crate) fn next_event_ahead(trace: &mut Trace<'_>) -> Option<Foreseen> {
+pub(crate) fn next_event_ahead(trace: &mut PathTrace<'_>) -> Option<ForeseenChange> {
     if !trace.scene.jumps || trace.at.listed.as_ref().is_some_and(|listed| listed.point.bifurcation) {
         return None;
     }
@@ -32,13 +32,13 @@ pub(crate) fn next_event_ahead(trace: &mut Trace<'_>) -> Option<Foreseen> {
         let (contacts, step) = (trace.at.near.len(), way * (1.0 + PAST));
         trace.look_ahead(step);
         if trace.at.near.len() == contacts {
-            return Some(Foreseen { watch, way, step, is_straight: true });
+            return Some(ForeseenChange { watch, way, step, is_straight: true });
         }
     }
 }
 
 /// What falls to zero first, and the arc length up to there.
-fn straight_way(trace: &Trace<'_>) -> Option<(Watch, f64)> {
+fn straight_way(trace: &PathTrace<'_>) -> Option<(Watch, f64)> {
     let (loading, here) = (trace.loading(), &trace.at.here);
     let rate = here.rate.as_ref()?;
     // The force of several obstacles in space reaches the bound of what they hold along no straight line.

@@ -10,16 +10,18 @@
 use crate::algebra::SystemFactorisation;
 use crate::continuation::contact_changes::simultaneous::may_join_at;
 use crate::continuation::path_state::step_quantum::quantised;
-use crate::continuation::path_state::trace::Trace;
+use crate::continuation::path_state::trace::PathTrace;
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::state::Rate;
 use crate::step::corrector::cached_factorisation::AtHand;
 use crate::step::corrector::cost_counters::Work;
+use crate::step::corrector::newton;
+use crate::step::corrector::tangent;
 use crate::step::event_functions::{self, EventZero, Watch};
-use crate::step::event_location::Stretch;
-use crate::step::interpolation::Placed;
-use crate::step::segment::{Attempt, PASSED, Start, may_turn};
+use crate::step::event_location::StepPoints;
+use crate::step::interpolation::PlacedPoint;
+use crate::step::segment::{Attempt, PASSED, StepStart, may_turn};
 
 /// How far past the change the step is to end, over the way there: rates are not all that tells where it is.
 const PAST: f64 = 1.25;
@@ -30,7 +32,7 @@ const LEAST: f64 = 1.0 / 256.0;
 
 /// A contact change, or the end of a stage, that the rates foresee.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Foreseen {
+pub(crate) struct ForeseenChange {
     /// What falls to zero there.
     pub watch: Watch,
     /// Arc length up to there.
@@ -46,7 +48,12 @@ pub(crate) struct Foreseen {
 ///
 /// Only where matrices are sparse: the factorisations that are saved of a dense one cost as little as the points that
 /// come on top.
-pub(crate) fn step_to_foreseen_change(trace: &Trace<'_>, step: f64, rate: &Rate, may_join: bool) -> Option<Foreseen> {
+pub(crate) fn step_to_foreseen_change(
+    trace: &PathTrace<'_>,
+    step: f64,
+    rate: &Rate,
+    may_join: bool,
+) -> Option<ForeseenChange> {
     let (loading, here) = (trace.loading(), &trace.at.here);
     loading.structure.layout()?;
     let way = |watch: &event_functions::Watch| {
@@ -64,54 +71,52 @@ pub(crate) fn step_to_foreseen_change(trace: &Trace<'_>, step: f64, rate: &Rate,
     }
     let part = PAST * way / step;
     let step = step * quantised(part.max(LEAST));
-    (part < 1.0).then_some(Foreseen { watch: first, way, step, is_straight: false })
+    (part < 1.0).then_some(ForeseenChange { watch: first, way, step, is_straight: false })
 }
 
-impl Start<'_> {
-    /// The step that ends at a change foreseen, which is solved for at once; `None` where that leads elsewhere.
-    pub(crate) fn meet_change(
-        &self,
-        foreseen: Foreseen,
-        at_hand: Option<AtHand>,
-        before: Option<&Placed>,
-        ends: &[End],
-        load_sign: f64,
-        work: &mut Work,
-    ) -> Option<Attempt> {
-        let Foreseen { watch, way, step, is_straight } = foreseen;
-        let system = ModeSystem::new(self.loading, self.modes, self.state);
-        if watch.slope(self.loading, self.modes, self.state, self.rate).is_none() || system.has_tracks() {
-            return None;
-        }
-        let guess = before.and_then(|before| before.foresee(self.state, self.rate, way));
-        let guess = guess.unwrap_or_else(|| self.state.advanced(self.rate, way));
-        let scale = watch.scale(self.loading, &guess, self.force_scale);
-        let closing = EventZero { watch, scale, towards: self.rate };
-        let own = at_hand.filter(|_| is_straight).and_then(|at_hand| at_hand.along(&system, self.rate));
-        let mut serving = None;
-        let guess = system.iterate(guess);
-        let corrected = system.correct_with(guess, &closing, self.force_scale, own, &mut serving, work).ok()?;
-        let mut reached = match &serving {
-            Some(SystemFactorisation::Sparse(nearby)) if is_straight => {
-                let error = system.error_by(nearby, &corrected)?;
-                self.straight_on(corrected, error)
-            }
-            _ => self.directed(system, corrected, &closing, &mut serving, work).ok()?,
-        };
-        let state = &reached.corrected.state;
-        let falls = watch.slope(self.loading, self.modes, state, &reached.rate).is_some_and(|slope| slope < 0.0);
-        let is_zero = self.value(watch, state, &reached.rate).abs() <= self.zero(watch, &reached);
-        let turns = may_turn(self.rate.product(&reached.rate)).is_err();
-        if !falls || !is_zero || turns || reached.step > step || reached.step < LEAST_OF_WAY * way {
-            return None;
-        }
-        let watches = self.watches(ends, load_sign);
-        let others: Vec<Watch> = watches.iter().copied().filter(|other| *other != watch).collect();
-        let mut passed = self.passed(&others, &reached);
-        let mut stretch = (!passed.is_empty()).then(|| Box::new(Stretch::new(self, &reached, serving.take())));
-        if stretch.is_none() && !is_straight {
-            (passed, stretch) = self.dips(&others, &mut reached, serving, work).ok()?;
-        }
-        Some(Attempt { reached, watches, passed, stretch, met: Some(watch) })
+/// The step that ends at a change foreseen, which is solved for at once; `None` where that leads elsewhere.
+pub(crate) fn meet_change(
+    start: &StepStart<'_>,
+    foreseen: ForeseenChange,
+    at_hand: Option<AtHand>,
+    before: Option<&PlacedPoint>,
+    ends: &[End],
+    load_sign: f64,
+    work: &mut Work,
+) -> Option<Attempt> {
+    let ForeseenChange { watch, way, step, is_straight } = foreseen;
+    let system = ModeSystem::new(start.loading, start.modes, start.state);
+    if watch.slope(start.loading, start.modes, start.state, start.rate).is_none() || system.has_tracks() {
+        return None;
     }
+    let guess = before.and_then(|before| before.foresee(start.state, start.rate, way));
+    let guess = guess.unwrap_or_else(|| start.state.advanced(start.rate, way));
+    let scale = watch.scale(start.loading, &guess, start.force_scale);
+    let closing = EventZero { watch, scale, towards: start.rate };
+    let own = at_hand.filter(|_| is_straight).and_then(|at_hand| at_hand.along(&system, start.rate));
+    let mut serving = None;
+    let guess = system.iterate(guess);
+    let corrected = newton::correct_with(&system, guess, &closing, start.force_scale, own, &mut serving, work).ok()?;
+    let mut reached = match &serving {
+        Some(SystemFactorisation::Sparse(nearby)) if is_straight => {
+            let error = tangent::error_by(&system, nearby, &corrected)?;
+            start.straight_on(corrected, error)
+        }
+        _ => start.directed(system, corrected, &closing, &mut serving, work).ok()?,
+    };
+    let state = &reached.corrected.state;
+    let falls = watch.slope(start.loading, start.modes, state, &reached.rate).is_some_and(|slope| slope < 0.0);
+    let is_zero = start.value(watch, state, &reached.rate).abs() <= start.zero(watch, &reached);
+    let turns = may_turn(start.rate.product(&reached.rate)).is_err();
+    if !falls || !is_zero || turns || reached.step > step || reached.step < LEAST_OF_WAY * way {
+        return None;
+    }
+    let watches = start.watches(ends, load_sign);
+    let others: Vec<Watch> = watches.iter().copied().filter(|other| *other != watch).collect();
+    let mut passed = start.passed(&others, &reached);
+    let mut stretch = (!passed.is_empty()).then(|| Box::new(StepPoints::new(start, &reached, serving.take())));
+    if stretch.is_none() && !is_straight {
+        (passed, stretch) = start.dips(&others, &mut reached, serving, work).ok()?;
+    }
+    Some(Attempt { reached, watches, passed, stretch, met: Some(watch) })
 }

@@ -34,7 +34,7 @@
 
 use crate::algebra::SystemFactorisation;
 use crate::branching::bifurcation::singularity::test_functions::{Signature, negative_eigenvalues};
-use crate::continuation::contact_changes::linear_complementarity::Complementary;
+use crate::continuation::contact_changes::linear_complementarity::{Complementary, complementary};
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::size;
 use crate::mechanics::equations::ModeSystem;
@@ -45,8 +45,11 @@ use crate::mechanics::multi_contact::contact_status::{Standing, standings};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cost_counters::Work;
+use crate::step::corrector::newton;
+use crate::step::corrector::single_iteration;
+use crate::step::corrector::tangent;
 use crate::step::event_functions::{self, Watch};
-use crate::step::segment::{Attempt, COINCIDING, PASSED, Reached, Start, may_turn};
+use crate::step::segment::{Attempt, COINCIDING, PASSED, Reached, StepStart, may_turn};
 use std::collections::BTreeSet;
 
 /// A mode that breaks so many times the contacts that the first one broke leads away from the end.
@@ -79,7 +82,7 @@ struct EndModes {
 
 /// About where a step would end if no contact changed.
 #[derive(Clone, Copy)]
-struct Far<'a> {
+struct UnchangedStepEnd<'a> {
     state: &'a State,
     rate: &'a Rate,
     step: f64,
@@ -105,256 +108,275 @@ pub(crate) fn may_join_at(loading: Loading<'_>, modes: &[Mode], watch: Watch) ->
     smooth(loading, watch).is_some() && !remembers(loading, modes)
 }
 
-impl Start<'_> {
-    /// The contacts that change in a step that was tried, if they are several and may be taken together.
-    pub(crate) fn changes_to_join(&self, tried: &Attempt) -> Option<BTreeSet<usize>> {
-        self.joinable(&tried.watches, &tried.passed, tried.reached.step)
-    }
+/// The contacts that change in a step that was tried, if they are several and may be taken together.
+pub(crate) fn changes_to_join(start: &StepStart<'_>, tried: &Attempt) -> Option<BTreeSet<usize>> {
+    joinable(start, &tried.watches, &tried.passed, tried.reached.step)
+}
 
-    /// The end of a step that was tried and passes these contact changes, if they can be taken together.
-    pub(crate) fn join_changes(&self, first: &BTreeSet<usize>, tried: &Attempt, work: &mut Work) -> Option<Joined> {
-        let Attempt { reached, watches, .. } = tried;
-        self.join(
-            first,
-            Far { state: &reached.corrected.state, rate: &reached.rate, step: reached.step, factorisation: None },
-            watches,
-            work,
-        )
-    }
+/// The end of a step that was tried and passes these contact changes, if they can be taken together.
+pub(crate) fn join_changes(
+    start: &StepStart<'_>,
+    first: &BTreeSet<usize>,
+    tried: &Attempt,
+    work: &mut Work,
+) -> Option<Joined> {
+    let Attempt { reached, watches, .. } = tried;
+    join(
+        start,
+        first,
+        UnchangedStepEnd {
+            state: &reached.corrected.state,
+            rate: &reached.rate,
+            step: reached.step,
+            factorisation: None,
+        },
+        watches,
+        work,
+    )
+}
 
-    /// The same of a step in which the rates foresee such changes, which is not tried any further then. `None` where they
-    /// foresee none, `Some(None)` where they cannot be taken together.
-    pub(crate) fn join_foreseen(
-        &self,
-        step: f64,
-        ends: &[End],
-        load_sign: f64,
-        work: &mut Work,
-    ) -> Option<Option<Joined>> {
-        self.loading.structure.layout()?;
-        let watches = self.watches(ends, load_sign);
-        let passes = |watch: &Watch| {
-            let slope = watch.slope(self.loading, self.modes, self.state, self.rate).filter(|slope| *slope < 0.0);
-            slope.is_some_and(|slope| self.value(*watch, self.state, self.rate) < -slope * step)
-        };
-        let foreseen: Vec<Watch> = watches.iter().copied().filter(passes).collect();
-        self.joinable(&watches, &foreseen, step)?;
-        let system = ModeSystem::new(self.loading, self.modes, self.state);
-        let closing = ArcLengthEquation { from: self.state, step };
-        let (state, factorisation) = system.iterated_once(self.state.advanced(self.rate, step), &closing, work)?;
-        let rate = system.direction_about(&state, &factorisation, self.rate)?;
-        let negative = |watch: &Watch| {
-            self.value(*watch, &state, &rate) < -PASSED * watch.scale(self.loading, &state, self.force_scale)
-        };
-        let passed: Vec<Watch> = watches.iter().copied().filter(negative).collect();
-        let first = self.joinable(&watches, &passed, step)?;
-        let far = Far { state: &state, rate: &rate, step, factorisation: Some(&factorisation) };
-        Some(self.join(&first, far, &watches, work))
-    }
+/// The same of a step in which the rates foresee such changes, which is not tried any further then. `None` where they
+/// foresee none, `Some(None)` where they cannot be taken together.
+pub(crate) fn join_foreseen(
+    start: &StepStart<'_>,
+    step: f64,
+    ends: &[End],
+    load_sign: f64,
+    work: &mut Work,
+) -> Option<Option<Joined>> {
+    start.loading.structure.layout()?;
+    let watches = start.watches(ends, load_sign);
+    let passes = |watch: &Watch| {
+        let slope = watch.slope(start.loading, start.modes, start.state, start.rate).filter(|slope| *slope < 0.0);
+        slope.is_some_and(|slope| start.value(*watch, start.state, start.rate) < -slope * step)
+    };
+    let foreseen: Vec<Watch> = watches.iter().copied().filter(passes).collect();
+    joinable(start, &watches, &foreseen, step)?;
+    let system = ModeSystem::new(start.loading, start.modes, start.state);
+    let closing = ArcLengthEquation { from: start.state, step };
+    let (state, factorisation) =
+        single_iteration::iterated_once(&system, start.state.advanced(start.rate, step), &closing, work)?;
+    let rate = single_iteration::direction_about(&system, &state, &factorisation, start.rate)?;
+    let negative = |watch: &Watch| {
+        start.value(*watch, &state, &rate) < -PASSED * watch.scale(start.loading, &state, start.force_scale)
+    };
+    let passed: Vec<Watch> = watches.iter().copied().filter(negative).collect();
+    let first = joinable(start, &watches, &passed, step)?;
+    let far = UnchangedStepEnd { state: &state, rate: &rate, step, factorisation: Some(&factorisation) };
+    Some(join(start, &first, far, &watches, work))
+}
 
-    fn joinable(&self, watches: &[Watch], passed: &[Watch], step: f64) -> Option<BTreeSet<usize>> {
-        let turns = watches.iter().any(|watch| matches!(watch, Watch::LoadRate { .. }));
-        if passed.len() < 2 || !turns || !self.may_join() || !self.leaves_no_trace(watches, step) {
-            return None;
-        }
-        passed.iter().map(|watch| self.smooth(*watch)).collect()
+fn joinable(start: &StepStart<'_>, watches: &[Watch], passed: &[Watch], step: f64) -> Option<BTreeSet<usize>> {
+    let turns = watches.iter().any(|watch| matches!(watch, Watch::LoadRate { .. }));
+    if passed.len() < 2 || !turns || !may_join(start) || !leaves_no_trace(start, watches, step) {
+        return None;
     }
+    passed.iter().map(|watch| smooth(start.loading, *watch)).collect()
+}
 
-    fn join(&self, first: &BTreeSet<usize>, far: Far<'_>, watches: &[Watch], work: &mut Work) -> Option<Joined> {
-        let mut serving = None;
-        let EndModes { modes, corrected, asked, negative } = self.end_modes(first, far, &mut serving, work)?;
-        let end = Start { modes: &modes, ..*self };
-        let system = ModeSystem::new(self.loading, &modes, self.state);
-        let closing = ArcLengthEquation { from: self.state, step: far.step };
-        let reached = end.directed(system, corrected, &closing, &mut serving, work).ok()?;
-        let mut restless: BTreeSet<usize> =
-            (0..modes.len()).filter(|contact| modes[*contact] != self.modes[*contact]).collect();
-        let changes = restless.len();
-        let turns = may_turn(self.rate.product(&reached.rate)).is_err();
-        if changes < 2 || turns || !self.nothing_else_ends(watches, &mut restless, &reached) {
-            return None;
-        }
-        let mut same = |state: &State| self.negative_where_held_or_free(&restless, state, work) == Some(negative);
-        if (!restless.is_subset(&asked) && !same(self.state)) || !same(&reached.corrected.state) {
-            return None;
-        }
-        let analysed = self.loading.structure.allows_dense();
-        let signature = reached.determinant.filter(|_| analysed);
-        let signature = signature.map(|determinant| Signature { determinant, negative: Some(negative) });
-        Some(Joined { reached, changes: changes as u64, signature, unchanged: far.rate.clone() })
+fn join(
+    start: &StepStart<'_>,
+    first: &BTreeSet<usize>,
+    far: UnchangedStepEnd<'_>,
+    watches: &[Watch],
+    work: &mut Work,
+) -> Option<Joined> {
+    let mut serving = None;
+    let EndModes { modes, corrected, asked, negative } = end_modes(start, first, far, &mut serving, work)?;
+    let end = StepStart { modes: &modes, ..*start };
+    let system = ModeSystem::new(start.loading, &modes, start.state);
+    let closing = ArcLengthEquation { from: start.state, step: far.step };
+    let reached = end.directed(system, corrected, &closing, &mut serving, work).ok()?;
+    let mut restless: BTreeSet<usize> =
+        (0..modes.len()).filter(|contact| modes[*contact] != start.modes[*contact]).collect();
+    let changes = restless.len();
+    let turns = may_turn(start.rate.product(&reached.rate)).is_err();
+    if changes < 2 || turns || !nothing_else_ends(start, watches, &mut restless, &reached) {
+        return None;
     }
-
-    /// Whether changes in a step may be taken together: not where a contact with friction is closed.
-    pub(crate) fn may_join(&self) -> bool {
-        self.drift.is_none() && !remembers(self.loading, self.modes)
+    let mut same = |state: &State| negative_where_held_or_free(start, &restless, state, work) == Some(negative);
+    if (!restless.is_subset(&asked) && !same(start.state)) || !same(&reached.corrected.state) {
+        return None;
     }
+    let analysed = start.loading.structure.allows_dense();
+    let signature = reached.determinant.filter(|_| analysed);
+    let signature = signature.map(|determinant| Signature { determinant, negative: Some(negative) });
+    Some(Joined { reached, changes: changes as u64, signature, unchanged: far.rate.clone() })
+}
 
-    /// Whether within a step nothing can end that leaves a trace: on its kinks a quantity may go to and fro. The load goes
-    /// one way; no displacement goes farther than the path is long.
-    fn leaves_no_trace(&self, watches: &[Watch], step: f64) -> bool {
-        let length = LONGEST * step;
-        watches.iter().all(|watch| {
-            let value = self.value(*watch, self.state, self.rate);
-            match *watch {
-                Watch::LoadRate { .. } | Watch::End(End::Load { .. }) => true,
-                Watch::End(_) => value > length,
-                Watch::Gap(contact) if self.smooth(*watch).is_none() => {
-                    value > length * (1.0 + size(&self.loading.pattern.shifts[contact]))
-                }
-                _ => self.smooth(*watch).is_some(),
+/// Whether changes in a step may be taken together: not where a contact with friction is closed.
+pub(crate) fn may_join(start: &StepStart<'_>) -> bool {
+    start.drift.is_none() && !remembers(start.loading, start.modes)
+}
+
+/// Whether within a step nothing can end that leaves a trace: on its kinks a quantity may go to and fro. The load goes
+/// one way; no displacement goes farther than the path is long.
+fn leaves_no_trace(start: &StepStart<'_>, watches: &[Watch], step: f64) -> bool {
+    let length = LONGEST * step;
+    watches.iter().all(|watch| {
+        let value = start.value(*watch, start.state, start.rate);
+        match *watch {
+            Watch::LoadRate { .. } | Watch::End(End::Load { .. }) => true,
+            Watch::End(_) => value > length,
+            Watch::Gap(contact) if smooth(start.loading, *watch).is_none() => {
+                value > length * (1.0 + size(&start.loading.pattern.shifts[contact]))
             }
-        })
-    }
+            _ => smooth(start.loading, *watch).is_some(),
+        }
+    })
+}
 
-    fn smooth(&self, watch: Watch) -> Option<usize> {
-        smooth(self.loading, watch)
-    }
-
-    /// The modes that hold at the end of the step, with the `last` factorisation; the mode just now breaks the `first`
-    /// contacts there. `None` where the contacts leave a choice at the start.
-    fn end_modes(
-        &self,
-        first: &BTreeSet<usize>,
-        far: Far<'_>,
-        last: &mut Option<SystemFactorisation>,
-        work: &mut Work,
-    ) -> Option<EndModes> {
-        let mut modes = self.modes.to_vec();
-        let mut state = far.state.clone();
-        // In most modes on the way one iteration tells what breaks them.
-        let mut roughly = self.loading.structure.layout().is_some();
-        let mut wrong: Vec<usize> = first.iter().copied().collect();
-        let mut asked = first.clone();
-        let mut tried = BTreeSet::new();
-        // Contacts that were looked at together at the start, and the negative eigenvalues found.
-        let mut counted: Option<(usize, usize)> = None;
-        let mut linearised = None;
-        for round in 0..MOST_ROUNDS {
-            if wrong.len() > MOST_RISE * first.len() {
+/// The modes that hold at the end of the step, with the `last` factorisation; the mode just now breaks the `first`
+/// contacts there. `None` where the contacts leave a choice at the start.
+fn end_modes(
+    start: &StepStart<'_>,
+    first: &BTreeSet<usize>,
+    far: UnchangedStepEnd<'_>,
+    last: &mut Option<SystemFactorisation>,
+    work: &mut Work,
+) -> Option<EndModes> {
+    let mut modes = start.modes.to_vec();
+    let mut state = far.state.clone();
+    // In most modes on the way one iteration tells what breaks them.
+    let mut roughly = start.loading.structure.layout().is_some();
+    let mut wrong: Vec<usize> = first.iter().copied().collect();
+    let mut asked = first.clone();
+    let mut tried = BTreeSet::new();
+    // Contacts that were looked at together at the start, and the negative eigenvalues found.
+    let mut counted: Option<(usize, usize)> = None;
+    let mut linearised = None;
+    for round in 0..MOST_ROUNDS {
+        if wrong.len() > MOST_RISE * first.len() {
+            return None;
+        }
+        let nearby = linearised.as_ref().or(far.factorisation.filter(|_| round == 0));
+        if let Some(settled) = settled(start, &modes, &state, far.rate, nearby, &wrong) {
+            if !settled.leaves_no_choice {
                 return None;
             }
-            let nearby = linearised.as_ref().or(far.factorisation.filter(|_| round == 0));
-            if let Some(settled) = self.settled(&modes, &state, far.rate, nearby, &wrong) {
-                if !settled.leaves_no_choice {
-                    return None;
-                }
-                (wrong, state) = (settled.changed, settled.state);
-                may_turn(self.state.cosine_of_chord(&state, state.distance(self.state), self.rate)).ok()?;
-                asked.extend(&wrong);
-            }
-            for contact in &wrong {
-                let held = modes[*contact].is_active();
-                modes[*contact] = if held { Mode::Free } else { Mode::Slip { direction: [0.0; 3] } };
-            }
-            if !tried.insert((roughly, modes.iter().map(|mode| mode.is_active()).collect::<Vec<bool>>())) {
-                if !roughly {
-                    return None;
-                }
-                roughly = false;
-            }
-            let system = ModeSystem::new(self.loading, &modes, self.state);
-            let closing = ArcLengthEquation { from: self.state, step: far.step };
-            // Each mode has equations of its own.
-            (*last, linearised) = (None, None);
-            if roughly {
-                let (next, factorisation) = system.iterated_once(state, &closing, work)?;
-                state = next;
-                wrong = self.broken(&modes, &state, self.force_scale)?;
-                asked.extend(&wrong);
-                if wrong.is_empty() {
-                    roughly = false;
-                    *last = system.may_serve(factorisation);
-                } else {
-                    linearised = Some(factorisation);
-                }
-            }
-            // What leaves a choice at the start is not worth the solves. One iteration tells most of what is asked besides,
-            // and what holds with more contacts held or free holds with fewer.
-            if counted.is_none() {
-                counted = Some((asked.len(), self.negative_where_held_or_free(&asked, self.state, work)?));
-            }
-            if roughly {
-                continue;
-            }
-            let corrected = system.correct_from(system.iterate(state), &closing, self.force_scale, last, work).ok()?;
-            let forces = self.force_scale.max(corrected.force_scale);
-            wrong = self.broken(&modes, &corrected.state, forces)?;
-            if wrong.is_empty() {
-                let negative = match counted {
-                    Some((all, negative)) if all == asked.len() => negative,
-                    _ => self.negative_where_held_or_free(&asked, self.state, work)?,
-                };
-                return Some(EndModes { modes, corrected, asked, negative });
-            }
+            (wrong, state) = (settled.changed, settled.state);
+            may_turn(start.state.cosine_of_chord(&state, state.distance(start.state), start.rate)).ok()?;
             asked.extend(&wrong);
-            state = corrected.state;
         }
-        None
-    }
-
-    /// The contacts that change from some modes at about the state that one iteration in them led to, by that factorisation.
-    fn settled(
-        &self,
-        modes: &[Mode],
-        state: &State,
-        rate: &Rate,
-        factorisation: Option<&SystemFactorisation>,
-        wrong: &[usize],
-    ) -> Option<Complementary> {
-        let broken = |state: &State| self.broken(modes, state, self.force_scale);
-        ModeSystem::new(self.loading, modes, self.state).complementary(state, rate, factorisation?, wrong, broken)
-    }
-
-    /// The contacts whose modes do not hold at a state; `None` where some other quantity is negative.
-    pub(crate) fn broken(&self, modes: &[Mode], state: &State, forces: f64) -> Option<Vec<usize>> {
-        let broken = event_functions::of_mode(self.loading, modes, state, self.rate).into_iter().filter(|watch| {
-            let value = watch.value(self.loading, modes, state, self.rate);
-            value < -PASSED * watch.scale(self.loading, state, forces)
-        });
-        broken.map(|watch| self.smooth(watch)).collect()
-    }
-
-    /// Whether no stage ends within the step or at its end, the load rate keeps its sign, the other contacts keep their
-    /// modes, and none can change at the end. Those that may have changed there and back join the `restless`.
-    fn nothing_else_ends(&self, watches: &[Watch], restless: &mut BTreeSet<usize>, reached: &Reached) -> bool {
-        let state = &reached.corrected.state;
-        let forces = self.force_scale.max(reached.corrected.force_scale);
-        let ends = ((self.state, self.rate), (state, &reached.rate));
-        for watch in watches {
-            let smooth = self.smooth(*watch);
-            if smooth.is_some_and(|contact| restless.contains(&contact)) {
-                continue;
+        for contact in &wrong {
+            let held = modes[*contact].is_active();
+            modes[*contact] = if held { Mode::Free } else { Mode::Slip { direction: [0.0; 3] } };
+        }
+        if !tried.insert((roughly, modes.iter().map(|mode| mode.is_active()).collect::<Vec<bool>>())) {
+            if !roughly {
+                return None;
             }
-            let last = watch.value(self.loading, self.modes, state, &reached.rate);
-            let dips = |zero| watch.dip(self.loading, self.modes, ends.0, ends.1, reached.step, zero).is_some();
-            if watch.is_above_zero(self.loading, state, last, COINCIDING, forces)
-                && !(dips(0.0) && dips(PASSED * watch.scale(self.loading, state, forces)))
-            {
-                continue;
+            roughly = false;
+        }
+        let system = ModeSystem::new(start.loading, &modes, start.state);
+        let closing = ArcLengthEquation { from: start.state, step: far.step };
+        // Each mode has equations of its own.
+        (*last, linearised) = (None, None);
+        if roughly {
+            let (next, factorisation) = single_iteration::iterated_once(&system, state, &closing, work)?;
+            state = next;
+            wrong = broken(start, &modes, &state, start.force_scale)?;
+            asked.extend(&wrong);
+            if wrong.is_empty() {
+                roughly = false;
+                *last = tangent::may_serve(&system, factorisation);
+            } else {
+                linearised = Some(factorisation);
             }
-            match smooth {
-                Some(contact) => restless.insert(contact),
-                None => return false,
+        }
+        // What leaves a choice at the start is not worth the solves. One iteration tells most of what is asked besides,
+        // and what holds with more contacts held or free holds with fewer.
+        if counted.is_none() {
+            counted = Some((asked.len(), negative_where_held_or_free(start, &asked, start.state, work)?));
+        }
+        if roughly {
+            continue;
+        }
+        let corrected =
+            newton::correct_from(&system, system.iterate(state), &closing, start.force_scale, last, work).ok()?;
+        let forces = start.force_scale.max(corrected.force_scale);
+        wrong = broken(start, &modes, &corrected.state, forces)?;
+        if wrong.is_empty() {
+            let negative = match counted {
+                Some((all, negative)) if all == asked.len() => negative,
+                _ => negative_where_held_or_free(start, &asked, start.state, work)?,
             };
+            return Some(EndModes { modes, corrected, asked, negative });
         }
-        let settled = |standing: &Standing| matches!(standing, Standing::Settled(_));
-        standings(self.loading, state, forces).iter().all(settled)
+        asked.extend(&wrong);
+        state = corrected.state;
     }
+    None
+}
 
-    /// Negative eigenvalues of the tangent at a state with some contacts held and with them free, where these are as many.
-    pub(crate) fn negative_where_held_or_free(
-        &self,
-        contacts: &BTreeSet<usize>,
-        state: &State,
-        work: &mut Work,
-    ) -> Option<usize> {
-        let mut count = |mode: Mode| {
-            let mut modes = self.modes.to_vec();
-            contacts.iter().for_each(|contact| modes[*contact] = mode);
-            negative_eigenvalues(self.loading, &modes, self.state, state, work)
+/// The contacts that change from some modes at about the state that one iteration in them led to, by that factorisation.
+fn settled(
+    start: &StepStart<'_>,
+    modes: &[Mode],
+    state: &State,
+    rate: &Rate,
+    factorisation: Option<&SystemFactorisation>,
+    wrong: &[usize],
+) -> Option<Complementary> {
+    let broken = |state: &State| broken(start, modes, state, start.force_scale);
+    let system = ModeSystem::new(start.loading, modes, start.state);
+    complementary(&system, state, rate, factorisation?, wrong, broken)
+}
+
+/// The contacts whose modes do not hold at a state; `None` where some other quantity is negative.
+pub(crate) fn broken(start: &StepStart<'_>, modes: &[Mode], state: &State, forces: f64) -> Option<Vec<usize>> {
+    let broken = event_functions::of_mode(start.loading, modes, state, start.rate).into_iter().filter(|watch| {
+        let value = watch.value(start.loading, modes, state, start.rate);
+        value < -PASSED * watch.scale(start.loading, state, forces)
+    });
+    broken.map(|watch| smooth(start.loading, watch)).collect()
+}
+
+/// Whether no stage ends within the step or at its end, the load rate keeps its sign, the other contacts keep their
+/// modes, and none can change at the end. Those that may have changed there and back join the `restless`.
+fn nothing_else_ends(
+    start: &StepStart<'_>,
+    watches: &[Watch],
+    restless: &mut BTreeSet<usize>,
+    reached: &Reached,
+) -> bool {
+    let state = &reached.corrected.state;
+    let forces = start.force_scale.max(reached.corrected.force_scale);
+    let ends = ((start.state, start.rate), (state, &reached.rate));
+    for watch in watches {
+        let smooth = smooth(start.loading, *watch);
+        if smooth.is_some_and(|contact| restless.contains(&contact)) {
+            continue;
+        }
+        let last = watch.value(start.loading, start.modes, state, &reached.rate);
+        let dips = |zero| watch.dip(start.loading, start.modes, ends.0, ends.1, reached.step, zero).is_some();
+        if watch.is_above_zero(start.loading, state, last, COINCIDING, forces)
+            && !(dips(0.0) && dips(PASSED * watch.scale(start.loading, state, forces)))
+        {
+            continue;
+        }
+        match smooth {
+            Some(contact) => restless.insert(contact),
+            None => return false,
         };
-        let free = count(Mode::Free)?;
-        // Held they can only be fewer.
-        (free == 0 || count(Mode::Slip { direction: [0.0; 3] })? == free).then_some(free)
     }
+    let settled = |standing: &Standing| matches!(standing, Standing::Settled(_));
+    standings(start.loading, state, forces).iter().all(settled)
+}
+
+/// Negative eigenvalues of the tangent at a state with some contacts held and with them free, where these are as many.
+pub(crate) fn negative_where_held_or_free(
+    start: &StepStart<'_>,
+    contacts: &BTreeSet<usize>,
+    state: &State,
+    work: &mut Work,
+) -> Option<usize> {
+    let mut count = |mode: Mode| {
+        let mut modes = start.modes.to_vec();
+        contacts.iter().for_each(|contact| modes[*contact] = mode);
+        negative_eigenvalues(start.loading, &modes, start.state, state, work)
+    };
+    let free = count(Mode::Free)?;
+    // Held they can only be fewer.
+    (free == 0 || count(Mode::Slip { direction: [0.0; 3] })? == free).then_some(free)
 }

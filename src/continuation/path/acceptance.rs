@@ -1,20 +1,21 @@
 //! A point that a step has reached becomes the present one and a row.
 
-use crate::continuation::path::classification::{self, Came};
+use crate::branching::bifurcation::locate::Crossing;
+use crate::continuation::path::classification::{self, Arrival, Came};
 use crate::continuation::path::stages;
-use crate::continuation::path::step_control::{self, Accepted};
+use crate::continuation::path::step_control::{self, AcceptedStep};
 use crate::continuation::path_state::progress::{Arriving, Phase};
 use crate::continuation::path_state::tolerances::ROUND_OFF;
-use crate::continuation::path_state::trace::{Emitted, Trace};
-use crate::mechanics::contact::{Reaction, all_continue};
+use crate::continuation::path_state::trace::{Emitted, PathTrace};
+use crate::mechanics::contact::{Mode, Reaction, all_continue};
 use crate::mechanics::problem::natural_residual;
-use crate::result::increment::{Increment, PointKind};
+use crate::result::increment::{Increment, Point, PointKind};
 use crate::result::stop_reason::StopReason;
 use crate::step::event_functions::Watch;
-use crate::step::interpolation::Placed;
+use crate::step::interpolation::PlacedPoint;
 
 /// Makes a reached point the present one and says what it is; none where the way on would break the laws of contact.
-pub(crate) fn accept(trace: &mut Trace<'_>, accepted: Accepted) -> Option<Increment> {
+pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Option<Increment> {
     let reached = accepted.reached;
     trace.at.totals.add(&accepted.added);
     trace.at.counts.increments += 1;
@@ -35,21 +36,14 @@ pub(crate) fn accept(trace: &mut Trace<'_>, accepted: Accepted) -> Option<Increm
     let at_bound = stages::at_bound(trace, &reached.rate);
     let (step, joins) = (reached.step, accepted.joined > 0);
     let arrived = changes.then(|| trace.at.here.state.reactions.clone());
-    let mut arrival = if accepted.joined > 0 {
-        trace.at.here.is_singular = false;
-        let arrival = classification::joined_changes(trace, &modes, accepted.joined, reached.rate);
-        modes.clone_from(&trace.at.here.modes);
-        arrival
-    } else {
-        let came = Came {
-            rate: reached.rate,
-            step: reached.step,
-            stopped: reached.stopped,
-            nearby: reached.nearby,
-            motions: reached.motions,
-        };
-        classification::classify(trace, reached.event, accepted.crossing, came)
+    let came = Came {
+        rate: reached.rate,
+        step: reached.step,
+        stopped: reached.stopped,
+        nearby: reached.nearby,
+        motions: reached.motions,
     };
+    let mut arrival = what_it_is(trace, &mut modes, accepted.joined, reached.event, accepted.crossing, came);
     if accepted.returned {
         arrival.stop = Some(StopReason::Cycle);
     }
@@ -69,21 +63,12 @@ pub(crate) fn accept(trace: &mut Trace<'_>, accepted: Accepted) -> Option<Increm
         point.kind = PointKind::End;
         trace.end(reason);
     } else if stage_ends {
-        if point.kind == PointKind::Regular {
-            point.kind = PointKind::End;
-        }
-        let what = format!("stage \"{}\" ends", stage.name);
-        point.event = Some(point.event.map_or(what.clone(), |event| format!("{event}; {what}")));
+        tell_end_of_stage(&mut point, &stage.name);
     }
-    // Where contacts of a node share its force in another way as the path goes on, they do not yet where it arrives.
-    let round_off = ROUND_OFF * trace.at.totals.force_scale;
-    let is_anew = |arrived: &Vec<Reaction>| {
-        let now = trace.at.here.state.reactions.iter();
-        now.zip(arrived).any(|(now, arrived)| now.difference(arrived) > round_off)
-    };
+    let reactions = arrived.filter(|arrived| is_anew(trace, arrived));
     let row = trace.emit(Emitted {
         before: &before,
-        reactions: arrived.filter(is_anew),
+        reactions,
         modes: &modes,
         step: reached.step,
         point,
@@ -95,8 +80,42 @@ pub(crate) fn accept(trace: &mut Trace<'_>, accepted: Accepted) -> Option<Increm
         arriving: Some(arriving),
     });
     if !changes && let Some(rate) = begun {
-        trace.at.here.before = Placed::before(before, rate, &trace.at.here.state);
+        trace.at.here.before = PlacedPoint::before(before, rate, &trace.at.here.state);
     }
     trace.at.stage_over = stage_ends && trace.at.phase == Phase::Running;
     Some(row)
+}
+
+/// What the point turns out to be. `modes` are those that led to it, which changes that are taken together have replaced.
+fn what_it_is(
+    trace: &mut PathTrace<'_>,
+    modes: &mut Vec<Mode>,
+    joined: u64,
+    event: Option<Watch>,
+    crossing: Option<Crossing>,
+    came: Came,
+) -> Arrival {
+    if joined == 0 {
+        return classification::classify(trace, event, crossing, came);
+    }
+    trace.at.here.is_singular = false;
+    let arrival = classification::joined_changes(trace, modes, joined, came.rate);
+    modes.clone_from(&trace.at.here.modes);
+    arrival
+}
+
+fn tell_end_of_stage(point: &mut Point, stage: &str) {
+    if point.kind == PointKind::Regular {
+        point.kind = PointKind::End;
+    }
+    let what = format!("stage \"{stage}\" ends");
+    point.event = Some(point.event.take().map_or(what.clone(), |event| format!("{event}; {what}")));
+}
+
+/// Whether reactions have moved from those that a step arrived with: where contacts of a node share its force in another way
+/// as the path goes on, they do not yet where it arrives.
+fn is_anew(trace: &PathTrace<'_>, arrived: &[Reaction]) -> bool {
+    let round_off = ROUND_OFF * trace.at.totals.force_scale;
+    let now = trace.at.here.state.reactions.iter();
+    now.zip(arrived).any(|(now, arrived)| now.difference(arrived) > round_off)
 }

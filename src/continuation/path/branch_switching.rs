@@ -1,11 +1,11 @@
 //! A path along a direction that another path did not take.
 
-use crate::branching::directions::choice::{Choice, STATIONARY};
+use crate::branching::directions::choice::{DirectionChoice, STATIONARY};
 use crate::continuation::path::checkpoint::CheckpointError;
 
 use crate::continuation::path_state::progress::{Followed, Phase, StageCounts};
 use crate::continuation::path_state::totals::Totals;
-use crate::continuation::path_state::trace::{Emitted, Trace};
+use crate::continuation::path_state::trace::{Emitted, PathTrace};
 
 use crate::continuation::path_state::visited_states;
 use crate::mechanics::contact::all_continue;
@@ -14,7 +14,11 @@ use crate::result::increment::{Increment, Point, PointKind};
 use crate::step::segment::AT_END;
 
 /// A path of its own from a point along one of the directions listed there: see `Path::follow`.
-pub(crate) fn along(mut trace: Trace<'_>, direction: usize, event: String) -> Result<Trace<'_>, CheckpointError> {
+pub(crate) fn along(
+    mut trace: PathTrace<'_>,
+    direction: usize,
+    event: String,
+) -> Result<PathTrace<'_>, CheckpointError> {
     let counts = counts_along(&trace, direction)?;
     let listed = trace.at.listed.take().ok_or(CheckpointError::NothingListed)?;
     if listed.taken != Some(direction)
@@ -38,7 +42,7 @@ pub(crate) fn along(mut trace: Trace<'_>, direction: usize, event: String) -> Re
 }
 
 /// The stage's counts at the present point if the path leaves it along that direction, or why it cannot.
-pub(crate) fn counts_along(trace: &Trace<'_>, direction: usize) -> Result<StageCounts, CheckpointError> {
+pub(crate) fn counts_along(trace: &PathTrace<'_>, direction: usize) -> Result<StageCounts, CheckpointError> {
     let listed = trace.at.listed.as_ref().ok_or(CheckpointError::NothingListed)?;
     let options = listed.options.len();
     let choice =
@@ -67,7 +71,7 @@ pub(crate) fn counts_along(trace: &Trace<'_>, direction: usize) -> Result<StageC
 }
 
 /// Leaves the present point along another direction than the one taken there.
-fn turn(trace: &mut Trace<'_>, choice: &Choice) {
+fn turn(trace: &mut PathTrace<'_>, choice: &DirectionChoice) {
     trace.go(choice);
     let visited = trace.visit();
     if !trace.at.visited.states().any(|known| *known == visited) {
@@ -76,7 +80,7 @@ fn turn(trace: &mut Trace<'_>, choice: &Choice) {
 }
 
 /// Whether a direction leads out of the running stage at a bound that is reached here, or stays on it.
-fn goes_past_end(trace: &Trace<'_>, choice: &Choice) -> bool {
+fn goes_past_end(trace: &PathTrace<'_>, choice: &DirectionChoice) -> bool {
     trace.scene.stages[trace.at.stage].ends.iter().any(|end| match *end {
         End::Load { bound, sign } => {
             sign * (trace.at.here.state.load - bound) >= -AT_END && sign * choice.load_sign >= 0.0
@@ -90,7 +94,7 @@ fn goes_past_end(trace: &Trace<'_>, choice: &Choice) -> bool {
 }
 
 /// The first increment of a path that follows another's direction.
-pub(crate) fn first_increment(trace: &mut Trace<'_>, followed: Followed) -> Increment {
+pub(crate) fn first_increment(trace: &mut PathTrace<'_>, followed: Followed) -> Increment {
     trace.at.phase = Phase::Running;
     let Followed { listed, direction, event } = followed;
     let point = Point { kind: PointKind::Start, event: Some(event), better_direction: false, ..listed.point };

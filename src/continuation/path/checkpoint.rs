@@ -6,7 +6,7 @@
 //! up with the scene that it was made with, or with one that differs in `max_increments` alone.
 
 use crate::continuation::path_state::progress::{Listed, Progress};
-use crate::continuation::path_state::trace::Trace;
+use crate::continuation::path_state::trace::PathTrace;
 use crate::continuation::path_state::visited_states::Numbered;
 use crate::continuation::scene::Scene;
 use crate::mechanics::contact::Mode;
@@ -131,7 +131,7 @@ impl Checkpoint {
 }
 
 /// The path at its present point.
-pub(crate) fn put_down(trace: &Trace<'_>) -> Checkpoint {
+pub(crate) fn put_down(trace: &PathTrace<'_>) -> Checkpoint {
     Checkpoint { version: VERSION, elapsed_s: trace.elapsed_s(), at: trace.at.clone() }
 }
 
@@ -140,7 +140,7 @@ pub(crate) fn take_up<'a>(
     scene: &'a Scene,
     checkpoint: Checkpoint,
     cancel: CancelFlag,
-) -> Result<Trace<'a>, CheckpointError> {
+) -> Result<PathTrace<'a>, CheckpointError> {
     checkpoint.fits(scene)?;
-    Ok(Trace::at(scene, checkpoint.at, checkpoint.elapsed_s, cancel))
+    Ok(PathTrace::at(scene, checkpoint.at, checkpoint.elapsed_s, cancel))
 }

@@ -3,15 +3,15 @@
 use crate::branching::bifurcation::locate::Crossing;
 use crate::branching::bifurcation::{branch_directions, simultaneous_limit_points};
 use crate::branching::directions::arrival_tangent::Incoming;
-use crate::branching::directions::candidate::Found;
-use crate::branching::directions::choice::{self, Before, Choice};
+use crate::branching::directions::candidate::FoundDirections;
+use crate::branching::directions::choice::{self, DirectionChoice, PriorMotion};
 use crate::branching::directions::trial_step::later_sign;
 use crate::branching::selection::{decision, second_order};
 use crate::branching::uniqueness::all_slipping::directions_going_on;
 use crate::continuation::path::mpec_verification;
 use crate::continuation::path_state::event_names::describe_change;
 use crate::continuation::path_state::tolerances::{ROUND_OFF, SAME_STATE};
-use crate::continuation::path_state::trace::Trace;
+use crate::continuation::path_state::trace::PathTrace;
 use crate::continuation::path_state::visited_states;
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::multi_contact::contact_status::Standing;
@@ -28,7 +28,7 @@ use crate::step::event_functions::Watch;
 /// What a point turned out to be.
 pub(crate) struct Arrival {
     pub point: Point,
-    pub options: Vec<Choice>,
+    pub options: Vec<DirectionChoice>,
     pub taken: Option<usize>,
     pub stop: Option<StopReason>,
     pub stage_ends: bool,
@@ -50,13 +50,18 @@ pub(crate) struct Came {
 }
 
 /// What kind of point this is, and how the path goes on: along the direction in which it came, if no other is taken.
-pub(crate) fn classify(trace: &mut Trace<'_>, event: Option<Watch>, crossing: Option<Crossing>, came: Came) -> Arrival {
+pub(crate) fn classify(
+    trace: &mut PathTrace<'_>,
+    event: Option<Watch>,
+    crossing: Option<Crossing>,
+    came: Came,
+) -> Arrival {
     let arrival = arrive(trace, event, crossing, &came);
     trace.at.here.rate.get_or_insert(came.rate);
     arrival
 }
 
-fn arrive(trace: &mut Trace<'_>, event: Option<Watch>, crossing: Option<Crossing>, came: &Came) -> Arrival {
+fn arrive(trace: &mut PathTrace<'_>, event: Option<Watch>, crossing: Option<Crossing>, came: &Came) -> Arrival {
     let incoming = &came.rate;
     match event {
         None | Some(Watch::End(_)) if let Some(crossing) = crossing => {
@@ -88,7 +93,7 @@ fn arrive(trace: &mut Trace<'_>, event: Option<Watch>, crossing: Option<Crossing
 }
 
 /// The end of a step in which contacts have changed together, from the modes `old`: none of them can change here.
-pub(crate) fn joined_changes(trace: &mut Trace<'_>, old: &[Mode], changes: u64, incoming: Rate) -> Arrival {
+pub(crate) fn joined_changes(trace: &mut PathTrace<'_>, old: &[Mode], changes: u64, incoming: Rate) -> Arrival {
     trace.at.here.rate = Some(incoming);
     trace.at.counts.contact_changes += changes;
     let standings = trace.standings(&trace.at.here.state);
@@ -99,7 +104,7 @@ pub(crate) fn joined_changes(trace: &mut Trace<'_>, old: &[Mode], changes: u64, 
 
 /// Directions at a point where the mode goes on.
 fn look_around(
-    trace: &Trace<'_>,
+    trace: &PathTrace<'_>,
     incoming: &Rate,
     kind: PointKind,
     event: Option<String>,
@@ -114,20 +119,20 @@ fn look_around(
     }
     let rules = trace.rules();
     let (loading, here) = (trace.loading(), &trace.at.here);
-    let before = Before::Incoming(Incoming::along(incoming));
+    let before = PriorMotion::Incoming(Incoming::along(incoming));
     let told = if here.is_singular {
         // First order says nothing of what stays at its fold.
         let (state, force_scale) = (&here.state, rules.force_scale);
-        let at = branch_directions::Here { loading, state, standings: &standings, force_scale };
+        let at = branch_directions::SingularPoint { loading, state, standings: &standings, force_scale };
         second_order::directions(at, before)
     } else {
         None
     };
     let at_once = || directions_going_on(loading, &here.state, &standings, &here.modes, incoming, rules);
-    let (options, found) = if let Some(branch_directions::Told { options, unclear }) = told {
-        (options, Found { degenerate: unclear, ..Found::default() })
+    let (options, found) = if let Some(branch_directions::SecondOrderFindings { options, unclear }) = told {
+        (options, FoundDirections { degenerate: unclear, ..FoundDirections::default() })
     } else if let Some(options) = at_once() {
-        (options, Found::default())
+        (options, FoundDirections::default())
     } else {
         decision::list(loading, &here.state, &standings, before, rules)
     };
@@ -147,18 +152,18 @@ fn look_around(
 }
 
 /// A limit point that several motions have in common: the path goes on in its own direction, the others are listed.
-fn common_limit(trace: &Trace<'_>, what: &str, sign: f64, came: &Came) -> Arrival {
+fn common_limit(trace: &PathTrace<'_>, what: &str, sign: f64, came: &Came) -> Arrival {
     let (loading, here, rules) = (trace.loading(), &trace.at.here, trace.rules());
     let (incoming, state) = (&came.rate, &here.state);
     let standings = trace.standings(state);
-    let at = branch_directions::Here { loading, state, standings: &standings, force_scale: rules.force_scale };
+    let at = branch_directions::SingularPoint { loading, state, standings: &standings, force_scale: rules.force_scale };
     let most = rules.effort.most_modes;
     let found = simultaneous_limit_points::directions(at, &here.modes, incoming, came.motions, most)
         .unwrap_or_else(|| branch_directions::branches(at, &here.modes, incoming, came.motions - 1, None));
     let branch_directions::Branches { mut options, mut degenerate, mut unexplored } = found;
     if !standings.iter().all(|standing| matches!(standing, Standing::Settled(_))) {
         // Those along which the load changes at first order.
-        let before = Before::Incoming(Incoming::along(incoming));
+        let before = PriorMotion::Incoming(Incoming::along(incoming));
         let (others, listed) = decision::list(loading, state, &standings, before, rules);
         options.extend(others.into_iter().filter(|other| choice::sign_of(other.rate.load) != 0.0));
         unexplored = unexplored.saturating_add(listed.unexplored);
@@ -180,14 +185,14 @@ fn common_limit(trace: &Trace<'_>, what: &str, sign: f64, came: &Came) -> Arriva
 }
 
 /// An eigenvalue crosses zero within the mode: the path goes on in its own direction, the branches are listed.
-fn smooth_bifurcation(trace: &mut Trace<'_>, crossing: Crossing, incoming: &Rate, stage_ends: bool) -> Arrival {
+fn smooth_bifurcation(trace: &mut PathTrace<'_>, crossing: Crossing, incoming: &Rate, stage_ends: bool) -> Arrival {
     if crossing.eigenvalues == 0 {
         return undetermined(trace);
     }
     let rules = trace.rules();
     let standings = trace.standings(&trace.at.here.state);
     let modes = &trace.at.here.modes;
-    let here = branch_directions::Here {
+    let here = branch_directions::SingularPoint {
         loading: trace.loading(),
         state: &trace.at.here.state,
         standings: &standings,
@@ -211,7 +216,7 @@ fn smooth_bifurcation(trace: &mut Trace<'_>, crossing: Crossing, incoming: &Rate
     };
     if !standings.iter().all(|standing| matches!(standing, Standing::Settled(_))) {
         // Other modes of the contacts that can change; in the current mode, singular here, the branches are it.
-        let before = Before::Incoming(Incoming::along(incoming));
+        let before = PriorMotion::Incoming(Incoming::along(incoming));
         let (others, listed) = decision::list(trace.loading(), &trace.at.here.state, &standings, before, rules);
         // Those of looser modes are over other unknowns.
         let nulls = nulls.filter(|_| !crossing.grazing);
@@ -219,11 +224,11 @@ fn smooth_bifurcation(trace: &mut Trace<'_>, crossing: Crossing, incoming: &Rate
         if (listed.degenerate && others.is_empty()) || nulls.is_some_and(is_singular) {
             branch_directions::in_other_modes(here, modes, nulls, &mut found);
         } else {
-            let known = |other: &Choice| {
+            let known = |other: &DirectionChoice| {
                 other.modes == *modes
                     || found.options.iter().any(|one| one.rate.product(&other.rate) > branch_directions::SAME)
             };
-            let others: Vec<Choice> = others.into_iter().filter(|other| !known(other)).collect();
+            let others: Vec<DirectionChoice> = others.into_iter().filter(|other| !known(other)).collect();
             found.options.extend(others);
             found.unexplored = listed.unexplored;
         }
@@ -247,7 +252,7 @@ fn smooth_bifurcation(trace: &mut Trace<'_>, crossing: Crossing, incoming: &Rate
 }
 
 /// The slip and the load may go on at any rates, each against the other: a family of paths leaves.
-fn undetermined(_trace: &Trace<'_>) -> Arrival {
+fn undetermined(_trace: &PathTrace<'_>) -> Arrival {
     let point = Point {
         kind: PointKind::End,
         bifurcation: false,
@@ -261,7 +266,7 @@ fn undetermined(_trace: &Trace<'_>) -> Arrival {
 }
 
 /// A contact has reached the end of its mode: list the directions and take one.
-fn contact_change(trace: &mut Trace<'_>, came: &Came) -> Arrival {
+fn contact_change(trace: &mut PathTrace<'_>, came: &Came) -> Arrival {
     let Came { rate: incoming, step, stopped, nearby, .. } = came;
     trace.at.counts.contact_changes += 1;
     let standings = trace.standings(&trace.at.here.state);
@@ -275,7 +280,7 @@ fn contact_change(trace: &mut Trace<'_>, came: &Came) -> Arrival {
     let modes = Some(&trace.at.here.modes[..]);
     let is_singular = trace.at.here.is_singular;
     let came = Incoming { rate: incoming, modes, stopped: *stopped, nearby: Some(nearby), is_singular };
-    let before = Before::Incoming(came);
+    let before = PriorMotion::Incoming(came);
     let mut decision = decision::decide(trace.loading(), &trace.at.here.state, &standings, before, rules);
     // Ways that share a node's force anew come last: they begin with a rest, not with the motion that led here.
     let keeps: Vec<bool> = decision.options.iter().map(|option| keeps_shares(trace, option)).collect();
@@ -341,7 +346,7 @@ fn contact_change(trace: &mut Trace<'_>, came: &Came) -> Arrival {
 
 /// Whether a direction begins with the reactions that are. Where a node is carried by planes that move against each
 /// other and slips along both, equilibrium gives them; another way to share its force begins with a rest.
-fn keeps_shares(trace: &Trace<'_>, choice: &Choice) -> bool {
+fn keeps_shares(trace: &PathTrace<'_>, choice: &DirectionChoice) -> bool {
     let (loading, here) = (trace.loading(), &trace.at.here);
     let (state, zero) = (&here.state, ZERO * trace.rules().force_scale);
     loading.corners.iter().filter(|corner| node_forces::is_in_plane(loading, corner)).all(|corner| {
@@ -365,7 +370,7 @@ fn keeps_shares(trace: &Trace<'_>, choice: &Choice) -> bool {
 }
 
 /// Whether the path has left this very state in these modes before; remembers it if not.
-fn is_cycle(trace: &mut Trace<'_>) -> bool {
+fn is_cycle(trace: &mut PathTrace<'_>) -> bool {
     let here = trace.visit();
     let force = SAME_STATE * trace.at.totals.force_scale;
     let known = trace.at.visited.states().any(|visited| visited.is(&here, SAME_STATE, force));

@@ -6,7 +6,7 @@
 use crate::continuation::path::checkpoint::{self, Checkpoint, CheckpointError};
 use crate::continuation::path::{acceptance, branch_switching, stages, step_control};
 use crate::continuation::path_state::progress::{Phase, Progress};
-use crate::continuation::path_state::trace::Trace;
+use crate::continuation::path_state::trace::PathTrace;
 use crate::continuation::scene::Scene;
 use crate::resources::budget::{self, Budget};
 use crate::resources::cancel::CancelFlag;
@@ -17,16 +17,16 @@ use crate::result::stop_reason::StopReason;
 
 /// A path being traced.
 pub struct Path<'a> {
-    pub(crate) trace: Trace<'a>,
+    pub(crate) trace: PathTrace<'a>,
     budget: Budget,
 }
 
 impl<'a> Path<'a> {
     pub fn new(scene: &'a Scene, cancel: CancelFlag) -> Self {
-        Self::along(Trace::at(scene, Progress::new(scene), 0.0, cancel))
+        Self::along(PathTrace::at(scene, Progress::new(scene), 0.0, cancel))
     }
 
-    fn along(trace: Trace<'a>) -> Self {
+    fn along(trace: PathTrace<'a>) -> Self {
         Self { budget: Budget::under_way(trace.cancel.clone()), trace }
     }
 
@@ -110,7 +110,7 @@ impl Iterator for Path<'_> {
 }
 
 /// The next increment; `None` where the path has ended.
-fn increment(trace: &mut Trace<'_>) -> Option<Increment> {
+fn increment(trace: &mut PathTrace<'_>) -> Option<Increment> {
     match trace.at.phase {
         Phase::Ended => return None,
         Phase::NotStarted => {

@@ -12,7 +12,7 @@
 //! | `mpec_increments` | increments found by their program alone |
 //! | `checkpoint`, `branch_switching` | a path put down and taken up again; along another direction |
 //!
-//! All of them work on one [`Trace`](crate::continuation::path_state::trace::Trace), which owns the state.
+//! All of them work on one [`PathTrace`](crate::continuation::path_state::trace::PathTrace), which owns the state.
 
 pub(crate) mod acceptance;
 pub(crate) mod branch_switching;

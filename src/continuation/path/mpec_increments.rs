@@ -11,8 +11,8 @@
 //! mode's equations gave it.
 
 use crate::continuation::path::mpec_verification;
-use crate::continuation::path::step_control::Accepted;
-use crate::continuation::path_state::trace::Trace;
+use crate::continuation::path::step_control::AcceptedStep;
+use crate::continuation::path_state::trace::PathTrace;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::closing_equation::ArcLengthEquation;
@@ -22,8 +22,9 @@ use crate::mechanics::problem::natural_residual;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::result::program_iterate::{ContactIterate, ProgramIterate};
 use crate::step::corrector::cost_counters::Work;
-use crate::step::increment_mpec::{Counts, End, IncrementProgram, Searched};
-use crate::step::segment::{Reached, Start};
+use crate::step::increment_mpec::search;
+use crate::step::increment_mpec::{IncrementProgram, ProgramCounts, ProgramEnd, Searched};
+use crate::step::segment::{Reached, StepStart};
 use std::sync::Arc;
 
 /// Searches of one increment, `γ1` adapted from one to the next.
@@ -40,13 +41,13 @@ const EDGE: f64 = 1e-6;
 /// What an increment's searches leave.
 #[derive(Default)]
 struct Left {
-    counts: Vec<Counts>,
+    counts: Vec<ProgramCounts>,
     work: Work,
     iterates: Vec<ProgramIterate>,
 }
 
 /// Finds the end of an increment that is about to be accepted by its program.
-pub(crate) fn found_by_program(trace: &mut Trace<'_>, rate: &Rate, mut accepted: Accepted) -> Accepted {
+pub(crate) fn found_by_program(trace: &mut PathTrace<'_>, rate: &Rate, mut accepted: AcceptedStep) -> AcceptedStep {
     let (found, Left { counts, work, iterates }) = search_end(trace, rate, &accepted);
     trace.at.totals.work = work;
     counts.into_iter().for_each(|counts| mpec_verification::count(trace, counts));
@@ -69,7 +70,7 @@ pub(crate) fn found_by_program(trace: &mut Trace<'_>, rate: &Rate, mut accepted:
     accepted
 }
 
-fn search_end(trace: &Trace<'_>, rate: &Rate, accepted: &Accepted) -> (Option<Box<Reached>>, Left) {
+fn search_end(trace: &PathTrace<'_>, rate: &Rate, accepted: &AcceptedStep) -> (Option<Box<Reached>>, Left) {
     let (here, reached) = (&trace.at.here, &accepted.reached);
     let mut left = Left { work: trace.at.totals.work, ..Left::default() };
     let (loading, base, step) = (trace.loading(), &here.state, reached.step);
@@ -80,17 +81,18 @@ fn search_end(trace: &Trace<'_>, rate: &Rate, accepted: &Accepted) -> (Option<Bo
     let ahead = base.advanced(rate, step);
     let mut program =
         mpec_verification::increment_program(loading, trace.at.totals.force_scale, (base, &ahead), rate, step);
-    program.stay_near();
+    search::stay_near(&mut program);
     let predicted = program.variables_at(rate);
-    let (mut start, mut relaxation) = (predicted.clone(), program.first_relaxation());
+    let (mut start, mut relaxation) = (predicted.clone(), search::first_relaxation(&program));
     for _ in 0..MOST_SEARCHES {
-        let searched = program.search(&start, relaxation, modes, trace.iterates.is_some(), &trace.cancel);
+        let searched =
+            search::search_from(&program, &start, relaxation, modes, trace.iterates.is_some(), &trace.cancel);
         note(trace, &program, &searched, &mut left);
         if trace.cancel.is_cancelled() {
             break;
         }
         let Some(end) = searched.end else {
-            let Some(tighter) = IncrementProgram::tighter(relaxation) else { break };
+            let Some(tighter) = search::tighter(relaxation) else { break };
             (start, relaxation) = (predicted.clone(), tighter);
             continue;
         };
@@ -109,10 +111,10 @@ fn search_end(trace: &Trace<'_>, rate: &Rate, accepted: &Accepted) -> (Option<Bo
         }
         // Off the path: so large a relaxation led away from it.
         let is_off = !is_near || (end.size - 1.0).abs() <= SETTLED;
-        match IncrementProgram::tighter(relaxation).filter(|_| is_off) {
+        match search::tighter(relaxation).filter(|_| is_off) {
             Some(tighter) => (start, relaxation) = (predicted.clone(), tighter),
             None => {
-                program.adapt(end.size);
+                search::adapt_arc_weight(&mut program, end.size);
                 start = end.variables;
             }
         }
@@ -120,13 +122,13 @@ fn search_end(trace: &Trace<'_>, rate: &Rate, accepted: &Accepted) -> (Option<Bo
     (None, left)
 }
 
-fn note(trace: &Trace<'_>, program: &IncrementProgram<'_>, searched: &Searched, left: &mut Left) {
+fn note(trace: &PathTrace<'_>, program: &IncrementProgram<'_>, searched: &Searched, left: &mut Left) {
     left.counts.push(searched.counts);
     let plan = trace.scene.plan();
     let (length, force) = (plan.displacement_scale, plan.force_scale);
     let number = left.counts.len() as u64;
     for iterate in &searched.iterates {
-        let (state, contacts) = program.contacts_at(&iterate.x);
+        let (state, contacts) = search::contacts_at(&program, &iterate.x);
         let contacts = contacts.into_iter().filter_map(|at| {
             let (node, obstacle) = trace.names().nth(at.contact)?;
             Some(ContactIterate {
@@ -141,7 +143,7 @@ fn note(trace: &Trace<'_>, program: &IncrementProgram<'_>, searched: &Searched, 
         left.iterates.push(ProgramIterate {
             program: number,
             relaxation: iterate.relaxation,
-            size: program.size(&iterate.x),
+            size: search::arc_length_ratio(&program, &iterate.x),
             load_factor: trace.scene.stages[trace.at.stage].load_factor(state.load),
             violation: iterate.violation,
             contacts: contacts.collect(),
@@ -151,15 +153,15 @@ fn note(trace: &Trace<'_>, program: &IncrementProgram<'_>, searched: &Searched, 
 
 /// The end of a search taken to round-off in a mode, at the arc length sought.
 fn polished(
-    trace: &Trace<'_>,
-    end: &End,
+    trace: &PathTrace<'_>,
+    end: &ProgramEnd,
     rate: &Rate,
     modes: &[Mode],
     step: f64,
     work: &mut Work,
 ) -> Option<Box<Reached>> {
     let (here, force_scale) = (&trace.at.here, trace.at.totals.force_scale);
-    let start = Start {
+    let start = StepStart {
         loading: trace.loading(),
         state: &here.state,
         rate,
@@ -178,7 +180,13 @@ fn polished(
 }
 
 /// Whether the modes that a search ends in are these, but for contacts that are at the edge of both.
-fn is_mode_at(trace: &Trace<'_>, loading: Loading<'_>, end: &End, modes: &[Mode], reached: &Reached) -> bool {
+fn is_mode_at(
+    trace: &PathTrace<'_>,
+    loading: Loading<'_>,
+    end: &ProgramEnd,
+    modes: &[Mode],
+    reached: &Reached,
+) -> bool {
     if agree(loading, &end.modes, modes) {
         return true;
     }

@@ -3,17 +3,18 @@
 //! The point that the path has reached is shown to solve the increment's program, without a quadratic program; where it
 //! is not, the program is solved from the direction at hand.
 
-use crate::branching::directions::choice::Choice;
+use crate::branching::directions::choice::DirectionChoice;
 use crate::complementarity::mpec::Problem;
-use crate::continuation::path_state::trace::Trace;
+use crate::continuation::path_state::trace::PathTrace;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::multi_contact::reaction_split::agree;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::natural_residual::ZERO;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::event_functions;
-use crate::step::increment_mpec::{Arrived, Counts, Foreseen, IncrementProgram, Named};
-use crate::step::segment::{Reached, Start};
+use crate::step::increment_mpec::certificate;
+use crate::step::increment_mpec::{Arrived, ForeseenModes, IncrementProgram, Named, ProgramCounts};
+use crate::step::segment::{Reached, StepStart};
 
 /// Arc length at which a direction is first put to the program, as a fraction of the path's next step.
 const FIRST_TRIAL: f64 = 0.25;
@@ -30,7 +31,7 @@ const SHORTEST: f64 = 1e-3;
 const NEAR: f64 = 1e-5;
 
 /// Whether the program, started along the present direction, ends in the present mode; up to an event, on the way there.
-pub(crate) fn program_keeps_mode(trace: &mut Trace<'_>, rate: &Rate, reached: &Reached, step: f64) -> bool {
+pub(crate) fn program_keeps_mode(trace: &mut PathTrace<'_>, rate: &Rate, reached: &Reached, step: f64) -> bool {
     let modes = trace.at.here.modes.clone();
     if is_shown(trace, rate, &modes, reached) {
         return true;
@@ -40,9 +41,9 @@ pub(crate) fn program_keeps_mode(trace: &mut Trace<'_>, rate: &Rate, reached: &R
     way < RESOLVED || is_named(trace, rate, &modes, way, true)
 }
 
-fn start<'a>(trace: &'a Trace<'_>, rate: &'a Rate, modes: &'a [Mode]) -> Start<'a> {
+fn start<'a>(trace: &'a PathTrace<'_>, rate: &'a Rate, modes: &'a [Mode]) -> StepStart<'a> {
     let (here, force_scale) = (&trace.at.here, trace.at.totals.force_scale);
-    Start {
+    StepStart {
         loading: trace.loading(),
         state: &here.state,
         rate,
@@ -55,42 +56,42 @@ fn start<'a>(trace: &'a Trace<'_>, rate: &'a Rate, modes: &'a [Mode]) -> Start<'
 }
 
 /// What the point of a mode at an arc length shows of its increment's program.
-fn show(trace: &mut Trace<'_>, rate: &Rate, modes: &[Mode], way: f64) -> Foreseen {
+fn show(trace: &mut PathTrace<'_>, rate: &Rate, modes: &[Mode], way: f64) -> ForeseenModes {
     let mut work = trace.at.totals.work;
     let reached = start(trace, rate, modes).reach(way, &mut work);
     trace.at.totals.work = work;
-    reached.map_or(Foreseen::Unclear, |reached| show_at(trace, rate, modes, &reached))
+    reached.map_or(ForeseenModes::Unclear, |reached| show_at(trace, rate, modes, &reached))
 }
 
 /// What a point reached in a mode shows of its increment's program.
-fn show_at(trace: &mut Trace<'_>, rate: &Rate, modes: &[Mode], reached: &Reached) -> Foreseen {
+fn show_at(trace: &mut PathTrace<'_>, rate: &Rate, modes: &[Mode], reached: &Reached) -> ForeseenModes {
     if reached.determinant.is_none() || reached.step <= 0.0 {
-        return Foreseen::Unclear;
+        return ForeseenModes::Unclear;
     }
     let ends = (&trace.at.here.state, &reached.corrected.state);
     let program = program(trace.loading(), trace.at.totals.force_scale, ends, rate, reached.step);
-    let Some(mut program) = program else { return Foreseen::Named(Named::of(modes)) };
+    let Some(mut program) = program else { return ForeseenModes::Named(Named::of(modes)) };
     let end = Arrived { state: ends.1, rate: &reached.rate, error: reached.error_estimate };
-    let foreseen = program.solved_at(end, modes);
-    trace.at.totals.work.certificates += u64::from(matches!(foreseen, Foreseen::Named(_)));
+    let foreseen = certificate::solved_at(&mut program, end, modes);
+    trace.at.totals.work.certificates += u64::from(matches!(foreseen, ForeseenModes::Named(_)));
     foreseen
 }
 
 /// Whether a point reached in a mode is shown to solve the program of its increment: nothing is left to search.
-fn is_shown(trace: &mut Trace<'_>, rate: &Rate, modes: &[Mode], reached: &Reached) -> bool {
+fn is_shown(trace: &mut PathTrace<'_>, rate: &Rate, modes: &[Mode], reached: &Reached) -> bool {
     let foreseen = show_at(trace, rate, modes, reached);
     is_of(trace, &foreseen, modes)
 }
 
 /// The same of the point at an arc length.
-fn is_shown_within(trace: &mut Trace<'_>, rate: &Rate, modes: &[Mode], way: f64) -> bool {
+fn is_shown_within(trace: &mut PathTrace<'_>, rate: &Rate, modes: &[Mode], way: f64) -> bool {
     let foreseen = show(trace, rate, modes, way);
     is_of(trace, &foreseen, modes)
 }
 
 /// Whether these modes are named.
-fn is_of(trace: &Trace<'_>, foreseen: &Foreseen, modes: &[Mode]) -> bool {
-    matches!(foreseen, Foreseen::Named(named) if agree(trace.loading(), &named.modes, modes))
+fn is_of(trace: &PathTrace<'_>, foreseen: &ForeseenModes, modes: &[Mode]) -> bool {
+    matches!(foreseen, ForeseenModes::Named(named) if agree(trace.loading(), &named.modes, modes))
 }
 
 /// Whether the program, started along a direction, ends in the direction's own mode.
@@ -100,7 +101,7 @@ fn is_of(trace: &Trace<'_>, foreseen: &Foreseen, modes: &[Mode]) -> bool {
 /// it is shown to solve the program. Then the branch of the direction's mode alone is
 /// solved: where it holds, it is the program's solution, and where it ends, it says how far it goes. The whole program
 /// has the word where that does not settle it; `untold` is the answer where no program can tell.
-fn is_named(trace: &mut Trace<'_>, rate: &Rate, modes: &[Mode], step: f64, untold: bool) -> bool {
+fn is_named(trace: &mut PathTrace<'_>, rate: &Rate, modes: &[Mode], step: f64, untold: bool) -> bool {
     let state = trace.at.here.state.clone();
     if trace.scene.structure.dimension == 3 {
         // A cone may bind a branch that holds.
@@ -114,18 +115,18 @@ fn is_named(trace: &mut Trace<'_>, rate: &Rate, modes: &[Mode], step: f64, untol
     while tried >= RESOLVED {
         match show(trace, rate, modes, tried) {
             shown if is_of(trace, &shown, modes) => return true,
-            Foreseen::EndsAfter(part) => {
+            ForeseenModes::EndsAfter(part) => {
                 tried *= WITHIN * part;
                 continue;
             }
-            Foreseen::Named(_) | Foreseen::Untold | Foreseen::Unclear => {}
+            ForeseenModes::Named(_) | ForeseenModes::Untold | ForeseenModes::Unclear => {}
         }
         match foresee(trace, &state, rate, modes, tried) {
-            Foreseen::Named(named) if agree(trace.loading(), &named.modes, modes) => return true,
-            Foreseen::EndsAfter(part) => tried *= WITHIN * part.clamp(SHORTEST, 1.0),
-            Foreseen::Named(_) | Foreseen::Unclear => tried *= SHORTER,
-            Foreseen::Untold if tried <= NEAR => return untold,
-            Foreseen::Untold => return is_named_by_whole(trace, &state, rate, modes, tried),
+            ForeseenModes::Named(named) if agree(trace.loading(), &named.modes, modes) => return true,
+            ForeseenModes::EndsAfter(part) => tried *= WITHIN * part.clamp(SHORTEST, 1.0),
+            ForeseenModes::Named(_) | ForeseenModes::Unclear => tried *= SHORTER,
+            ForeseenModes::Untold if tried <= NEAR => return untold,
+            ForeseenModes::Untold => return is_named_by_whole(trace, &state, rate, modes, tried),
         }
     }
     // So near to where contacts change the whole program tells no more than its branch.
@@ -133,7 +134,7 @@ fn is_named(trace: &mut Trace<'_>, rate: &Rate, modes: &[Mode], step: f64, untol
 }
 
 /// The same by the whole program, all branches of it.
-fn is_named_by_whole(trace: &mut Trace<'_>, state: &State, rate: &Rate, modes: &[Mode], step: f64) -> bool {
+fn is_named_by_whole(trace: &mut PathTrace<'_>, state: &State, rate: &Rate, modes: &[Mode], step: f64) -> bool {
     let mut tried = step;
     for _ in 0..TRIALS {
         let named = name(trace, state, rate, modes, tried);
@@ -146,7 +147,7 @@ fn is_named_by_whole(trace: &mut Trace<'_>, state: &State, rate: &Rate, modes: &
 }
 
 /// Whether the program, started along the present direction, ends in these modes: contacts change within the step.
-pub(crate) fn program_joins_changes(trace: &mut Trace<'_>, rate: &Rate, step: f64, end: &[Mode]) -> bool {
+pub(crate) fn program_joins_changes(trace: &mut PathTrace<'_>, rate: &Rate, step: f64, end: &[Mode]) -> bool {
     let (state, modes) = (trace.at.here.state.clone(), trace.at.here.modes.clone());
     let named = name(trace, &state, rate, &modes, step);
     named.is_some_and(|named| agree(trace.loading(), &named.modes, end))
@@ -154,7 +155,7 @@ pub(crate) fn program_joins_changes(trace: &mut Trace<'_>, rate: &Rate, step: f6
 
 /// Arc length to the first change of a contact along a direction, to first order: an increment that goes on past it
 /// ends in another mode. Infinite where none is ahead.
-fn way_to_next_change(trace: &Trace<'_>, modes: &[Mode], rate: &Rate) -> f64 {
+fn way_to_next_change(trace: &PathTrace<'_>, modes: &[Mode], rate: &Rate) -> f64 {
     let (loading, state) = (trace.loading(), &trace.at.here.state);
     let forces = trace.at.totals.force_scale;
     event_functions::of_mode(loading, modes, state, rate)
@@ -194,7 +195,7 @@ pub(crate) fn increment_program<'a>(
     IncrementProgram::new(loading, base, expected, step, force)
 }
 
-fn name(trace: &mut Trace<'_>, base: &State, expected: &Rate, modes: &[Mode], step: f64) -> Option<Named> {
+fn name(trace: &mut PathTrace<'_>, base: &State, expected: &Rate, modes: &[Mode], step: f64) -> Option<Named> {
     let ahead = base.advanced(expected, step);
     let program = program(trace.loading(), trace.at.totals.force_scale, (base, &ahead), expected, step);
     let Some(mut program) = program else { return Some(Named::of(modes)) };
@@ -204,17 +205,17 @@ fn name(trace: &mut Trace<'_>, base: &State, expected: &Rate, modes: &[Mode], st
     named
 }
 
-fn foresee(trace: &mut Trace<'_>, base: &State, expected: &Rate, modes: &[Mode], step: f64) -> Foreseen {
+fn foresee(trace: &mut PathTrace<'_>, base: &State, expected: &Rate, modes: &[Mode], step: f64) -> ForeseenModes {
     let ahead = base.advanced(expected, step);
     let program = program(trace.loading(), trace.at.totals.force_scale, (base, &ahead), expected, step);
-    let Some(mut program) = program else { return Foreseen::Named(Named::of(modes)) };
+    let Some(mut program) = program else { return ForeseenModes::Named(Named::of(modes)) };
     let start = program.variables_at(expected);
     let (foreseen, counts) = program.foresee(&start, modes, &trace.cancel);
     count(trace, counts);
     foreseen
 }
 
-pub(crate) fn count(trace: &mut Trace<'_>, counts: Counts) {
+pub(crate) fn count(trace: &mut PathTrace<'_>, counts: ProgramCounts) {
     let totals = &mut trace.at.totals;
     totals.work.qp_solves += counts.qp_solves;
     totals.work.mpec_solves += counts.mpec_solves;
@@ -229,7 +230,7 @@ pub(crate) fn count(trace: &mut Trace<'_>, counts: Counts) {
 /// against its past (a contact closes, the load turns), that term would hold the increment back at zero.
 ///
 /// Changes come in clusters: what is tried first goes no further than the `last` step did.
-pub(crate) fn is_confirmed_by_program(trace: &mut Trace<'_>, choice: &Choice, last: f64) -> bool {
+pub(crate) fn is_confirmed_by_program(trace: &mut PathTrace<'_>, choice: &DirectionChoice, last: f64) -> bool {
     let within = WITHIN * way_to_next_change(trace, &choice.modes, &choice.rate);
     let first = (FIRST_TRIAL * trace.at.step).min(within);
     let soon = last.max(RESOLVED);

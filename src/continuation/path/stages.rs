@@ -1,22 +1,23 @@
 //! How a stage begins, ends and hands over to the next.
 
-use crate::branching::directions::choice::{self, Before};
+use crate::branching::directions::choice::{self, PriorMotion};
 use crate::branching::selection::decision;
 use crate::continuation::path_state::event_names::describe_start;
 use crate::continuation::path_state::progress::{Phase, StageCounts};
-use crate::continuation::path_state::trace::{Emitted, Trace};
-use crate::continuation::path_state::visited_states::History;
+use crate::continuation::path_state::trace::{Emitted, PathTrace};
+use crate::continuation::path_state::visited_states::VisitedStates;
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::state::Rate;
 use crate::result::increment::{Increment, Point, PointKind};
 use crate::result::stop_reason::StopReason;
+use crate::step::corrector::newton;
 use crate::step::event_functions::Watch;
 use crate::step::segment::AT_END;
 
 /// The row with which a stage begins: the directions that exist there, one of them taken. Where a bound of the stage
 /// is met already, it ends there too.
-pub(crate) fn begin_stage(trace: &mut Trace<'_>) -> Increment {
+pub(crate) fn begin_stage(trace: &mut PathTrace<'_>) -> Increment {
     if trace.at.phase == Phase::Running {
         trace.at.totals.index += 1;
     }
@@ -29,7 +30,7 @@ pub(crate) fn begin_stage(trace: &mut Trace<'_>) -> Increment {
     if !trace.at.stage_over {
         let state = &trace.at.here.state;
         let mut decision =
-            decision::decide(trace.loading(), state, &trace.standings(state), Before::StageStart, trace.rules());
+            decision::decide(trace.loading(), state, &trace.standings(state), PriorMotion::StageStart, trace.rules());
         trace.take(&mut decision);
         trace.at.begun = trace.at.here.rate.clone().map(|rate| (trace.at.here.state.clone(), rate));
         trace.at.step = trace.at.step.min(trace.scene.analysis.arc_length.initial);
@@ -44,7 +45,7 @@ pub(crate) fn begin_stage(trace: &mut Trace<'_>) -> Increment {
     let here = &trace.at.here;
     let (state, modes) = (here.state.clone(), here.modes.clone());
     let system = ModeSystem::new(trace.loading(), &modes, &state);
-    let residual = system.judged(state.clone(), trace.at.totals.force_scale).residual;
+    let residual = newton::judged(&system, state.clone(), trace.at.totals.force_scale).residual;
     let error_estimate = here.drift.as_ref().map_or(0.0, Rate::size);
     trace.emit(Emitted {
         before: &state,
@@ -62,7 +63,7 @@ pub(crate) fn begin_stage(trace: &mut Trace<'_>) -> Increment {
 }
 
 /// Whether a load or displacement at which the stage ends is met before it begins.
-fn bound_is_met(trace: &Trace<'_>) -> bool {
+fn bound_is_met(trace: &PathTrace<'_>) -> bool {
     let here = &trace.at.here;
     let still = Rate {
         displacement: vec![0.0; here.state.displacement.len()],
@@ -74,7 +75,7 @@ fn bound_is_met(trace: &Trace<'_>) -> bool {
 }
 
 /// Holds what the stage reached and goes to the next; `false` where there is none.
-pub(crate) fn next_stage(trace: &mut Trace<'_>) -> bool {
+pub(crate) fn next_stage(trace: &mut PathTrace<'_>) -> bool {
     if trace.at.stage + 1 == trace.scene.stages.len() {
         trace.end(StopReason::StagesCompleted);
         return false;
@@ -88,14 +89,14 @@ pub(crate) fn next_stage(trace: &mut Trace<'_>) -> bool {
     at.here.signature = None;
     (at.here.before, at.here.apart) = (None, None);
     at.counts = StageCounts::default();
-    at.visited = History::default();
+    at.visited = VisitedStates::default();
     trace.load_anew();
     true
 }
 
 /// Whether a load or displacement at which the stage ends is reached here, whatever else happens here; it is then
 /// made exact.
-pub(crate) fn at_bound(trace: &mut Trace<'_>, rate: &Rate) -> bool {
+pub(crate) fn at_bound(trace: &mut PathTrace<'_>, rate: &Rate) -> bool {
     let here = &trace.at.here;
     let left = |end: &End| Watch::End(*end).value(trace.loading(), &here.modes, &here.state, rate);
     let met = trace.scene.stages[trace.at.stage].ends.iter().find(|end| left(end) <= AT_END);

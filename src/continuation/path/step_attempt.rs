@@ -1,20 +1,22 @@
 //! One try of a step: how far its mode goes, and whether what is reached can be a point of the path.
 
-use crate::branching::bifurcation::locate::{self, Crossing, Ended, Located};
-use crate::branching::bifurcation::singularity::test_functions::{self, Change, Signature};
+use crate::branching::bifurcation::locate::{self, Crossing, Located, LocatedEnd};
+use crate::branching::bifurcation::singularity::test_functions::{self, Signature, SignatureChange};
 use crate::branching::bifurcation::{bound_at_singularity, simultaneous_limit_points};
-use crate::continuation::contact_changes::prediction::Foreseen;
+use crate::continuation::contact_changes::prediction;
+use crate::continuation::contact_changes::prediction::ForeseenChange;
+use crate::continuation::contact_changes::simultaneous;
 use crate::continuation::contact_changes::simultaneous::Joined;
 use crate::continuation::path::step_control;
-use crate::continuation::path_state::progress::Here;
-use crate::continuation::path_state::trace::Trace;
+use crate::continuation::path_state::progress::PathPoint;
+use crate::continuation::path_state::trace::PathTrace;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::problem::natural_residual;
 use crate::mechanics::problem::state::Rate;
 use crate::step::corrector::cached_factorisation::AtHand;
 use crate::step::corrector::cost_counters::Work;
 use crate::step::event_functions::Watch;
-use crate::step::segment::{Attempt, Reached, Refused, Start};
+use crate::step::segment::{Attempt, Reached, Refused, StepStart};
 
 /// Where contacts change one after another, the next is looked for within this multiple of the way between the last two,
 /// if that is less than this part of a step: over a short way Newton's method and the location of events have little to do.
@@ -28,9 +30,9 @@ pub(crate) struct Sought {
     /// By the path's turn, Newton's work and the energy balance of the steps before.
     pub ordinary: f64,
     /// The next event of a path that is straight up to there.
-    pub jump: Option<Foreseen>,
+    pub jump: Option<ForeseenChange>,
     /// The next contact change that the rates foresee.
-    pub foreseen: Option<Foreseen>,
+    pub foreseen: Option<ForeseenChange>,
     /// Contact changes in it may be taken together.
     pub may_join: bool,
 }
@@ -62,19 +64,19 @@ pub(crate) struct Tries {
 }
 
 impl Tries {
-    pub fn new(here: &Here, at_hand: AtHand) -> Self {
+    pub fn new(here: &PathPoint, at_hand: AtHand) -> Self {
         let next = here.apart.map(|apart| NEXT_WITHIN * apart);
         Self { next, known: here.signature, at_hand, unresolved: 0, joined: None }
     }
 }
 
 /// Where a step ends.
-enum Ending {
+enum AttemptEnd {
     Joined(Joined),
     AtEvent(Box<Reached>),
 }
 
-impl Ending {
+impl AttemptEnd {
     fn reached(&self) -> &Reached {
         match self {
             Self::Joined(joined) => &joined.reached,
@@ -104,7 +106,7 @@ impl Tried {
 
 /// Tries a step of this length along the direction just now.
 pub(crate) fn try_step(
-    trace: &Trace<'_>,
+    trace: &PathTrace<'_>,
     rate: &Rate,
     step: f64,
     sought: &Sought,
@@ -112,7 +114,7 @@ pub(crate) fn try_step(
     work: &mut Work,
 ) -> Result<Tried, Refused> {
     let here = &trace.at.here;
-    let start = Start {
+    let start = StepStart {
         loading: trace.loading(),
         state: &here.state,
         rate,
@@ -141,12 +143,12 @@ pub(crate) fn try_step(
         Tried::plain(reached, crossing, signature)
     } else {
         match outcome? {
-            Ending::Joined(Joined { reached, changes, signature, unchanged }) => {
+            AttemptEnd::Joined(Joined { reached, changes, signature, unchanged }) => {
                 Tried { joined: Some((changes, unchanged)), ..Tried::plain(reached, None, signature) }
             }
             // The equations of a straight path are the same at both ends, and singular at none in between.
-            Ending::AtEvent(reached) if sought.jumps(step) => Tried::plain(reached, None, None),
-            Ending::AtEvent(reached) => {
+            AttemptEnd::AtEvent(reached) if sought.jumps(step) => Tried::plain(reached, None, None),
+            AttemptEnd::AtEvent(reached) => {
                 let known = tries.known.or_else(|| Signature::past_start(&start, reached.step, &mut None, work));
                 tries.known = known;
                 let may_refuse = tries.unresolved < MOST_UNRESOLVED;
@@ -168,36 +170,36 @@ pub(crate) fn try_step(
 
 /// The end of a step: past changes that are taken together, or at the first event in it.
 fn end_of_step(
-    trace: &Trace<'_>,
-    start: &Start<'_>,
+    trace: &PathTrace<'_>,
+    start: &StepStart<'_>,
     step: f64,
     sought: &Sought,
     tries: &mut Tries,
     work: &mut Work,
-) -> Result<Ending, Refused> {
+) -> Result<AttemptEnd, Refused> {
     let (ends, load_sign) = (&trace.scene.stages[trace.at.stage].ends, trace.at.here.load_sign);
     let may_join = sought.may_join && !sought.jumps(step);
-    let foreseen = may_join.then(|| start.join_foreseen(step, ends, load_sign, work)).flatten();
+    let foreseen = may_join.then(|| simultaneous::join_foreseen(&start, step, ends, load_sign, work)).flatten();
     if let Some(joined) = foreseen {
         tries.joined = Some(joined.is_some());
         // Where they cannot be taken together nothing but the first of them is to be gone to.
-        return joined.map(Ending::Joined).ok_or(Refused::Apart);
+        return joined.map(AttemptEnd::Joined).ok_or(Refused::Apart);
     }
     let tried = attempt(trace, start, step, sought, tries, work)?;
-    if may_join && let Some(first) = start.changes_to_join(&tried) {
-        let joined = start.join_changes(&first, &tried, work);
+    if may_join && let Some(first) = simultaneous::changes_to_join(&start, &tried) {
+        let joined = simultaneous::join_changes(&start, &first, &tried, work);
         tries.joined = Some(joined.is_some());
         if let Some(joined) = joined {
-            return Ok(Ending::Joined(joined));
+            return Ok(AttemptEnd::Joined(joined));
         }
     }
-    start.stop_at_event(tried, ends, simultaneous_limit_points::locate, work).map(Ending::AtEvent)
+    start.stop_at_event(tried, ends, simultaneous_limit_points::locate, work).map(AttemptEnd::AtEvent)
 }
 
 /// How far the mode goes: to the next of several changes, if that is near, to one that is foreseen, or a whole step.
 fn attempt(
-    trace: &Trace<'_>,
-    start: &Start<'_>,
+    trace: &PathTrace<'_>,
+    start: &StepStart<'_>,
     step: f64,
     sought: &Sought,
     tries: &mut Tries,
@@ -206,7 +208,7 @@ fn attempt(
     let here = &trace.at.here;
     let (ends, load_sign) = (&trace.scene.stages[trace.at.stage].ends, here.load_sign);
     let is_straight = sought.jumps(step);
-    let joins = sought.may_join && !is_straight && start.may_join();
+    let joins = sought.may_join && !is_straight && simultaneous::may_join(&start);
     // Where the rates foresee the next change, it is met where they do.
     let is_open = !joins && !is_straight && sought.foreseen.is_none();
     let next = tries.next.take().filter(|next| *next < MOST_OF_STEP * step && is_open);
@@ -222,19 +224,20 @@ fn attempt(
     let before = here.before.as_ref();
     let foreseen = sought.jump.or(sought.foreseen).filter(|foreseen| foreseen.step == step);
     let at_hand = here.is_factorised.then(|| std::mem::take(&mut tries.at_hand));
-    let met = foreseen.and_then(|foreseen| start.meet_change(foreseen, at_hand, before, ends, load_sign, work));
+    let met =
+        foreseen.and_then(|foreseen| prediction::meet_change(&start, foreseen, at_hand, before, ends, load_sign, work));
     met.map_or_else(|| start.attempt(step, before, None, ends, load_sign, work), Ok)
 }
 
 /// Ends a step at the first smooth bifurcation in it, of its own mode or of that in which contacts that touch without
 /// reaction all along are free; with the signs past its end.
 fn first_crossing(
-    start: &Start<'_>,
+    start: &StepStart<'_>,
     before: Option<Signature>,
     reached: Box<Reached>,
     may_refuse: bool,
     work: &mut Work,
-) -> Result<Ended, Refused> {
+) -> Result<LocatedEnd, Refused> {
     let (reached, crossing, after) = crossing_in_mode(start, before, reached, may_refuse, work)?;
     match test_functions::loosened(start, &reached).and_then(|loose| crossing_when_loose(start, &loose, &reached, work))
     {
@@ -245,17 +248,17 @@ fn first_crossing(
 
 /// The first smooth bifurcation of a step in looser modes.
 fn crossing_when_loose(
-    start: &Start<'_>,
+    start: &StepStart<'_>,
     loose: &[Mode],
     reached: &Reached,
     work: &mut Work,
 ) -> Option<(Box<Reached>, Crossing)> {
-    let loosened = Start { modes: loose, ..*start };
+    let loosened = StepStart { modes: loose, ..*start };
     let before = Signature::past_start(&loosened, reached.step, &mut None, work)?;
     let mut end = loosened.reach_near(reached.corrected.state.clone(), reached.step, work).ok()?;
     end.event = reached.event;
     let (_, change) = test_functions::compare(&loosened, before, &end, work);
-    if change == Change::None {
+    if change == SignatureChange::None {
         return None;
     }
     let Located { mut point, crossing, .. } = locate::locate(&loosened, before, change, &end, work)?;
@@ -273,12 +276,12 @@ fn crossing_when_loose(
 
 /// Ends a step at the first smooth bifurcation in its own mode.
 fn crossing_in_mode(
-    start: &Start<'_>,
+    start: &StepStart<'_>,
     before: Option<Signature>,
     reached: Box<Reached>,
     may_refuse: bool,
     work: &mut Work,
-) -> Result<Ended, Refused> {
+) -> Result<LocatedEnd, Refused> {
     let Some(before) = before else {
         // The start is singular: signs are known from the end on.
         let state = &reached.corrected.state;
@@ -292,7 +295,7 @@ fn crossing_in_mode(
     if after.is_none() && reached.event.is_none() && may_refuse {
         return Err(Refused::Unresolved);
     }
-    if change == Change::None {
+    if change == SignatureChange::None {
         return Ok((reached, None, after));
     }
     match locate::locate(start, before, change, &reached, work) {

@@ -4,17 +4,17 @@ use crate::algebra::scalar_root::find_root;
 use crate::branching::bifurcation::locate::Crossing;
 use crate::branching::bifurcation::singularity::test_functions::Signature;
 use crate::branching::directions::arrival_tangent::Incoming;
-use crate::branching::directions::choice::Before;
+use crate::branching::directions::choice::PriorMotion;
 use crate::branching::selection::decision;
 use crate::continuation::contact_changes::piecewise_linear;
-use crate::continuation::contact_changes::prediction::{self, Foreseen};
+use crate::continuation::contact_changes::prediction::{self, ForeseenChange};
 use crate::continuation::contact_changes::simultaneous::may_join_at;
 use crate::continuation::path::step_attempt::{self, Sought, Tried, Tries};
 use crate::continuation::path::{mpec_increments, mpec_verification};
 use crate::continuation::path_state::step_quantum::quantised;
 use crate::continuation::path_state::tolerances::SAME_STATE;
 use crate::continuation::path_state::totals::{Added, NO_ENERGY};
-use crate::continuation::path_state::trace::Trace;
+use crate::continuation::path_state::trace::PathTrace;
 use crate::mechanics::contact::all_continue;
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::stage_criteria::End;
@@ -25,9 +25,10 @@ use crate::model::request::{Events, Method};
 use crate::result::increment::Energy;
 use crate::result::stop_reason::StopReason;
 use crate::step::corrector::cost_counters::Work;
+use crate::step::corrector::newton;
 use crate::step::event_functions::Watch;
 use crate::step::interpolation::unit;
-use crate::step::segment::{Reached, Refused, Start};
+use crate::step::segment::{Reached, Refused, StepStart};
 
 /// The turn of the path (radians) that a step aims at.
 const TURN_SOUGHT: f64 = 0.08;
@@ -65,7 +66,7 @@ const MOST_CREEPING: u64 = 48;
 const CUT_SHORT: f64 = 0.5;
 
 /// A point reached, with the energies of the way there.
-pub(crate) struct Accepted {
+pub(crate) struct AcceptedStep {
     pub reached: Box<Reached>,
     pub added: Added,
     /// By how much the direction turns (radians), but for contact changes within the step.
@@ -82,7 +83,7 @@ pub(crate) struct Accepted {
     pub joined: u64,
 }
 
-impl Accepted {
+impl AcceptedStep {
     /// A step that so many contact changes are taken together in. Nothing slides against friction in it: the work is what
     /// is stored.
     fn join(&mut self, changes: u64, before: &Energy) {
@@ -92,7 +93,7 @@ impl Accepted {
 }
 
 /// Steps until a point is accepted.
-pub(crate) fn step(trace: &mut Trace<'_>) -> Result<Accepted, StopReason> {
+pub(crate) fn step(trace: &mut PathTrace<'_>) -> Result<AcceptedStep, StopReason> {
     let mut sought = sought_step(trace);
     let Some(rate) = trace.at.here.rate.take() else { return Err(StopReason::NoDirection) };
     let stepped = step_along(trace, &rate, &mut sought);
@@ -101,7 +102,7 @@ pub(crate) fn step(trace: &mut Trace<'_>) -> Result<Accepted, StopReason> {
 }
 
 /// The same along the direction just now.
-fn step_along(trace: &mut Trace<'_>, rate: &Rate, sought: &mut Sought) -> Result<Accepted, StopReason> {
+fn step_along(trace: &mut PathTrace<'_>, rate: &Rate, sought: &mut Sought) -> Result<AcceptedStep, StopReason> {
     let least = trace.scene.analysis.arc_length.min;
     let mut step = sought.step();
     let mut was_shortened = false;
@@ -168,7 +169,7 @@ fn step_along(trace: &mut Trace<'_>, rate: &Rate, sought: &mut Sought) -> Result
 }
 
 /// How long a step is to be, as far as is known before it is tried.
-fn sought_step(trace: &mut Trace<'_>) -> Sought {
+fn sought_step(trace: &mut PathTrace<'_>) -> Sought {
     let ordinary = trace.at.step.min(trace.scene.analysis.arc_length.max);
     // Closer to a bend the path is still on its way round it.
     let width = trace.at.here.beside.as_ref().map_or(0.0, Rate::size);
@@ -176,7 +177,7 @@ fn sought_step(trace: &mut Trace<'_>) -> Sought {
     let may_join = trace.at.waiting.is_over() && may_join_changes(trace);
     // Changes nearer than an ordinary step may be several that are taken together.
     let ahead = piecewise_linear::next_event_ahead(trace);
-    let joins = |event: &Foreseen| may_join && may_join_at(trace.loading(), &trace.at.here.modes, event.watch);
+    let joins = |event: &ForeseenChange| may_join && may_join_at(trace.loading(), &trace.at.here.modes, event.watch);
     let jump = ahead.filter(|event| event.step > ordinary || !joins(event));
     trace.look_ahead(jump.map_or(ordinary, |event| event.step));
     let rate = trace.at.here.rate.as_ref().filter(|_| jump.is_none());
@@ -187,13 +188,13 @@ fn sought_step(trace: &mut Trace<'_>) -> Sought {
 /// Accepts a point with what its increment did to the energies and chooses the next step, or says by what factor a
 /// step is to be shorter that went too far for them.
 fn weigh(
-    trace: &mut Trace<'_>,
+    trace: &mut PathTrace<'_>,
     rate: &Rate,
     tried: Tried,
     step: f64,
     sought: &Sought,
     was_shortened: bool,
-) -> Result<Accepted, f64> {
+) -> Result<AcceptedStep, f64> {
     let (least, most) = (trace.scene.analysis.arc_length.min, trace.scene.analysis.arc_length.max);
     let Tried { reached, crossing, signature, returned, joined } = tried;
     let mut accepted = balance(trace, rate, reached);
@@ -229,7 +230,7 @@ fn weigh(
 /// the contacts' modes change, or the stage ends, is progress, however short. One to a limit or bifurcation point, or to
 /// where a contact keeps its mode, is none: a smooth path has few of them within so short a way; where signs are rounding
 /// they have no end.
-pub(crate) fn reason_of_creep(trace: &mut Trace<'_>, step: f64, changes: bool) -> Option<StopReason> {
+pub(crate) fn reason_of_creep(trace: &mut PathTrace<'_>, step: f64, changes: bool) -> Option<StopReason> {
     // Scales that are larger than the scene's own make every step as much shorter.
     let enlarged = trace.scene.stages[trace.at.stage].enlarged;
     let bar = (CREEPS / enlarged).min(CREEPS_AT_MOST * trace.scene.analysis.arc_length.max);
@@ -239,39 +240,39 @@ pub(crate) fn reason_of_creep(trace: &mut Trace<'_>, step: f64, changes: bool) -
 }
 
 /// Whether some bar has come to have no direction that the displacements could tell.
-pub(crate) fn shrinks_to_a_point(trace: &Trace<'_>, state: &State) -> bool {
+pub(crate) fn shrinks_to_a_point(trace: &PathTrace<'_>, state: &State) -> bool {
     let structure = &trace.scene.structure;
     structure.smallest_stretch(&state.displacement) < A_POINT
         && structure.smallest_stretch(&trace.at.here.state.displacement) >= A_POINT
 }
 
 /// Whether contact changes may be taken together: not where each is asked for, or counted.
-fn may_join_changes(trace: &Trace<'_>) -> bool {
+fn may_join_changes(trace: &PathTrace<'_>) -> bool {
     let analysis = &trace.scene.analysis;
     let counted = trace.scene.stages[trace.at.stage].ends.iter().any(|end| matches!(end, End::ContactChanges(_)));
     analysis.events == Events::Auto && !counted
 }
 
 /// Whether the program of each increment is asked to name its mode.
-fn is_named_by_program(trace: &Trace<'_>) -> bool {
+fn is_named_by_program(trace: &PathTrace<'_>) -> bool {
     trace.scene.analysis.method == Method::Mpec && !trace.scene.contacts.is_empty()
 }
 
 /// Whether the mode cannot go on from the present point.
-fn mode_ends_here(trace: &Trace<'_>, rate: &Rate) -> bool {
+fn mode_ends_here(trace: &PathTrace<'_>, rate: &Rate) -> bool {
     let here = &trace.at.here;
     let standings = trace.standings(&here.state);
-    let before = Before::Incoming(Incoming::along(rate));
+    let before = PriorMotion::Incoming(Incoming::along(rate));
     let decision = decision::decide(trace.loading(), &here.state, &standings, before, trace.rules());
     decision.taken.is_none_or(|index| !all_continue(&decision.options[index].modes, &here.modes))
 }
 
 /// The present point once more, as the place where the mode ends: two changes at one state, the second of which the
 /// point itself did not show, are two points of the path.
-fn without_step(trace: &Trace<'_>, watch: Watch, rate: &Rate) -> Box<Reached> {
+fn without_step(trace: &PathTrace<'_>, watch: Watch, rate: &Rate) -> Box<Reached> {
     let here = &trace.at.here;
     let system = ModeSystem::new(trace.loading(), &here.modes, &here.state);
-    let mut corrected = system.judged(here.state.clone(), trace.at.totals.force_scale);
+    let mut corrected = newton::judged(&system, here.state.clone(), trace.at.totals.force_scale);
     (corrected.state, corrected.modes) = (here.state.clone(), here.modes.clone());
     let mut point = Reached::new(corrected, rate.clone(), 0.0, here.drift.as_ref().map_or(0.0, Rate::size));
     (point.drift, point.event) = (here.drift.clone(), Some(watch));
@@ -280,8 +281,8 @@ fn without_step(trace: &Trace<'_>, watch: Watch, rate: &Rate) -> Box<Reached> {
 
 /// The point at which the stage began, where a step without event passes it again in the same sense.
 pub(crate) fn way_back(
-    trace: &Trace<'_>,
-    start: &Start<'_>,
+    trace: &PathTrace<'_>,
+    start: &StepStart<'_>,
     reached: &Reached,
     work: &mut Work,
 ) -> Option<Box<Reached>> {
@@ -312,13 +313,13 @@ pub(crate) fn way_back(
 }
 
 /// Why steps became too short.
-fn reason_of_underflow(trace: &Trace<'_>) -> StopReason {
+fn reason_of_underflow(trace: &PathTrace<'_>) -> StopReason {
     let stretch = trace.scene.structure.smallest_stretch(&trace.at.here.state.displacement);
     if stretch < COLLAPSED { StopReason::CollapsedBar } else { StopReason::StepUnderflow }
 }
 
 /// Work, dissipation and strain energy of a point reached.
-fn balance(trace: &Trace<'_>, rate: &Rate, reached: Box<Reached>) -> Accepted {
+fn balance(trace: &PathTrace<'_>, rate: &Rate, reached: Box<Reached>) -> AcceptedStep {
     let start = (&trace.at.here.state, rate);
     let end = (&reached.corrected.state, &reached.rate);
     let (loading, modes, turned) = (trace.loading(), &trace.at.here.modes, rate.angle(&reached.rate));
@@ -327,13 +328,13 @@ fn balance(trace: &Trace<'_>, rate: &Rate, reached: Box<Reached>) -> Accepted {
     let (step, force_scale) = (reached.step, reached.corrected.force_scale);
     let added = Added { step, external_work, dissipated, strain, force_scale };
     let (mode_named, crossing, signature) = (None, None, None);
-    Accepted { reached, added, turned, mode_named, returned: false, crossing, signature, joined: 0 }
+    AcceptedStep { reached, added, turned, mode_named, returned: false, crossing, signature, joined: 0 }
 }
 
 /// How the next step should compare with this one where the path bends more and more: its curvature is foreseen to grow
 /// as it did from the step before to this one (predictive control: K. Gustafsson, ACM Trans. Math. Softw. 20 (1994)
 /// 496, doi:10.1145/198429.198437).
-fn factor_foreseen(trace: &Trace<'_>, rate: &Rate, accepted: &Accepted, tried: f64) -> f64 {
+fn factor_foreseen(trace: &PathTrace<'_>, rate: &Rate, accepted: &AcceptedStep, tried: f64) -> f64 {
     let here = &trace.at.here;
     let before = here.before.as_ref().filter(|_| accepted.reached.step > 0.0);
     let curvature_before = before.map(|before| unit(&before.rate).angle(rate) / -before.place);
@@ -349,7 +350,7 @@ fn factor_foreseen(trace: &Trace<'_>, rate: &Rate, accepted: &Accepted, tried: f
 }
 
 /// How the next step should compare with this one: by the path's turn, Newton's work and the energy balance.
-fn next_step_factor(trace: &Trace<'_>, accepted: &Accepted, tried: f64, was_shortened: bool) -> f64 {
+fn next_step_factor(trace: &PathTrace<'_>, accepted: &AcceptedStep, tried: f64, was_shortened: bool) -> f64 {
     let reached = &accepted.reached;
     let done = (reached.step / tried).clamp(0.1, 1.0);
     let turn = accepted.turned / done;
@@ -398,7 +399,7 @@ mod tests {
 
     /// After how many steps of a length the path is given up, of a hundred.
     fn given_up_after(scene: &Scene, step: f64) -> Option<u64> {
-        let mut trace = Trace::at(scene, Progress::new(scene), 0.0, CancelFlag::default());
+        let mut trace = PathTrace::at(scene, Progress::new(scene), 0.0, CancelFlag::default());
         (1..=100).find(|_| reason_of_creep(&mut trace, step, false).is_some())
     }
 
@@ -420,7 +421,7 @@ mod tests {
     #[test]
     fn a_contact_change_is_progress() {
         let scene = scene(|_| {});
-        let mut trace = Trace::at(&scene, Progress::new(&scene), 0.0, CancelFlag::default());
+        let mut trace = PathTrace::at(&scene, Progress::new(&scene), 0.0, CancelFlag::default());
         for step in 1..=1000 {
             assert_eq!(reason_of_creep(&mut trace, 1e-9, step % 40 == 0), None);
         }

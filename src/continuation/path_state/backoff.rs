@@ -5,14 +5,14 @@ use serde::{Deserialize, Serialize};
 /// When changes are to be taken together again, after a failure.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Waiting {
+pub(crate) struct JoinBackoff {
     /// Steps that are left.
     steps: u32,
     /// Steps after the last failure; 0 where none came before.
     last: u32,
 }
 
-impl Waiting {
+impl JoinBackoff {
     /// Whether a step that begins may try.
     pub fn is_over(&mut self) -> bool {
         let over = self.steps == 0;

@@ -34,36 +34,36 @@ pub(crate) struct Near {
 }
 
 /// The contacts out of reach, the one that may be reached first on top.
-pub(crate) type FarContacts = BinaryHeap<Far>;
+pub(crate) type FarContacts = BinaryHeap<ContactOutOfReach>;
 
 /// A contact out of reach.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Far {
+pub(crate) struct ContactOutOfReach {
     /// Arc length of the path before which its gap cannot close.
     until: f64,
     contact: usize,
 }
 
 /// The one that may be reached first is the greatest.
-impl Ord for Far {
+impl Ord for ContactOutOfReach {
     fn cmp(&self, other: &Self) -> Ordering {
         other.until.total_cmp(&self.until).then(other.contact.cmp(&self.contact))
     }
 }
 
-impl PartialOrd for Far {
+impl PartialOrd for ContactOutOfReach {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl PartialEq for Far {
+impl PartialEq for ContactOutOfReach {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Far {}
+impl Eq for ContactOutOfReach {}
 
 /// The loading of all contacts; a state's reactions are not to be read through it.
 pub(crate) fn whole<'a>(scene: &'a Scene, at: &'a Progress) -> Loading<'a> {
@@ -80,11 +80,13 @@ pub(crate) fn whole<'a>(scene: &'a Scene, at: &'a Progress) -> Loading<'a> {
 pub(crate) fn far_contacts(scene: &Scene, at: &Progress) -> FarContacts {
     let loading = whole(scene, at);
     let far = |contact: &usize| at.near.binary_search(contact).is_err();
-    let waiting = |contact: usize| Far::at(scene, contact, loading.gap(contact, &at.here.state), at.totals.arc_length);
+    let waiting = |contact: usize| {
+        ContactOutOfReach::at(scene, contact, loading.gap(contact, &at.here.state), at.totals.arc_length)
+    };
     (0..scene.contacts.len()).filter(far).map(waiting).collect()
 }
 
-impl Far {
+impl ContactOutOfReach {
     /// With this gap after the path has gone so far.
     fn at(scene: &Scene, contact: usize, gap: f64, travelled: f64) -> Self {
         let way = gap / fastest(scene, contact);
@@ -151,12 +153,12 @@ pub(crate) fn reached_within(scene: &Scene, at: &Progress, far: &mut FarContacts
     let (reach, travelled) = (REACH * step, at.totals.arc_length);
     let (mut reached, mut left) = (Vec::new(), Vec::new());
     while far.peek().is_some_and(|next| next.until <= travelled + reach) {
-        let Some(Far { contact, .. }) = far.pop() else { break };
+        let Some(ContactOutOfReach { contact, .. }) = far.pop() else { break };
         let gap = whole(scene, at).gap(contact, &at.here.state);
         if gap / fastest(scene, contact) <= reach {
             reached.push(contact);
         } else {
-            left.push(Far::at(scene, contact, gap, travelled));
+            left.push(ContactOutOfReach::at(scene, contact, gap, travelled));
         }
     }
     far.extend(left);

@@ -1,17 +1,17 @@
 //! Everything that decides how a path goes on from its present point: what a checkpoint holds.
 
 use crate::branching::bifurcation::singularity::test_functions::Signature;
-use crate::branching::directions::choice::Choice;
-use crate::continuation::path_state::backoff::Waiting;
+use crate::branching::directions::choice::DirectionChoice;
+use crate::continuation::path_state::backoff::JoinBackoff;
 use crate::continuation::path_state::totals::Totals;
-use crate::continuation::path_state::visited_states::History;
+use crate::continuation::path_state::visited_states::VisitedStates;
 use crate::continuation::scene::Scene;
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::loading::LoadPattern;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::result::increment::Point;
-use crate::step::interpolation::Placed;
+use crate::step::interpolation::PlacedPoint;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -30,17 +30,17 @@ pub(crate) struct Progress {
     pub held: Arc<LoadPattern>,
     /// Which of the scene's contacts are in reach, in order: reactions and modes are theirs, one each.
     pub near: Vec<usize>,
-    pub here: Here,
+    pub here: PathPoint,
     /// Arc length that the next step tries.
     pub step: f64,
     /// When contact changes are to be taken together again.
-    pub waiting: Waiting,
+    pub waiting: JoinBackoff,
     /// Steps at which no contact changes, one after another up to here, that are too short to get anywhere.
     pub creeping: u64,
     pub totals: Totals,
     pub counts: StageCounts,
     /// States at which a direction was taken, for telling a cycle.
-    pub visited: History,
+    pub visited: VisitedStates,
     /// Where the stage began and the direction it took.
     pub begun: Option<(State, Rate)>,
     /// Directions listed with the present point.
@@ -51,7 +51,7 @@ pub(crate) struct Progress {
 
 /// The present point and how the path goes on.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(crate) struct Here {
+pub(crate) struct PathPoint {
     pub state: State,
     pub modes: Vec<Mode>,
     /// Direction in `modes`; `None` before the stage's first decision.
@@ -60,7 +60,7 @@ pub(crate) struct Here {
     /// Error of the path up to here, where it has one.
     pub drift: Option<Rate>,
     /// The point before, in the same modes and of the same stage.
-    pub before: Option<Placed>,
+    pub before: Option<PlacedPoint>,
     /// Arc length from one contact change to the next, where both ended a step and the last is the present point.
     pub apart: Option<f64>,
     /// Signs that tell smooth bifurcations; `None` until known in these modes.
@@ -71,7 +71,7 @@ pub(crate) struct Here {
     /// The equations of `modes` had another null vector where the direction was taken.
     #[serde(default)]
     pub is_singular: bool,
-    /// How far the path is off the direction: see `choice::Choice`.
+    /// How far the path is off the direction: see `choice::DirectionChoice`.
     #[serde(default)]
     pub beside: Option<Rate>,
 }
@@ -103,7 +103,7 @@ impl Progress {
             reached: Vec::new(),
             held: Arc::default(),
             near,
-            here: Here {
+            here: PathPoint {
                 state: State::at_rest(&scene.structure, contacts),
                 modes: vec![Mode::Free; contacts],
                 rate: None,
@@ -117,11 +117,11 @@ impl Progress {
                 beside: None,
             },
             step: scene.analysis.arc_length.initial,
-            waiting: Waiting::default(),
+            waiting: JoinBackoff::default(),
             creeping: 0,
             totals: Totals::begun(),
             counts: StageCounts::default(),
-            visited: History::default(),
+            visited: VisitedStates::default(),
             begun: None,
             listed: None,
             followed: None,
@@ -197,7 +197,7 @@ impl StageCounts {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Listed {
-    pub options: Vec<Choice>,
+    pub options: Vec<DirectionChoice>,
     pub taken: Option<usize>,
     /// `None` where the path begins.
     pub arriving: Option<Arriving>,

@@ -1,6 +1,6 @@
 //! From a dimensionless point to the row that a user sees: the user's units and names.
 
-use crate::branching::directions::choice::{Choice, is_worth_listing};
+use crate::branching::directions::choice::{DirectionChoice, is_worth_listing};
 use crate::continuation::path_state::totals::Totals;
 use crate::continuation::scene::{Reported, Scene};
 use crate::mechanics::contact::vector::{add, dot};
@@ -14,7 +14,7 @@ use smallvec::smallvec;
 use std::sync::Arc;
 
 /// What a row is made from, beside the path's totals.
-pub(crate) struct Row<'a> {
+pub(crate) struct RecordSource<'a> {
     pub stage: usize,
     pub loading: Loading<'a>,
     /// The loading of every contact of the scene.
@@ -30,7 +30,7 @@ pub(crate) struct Row<'a> {
     pub modes: &'a [Mode],
     pub step: f64,
     pub point: &'a Point,
-    pub options: &'a [Choice],
+    pub options: &'a [DirectionChoice],
     pub taken: Option<usize>,
     pub residual: f64,
     pub error_estimate: f64,
@@ -48,7 +48,7 @@ pub(crate) fn status(mode: Mode) -> Status {
 }
 
 /// The present increment; its directions where there is a choice.
-pub(crate) fn increment(scene: &Scene, totals: &Totals, row: &Row<'_>) -> Increment {
+pub(crate) fn increment(scene: &Scene, totals: &Totals, row: &RecordSource<'_>) -> Increment {
     let plan = scene.plan();
     let (length, force) = (plan.displacement_scale, plan.force_scale);
     let energy_unit = length * force;
@@ -56,7 +56,7 @@ pub(crate) fn increment(scene: &Scene, totals: &Totals, row: &Row<'_>) -> Increm
     let displacements = scene.no_displacements.scaled(&scene.structure.translations(&row.state.displacement), length);
     let (contacts, complementarity) = contact_rows(scene, row, totals.force_scale);
     let directions = is_worth_listing(row.options).then(|| {
-        let direction = |(index, option): (usize, &Choice)| Direction {
+        let direction = |(index, option): (usize, &DirectionChoice)| Direction {
             contacts: reported(scene, row)
                 .map(|one| row.places[one.contact].map_or(Status::Free, |place| status(option.modes[place])))
                 .collect(),
@@ -104,12 +104,12 @@ pub(crate) fn increment(scene: &Scene, totals: &Totals, row: &Row<'_>) -> Increm
 }
 
 /// The request's contacts that have a row, in its order.
-fn reported<'a>(scene: &'a Scene, row: &Row<'a>) -> impl Iterator<Item = &'a Reported> {
+fn reported<'a>(scene: &'a Scene, row: &RecordSource<'a>) -> impl Iterator<Item = &'a Reported> {
     row.rows.iter().map(|index| &scene.reported[*index])
 }
 
 /// Contact rows in the user's units, and the largest violation of contact and friction (dimensionless).
-fn contact_rows(scene: &Scene, row: &Row<'_>, force_scale: f64) -> (Vec<ContactState>, f64) {
+fn contact_rows(scene: &Scene, row: &RecordSource<'_>, force_scale: f64) -> (Vec<ContactState>, f64) {
     let plan = scene.plan();
     let (length, force) = (plan.displacement_scale, plan.force_scale);
     let dimension = scene.structure.dimension;

@@ -1,12 +1,12 @@
 //! A path as far as it is traced: the scene, the present point and what the next step starts from.
 
-use crate::branching::directions::choice::{Choice, Rules};
+use crate::branching::directions::choice::{DirectionChoice, Rules};
 use crate::branching::selection::decision::Decision;
 use crate::complementarity::rate_search::branch_and_bound::Effort;
 use crate::continuation::path_state::contact_search::{self, FarContacts, Near};
 use crate::continuation::path_state::progress::{Arriving, Listed, Phase, Progress};
-use crate::continuation::path_state::record::{self, Row};
-use crate::continuation::path_state::visited_states::{Held, Visited};
+use crate::continuation::path_state::record::{self, RecordSource};
+use crate::continuation::path_state::visited_states::{ClosedContact, Visited};
 use crate::continuation::scene::Scene;
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::multi_contact::contact_status::{Standing, standings};
@@ -27,7 +27,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 /// Owner of everything that changes from increment to increment.
-pub(crate) struct Trace<'a> {
+pub(crate) struct PathTrace<'a> {
     pub scene: &'a Scene,
     pub cancel: CancelFlag,
     began: Instant,
@@ -44,7 +44,7 @@ pub(crate) struct Trace<'a> {
     pub iterates: Option<Vec<ProgramIterate>>,
 }
 
-impl<'a> Trace<'a> {
+impl<'a> PathTrace<'a> {
     /// At a point that fits the scene; `elapsed_before`: solver time that led there.
     pub fn at(scene: &'a Scene, mut at: Progress, elapsed_before: f64, cancel: CancelFlag) -> Self {
         let undeformed = vec![0.0; scene.structure.freedoms()];
@@ -114,7 +114,7 @@ impl<'a> Trace<'a> {
         }
     }
 
-    pub(crate) fn go(&mut self, choice: &Choice) {
+    pub(crate) fn go(&mut self, choice: &DirectionChoice) {
         self.at.here.modes.clone_from(&choice.modes);
         (self.at.here.signature, self.at.here.is_factorised) = (None, false);
         (self.at.here.before, self.at.here.is_singular) = (None, choice.is_singular);
@@ -159,7 +159,7 @@ impl<'a> Trace<'a> {
         if let Some(reactions) = emitted.reactions {
             state.to_mut().reactions = reactions;
         }
-        let row = Row {
+        let row = RecordSource {
             stage: self.at.stage,
             loading: self.loading(),
             whole: self.whole_loading(),
@@ -221,14 +221,18 @@ impl<'a> Trace<'a> {
         let State { displacement, load, reactions } = &self.at.here.state;
         let held = self.at.near.iter().zip(&self.at.here.modes).zip(reactions);
         let held = held.filter(|((_, mode), _)| mode.is_active());
-        let held = held.map(|((contact, mode), reaction)| Held { contact: *contact, mode: *mode, reaction: *reaction });
+        let held = held.map(|((contact, mode), reaction)| ClosedContact {
+            contact: *contact,
+            mode: *mode,
+            reaction: *reaction,
+        });
         let mut all = Vec::with_capacity(self.at.near.len());
         all.extend(held);
         Visited { stage: self.at.stage, displacement: displacement.clone(), load: *load, held: all }
     }
 }
 
-/// What [`Trace::emit`] cannot see in the trace itself.
+/// What [`PathTrace::emit`] cannot see in the trace itself.
 pub(crate) struct Emitted<'a> {
     pub before: &'a State,
     /// Reactions at the end of the increment, where they are others than those with which the path goes on.
@@ -236,7 +240,7 @@ pub(crate) struct Emitted<'a> {
     pub modes: &'a [Mode],
     pub step: f64,
     pub point: Point,
-    pub options: Vec<Choice>,
+    pub options: Vec<DirectionChoice>,
     pub taken: Option<usize>,
     pub residual: f64,
     pub error_estimate: f64,

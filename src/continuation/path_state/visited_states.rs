@@ -21,7 +21,7 @@ const FEWEST_STATES: usize = 8;
 /// States at which a direction was taken in the running stage.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct History {
+pub(crate) struct VisitedStates {
     /// How many there were.
     seen: u64,
     /// One of so many is kept: those whose number is a multiple of it.
@@ -37,7 +37,7 @@ pub(crate) struct Numbered {
     pub visited: Arc<Visited>,
 }
 
-impl Default for History {
+impl Default for VisitedStates {
     fn default() -> Self {
         Self { seen: 0, stride: 1, kept: Vec::new() }
     }
@@ -48,7 +48,7 @@ pub(crate) fn room(scene: &Scene) -> usize {
     (MOST_BYTES / Visited::most_bytes(scene).max(1)).clamp(FEWEST_STATES, MOST_STATES)
 }
 
-impl History {
+impl VisitedStates {
     /// How many states there were.
     pub fn seen(&self) -> u64 {
         self.seen
@@ -97,13 +97,13 @@ pub(crate) struct Visited {
     pub displacement: Vec<f64>,
     pub load: f64,
     /// The contacts that are not free, in order.
-    pub held: Vec<Held>,
+    pub held: Vec<ClosedContact>,
 }
 
 /// A contact of the scene that sticks or slips.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Held {
+pub(crate) struct ClosedContact {
     pub contact: usize,
     pub mode: Mode,
     pub reaction: Reaction,
@@ -112,13 +112,15 @@ pub(crate) struct Held {
 impl Visited {
     /// Bytes that a state of a scene takes, with all contacts held.
     pub fn most_bytes(scene: &Scene) -> usize {
-        scene.structure.freedoms() * size_of::<f64>() + scene.contacts.len() * size_of::<Held>() + size_of::<Self>()
+        scene.structure.freedoms() * size_of::<f64>()
+            + scene.contacts.len() * size_of::<ClosedContact>()
+            + size_of::<Self>()
     }
 
     /// Whether another state is this one, but for differences below `distance` (of displacements and load together) and
     /// `force`.
     pub fn is(&self, other: &Self, distance: f64, force: f64) -> bool {
-        let alike = |(one, other): (&Held, &Held)| {
+        let alike = |(one, other): (&ClosedContact, &ClosedContact)| {
             one.contact == other.contact
                 && one.mode.continues(other.mode)
                 && one.reaction.difference(&other.reaction) < force
@@ -143,7 +145,7 @@ mod tests {
         Visited { stage: 0, displacement: vec![place, 1.0], load: 0.5, held: Vec::new() }
     }
 
-    fn is_known(history: &History, place: f64) -> bool {
+    fn is_known(history: &VisitedStates, place: f64) -> bool {
         let here = state(place);
         history.states().any(|known| known.is(&here, 1e-9, 1e-9))
     }
@@ -151,7 +153,7 @@ mod tests {
     #[test]
     fn memory_is_bounded_and_a_cycle_is_found_soon() {
         for (before, round) in [(0, 10), (90, 7), (1_000, 100), (20_000, 3), (100_000, 700)] {
-            let mut history = History::default();
+            let mut history = VisitedStates::default();
             let (room, mut found) = (32, None);
             for event in 0..2 * before + 4 * round + 64 {
                 // Somewhere else each time, then round and round.
@@ -175,7 +177,7 @@ mod tests {
 
     #[test]
     fn stored_in_parts_and_put_back_it_is_the_same() {
-        let (mut history, mut parts, mut written) = (History::default(), Vec::new(), 0);
+        let (mut history, mut parts, mut written) = (VisitedStates::default(), Vec::new(), 0);
         for event in 0..1_000_u64 {
             history.remember(state(event as f64), 10);
             if event % 7 == 0 {
@@ -183,7 +185,7 @@ mod tests {
                 parts.extend(copy.take(written));
                 written = history.seen();
                 copy.put(parts.iter().cloned(), 0);
-                let numbers = |history: &History| history.kept.iter().map(|one| one.number).collect::<Vec<_>>();
+                let numbers = |history: &VisitedStates| history.kept.iter().map(|one| one.number).collect::<Vec<_>>();
                 assert_eq!(numbers(&copy), numbers(&history));
             }
         }

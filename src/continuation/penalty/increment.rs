@@ -2,7 +2,7 @@
 //! displacement.
 
 use crate::algebra::Factorisation;
-use crate::continuation::penalty::system::{Point, System};
+use crate::continuation::penalty::system::{PenaltyPoint, PenaltySystem};
 use crate::mechanics::problem::state::State;
 use crate::resources::cancel::CancelFlag;
 use crate::step::corrector::cost_counters::Work;
@@ -13,7 +13,7 @@ const NO_TURN: f64 = 1e-12;
 
 /// What closes the equations.
 #[derive(Debug, Clone, Copy)]
-pub enum Control {
+pub enum IncrementConstraint {
     /// `|Δu|² + ψ² Δs² = size²`
     ArcLength { size: f64, load_weight: f64 },
     /// `s = value`
@@ -24,7 +24,7 @@ pub enum Control {
 
 /// `(Δu, Δs)`, displacements one an unknown.
 #[derive(Debug, Clone)]
-pub struct Change {
+pub struct PenaltyIncrement {
     pub displacement: DVector<f64>,
     pub load: f64,
 }
@@ -40,8 +40,8 @@ pub struct Limits<'a> {
 
 /// A point found.
 pub struct Converged {
-    pub point: Point,
-    pub change: Change,
+    pub point: PenaltyPoint,
+    pub change: PenaltyIncrement,
     /// The consistent tangent there; `None` where it is singular.
     pub tangent: Option<Factorisation>,
     pub iterations: u64,
@@ -51,7 +51,7 @@ pub struct Converged {
 
 /// Why none was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Failure {
+pub enum PenaltyFailure {
     Singular,
     /// The corrected displacement does not meet the sphere: the quadratic has no real root.
     NoRoot,
@@ -59,7 +59,7 @@ pub enum Failure {
     Cancelled,
 }
 
-impl Change {
+impl PenaltyIncrement {
     /// `|Δu|² + ψ² Δs²`
     fn squared(&self, load_weight: f64) -> f64 {
         self.displacement.norm_squared() + (load_weight * self.load).powi(2)
@@ -74,96 +74,94 @@ impl Change {
     }
 }
 
-impl System<'_> {
-    fn moved(&self, from: &Point, change: &Change) -> State {
-        let mut state = from.state.clone();
-        for (unknown, freedom) in self.loading.structure.freedom_of.iter().enumerate() {
-            state.displacement[*freedom] += change.displacement[unknown];
-        }
-        state.load += change.load;
-        self.loading.place_supports(&mut state);
-        state
+fn moved(system: &PenaltySystem<'_>, from: &PenaltyPoint, change: &PenaltyIncrement) -> State {
+    let mut state = from.state.clone();
+    for (unknown, freedom) in system.loading.structure.freedom_of.iter().enumerate() {
+        state.displacement[*freedom] += change.displacement[unknown];
     }
+    state.load += change.load;
+    system.loading.place_supports(&mut state);
+    state
+}
 
-    /// Newton iterations from a predictor.
-    pub fn correct(
-        &self,
-        from: &Point,
-        predictor: Change,
-        control: Control,
-        limits: &Limits<'_>,
-        work: &mut Work,
-    ) -> Result<Converged, Failure> {
-        let mut change = predictor;
-        for iterations in 0..=limits.most_iterations {
-            if limits.cancel.is_cancelled() {
-                return Err(Failure::Cancelled);
-            }
-            let mut state = self.moved(from, &change);
-            let evaluation = self.evaluate(from, &state);
-            let residual = self.relative_residual(&evaluation, limits.force_scale);
-            if !residual.is_finite() {
-                return Err(Failure::NotConverged);
-            }
-            work.factorisations += 1;
-            let mut by_residual = self.right_hand_side(&evaluation);
-            let tangent = Factorisation::new(evaluation.tangent);
-            if residual <= limits.tolerance && meets(control, &state) {
-                let force_scale = evaluation.force_scale;
-                match control {
-                    Control::ArcLength { .. } => {}
-                    Control::Load(value) => state.load = value,
-                    Control::Displacement { freedom, value } => state.displacement[freedom] = value,
-                }
-                let point = self.point(state, evaluation.contacts);
-                return Ok(Converged { point, change, tangent, iterations, residual, force_scale });
-            }
-            if iterations == limits.most_iterations {
-                break;
-            }
-            let factorisation = tangent.ok_or(Failure::Singular)?;
-            let mut by_load = self.load_vector(&state, &evaluation.contacts);
-            if !factorisation.solve(&mut by_residual) || !factorisation.solve(&mut by_load) {
-                return Err(Failure::Singular);
-            }
-            let load_step = match control {
-                Control::ArcLength { size, load_weight } => {
-                    root(&change, &by_residual, &by_load, size, load_weight).ok_or(Failure::NoRoot)?
-                }
-                Control::Load(value) => value - state.load,
-                Control::Displacement { freedom, value } => {
-                    let left = value - state.displacement[freedom];
-                    match self.loading.structure.unknown_of[freedom] {
-                        Some(unknown) => (left - by_residual[unknown]) / by_load[unknown],
-                        None => left / self.loading.support_rate(freedom),
-                    }
-                }
-            };
-            if !load_step.is_finite() {
-                return Err(Failure::Singular);
-            }
-            change.displacement += by_residual + by_load * load_step;
-            change.load += load_step;
-            work.newton_iterations += 1;
+/// Newton iterations from a predictor.
+pub fn correct(
+    system: &PenaltySystem<'_>,
+    from: &PenaltyPoint,
+    predictor: PenaltyIncrement,
+    control: IncrementConstraint,
+    limits: &Limits<'_>,
+    work: &mut Work,
+) -> Result<Converged, PenaltyFailure> {
+    let mut change = predictor;
+    for iterations in 0..=limits.most_iterations {
+        if limits.cancel.is_cancelled() {
+            return Err(PenaltyFailure::Cancelled);
         }
-        Err(Failure::NotConverged)
+        let mut state = moved(system, from, &change);
+        let evaluation = system.evaluate(from, &state);
+        let residual = system.relative_residual(&evaluation, limits.force_scale);
+        if !residual.is_finite() {
+            return Err(PenaltyFailure::NotConverged);
+        }
+        work.factorisations += 1;
+        let mut by_residual = system.right_hand_side(&evaluation);
+        let tangent = Factorisation::new(evaluation.tangent);
+        if residual <= limits.tolerance && meets(control, &state) {
+            let force_scale = evaluation.force_scale;
+            match control {
+                IncrementConstraint::ArcLength { .. } => {}
+                IncrementConstraint::Load(value) => state.load = value,
+                IncrementConstraint::Displacement { freedom, value } => state.displacement[freedom] = value,
+            }
+            let point = system.point(state, evaluation.contacts);
+            return Ok(Converged { point, change, tangent, iterations, residual, force_scale });
+        }
+        if iterations == limits.most_iterations {
+            break;
+        }
+        let factorisation = tangent.ok_or(PenaltyFailure::Singular)?;
+        let mut by_load = system.load_vector(&state, &evaluation.contacts);
+        if !factorisation.solve(&mut by_residual) || !factorisation.solve(&mut by_load) {
+            return Err(PenaltyFailure::Singular);
+        }
+        let load_step = match control {
+            IncrementConstraint::ArcLength { size, load_weight } => {
+                root(&change, &by_residual, &by_load, size, load_weight).ok_or(PenaltyFailure::NoRoot)?
+            }
+            IncrementConstraint::Load(value) => value - state.load,
+            IncrementConstraint::Displacement { freedom, value } => {
+                let left = value - state.displacement[freedom];
+                match system.loading.structure.unknown_of[freedom] {
+                    Some(unknown) => (left - by_residual[unknown]) / by_load[unknown],
+                    None => left / system.loading.support_rate(freedom),
+                }
+            }
+        };
+        if !load_step.is_finite() {
+            return Err(PenaltyFailure::Singular);
+        }
+        change.displacement += by_residual + by_load * load_step;
+        change.load += load_step;
+        work.newton_iterations += 1;
     }
+    Err(PenaltyFailure::NotConverged)
 }
 
 /// Whether the controlled quantity has its value; the arc length has it by construction.
-fn meets(control: Control, state: &State) -> bool {
+fn meets(control: IncrementConstraint, state: &State) -> bool {
     let near = |found: f64, sought: f64| (found - sought).abs() <= 1e-12 * sought.abs().max(1.0);
     match control {
-        Control::ArcLength { .. } => true,
-        Control::Load(value) => near(state.load, value),
-        Control::Displacement { freedom, value } => near(state.displacement[freedom], value),
+        IncrementConstraint::ArcLength { .. } => true,
+        IncrementConstraint::Load(value) => near(state.load, value),
+        IncrementConstraint::Displacement { freedom, value } => near(state.displacement[freedom], value),
     }
 }
 
 /// The load step that brings `Δu + δ_r + δs δ_t` back to the sphere: of two roots the one whose displacements make the
 /// smaller angle with those before the correction.
 fn root(
-    change: &Change,
+    change: &PenaltyIncrement,
     by_residual: &DVector<f64>,
     by_load: &DVector<f64>,
     size: f64,
@@ -173,7 +171,7 @@ fn root(
     let weight = load_weight * load_weight;
     let a = by_load.norm_squared() + weight;
     let b = 2.0 * (by_load.dot(&corrected) + weight * change.load);
-    let c = Change { displacement: corrected.clone(), load: change.load }.squared(load_weight) - size * size;
+    let c = PenaltyIncrement { displacement: corrected.clone(), load: change.load }.squared(load_weight) - size * size;
     let discriminant = b * b - 4.0 * a * c;
     if !(discriminant >= 0.0 && a > 0.0) {
         return None;
@@ -190,25 +188,27 @@ fn root(
 
 #[cfg(test)]
 mod tests {
-    use super::{Change, root};
+    use super::{PenaltyIncrement, root};
     use nalgebra::DVector;
 
     #[test]
     fn the_root_lies_on_the_sphere_and_goes_forward() {
-        let change = Change { displacement: DVector::from_vec(vec![0.3, 0.1]), load: 0.05 };
+        let change = PenaltyIncrement { displacement: DVector::from_vec(vec![0.3, 0.1]), load: 0.05 };
         let by_residual = DVector::from_vec(vec![-0.02, 0.01]);
         let by_load = DVector::from_vec(vec![1.5, -0.4]);
         let size = change.size(0.7);
         let step = root(&change, &by_residual, &by_load, size, 0.7).expect("a root");
-        let next =
-            Change { displacement: &change.displacement + by_residual + &by_load * step, load: change.load + step };
+        let next = PenaltyIncrement {
+            displacement: &change.displacement + by_residual + &by_load * step,
+            load: change.load + step,
+        };
         assert!((next.size(0.7) - size).abs() < 1e-15);
         assert!(next.displacement.dot(&change.displacement) > 0.0);
     }
 
     #[test]
     fn a_sphere_out_of_reach_has_no_root() {
-        let change = Change { displacement: DVector::from_vec(vec![1e-3, 0.0]), load: 0.0 };
+        let change = PenaltyIncrement { displacement: DVector::from_vec(vec![1e-3, 0.0]), load: 0.0 };
         let by_residual = DVector::from_vec(vec![0.0, 1.0]);
         let by_load = DVector::from_vec(vec![1.0, 0.0]);
         assert_eq!(root(&change, &by_residual, &by_load, 1e-3, 0.0), None);

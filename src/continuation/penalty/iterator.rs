@@ -3,13 +3,14 @@
 use crate::algebra::Factorisation;
 use crate::continuation::path_state::event_names::{describe_change, describe_start};
 use crate::continuation::path_state::progress::{Phase, StageCounts};
-use crate::continuation::path_state::record::{self, Row};
+use crate::continuation::path_state::record::{self, RecordSource};
 use crate::continuation::path_state::totals::{Added, Totals};
-use crate::continuation::penalty::increment::Change;
+use crate::continuation::penalty::increment::PenaltyIncrement;
 use crate::continuation::penalty::law::Penalties;
 use crate::continuation::penalty::record::{give, modes, work_and_dissipation};
-use crate::continuation::penalty::step_control::Accepted;
-use crate::continuation::penalty::system::{Point, System};
+use crate::continuation::penalty::step_control;
+use crate::continuation::penalty::step_control::AcceptedPenaltyStep;
+use crate::continuation::penalty::system::{PenaltyPoint, PenaltySystem};
 use crate::continuation::scene::Scene;
 use crate::mechanics::problem::loading::{LoadPattern, Loading};
 use crate::mechanics::problem::state::State;
@@ -35,11 +36,11 @@ pub struct RegularisedPath<'a> {
     /// The stage ended at the present point; the next one begins with the next increment.
     stage_over: bool,
     held: LoadPattern,
-    pub(super) here: Point,
+    pub(super) here: PenaltyPoint,
     /// Tangent at the present point; `None` where it is singular.
     pub(super) tangent: Option<Factorisation>,
     /// The increment that led here, within the stage.
-    pub(super) previous: Option<Change>,
+    pub(super) previous: Option<PenaltyIncrement>,
     /// Sign of the load rate here; a stage's load rises at first.
     load_sign: f64,
     /// Arc length that the next step tries.
@@ -52,7 +53,7 @@ pub struct RegularisedPath<'a> {
 impl<'a> RegularisedPath<'a> {
     pub fn new(scene: &'a Scene, cancel: CancelFlag) -> Self {
         let state = State::at_rest(&scene.structure, scene.contacts.len());
-        let contacts = vec![crate::continuation::penalty::law::Response::default(); scene.contacts.len()];
+        let contacts = vec![crate::continuation::penalty::law::PenaltyResponse::default(); scene.contacts.len()];
         Self {
             settings: scene.analysis.regularised.unwrap_or_default(),
             budget: Budget::under_way(cancel.clone()),
@@ -68,7 +69,7 @@ impl<'a> RegularisedPath<'a> {
             load_sign: 1.0,
             step: scene.analysis.arc_length.initial,
             initial_strain: scene.structure.strain_energy(&state.displacement),
-            here: Point { state, contacts },
+            here: PenaltyPoint { state, contacts },
             totals: Totals::begun(),
             counts: StageCounts::default(),
             scene,
@@ -85,8 +86,8 @@ impl<'a> RegularisedPath<'a> {
         self.totals.end(reason, self.began.elapsed().as_secs_f64());
     }
 
-    pub(super) fn system(&self) -> System<'_> {
-        System {
+    pub(super) fn system(&self) -> PenaltySystem<'_> {
+        PenaltySystem {
             loading: Loading {
                 structure: &self.scene.structure,
                 contacts: &self.scene.contacts,
@@ -112,15 +113,15 @@ impl<'a> RegularisedPath<'a> {
         self.phase = Phase::Running;
         self.begun = true;
         let ends = &self.scene.stages[self.stage].ends;
-        self.stage_over = ends.iter().any(|end| end.left(&self.here).is_some_and(|left| left <= 0.0));
+        self.stage_over = ends.iter().any(|end| step_control::left_to(end, &self.here).is_some_and(|left| left <= 0.0));
         let event = describe_start(self.scene, self.stage, self.stage_over);
         let before = self.here.clone();
         self.emit(&before, PointKind::Start, Some(event), 0.0, residual)
     }
 
     /// Makes a converged increment the present point and says what changed within it.
-    fn accept(&mut self, accepted: Accepted) -> Increment {
-        let Accepted { converged, stage_ends } = accepted;
+    fn accept(&mut self, accepted: AcceptedPenaltyStep) -> Increment {
+        let AcceptedPenaltyStep { converged, stage_ends } = accepted;
         let before = std::mem::replace(&mut self.here, converged.point);
         let (external_work, dissipated) = work_and_dissipation(&self.system(), &before, &self.here);
         let step = self.here.state.distance(&before.state);
@@ -135,7 +136,7 @@ impl<'a> RegularisedPath<'a> {
         self.tangent = converged.tangent;
         self.previous = Some(converged.change);
         let (mut kind, mut events) = (PointKind::Regular, Vec::new());
-        if self.direction().is_some_and(|(_, sign)| self.load_turns(sign)) {
+        if step_control::direction(self).is_some_and(|(_, sign)| self.load_turns(sign)) {
             kind = PointKind::SmoothLimit;
             let extremum = if self.load_sign < 0.0 { "maximum" } else { "minimum" };
             events.push(format!("load {extremum} within the step"));
@@ -185,11 +186,18 @@ impl<'a> RegularisedPath<'a> {
         true
     }
 
-    fn emit(&mut self, before: &Point, kind: PointKind, event: Option<String>, step: f64, residual: f64) -> Increment {
+    fn emit(
+        &mut self,
+        before: &PenaltyPoint,
+        kind: PointKind,
+        event: Option<String>,
+        step: f64,
+        residual: f64,
+    ) -> Increment {
         let system = self.system();
         let places: Vec<Option<usize>> = (0..self.scene.contacts.len()).map(Some).collect();
         let rows: Vec<usize> = (0..self.scene.reported.len()).collect();
-        let row = Row {
+        let row = RecordSource {
             stage: self.stage,
             loading: system.loading,
             whole: system.loading,
@@ -253,7 +261,7 @@ impl RegularisedPath<'_> {
         if !self.begun {
             return Some(self.begin_stage());
         }
-        match self.step() {
+        match step_control::step(self) {
             Ok(accepted) => Some(self.accept(accepted)),
             Err(reason) => {
                 self.end(reason);

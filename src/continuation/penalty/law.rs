@@ -15,7 +15,7 @@ pub struct Penalties {
 
 /// What the obstacle does to a node.
 #[derive(Debug, Clone, Copy)]
-pub struct Response {
+pub struct PenaltyResponse {
     pub status: Status,
     /// `r_n` and `t`.
     pub reaction: Reaction,
@@ -27,7 +27,7 @@ pub struct Response {
     pub stiffness: Matrix,
 }
 
-impl Default for Response {
+impl Default for PenaltyResponse {
     fn default() -> Self {
         Self {
             status: Status::Free,
@@ -41,15 +41,15 @@ impl Default for Response {
 
 /// The response at a frame, where the increment began with the tangential reaction `before` and the node has moved by
 /// `moved` since. A gap of exactly zero is closed: a path may start there.
-pub fn respond(penalties: Penalties, friction: f64, frame: &Frame, before: &Vector, moved: &Vector) -> Response {
+pub fn respond(penalties: Penalties, friction: f64, frame: &Frame, before: &Vector, moved: &Vector) -> PenaltyResponse {
     if frame.gap > 0.0 {
-        return Response::default();
+        return PenaltyResponse::default();
     }
     let n = &frame.normal;
     let project = across(n);
     let normal = penalties.normal * -frame.gap + 0.0;
     let reaction = Reaction { normal, tangential: [0.0; 3] };
-    let mut response = Response { status: Status::Slip, reaction, ..Response::default() };
+    let mut response = PenaltyResponse { status: Status::Slip, reaction, ..PenaltyResponse::default() };
     // -∂(r_n n)/∂x
     let normal_part = |row: usize, column: usize| {
         penalties.normal * n[row] * n[column] - normal * frame.curvature * project[row][column]
@@ -108,7 +108,7 @@ fn times(matrix: &Matrix, values: &Vector) -> Vector {
 
 #[cfg(test)]
 mod tests {
-    use super::{Frame, Penalties, Response, dot, respond};
+    use super::{Frame, Penalties, PenaltyResponse, dot, respond};
     use crate::mechanics::contact::obstacle::Obstacle;
     use crate::mechanics::contact::{Contact, Sliding};
     use crate::result::increment::Status;
@@ -133,7 +133,7 @@ mod tests {
         .frame(&relative)
     }
 
-    fn response(place: &[f64; 3], start: &[f64; 3], ball: bool) -> Response {
+    fn response(place: &[f64; 3], start: &[f64; 3], ball: bool) -> PenaltyResponse {
         let before = if ball { [0.02, 0.03, -0.01] } else { [0.02, 0.03, 0.0] };
         let moved = std::array::from_fn(|k| place[k] - start[k]);
         respond(PENALTIES, 0.4, &frame(place, ball), &before, &moved)

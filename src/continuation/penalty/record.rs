@@ -8,15 +8,15 @@
 //! by the trapezoidal rule; `R` are the forces of supports, `F` those of obstacles on nodes. `strain` is the structure's
 //! alone: the elastic energy of the penalties is in none of the three, so that it shows in `energy_error`, as what it is.
 
-use crate::continuation::penalty::law::Response;
-use crate::continuation::penalty::system::{Point, System};
+use crate::continuation::penalty::law::PenaltyResponse;
+use crate::continuation::penalty::system::{PenaltyPoint, PenaltySystem};
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::{add, dot, size};
 use crate::mechanics::problem::contact_motion;
 use crate::result::increment::Status;
 
 /// `(ΔW, ΔD)` of an increment.
-pub fn work_and_dissipation(system: &System<'_>, from: &Point, to: &Point) -> (f64, f64) {
+pub fn work_and_dissipation(system: &PenaltySystem<'_>, from: &PenaltyPoint, to: &PenaltyPoint) -> (f64, f64) {
     let loading = system.loading;
     let mean_load = 0.5 * (from.state.load + to.state.load);
     let mut work = 0.0;
@@ -48,7 +48,7 @@ pub fn work_and_dissipation(system: &System<'_>, from: &Point, to: &Point) -> (f
     (work, dissipated)
 }
 
-fn dissipation(before: &Response, after: &Response) -> f64 {
+fn dissipation(before: &PenaltyResponse, after: &PenaltyResponse) -> f64 {
     let (first, last) = (&before.reaction.tangential, &after.reaction.tangential);
     let at_end = -dot(last, &after.slip);
     // Slip that has just begun or turned round ran at the end's reaction, near enough.
@@ -58,8 +58,8 @@ fn dissipation(before: &Response, after: &Response) -> f64 {
 
 /// How far the regularised law lets the contacts go where the exact one holds them: the largest penetration or elastic
 /// slip.
-pub fn give(system: &System<'_>, point: &Point) -> f64 {
-    let of_contact = |response: &Response| {
+pub fn give(system: &PenaltySystem<'_>, point: &PenaltyPoint) -> f64 {
+    let of_contact = |response: &PenaltyResponse| {
         let tangential = size(&response.reaction.tangential) / system.penalties.tangential;
         tangential.max(response.reaction.normal / system.penalties.normal)
     };
@@ -67,8 +67,8 @@ pub fn give(system: &System<'_>, point: &Point) -> f64 {
 }
 
 /// What held in the increment that led to the point.
-pub fn modes(point: &Point) -> Vec<Mode> {
-    let mode = |response: &Response| match response.status {
+pub fn modes(point: &PenaltyPoint) -> Vec<Mode> {
+    let mode = |response: &PenaltyResponse| match response.status {
         Status::Free => Mode::Free,
         Status::Stick => Mode::Stick,
         Status::Slip => Mode::Slip { direction: [0.0; 3] },

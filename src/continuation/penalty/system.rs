@@ -1,7 +1,7 @@
 //! Residual and tangent of structure and regularised contacts.
 
 use crate::algebra::null_space;
-use crate::continuation::penalty::law::{Penalties, Response, respond};
+use crate::continuation::penalty::law::{Penalties, PenaltyResponse, respond};
 use crate::mechanics::contact::Reaction;
 use crate::mechanics::contact::vector::{Vector, add, dot};
 use crate::mechanics::problem::contact_motion;
@@ -16,33 +16,33 @@ const UNRESISTED: f64 = 1e-10;
 
 /// A converged point.
 #[derive(Debug, Clone)]
-pub struct Point {
+pub struct PenaltyPoint {
     pub state: State,
     /// One a contact.
-    pub contacts: Vec<Response>,
+    pub contacts: Vec<PenaltyResponse>,
 }
 
 /// The structure in a stage.
 #[derive(Clone, Copy)]
-pub struct System<'a> {
+pub struct PenaltySystem<'a> {
     pub loading: Loading<'a>,
     pub penalties: Penalties,
 }
 
 /// Residual and tangent somewhere.
-pub struct Evaluation {
+pub struct PenaltyEvaluation {
     /// `G` over all degrees of freedom: what supports have to hold.
     pub unbalanced: Vec<f64>,
     /// `∂G/∂u` of the unknowns.
     pub tangent: DMatrix<f64>,
-    pub contacts: Vec<Response>,
+    pub contacts: Vec<PenaltyResponse>,
     /// Largest force of any element, load or contact.
     pub force_scale: f64,
 }
 
-impl System<'_> {
+impl PenaltySystem<'_> {
     /// At a state, in an increment that began at `from`; reactions of the state play no part.
-    pub fn evaluate(&self, from: &Point, state: &State) -> Evaluation {
+    pub fn evaluate(&self, from: &PenaltyPoint, state: &State) -> PenaltyEvaluation {
         let structure = self.loading.structure;
         let unknowns = structure.unknowns();
         let mut force = vec![0.0; structure.freedoms()];
@@ -81,17 +81,17 @@ impl System<'_> {
             contact_motion::each_curvature(structure, contact, &state.displacement, &response.force, curvature);
             contacts.push(response);
         }
-        Evaluation { unbalanced: force, tangent, contacts, force_scale }
+        PenaltyEvaluation { unbalanced: force, tangent, contacts, force_scale }
     }
 
     /// `-G` of the unknowns.
-    pub fn right_hand_side(&self, evaluation: &Evaluation) -> DVector<f64> {
+    pub fn right_hand_side(&self, evaluation: &PenaltyEvaluation) -> DVector<f64> {
         let freedoms = &self.loading.structure.freedom_of;
         DVector::from_iterator(freedoms.len(), freedoms.iter().map(|freedom| -evaluation.unbalanced[*freedom]))
     }
 
     /// Residual over the force scale; not finite where the state is not.
-    pub fn relative_residual(&self, evaluation: &Evaluation, force_scale: f64) -> f64 {
+    pub fn relative_residual(&self, evaluation: &PenaltyEvaluation, force_scale: f64) -> f64 {
         let size = |freedom: &usize| {
             let value = evaluation.unbalanced[*freedom].abs();
             if value.is_finite() { value } else { f64::INFINITY }
@@ -102,7 +102,7 @@ impl System<'_> {
     }
 
     /// `-∂G/∂s` of the unknowns: forces, and what moving supports and obstacles bring.
-    pub fn load_vector(&self, point: &State, contacts: &[Response]) -> DVector<f64> {
+    pub fn load_vector(&self, point: &State, contacts: &[PenaltyResponse]) -> DVector<f64> {
         let structure = self.loading.structure;
         let mut vector: Vec<f64> = self.loading.pattern.forces.clone();
         if !self.loading.pattern.supports.is_empty() {
@@ -122,13 +122,13 @@ impl System<'_> {
     }
 
     /// The point of a state and what its contacts do there.
-    pub fn point(&self, mut state: State, contacts: Vec<Response>) -> Point {
+    pub fn point(&self, mut state: State, contacts: Vec<PenaltyResponse>) -> PenaltyPoint {
         state.reactions = contacts.iter().map(|response| response.reaction).collect::<Vec<Reaction>>();
-        Point { state, contacts }
+        PenaltyPoint { state, contacts }
     }
 
     /// Whether the structure can move here with no element resisting and its contacts as they are.
-    pub fn is_mechanism(&self, point: &Point) -> bool {
+    pub fn is_mechanism(&self, point: &PenaltyPoint) -> bool {
         let structure = self.loading.structure;
         let tangent = self.evaluate(point, &point.state).tangent;
         let Some(motions) = null_space(&tangent, UNRESISTED) else { return false };
@@ -144,16 +144,16 @@ impl System<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Penalties, Point, System};
+    use super::{Penalties, PenaltyPoint, PenaltySystem};
     use crate::algebra::Factorisation;
-    use crate::continuation::penalty::law::Response;
+    use crate::continuation::penalty::law::PenaltyResponse;
     use crate::continuation::scene::Scene;
     use crate::mechanics::problem::loading::Loading;
     use crate::mechanics::problem::state::State;
     use crate::result::increment::Status;
 
     /// A scene in its first stage at rest.
-    fn with_scene(name: &str, test: impl Fn(&System<'_>, &Point)) {
+    fn with_scene(name: &str, test: impl Fn(&PenaltySystem<'_>, &PenaltyPoint)) {
         let file = format!("{}/src/check/scenes/{name}.json", env!("CARGO_MANIFEST_DIR"));
         let text = std::fs::read_to_string(file).unwrap();
         let scene = Scene::new(&crate::model::decode::decode(text.as_bytes()).unwrap()).unwrap();
@@ -165,10 +165,10 @@ mod tests {
             pattern: &scene.stages[0].pattern,
             held: &held,
         };
-        let system = System { loading, penalties: Penalties { normal: 50.0, tangential: 20.0 } };
+        let system = PenaltySystem { loading, penalties: Penalties { normal: 50.0, tangential: 20.0 } };
         let contacts = scene.contacts.len();
         let state = State::at_rest(&scene.structure, contacts);
-        test(&system, &Point { state, contacts: vec![Response::default(); contacts] });
+        test(&system, &PenaltyPoint { state, contacts: vec![PenaltyResponse::default(); contacts] });
     }
 
     /// Central differences of the residual by displacements and load, contacts sticking and sliding, obstacles flat and

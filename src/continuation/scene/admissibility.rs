@@ -16,137 +16,133 @@ const CLOSED: f64 = 1e-10;
 /// Forces at the start below this fraction of the largest are round-off.
 const BALANCED: f64 = 1e-11;
 
-impl Scene {
-    /// Refuses friction between a supported component and an obstacle that are driven against each other: the support
-    /// would bear a traction that is no unknown of the path.
-    pub(super) fn refuse_dragged_supports(&self, model: &Model) -> Result<(), InputErrors> {
-        let structure = &self.structure;
-        let dimension = structure.dimension;
-        for (index, one) in self.reported.iter().enumerate() {
-            let contact = &self.contacts[one.contact];
-            let Some(node) = contact.kinematics.node() else { continue };
-            let driven = |component: usize| {
-                let freedom = structure.translations_of(node).start + component;
-                let moves = |stage: &StageLoad| {
-                    let support = stage.pattern.supports.get(freedom).copied().unwrap_or(0.0);
-                    support != stage.pattern.shifts[one.contact][component]
-                };
-                let normal = contact.frame(&[0.0; 3]).normal;
-                structure.unknown_of[freedom].is_none()
-                    && normal[component].abs() < 1.0
-                    && self.stages.iter().any(moves)
+/// Refuses friction between a supported component and an obstacle that are driven against each other: the support
+/// would bear a traction that is no unknown of the path.
+pub(super) fn refuse_dragged_supports(scene: &Scene, model: &Model) -> Result<(), InputErrors> {
+    let structure = &scene.structure;
+    let dimension = structure.dimension;
+    for (index, one) in scene.reported.iter().enumerate() {
+        let contact = &scene.contacts[one.contact];
+        let Some(node) = contact.kinematics.node() else { continue };
+        let driven = |component: usize| {
+            let freedom = structure.translations_of(node).start + component;
+            let moves = |stage: &StageLoad| {
+                let support = stage.pattern.supports.get(freedom).copied().unwrap_or(0.0);
+                support != stage.pattern.shifts[one.contact][component]
             };
-            if model.contacts[index].friction > 0.0 && (0..dimension).any(driven) {
-                return Err(InputErrors(vec![InputError::new(
-                    format!("/model/contacts/{index}/friction"),
-                    format!(
-                        "\"{}\" is supported in a component in which it and \"{}\" are driven against each other; friction \
-                         on such a support is not available: leave the component free and hold it by a spring, or give \
-                         friction 0",
-                        one.node, one.obstacle
-                    ),
-                )]));
+            let normal = contact.frame(&[0.0; 3]).normal;
+            structure.unknown_of[freedom].is_none() && normal[component].abs() < 1.0 && scene.stages.iter().any(moves)
+        };
+        if model.contacts[index].friction > 0.0 && (0..dimension).any(driven) {
+            return Err(InputErrors(vec![InputError::new(
+                format!("/model/contacts/{index}/friction"),
+                format!(
+                    "\"{}\" is supported in a component in which it and \"{}\" are driven against each other; friction \
+                     on such a support is not available: leave the component free and hold it by a spring, or give \
+                     friction 0",
+                    one.node, one.obstacle
+                ),
+            )]));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses prestress and rest lengths that do not balance in the undeformed structure: a path starts at rest.
+pub(super) fn refuse_imbalance(scene: &Scene) -> Result<(), InputErrors> {
+    let structure = &scene.structure;
+    let mut force = vec![0.0; structure.freedoms()];
+    let largest = structure.internal_force(&vec![0.0; structure.freedoms()], &mut force);
+    let unbalanced = structure.freedom_of.iter().map(|freedom| (*freedom, force[*freedom].abs()));
+    let Some((freedom, worst)) = unbalanced.max_by(|a, b| a.1.total_cmp(&b.1)) else { return Ok(()) };
+    if worst <= BALANCED * largest {
+        return Ok(());
+    }
+    let name = scene.node_name(structure.numbering.node_of(freedom).0);
+    Err(InputErrors(vec![InputError::new(
+        pointer_to_node(name),
+        format!(
+            "prestress and rest lengths leave a force of {:e} on \"{name}\" at the start; a path starts from a state \
+             at rest: give prestress that balances at every free node, or bring it on as a stage's forces",
+            worst * scene.plan.force_scale
+        ),
+    )]))
+}
+
+/// Motions at rest, all closed contacts holding, that hardly any force resists; `None` where there are none.
+fn unresisted_motions(scene: &Scene, still: &[f64]) -> Option<Vec<DVector<f64>>> {
+    let structure = &scene.structure;
+    let unknowns = structure.unknowns();
+    if let Some(layout) = structure.layout() {
+        let mut matrix = Bordered::new(layout.pattern.clone(), 0);
+        let (mut places, mut stiffness) = (layout.places(), 0.0_f64);
+        structure.each_stiffness(still, &mut |_, _, value| {
+            if let Some(place) = places.next().flatten() {
+                matrix.add_at(place, value);
+                stiffness = stiffness.max(value.abs());
             }
-        }
-        Ok(())
+        });
+        hold_closed_contacts(scene, stiffness, &mut matrix);
+        return matrix.null_vectors(1e-9).filter(|motions| !motions.is_empty());
     }
-
-    /// Refuses prestress and rest lengths that do not balance in the undeformed structure: a path starts at rest.
-    pub(super) fn refuse_imbalance(&self) -> Result<(), InputErrors> {
-        let structure = &self.structure;
-        let mut force = vec![0.0; structure.freedoms()];
-        let largest = structure.internal_force(&vec![0.0; structure.freedoms()], &mut force);
-        let unbalanced = structure.freedom_of.iter().map(|freedom| (*freedom, force[*freedom].abs()));
-        let Some((freedom, worst)) = unbalanced.max_by(|a, b| a.1.total_cmp(&b.1)) else { return Ok(()) };
-        if worst <= BALANCED * largest {
-            return Ok(());
-        }
-        let name = self.node_name(structure.numbering.node_of(freedom).0);
-        Err(InputErrors(vec![InputError::new(
-            pointer_to_node(name),
-            format!(
-                "prestress and rest lengths leave a force of {:e} on \"{name}\" at the start; a path starts from a state \
-                 at rest: give prestress that balances at every free node, or bring it on as a stage's forces",
-                worst * self.plan.force_scale
-            ),
-        )]))
+    let mut matrix = DMatrix::zeros(unknowns, unknowns);
+    structure.add_tangent(still, &mut matrix);
+    let stiffness = matrix.amax();
+    hold_closed_contacts(scene, stiffness, &mut matrix);
+    if unknowns == 0 || Factorisation::new(matrix.clone()).is_some() {
+        return None;
     }
+    null_space(&matrix, 1e-12).map(|basis| basis.column_iter().map(|column| column.into_owned()).collect())
+}
 
-    /// Motions at rest, all closed contacts holding, that hardly any force resists; `None` where there are none.
-    fn unresisted_motions(&self, still: &[f64]) -> Option<Vec<DVector<f64>>> {
-        let structure = &self.structure;
-        let unknowns = structure.unknowns();
-        if let Some(layout) = structure.layout() {
-            let mut matrix = Bordered::new(layout.pattern.clone(), 0);
-            let (mut places, mut stiffness) = (layout.places(), 0.0_f64);
-            structure.each_stiffness(still, &mut |_, _, value| {
-                if let Some(place) = places.next().flatten() {
-                    matrix.add_at(place, value);
-                    stiffness = stiffness.max(value.abs());
-                }
+/// Adds a stiffness in every direction in which a closed contact holds its node.
+fn hold_closed_contacts(scene: &Scene, stiffness: f64, matrix: &mut impl Sink) {
+    let structure = &scene.structure;
+    let still = vec![0.0; structure.freedoms()];
+    for contact in &scene.contacts {
+        let frame = contact.frame(&[0.0; 3]);
+        if frame.gap > CLOSED {
+            continue;
+        }
+        let held = 1 + contact.tangents();
+        for vector in [frame.normal, frame.tangents[0], frame.tangents[1]].iter().take(held) {
+            let mut own: Vec<(usize, f64)> = Vec::with_capacity(structure.dimension);
+            contact_motion::each_column(structure, contact, &still, |freedom, column| {
+                own.extend(structure.unknown_of[freedom].map(|unknown| (unknown, dot(vector, column))));
             });
-            self.hold_closed_contacts(stiffness, &mut matrix);
-            return matrix.null_vectors(1e-9).filter(|motions| !motions.is_empty());
+            for ((row, first), (column, second)) in own.iter().cartesian_product(&own) {
+                matrix.add(*row, *column, stiffness * first * second);
+            }
         }
-        let mut matrix = DMatrix::zeros(unknowns, unknowns);
-        structure.add_tangent(still, &mut matrix);
-        let stiffness = matrix.amax();
-        self.hold_closed_contacts(stiffness, &mut matrix);
-        if unknowns == 0 || Factorisation::new(matrix.clone()).is_some() {
-            return None;
-        }
-        null_space(&matrix, 1e-12).map(|basis| basis.column_iter().map(|column| column.into_owned()).collect())
     }
+}
 
-    /// Adds a stiffness in every direction in which a closed contact holds its node.
-    fn hold_closed_contacts(&self, stiffness: f64, matrix: &mut impl Sink) {
-        let structure = &self.structure;
-        let still = vec![0.0; structure.freedoms()];
-        for contact in &self.contacts {
-            let frame = contact.frame(&[0.0; 3]);
-            if frame.gap > CLOSED {
-                continue;
-            }
-            let held = 1 + contact.tangents();
-            for vector in [frame.normal, frame.tangents[0], frame.tangents[1]].iter().take(held) {
-                let mut own: Vec<(usize, f64)> = Vec::with_capacity(structure.dimension);
-                contact_motion::each_column(structure, contact, &still, |freedom, column| {
-                    own.extend(structure.unknown_of[freedom].map(|unknown| (unknown, dot(vector, column))));
-                });
-                for ((row, first), (column, second)) in own.iter().cartesian_product(&own) {
-                    matrix.add(*row, *column, stiffness * first * second);
-                }
-            }
+/// Refuses a structure that can move with no element resisting although every closed contact holds.
+pub(super) fn refuse_mechanism(scene: &Scene) -> Result<(), InputErrors> {
+    let structure = &scene.structure;
+    let still = vec![0.0; structure.freedoms()];
+    let Some(motions) = unresisted_motions(scene, &still) else { return Ok(()) };
+    for motion in &motions {
+        let mut rate = still.clone();
+        for (unknown, value) in motion.iter().enumerate() {
+            rate[structure.freedom_of[unknown]] = *value;
+        }
+        if structure.resistance(&still, &rate) < 1e-10 {
+            let unknown = motion.iamax();
+            let freedom = structure.freedom_of[unknown];
+            let (node, which) = structure.numbering.node_of(freedom);
+            let name = scene.node_name(node);
+            let motion = structure.numbering.motion_of(which);
+            return Err(InputErrors(vec![InputError::new(
+                pointer_to_node(name),
+                format!(
+                    "the structure is a mechanism: \"{name}\" can {motion} with no element, support or \
+                     closed contact resisting; support it, or connect it by bars or springs that resist the motion"
+                ),
+            )]));
         }
     }
-
-    /// Refuses a structure that can move with no element resisting although every closed contact holds.
-    pub(super) fn refuse_mechanism(&self) -> Result<(), InputErrors> {
-        let structure = &self.structure;
-        let still = vec![0.0; structure.freedoms()];
-        let Some(motions) = self.unresisted_motions(&still) else { return Ok(()) };
-        for motion in &motions {
-            let mut rate = still.clone();
-            for (unknown, value) in motion.iter().enumerate() {
-                rate[structure.freedom_of[unknown]] = *value;
-            }
-            if structure.resistance(&still, &rate) < 1e-10 {
-                let unknown = motion.iamax();
-                let freedom = structure.freedom_of[unknown];
-                let (node, which) = structure.numbering.node_of(freedom);
-                let name = self.node_name(node);
-                let component = structure.numbering.motion_of(which);
-                return Err(InputErrors(vec![InputError::new(
-                    pointer_to_node(name),
-                    format!(
-                        "the structure is a mechanism: \"{name}\" {component} with no element, support or \
-                         closed contact resisting; support it, or connect it by bars or springs that resist the motion"
-                    ),
-                )]));
-            }
-        }
-        Ok(())
-    }
+    Ok(())
 }
 
 fn pointer_to_node(name: &str) -> String {

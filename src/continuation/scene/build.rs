@@ -259,7 +259,7 @@ fn sliding(structure: &Structure, node: usize) -> Sliding {
 }
 
 /// The model made dimensionless, as far as its stages need it.
-pub(super) struct Scaled<'a> {
+pub(super) struct ScaledModel<'a> {
     pub model: &'a Model,
     pub analysis: &'a Analysis,
     pub numbers: &'a HashMap<&'a str, usize>,
@@ -273,8 +273,8 @@ pub(super) struct Scaled<'a> {
 }
 
 /// `characteristic_stiffness` is the force that the load scale goes by.
-pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &Scaled<'_>) -> StageLoad {
-    let &Scaled { model, analysis, numbers, structure, first_contacts, length, force, stretched } = scaled;
+pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &ScaledModel<'_>) -> StageLoad {
+    let &ScaledModel { model, analysis, numbers, structure, first_contacts, length, force, stretched } = scaled;
     // Forces and motions of supports, and shifts of obstacles.
     let held = budget::take::<f64>(2 * structure.freedoms() + 3 * first_contacts.len());
     budget::spend(structure.freedoms());

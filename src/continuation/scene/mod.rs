@@ -27,8 +27,8 @@ use crate::model::{InputError, InputErrors};
 use crate::resources::budget::{self, Breach, Budget, Taken};
 use crate::result::displacements::Displacements;
 use crate::result::plan::Plan;
-use build::{Contacts, Scaled, build_contacts, build_stage, build_structure, first_contacts};
-use scales::{Scales, scales};
+use build::{Contacts, ScaledModel, build_contacts, build_stage, build_structure, first_contacts};
+use scales::{RequestScales, scales};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -146,7 +146,7 @@ impl Scene {
         let numbers: HashMap<&str, usize> =
             model.nodes.keys().enumerate().map(|(number, name)| (name.as_str(), number)).collect();
         let scales = scales(model, &request.analysis, &numbers, like);
-        let Scales { length, force, resistances, stretched, structure } = scales;
+        let RequestScales { length, force, resistances, stretched, structure } = scales;
         let mut structure = build_structure(model, &numbers, length, force, structure.as_ref().or(like));
         if !parts.elements.is_empty() {
             structure = structure.with_elements(parts.elements);
@@ -173,7 +173,7 @@ impl Scene {
         if !couplings.is_empty() {
             structure.couple(couplings);
         }
-        let scaled = Scaled {
+        let scaled = ScaledModel {
             model,
             analysis: &request.analysis,
             numbers: &numbers,
@@ -213,9 +213,9 @@ impl Scene {
             plan,
         };
         scene.plan.left_out.extend(crate::continuation::scene::plan::left_out(&scene));
-        scene.refuse_mechanism()?;
-        scene.refuse_imbalance()?;
-        scene.refuse_dragged_supports(model)?;
+        admissibility::refuse_mechanism(&scene)?;
+        admissibility::refuse_imbalance(&scene)?;
+        admissibility::refuse_dragged_supports(&scene, model)?;
         Ok(scene)
     }
 

@@ -1,7 +1,7 @@
 //! Length and forces that make a request dimensionless: see `scene`.
 
 use crate::continuation::scene::build::{
-    Contacts, Scaled, build_contacts, build_stage, build_structure, first_contacts, norm,
+    Contacts, ScaledModel, build_contacts, build_stage, build_structure, first_contacts, norm,
 };
 use crate::continuation::scene::characteristic_stiffness::resisting;
 use crate::mechanics::structure::Structure;
@@ -17,7 +17,7 @@ const FAR: f64 = 100.0;
 const MOST_STAGES: usize = 8;
 
 /// What a request is divided by.
-pub(super) struct Scales {
+pub(super) struct RequestScales {
     /// `ℓ`
     pub length: f64,
     /// `φ`
@@ -134,20 +134,20 @@ pub(super) fn scales(
     analysis: &Analysis,
     numbers: &HashMap<&str, usize>,
     like: Option<&Structure>,
-) -> Scales {
+) -> RequestScales {
     let sizes = Sizes::of(model);
     let first = if sizes.bars.is_empty() { most(&sizes.springs) } else { least(&sizes.bars) };
     let (length, force, own) = sizes.scaled_by(analysis, first);
     if sizes.are_alike() || (sizes.bars.is_empty() && sizes.springs.is_empty()) {
         let resistances = vec![force; model.stages.len()];
-        return Scales { length, force, resistances, stretched: length / own, structure: None };
+        return RequestScales { length, force, resistances, stretched: length / own, structure: None };
     }
     let structure = build_structure(model, numbers, length, force, like);
     let Contacts { contacts, reported, .. } = build_contacts(model, numbers, length, &structure, &mut Vec::new());
     let first_contacts = first_contacts(&reported, contacts.len());
     let first_contacts = &first_contacts[..];
     let scaled =
-        Scaled { model, analysis, numbers, structure: &structure, first_contacts, length, force, stretched: 1.0 };
+        ScaledModel { model, analysis, numbers, structure: &structure, first_contacts, length, force, stretched: 1.0 };
     // An axial stiffness, or a spring's.
     let unit = if sizes.bars.is_empty() { force / length } else { force };
     let by_stage: Vec<Option<f64>> = model
@@ -169,5 +169,5 @@ pub(super) fn scales(
     } else {
         by_stage.into_iter().map(|resistance| resistance.unwrap_or(force)).collect()
     };
-    Scales { length, force, resistances, stretched: length / own, structure: Some(structure) }
+    RequestScales { length, force, resistances, stretched: length / own, structure: Some(structure) }
 }

@@ -5,12 +5,12 @@ use crate::model::input::limits::{
     MAX_DENSE_UNKNOWNS, MAX_DESIRED_ITERATIONS, MAX_EXPLORE_DEPTH, MAX_EXPLORE_JOBS, MAX_INCREMENTS, MAX_MODES,
     MAX_UNKNOWNS,
 };
-use crate::model::input::mistakes::{Mistakes, Place};
+use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::{quoted, suggestion};
 use crate::model::request::{Analysis, ArcLength, Method, Model, Record, RecordedContact, Regularised};
 use std::collections::HashSet;
 
-pub(super) fn analysis(analysis: &Analysis, at: &Place, mistakes: &mut Mistakes) {
+pub(super) fn analysis(analysis: &Analysis, at: &DocumentPlace, mistakes: &mut Mistakes) {
     arc_length(&analysis.arc_length, &at.member("arc_length"), mistakes);
     numbers::count(analysis.max_increments, MAX_INCREMENTS, &at.member("max_increments"), mistakes);
     numbers::count(analysis.max_modes, MAX_MODES, &at.member("max_modes"), mistakes);
@@ -45,7 +45,7 @@ pub(super) fn analysis(analysis: &Analysis, at: &Place, mistakes: &mut Mistakes)
 pub(super) fn unknowns_of_method(free: usize, method: Method, mistakes: &mut Mistakes) {
     let is_dense = matches!(method, Method::Mpec | Method::Regularised);
     if is_dense && (MAX_DENSE_UNKNOWNS + 1..=MAX_UNKNOWNS).contains(&free) {
-        mistakes.add(&Place::ROOT.member("analysis").member("method"), || {
+        mistakes.add(&DocumentPlace::ROOT.member("analysis").member("method"), || {
             format!(
                 "the nodes have {free} free displacement components; this method takes at most {MAX_DENSE_UNKNOWNS}: \
                  give `\"method\": \"auto\"`"
@@ -55,7 +55,7 @@ pub(super) fn unknowns_of_method(free: usize, method: Method, mistakes: &mut Mis
 }
 
 /// What `record` names is in the model, and stands there once.
-pub(super) fn recorded(record: &Record, model: &Model, at: &Place, mistakes: &mut Mistakes) {
+pub(super) fn recorded(record: &Record, model: &Model, at: &DocumentPlace, mistakes: &mut Mistakes) {
     let mut seen = HashSet::new();
     for (index, name) in record.nodes.iter().flatten().enumerate() {
         let at = &at.member("nodes");
@@ -89,7 +89,7 @@ pub(super) fn recorded(record: &Record, model: &Model, at: &Place, mistakes: &mu
 }
 
 /// Each value by itself, as all of them have to be.
-pub(super) fn regularised(regularised: &Regularised, at: &Place, mistakes: &mut Mistakes) {
+pub(super) fn regularised(regularised: &Regularised, at: &DocumentPlace, mistakes: &mut Mistakes) {
     let &Regularised { normal_penalty, tangential_penalty, desired_iterations, tolerance, load_weight, load_sign: _ } =
         regularised;
     numbers::positive(normal_penalty, &at.member("normal_penalty"), mistakes);
@@ -105,7 +105,7 @@ pub(super) fn regularised(regularised: &Regularised, at: &Place, mistakes: &mut 
     }
 }
 
-fn arc_length(arc_length: &ArcLength, at: &Place, mistakes: &mut Mistakes) {
+fn arc_length(arc_length: &ArcLength, at: &DocumentPlace, mistakes: &mut Mistakes) {
     let &ArcLength { initial, min, max, .. } = arc_length;
     if !arc_lengths(arc_length, at, mistakes) {
         return;
@@ -120,7 +120,7 @@ fn arc_length(arc_length: &ArcLength, at: &Place, mistakes: &mut Mistakes) {
 }
 
 /// Each value by itself, as all of them have to be; whether they are.
-pub(super) fn arc_lengths(arc_length: &ArcLength, at: &Place, mistakes: &mut Mistakes) -> bool {
+pub(super) fn arc_lengths(arc_length: &ArcLength, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
     let &ArcLength { initial, min, max, displacement_scale, load_scale, jump: _ } = arc_length;
     let mut sane = true;
     for (field, value) in [("initial", initial), ("min", min), ("max", max)] {

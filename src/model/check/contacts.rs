@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use crate::model::check::numbers::{self, dot};
 use crate::model::check::obstacles::{Facing, facing};
 use crate::model::check::scope::Scope;
-use crate::model::input::mistakes::{Mistakes, Place};
+use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::quoted;
 use crate::model::request::{Contact, Obstacle, Side};
 use crate::resources::budget;
@@ -49,7 +49,7 @@ pub(super) fn contacts(scope: &Scope, mistakes: &mut Mistakes) {
     }
 }
 
-fn friction(contact: &Contact, at: &Place, mistakes: &mut Mistakes) {
+fn friction(contact: &Contact, at: &DocumentPlace, mistakes: &mut Mistakes) {
     let friction = contact.friction;
     if numbers::number(friction, at, mistakes) && friction < 0.0 {
         mistakes.add(at, || format!("found {friction:?}; a coefficient of 0 or more is expected"));
@@ -66,7 +66,7 @@ fn useful(
     node: usize,
     obstacle: &Obstacle,
     facing: &Facing,
-    at: &Place,
+    at: &DocumentPlace,
     mistakes: &mut Mistakes,
 ) -> bool {
     let Facing { gap, normal, tolerance } = facing;
@@ -89,7 +89,7 @@ fn useful(
 }
 
 /// Notes a node on the wrong side of an obstacle, or where the obstacle has no normal.
-fn start(contact: &Contact, obstacle: &Obstacle, facing: &Facing, at: &Place, mistakes: &mut Mistakes) {
+fn start(contact: &Contact, obstacle: &Obstacle, facing: &Facing, at: &DocumentPlace, mistakes: &mut Mistakes) {
     let names = || (quoted(&contact.node), quoted(&contact.obstacle));
     if facing.gap < -facing.tolerance {
         mistakes.add(at, || {
@@ -110,7 +110,7 @@ fn start(contact: &Contact, obstacle: &Obstacle, facing: &Facing, at: &Place, mi
 }
 
 /// Notes a second plane that faces one before it with no room between.
-fn room(contact: &Contact, gap: &Gap, others: &[Gap], at: &Place, mistakes: &mut Mistakes) {
+fn room(contact: &Contact, gap: &Gap, others: &[Gap], at: &DocumentPlace, mistakes: &mut Mistakes) {
     budget::spend(others.len());
     let faces = |other: &&Gap| dot(&gap.normal, &other.normal) <= OPPOSED - 1.0;
     for other in others.iter().filter(faces) {

@@ -3,7 +3,7 @@
 use crate::model::check::numbers::{self, dot, largest, norm};
 use crate::model::check::scope::Scope;
 use crate::model::check::structure::COMPONENT_NAMES;
-use crate::model::input::mistakes::{Mistakes, Place};
+use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::quoted;
 use crate::model::request::{Element, Obstacle, Stage};
 
@@ -57,7 +57,7 @@ fn used(scope: &Scope) -> Vec<Use> {
     used
 }
 
-pub(super) fn loads(scope: &Scope, around: &Surroundings, stage: &Stage, at: &Place, mistakes: &mut Mistakes) {
+pub(super) fn loads(scope: &Scope, around: &Surroundings, stage: &Stage, at: &DocumentPlace, mistakes: &mut Mistakes) {
     let before = mistakes.count();
     let forces_at = at.member("forces");
     let mut loaded = forces(scope, stage, &forces_at, mistakes);
@@ -74,7 +74,7 @@ pub(super) fn loads(scope: &Scope, around: &Surroundings, stage: &Stage, at: &Pl
 }
 
 /// A force on a supported component goes into the support; forces that go there as a whole move nothing.
-fn forces(scope: &Scope, stage: &Stage, at: &Place, mistakes: &mut Mistakes) -> bool {
+fn forces(scope: &Scope, stage: &Stage, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
     let mut loaded = false;
     for (name, force) in &stage.forces {
         let at = at.member(name);
@@ -87,7 +87,13 @@ fn forces(scope: &Scope, stage: &Stage, at: &Place, mistakes: &mut Mistakes) -> 
     loaded
 }
 
-fn displacements(scope: &Scope, around: &Surroundings, stage: &Stage, at: &Place, mistakes: &mut Mistakes) -> bool {
+fn displacements(
+    scope: &Scope,
+    around: &Surroundings,
+    stage: &Stage,
+    at: &DocumentPlace,
+    mistakes: &mut Mistakes,
+) -> bool {
     let mut loaded = false;
     for (name, displacement) in &stage.displacements {
         let at = at.member(name);
@@ -113,7 +119,7 @@ fn displacements(scope: &Scope, around: &Surroundings, stage: &Stage, at: &Place
     loaded
 }
 
-fn motions(scope: &Scope, around: &Surroundings, stage: &Stage, at: &Place, mistakes: &mut Mistakes) -> bool {
+fn motions(scope: &Scope, around: &Surroundings, stage: &Stage, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
     let mut loaded = false;
     for (name, motion) in &stage.obstacle_motion {
         let at = at.member(name);

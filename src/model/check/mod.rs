@@ -20,7 +20,7 @@ use crate::model::check::scope::{Scope, printable};
 pub use study::study;
 
 use crate::model::input::limits::{MAX_CONTACTS, MAX_ELEMENTS, MAX_NODES, MAX_OBSTACLES, MAX_STAGES, MAX_UNKNOWNS};
-use crate::model::input::mistakes::{Mistakes, Place};
+use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::{InputErrors, JobRequest, Model};
 
 /// Refuses what cannot be solved; every mistake that can be told apart is listed.
@@ -32,20 +32,20 @@ use crate::model::{InputErrors, JobRequest, Model};
 /// Never empty; each entry names its place, what was found and what would do.
 pub fn check(request: &JobRequest) -> Result<(), InputErrors> {
     let mut mistakes = Mistakes::default();
-    let at = Place::ROOT.member("model");
+    let at = DocumentPlace::ROOT.member("model");
     if sizes(&request.model, &at, &mut mistakes) && dimension(&request.model, &at, &mut mistakes) {
         let free = model(&request.model, &at, &mut mistakes);
         analysis::unknowns_of_method(free, request.analysis.method, &mut mistakes);
         if let Some(record) = &request.analysis.record {
-            let at = Place::ROOT.member("analysis");
+            let at = DocumentPlace::ROOT.member("analysis");
             analysis::recorded(record, &request.model, &at.member("record"), &mut mistakes);
         }
     }
-    analysis::analysis(&request.analysis, &Place::ROOT.member("analysis"), &mut mistakes);
+    analysis::analysis(&request.analysis, &DocumentPlace::ROOT.member("analysis"), &mut mistakes);
     mistakes.into_result()
 }
 
-fn sizes(model: &Model, at: &Place, mistakes: &mut Mistakes) -> bool {
+fn sizes(model: &Model, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
     let before = mistakes.count();
     let sizes = [
         ("nodes", model.nodes.len(), MAX_NODES),
@@ -63,7 +63,7 @@ fn sizes(model: &Model, at: &Place, mistakes: &mut Mistakes) -> bool {
     mistakes.count() == before
 }
 
-fn dimension(model: &Model, at: &Place, mistakes: &mut Mistakes) -> bool {
+fn dimension(model: &Model, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
     let known = matches!(model.dimension, 2 | 3);
     if !known {
         mistakes.add(&at.member("dimension"), || format!("found {}; 2 or 3 is expected", model.dimension));
@@ -71,7 +71,7 @@ fn dimension(model: &Model, at: &Place, mistakes: &mut Mistakes) -> bool {
     known
 }
 
-fn model(model: &Model, at: &Place, mistakes: &mut Mistakes) -> usize {
+fn model(model: &Model, at: &DocumentPlace, mistakes: &mut Mistakes) -> usize {
     if let Some(name) = &model.name {
         printable(name, &at.member("name"), mistakes);
     }

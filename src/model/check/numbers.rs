@@ -1,7 +1,7 @@
 //! Numbers and vectors by themselves: finite, within the magnitudes taken, of the right length.
 
 use crate::model::input::limits::{MAX_MAGNITUDE, MIN_MAGNITUDE};
-use crate::model::input::mistakes::{Mistakes, Place};
+use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 
 fn is_sane(value: f64) -> bool {
     value == 0.0 || (MIN_MAGNITUDE..=MAX_MAGNITUDE).contains(&value.abs())
@@ -13,7 +13,7 @@ pub(super) fn well_formed(values: &[f64], length: usize) -> bool {
 }
 
 /// Notes a number that is not finite, too large or too small.
-pub(super) fn number(value: f64, at: &Place, mistakes: &mut Mistakes) -> bool {
+pub(super) fn number(value: f64, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
     let sane = is_sane(value);
     if !sane {
         mistakes.add(at, || {
@@ -30,7 +30,7 @@ pub(super) fn number(value: f64, at: &Place, mistakes: &mut Mistakes) -> bool {
 }
 
 /// Notes a number that is not above 0 too.
-pub(super) fn positive(value: f64, at: &Place, mistakes: &mut Mistakes) -> bool {
+pub(super) fn positive(value: f64, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
     let sane = number(value, at, mistakes);
     if sane && value <= 0.0 {
         mistakes.add(at, || format!("found {value:?}; a number above 0 is expected"));
@@ -39,7 +39,7 @@ pub(super) fn positive(value: f64, at: &Place, mistakes: &mut Mistakes) -> bool 
 }
 
 /// Notes a count of 0 or above `limit`.
-pub(super) fn count(value: u64, limit: u64, at: &Place, mistakes: &mut Mistakes) {
+pub(super) fn count(value: u64, limit: u64, at: &DocumentPlace, mistakes: &mut Mistakes) {
     if value == 0 {
         mistakes.add(at, || "found 0; 1 or more is expected");
     } else if value > limit {
@@ -48,7 +48,7 @@ pub(super) fn count(value: u64, limit: u64, at: &Place, mistakes: &mut Mistakes)
 }
 
 /// Notes a wrong length and every number that is not taken.
-pub(super) fn vector(values: &[f64], dimension: usize, at: &Place, mistakes: &mut Mistakes) -> bool {
+pub(super) fn vector(values: &[f64], dimension: usize, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
     let right_length = values.len() == dimension;
     if !right_length {
         let found = values.len();

@@ -3,14 +3,14 @@
 use crate::model::Model;
 use crate::model::check::numbers;
 use crate::model::input::limits::{MAX_NAME_BYTES, PENETRATION_TOLERANCE};
-use crate::model::input::mistakes::{Mistakes, Place};
+use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::{quoted, suggestion};
 use crate::model::request::Obstacle;
 
 /// The model with what several checks look up. Its dimension is 2 or 3; nothing else in it can be relied on.
 pub(crate) struct Scope<'a> {
     pub model: &'a Model,
-    pub at: Place<'a>,
+    pub at: DocumentPlace<'a>,
     /// For each node, whether x, y, z are held.
     pub supported: Vec<[bool; 3]>,
     /// Diagonal of the box around the well-formed nodes; 0 for a single node.
@@ -18,7 +18,7 @@ pub(crate) struct Scope<'a> {
 }
 
 impl<'a> Scope<'a> {
-    pub fn new(model: &'a Model, at: Place<'a>) -> Self {
+    pub fn new(model: &'a Model, at: DocumentPlace<'a>) -> Self {
         let mut supported = vec![[false; 3]; model.nodes.len()];
         for (name, components) in &model.supports {
             if let Some(held) = model.nodes.get_index_of(name).and_then(|node| supported.get_mut(node)) {
@@ -31,7 +31,7 @@ impl<'a> Scope<'a> {
     }
 
     /// The node's number; an unknown name is noted.
-    pub fn node(&self, name: &str, at: &Place, mistakes: &mut Mistakes) -> Option<usize> {
+    pub fn node(&self, name: &str, at: &DocumentPlace, mistakes: &mut Mistakes) -> Option<usize> {
         let found = self.model.nodes.get_index_of(name);
         if found.is_none() {
             let known = || suggestion(name, self.model.nodes.keys().map(String::as_str));
@@ -41,7 +41,7 @@ impl<'a> Scope<'a> {
     }
 
     /// The obstacle and its number; an unknown name is noted.
-    pub fn obstacle(&self, name: &str, at: &Place, mistakes: &mut Mistakes) -> Option<(usize, &'a Obstacle)> {
+    pub fn obstacle(&self, name: &str, at: &DocumentPlace, mistakes: &mut Mistakes) -> Option<(usize, &'a Obstacle)> {
         let found = self.model.obstacles.get_full(name);
         if found.is_none() {
             let known = || suggestion(name, self.model.obstacles.keys().map(String::as_str));
@@ -82,7 +82,7 @@ pub(crate) fn size(model: &Model) -> f64 {
 }
 
 /// A name that can stand in a table, a log line and a JSON pointer.
-pub(crate) fn printable(name: &str, at: &Place, mistakes: &mut Mistakes) {
+pub(crate) fn printable(name: &str, at: &DocumentPlace, mistakes: &mut Mistakes) {
     let bytes = name.len();
     if bytes > MAX_NAME_BYTES {
         mistakes.add(at, || format!("the name {} has {bytes} bytes; at most {MAX_NAME_BYTES} are taken", quoted(name)));
@@ -92,7 +92,7 @@ pub(crate) fn printable(name: &str, at: &Place, mistakes: &mut Mistakes) {
 }
 
 /// A printable name that is not empty.
-pub(crate) fn proper_name(name: &str, at: &Place, mistakes: &mut Mistakes) {
+pub(crate) fn proper_name(name: &str, at: &DocumentPlace, mistakes: &mut Mistakes) {
     if name.is_empty() {
         mistakes.add(at, || "the name is empty; one character or more is expected");
     } else {

@@ -6,7 +6,7 @@ use crate::model::check::loads::{Surroundings, loads};
 use crate::model::check::numbers;
 use crate::model::check::scope::{Scope, proper_name};
 use crate::model::check::structure::{component, component_name};
-use crate::model::input::mistakes::{Mistakes, Place};
+use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::quoted;
 use crate::model::request::{DisplacementBound, Stage, Until};
 
@@ -31,7 +31,7 @@ pub(super) fn stages(scope: &Scope, mistakes: &mut Mistakes) {
     }
 }
 
-fn until(scope: &Scope, stage: &Stage, until: &Until, first: bool, at: &Place, mistakes: &mut Mistakes) {
+fn until(scope: &Scope, stage: &Stage, until: &Until, first: bool, at: &DocumentPlace, mistakes: &mut Mistakes) {
     if *until == Until::default() {
         mistakes.add(at, || {
             let known = "`load_above`, `load_below`, `displacement`, `limit_points`, `contact_change`, `increments`";
@@ -54,7 +54,7 @@ fn until(scope: &Scope, stage: &Stage, until: &Until, first: bool, at: &Place, m
     }
 }
 
-fn load_bounds(until: &Until, at: &Place, mistakes: &mut Mistakes) {
+fn load_bounds(until: &Until, at: &DocumentPlace, mistakes: &mut Mistakes) {
     let bounds = [("load_above", until.load_above, 1.0, "above"), ("load_below", until.load_below, -1.0, "below")];
     for (field, bound, sign, side) in bounds {
         let Some(bound) = bound else { continue };
@@ -73,7 +73,7 @@ fn displacement_bound(
     stage: &Stage,
     bound: &DisplacementBound,
     first: bool,
-    at: &Place,
+    at: &DocumentPlace,
     mistakes: &mut Mistakes,
 ) {
     let node = scope.node(&bound.node, &at.member("node"), mistakes);

@@ -3,7 +3,7 @@
 use crate::model::check::numbers::{self, difference, largest, norm};
 use crate::model::check::scope::{Scope, proper_name};
 use crate::model::input::limits::{COINCIDENCE_TOLERANCE, SYMMETRY_TOLERANCE};
-use crate::model::input::mistakes::{Mistakes, Place};
+use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::quoted;
 use crate::model::request::{Component, Element};
 
@@ -38,7 +38,7 @@ pub(super) fn supports(scope: &Scope, mistakes: &mut Mistakes) {
 }
 
 /// Notes a component that the dimension does not have.
-pub(super) fn component(component: Component, dimension: usize, at: &Place, mistakes: &mut Mistakes) -> bool {
+pub(super) fn component(component: Component, dimension: usize, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
     let known = component.index() < dimension;
     if !known {
         let name = component_name(component);
@@ -80,7 +80,7 @@ pub(super) fn elements(scope: &Scope, mistakes: &mut Mistakes) {
     }
 }
 
-fn bar_nodes(scope: &Scope, nodes: &[String], at: &Place, mistakes: &mut Mistakes) {
+fn bar_nodes(scope: &Scope, nodes: &[String], at: &DocumentPlace, mistakes: &mut Mistakes) {
     let found = distinct_nodes(scope, nodes, at, mistakes);
     let at = at.member("nodes");
     if nodes.len() != 2 {
@@ -98,7 +98,7 @@ fn bar_nodes(scope: &Scope, nodes: &[String], at: &Place, mistakes: &mut Mistake
 }
 
 /// The numbers of the nodes if all are known and none stands twice.
-fn distinct_nodes(scope: &Scope, names: &[String], at: &Place, mistakes: &mut Mistakes) -> Option<Vec<usize>> {
+fn distinct_nodes(scope: &Scope, names: &[String], at: &DocumentPlace, mistakes: &mut Mistakes) -> Option<Vec<usize>> {
     let at = at.member("nodes");
     let before = mistakes.count();
     let mut found = Vec::with_capacity(names.len());
@@ -113,7 +113,7 @@ fn distinct_nodes(scope: &Scope, names: &[String], at: &Place, mistakes: &mut Mi
     (mistakes.count() == before).then_some(found)
 }
 
-fn symmetric(matrix: &[Vec<f64>], dimension: usize, at: &Place, mistakes: &mut Mistakes) {
+fn symmetric(matrix: &[Vec<f64>], dimension: usize, at: &DocumentPlace, mistakes: &mut Mistakes) {
     let before = mistakes.count();
     if matrix.len() != dimension {
         let found = matrix.len();

@@ -5,7 +5,7 @@ use crate::model::check::numbers;
 use crate::model::input::limits::{
     MAX_INCREMENTS, MAX_STUDY_REFINEMENT, MAX_STUDY_REPEATS, MAX_STUDY_RUNGS, MAX_STUDY_VALUES,
 };
-use crate::model::input::mistakes::{Mistakes, Place};
+use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::listed;
 use crate::model::request::Method;
 use crate::model::request::study::{Parameter, Study, StudyRequest};
@@ -17,7 +17,7 @@ use crate::model::request::study::{Parameter, Study, StudyRequest};
 /// As for [`check`](crate::model::check::check).
 pub fn study(request: &StudyRequest) -> Result<(), InputErrors> {
     let mut mistakes = Mistakes::default();
-    let at = Place::ROOT.member("study");
+    let at = DocumentPlace::ROOT.member("study");
     let study = &request.study;
     let sane = ladder(request, &at, &mut mistakes);
     methods(study, &at, &mut mistakes);
@@ -29,7 +29,7 @@ pub fn study(request: &StudyRequest) -> Result<(), InputErrors> {
         let found = study.refinement;
         mistakes.add(&at.member("refinement"), || format!("found {found}; 2 to {MAX_STUDY_REFINEMENT} is expected"));
     }
-    let analysis = Place::ROOT.member("analysis");
+    let analysis = DocumentPlace::ROOT.member("analysis");
     // Also what gives way to the study's values has to be such.
     crate::model::check::analysis::arc_lengths(
         &request.analysis.arc_length,
@@ -58,7 +58,7 @@ pub fn study(request: &StudyRequest) -> Result<(), InputErrors> {
     mistakes.into_result()
 }
 
-fn ladder(request: &StudyRequest, at: &Place, mistakes: &mut Mistakes) -> bool {
+fn ladder(request: &StudyRequest, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
     let before = mistakes.count();
     let study = &request.study;
     let given = [
@@ -81,7 +81,7 @@ fn ladder(request: &StudyRequest, at: &Place, mistakes: &mut Mistakes) -> bool {
     mistakes.count() == before
 }
 
-fn rungs(request: &StudyRequest, parameter: Parameter, values: &[f64], at: &Place, mistakes: &mut Mistakes) {
+fn rungs(request: &StudyRequest, parameter: Parameter, values: &[f64], at: &DocumentPlace, mistakes: &mut Mistakes) {
     if values.is_empty() || values.len() > MAX_STUDY_RUNGS {
         mistakes.add(at, || format!("found {} values; 1 to {MAX_STUDY_RUNGS} are taken", values.len()));
         return;
@@ -112,7 +112,7 @@ fn rungs(request: &StudyRequest, parameter: Parameter, values: &[f64], at: &Plac
     }
 }
 
-fn methods(study: &Study, at: &Place, mistakes: &mut Mistakes) {
+fn methods(study: &Study, at: &DocumentPlace, mistakes: &mut Mistakes) {
     let Some(methods) = &study.methods else { return };
     let at = at.member("methods");
     if methods.is_empty() {
@@ -133,7 +133,7 @@ fn methods(study: &Study, at: &Place, mistakes: &mut Mistakes) {
 }
 
 /// Bounds the points of a study's longest path, the reference.
-fn sizes(request: &StudyRequest, at: &Place, mistakes: &mut Mistakes) {
+fn sizes(request: &StudyRequest, at: &DocumentPlace, mistakes: &mut Mistakes) {
     let increments = request.finer_job(request.study.refinement as f64).analysis.max_increments;
     let at = at.member("max_increments");
     if increments > MAX_INCREMENTS {

@@ -6,14 +6,14 @@ use indexmap::IndexMap;
 
 use crate::model::input::json::Json;
 use crate::model::input::limits::MAX_NAME_BYTES;
-use crate::model::input::mistakes::{Mistakes, Place};
+use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::{listed, quoted, suggestion};
 
 /// A value and where it stands.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Input<'a> {
     value: &'a Json,
-    at: Place<'a>,
+    at: DocumentPlace<'a>,
 }
 
 /// The fields of a kind of object.
@@ -38,7 +38,7 @@ pub(super) struct Choices<T: 'static> {
 
 impl<'a> Input<'a> {
     pub fn root(value: &'a Json) -> Self {
-        Self { value, at: Place::ROOT }
+        Self { value, at: DocumentPlace::ROOT }
     }
 
     pub fn refuse<T>(&self, expected: &str, mistakes: &mut Mistakes) -> Option<T> {
@@ -188,7 +188,7 @@ fn name_too_long(name: &str) -> String {
 #[derive(Debug)]
 pub(super) struct Object<'a> {
     members: &'a [(String, Json)],
-    at: Place<'a>,
+    at: DocumentPlace<'a>,
 }
 
 impl Object<'_> {

@@ -5,27 +5,27 @@ use crate::model::{InputError, InputErrors};
 
 /// A place in the document as a chain of steps from the root. It costs nothing until a mistake is found there.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Place<'a> {
-    parent: Option<&'a Place<'a>>,
-    step: Step<'a>,
+pub(crate) struct DocumentPlace<'a> {
+    parent: Option<&'a DocumentPlace<'a>>,
+    step: DocumentStep<'a>,
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Step<'a> {
+enum DocumentStep<'a> {
     Root,
     Member(&'a str),
     Index(usize),
 }
 
-impl<'a> Place<'a> {
-    pub const ROOT: Place<'static> = Place { parent: None, step: Step::Root };
+impl<'a> DocumentPlace<'a> {
+    pub const ROOT: DocumentPlace<'static> = DocumentPlace { parent: None, step: DocumentStep::Root };
 
-    pub fn member(&'a self, name: &'a str) -> Place<'a> {
-        Place { parent: Some(self), step: Step::Member(name) }
+    pub fn member(&'a self, name: &'a str) -> DocumentPlace<'a> {
+        DocumentPlace { parent: Some(self), step: DocumentStep::Member(name) }
     }
 
-    pub fn index(&'a self, index: usize) -> Place<'a> {
-        Place { parent: Some(self), step: Step::Index(index) }
+    pub fn index(&'a self, index: usize) -> DocumentPlace<'a> {
+        DocumentPlace { parent: Some(self), step: DocumentStep::Index(index) }
     }
 
     /// The JSON pointer (RFC 6901). It ends before a name longer than [`MAX_NAME_BYTES`], so that a hostile document
@@ -40,10 +40,10 @@ impl<'a> Place<'a> {
         let mut pointer = String::new();
         for step in steps.into_iter().rev() {
             match step {
-                Step::Root => {}
-                Step::Index(index) => pointer.push_str(&format!("/{index}")),
-                Step::Member(name) if name.len() > MAX_NAME_BYTES => break,
-                Step::Member(name) => {
+                DocumentStep::Root => {}
+                DocumentStep::Index(index) => pointer.push_str(&format!("/{index}")),
+                DocumentStep::Member(name) if name.len() > MAX_NAME_BYTES => break,
+                DocumentStep::Member(name) => {
                     pointer.push('/');
                     pointer.push_str(&name.replace('~', "~0").replace('/', "~1"));
                 }
@@ -62,7 +62,7 @@ pub(crate) struct Mistakes {
 
 impl Mistakes {
     /// `detail` is only made where the mistake is listed: a document can hold a million of them.
-    pub fn add<Text: Into<String>>(&mut self, at: &Place, detail: impl FnOnce() -> Text) {
+    pub fn add<Text: Into<String>>(&mut self, at: &DocumentPlace, detail: impl FnOnce() -> Text) {
         if self.listed.len() < MAX_LISTED_MISTAKES {
             self.listed.push(InputError::new(at.pointer(), detail()));
         } else {
@@ -90,9 +90,9 @@ mod tests {
 
     #[test]
     fn pointers_escape_names_and_end_before_long_ones() {
-        let model = Place::ROOT.member("model");
+        let model = DocumentPlace::ROOT.member("model");
         let nodes = model.member("nodes");
-        assert_eq!(Place::ROOT.pointer(), "");
+        assert_eq!(DocumentPlace::ROOT.pointer(), "");
         assert_eq!(nodes.member("a/b~c").index(1).pointer(), "/model/nodes/a~1b~0c/1");
         let long = "n".repeat(MAX_NAME_BYTES + 1);
         assert_eq!(nodes.member(&long).index(1).pointer(), "/model/nodes");
@@ -102,7 +102,7 @@ mod tests {
     fn mistakes_past_the_bound_are_counted() {
         let mut mistakes = Mistakes::default();
         for _ in 0..MAX_LISTED_MISTAKES + 7 {
-            mistakes.add(&Place::ROOT, || "wrong");
+            mistakes.add(&DocumentPlace::ROOT, || "wrong");
         }
         assert_eq!(mistakes.count(), MAX_LISTED_MISTAKES + 7);
         let errors = mistakes.into_result().unwrap_err().0;

@@ -8,8 +8,9 @@ use crate::mechanics::equations::solution::{Corrected, Failure};
 use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role};
 use crate::mechanics::problem::loading::USUAL;
 use crate::mechanics::problem::natural_residual::NO_FORCE;
-use crate::mechanics::problem::state::State;
+use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cost_counters::Work;
+use crate::step::corrector::tangent;
 use nalgebra::DVector;
 
 /// Newton iterations before a step is given up.
@@ -50,314 +51,506 @@ const WEAK: f64 = 1e-3;
 /// Corrections that fall by less than this factor are rounding themselves.
 const NO_FALL: f64 = 0.25;
 
+/// Newton's method from a guess, to round-off.
+///
+/// `force_scale` is the largest force met so far on the path; residuals are relative to it or to the present
+/// forces, whichever is larger.
+pub fn correct(
+    system: &ModeSystem<'_>,
+    guess: State,
+    closing: &dyn ClosingEquation,
+    force_scale: f64,
+) -> Result<Corrected, Failure> {
+    correct_from(system, system.iterate(guess), closing, force_scale, &mut None, &mut Work::default())
+}
+
+/// `serving` is a factorisation of the equations nearby, if there is one, and becomes the last one.
+pub(crate) fn correct_from(
+    system: &ModeSystem<'_>,
+    guess: Iterate,
+    closing: &dyn ClosingEquation,
+    force_scale: f64,
+    serving: &mut Option<SystemFactorisation>,
+    work: &mut Work,
+) -> Result<Corrected, Failure> {
+    correct_with(system, guess, closing, force_scale, None, serving, work)
+}
+
+/// The same; `own` is a factorisation of these very equations, with whatever border, if there is one.
+pub(crate) fn correct_with(
+    system: &ModeSystem<'_>,
+    guess: Iterate,
+    closing: &dyn ClosingEquation,
+    force_scale: f64,
+    own: Option<SystemFactorisation>,
+    serving: &mut Option<SystemFactorisation>,
+    work: &mut Work,
+) -> Result<Corrected, Failure> {
+    let factorisation = FactorisationInUse::new(own, serving);
+    let mut iteration = NewtonIteration::new(system, guess, closing, force_scale, factorisation);
+    iteration.run(work)?;
+    iteration.finish(serving)
+}
+
+#[cfg(test)]
 impl ModeSystem<'_> {
-    /// Newton's method from a guess, to round-off.
-    ///
-    /// `force_scale` is the largest force met so far on the path; residuals are relative to it or to the present
-    /// forces, whichever is larger.
-    pub fn correct(&self, guess: State, closing: &dyn ClosingEquation, force_scale: f64) -> Result<Corrected, Failure> {
-        self.correct_from(self.iterate(guess), closing, force_scale, &mut None, &mut Work::default())
-    }
-
-    /// `serving` is a factorisation of the equations nearby, if there is one, and becomes the last one.
-    pub(crate) fn correct_from(
+    /// See [`correct`].
+    pub(crate) fn correct(
         &self,
-        guess: Iterate,
+        guess: State,
         closing: &dyn ClosingEquation,
         force_scale: f64,
-        serving: &mut Option<SystemFactorisation>,
-        work: &mut Work,
     ) -> Result<Corrected, Failure> {
-        self.correct_with(guess, closing, force_scale, None, serving, work)
-    }
-
-    /// The same; `own` is a factorisation of these very equations, with whatever border, if there is one.
-    pub(crate) fn correct_with(
-        &self,
-        guess: Iterate,
-        closing: &dyn ClosingEquation,
-        force_scale: f64,
-        own: Option<SystemFactorisation>,
-        serving: &mut Option<SystemFactorisation>,
-        work: &mut Work,
-    ) -> Result<Corrected, Failure> {
-        let mut iterate = guess;
-        self.make_consistent(&mut iterate);
-        let mut values = DVector::zeros(self.size);
-        let mut force = vec![0.0; self.loading.structure.freedoms()];
-        let mut change = self.no_rate();
-        let mut iterations = 0;
-        let mut iterations_to_small = None;
-        let mut rises = 0;
-        let mut best: Option<(f64, Iterate, Figures)> = None;
-        // Sizes of the last correction and the one before.
-        let (mut correction, mut before) = (f64::INFINITY, f64::INFINITY);
-        let mut small_by_correction = None;
-        // What the last correction left is as good as none, or below the rounding of each displacement.
-        let mut nothing_left = false;
-        // Rows are judged by the largest force first, and each by its own once that is done.
-        let mut row_by_row = false;
-        // Near the solution the last factorisation serves on: what it is off by is as small as the error was.
-        let has_own = own.is_some();
-        let mut is_own = has_own;
-        let mut last_factorisation = own.or_else(|| serving.take());
-        let (mut factorisations, mut reused) = (0, false);
-        // With the last factorisation, where the place is no equation of its own.
-        let mut along = None;
-        loop {
-            let (largest, forces) = self.residual(&iterate, &mut values, &mut force);
-            let scale = forces.max(force_scale).max(NO_FORCE);
-            let residual = largest / scale;
-            let last = self.size - 1;
-            values[last] = closing.value(self, &iterate.state);
-            let geometric =
-                values.as_slice()[self.loading.structure.unknowns()..].iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-            let mut error = residual.max(geometric);
-            if row_by_row {
-                error = error.max(self.residual_of_rows(&iterate.state, &values, scale, &mut force));
-            }
-            if !error.is_finite() {
-                return Err(Failure::NotConverged);
-            }
-            if error <= SMALL {
-                iterations_to_small.get_or_insert(iterations);
-            }
-            let best_before = best.as_ref().map(|(least, ..)| *least);
-            let improved = best.as_ref().is_none_or(|(least, ..)| error < 0.5 * least);
-            match &mut best {
-                Some((least, ..)) if error > *least => {}
-                Some((least, known, figures)) => {
-                    *least = error;
-                    known.set_to(&iterate);
-                    (figures.iterations, figures.residual, figures.force_scale) = (iterations, residual, forces);
-                    figures.left_over.copy_from(&values);
-                }
-                None => {
-                    let figures = Figures { iterations, residual, left_over: values.clone(), force_scale: forces };
-                    best = Some((error, iterate.clone(), figures));
-                }
-            }
-            let least = best.as_ref().map_or(f64::INFINITY, |(least, ..)| *least);
-            let is_regular = last_factorisation.as_ref().is_some_and(|last| {
-                let pivot_ratio = last.pivot_ratio();
-                pivot_ratio >= REGULAR || correction <= STILL_FALLS * pivot_ratio
-            });
-            // One from elsewhere has to do better than what it would save.
-            let falls = has_own || factorisations > 0 || best_before.is_none_or(|least| error < SERVES_ON * least);
-            let serves = !is_own && error <= SMALL && improved && falls && !row_by_row && is_regular;
-            let was_reused = std::mem::replace(&mut reused, serves);
-            // It goes on as far as rounding lets it: a fresh one would have gone beyond the bar at once.
-            let is_rounding = || {
-                let is_large = self.loading.structure.layout().is_some();
-                let at_place = || geometric <= AT_PLACE.max(ROOM * f64::EPSILON * reach(&iterate.state));
-                is_large && at_place() && self.left_by_rounding(&iterate.state, &values, scale) == Some(0.0)
-            };
-            let rounding = !improved && is_rounding();
-            let stalled = !improved && (!was_reused || least <= ROUND_OFF || rounding);
-            let settled = (least <= ROUND_OFF && (!was_reused || nothing_left))
-                || error == 0.0
-                || (stalled && (row_by_row || least <= ACCEPTED_RESIDUAL || rounding));
-            if settled && iterations > 0 {
-                let done = row_by_row || iterations == MOST_ITERATIONS;
-                if done || self.residual_of_rows(&iterate.state, &values, scale, &mut force) <= ACCEPTED_RESIDUAL {
-                    break;
-                }
-                (row_by_row, best) = (true, None);
-            }
-            let ended = iterations == MOST_ITERATIONS;
-            if least > ACCEPTED_RESIDUAL && iterations > 0 && (ended || correction >= NO_FALL * before) {
-                // Stiff elements next to large displacements: no displacements in this precision leave less. The point
-                // is the one whose correction no longer falls.
-                if let Some(residual) = self.left_by_rounding(&iterate.state, &values, scale) {
-                    let figures = Figures { iterations, residual, left_over: values.clone(), force_scale: forces };
-                    best = Some((residual, iterate, figures));
-                    iterations_to_small = iterations_to_small.or(small_by_correction);
-                    break;
-                }
-            }
-            if ended {
-                if least <= ACCEPTED_RESIDUAL || row_by_row {
-                    break;
-                }
-                return Err(Failure::NotConverged);
-            }
-            let put_closing = |matrix: &mut dyn Sink| closing.write_gradient(self, &iterate.state, matrix);
-            // Of a small correction few digits count.
-            let once = reused || (is_own && error <= SMALL);
-            if !reused && !std::mem::take(&mut is_own) {
-                last_factorisation = self.factorise(&iterate, Kind::Increment, put_closing);
-                factorisations += 1;
-                work.factorisations += 1;
-                along = None;
-            }
-            let left_of_place = values[last];
-            if closing.has_slope_beside_row() {
-                values[last] = 0.0;
-            }
-            let factorisation = last_factorisation.as_ref().ok_or(Failure::Singular)?;
-            // What one from elsewhere leaves over is more than rounding anyway.
-            let solved = if once { factorisation.solve_once(&mut values) } else { factorisation.solve(&mut values) };
-            if !solved || !self.bring_to_zero(closing, left_of_place, &iterate, factorisation, &mut along, &mut values)
-            {
-                return Err(Failure::Singular);
-            }
-            (before, correction) = (correction, values.rows(0, self.loading.structure.unknowns() + 1).norm());
-            let begins = iterations == 1 && self.may_be_shorter && self.loading.structure.layout().is_some();
-            if begins && !reused && correction > SMALL && correction > BEGINS_WELL * before {
-                return Err(Failure::NotConverged);
-            }
-            if !reused && correction > SMALL && before.is_finite() && correction > RISES * before {
-                rises += 1;
-                if rises == MOST_RISES {
-                    return Err(Failure::NotConverged);
-                }
-            }
-            if correction <= SMALL {
-                small_by_correction.get_or_insert(iterations);
-            }
-            let contraction = if before.is_finite() { correction / before } else { SERVES_ON };
-            nothing_left = contraction <= SERVES_ON
-                && (contraction * correction <= NO_CORRECTION
-                    || self.is_rounding(&iterate.state, &values, contraction));
-            self.correct_by(&mut iterate, &values, &mut change);
-            iterations += 1;
-            work.newton_iterations += 1;
-        }
-        let Some((_, mut iterate, figures)) = best else { return Err(Failure::NotConverged) };
-        let wrong_side = !closing.accepts(&iterate.state);
-        if wrong_side {
-            return Err(Failure::NotConverged);
-        }
-        self.share(&mut iterate.state);
-        *serving = last_factorisation.and_then(|last| self.may_serve(last));
-        Ok(Corrected {
-            modes: self.modes_at(&iterate),
-            state: iterate.state,
-            directions: iterate.directions,
-            iterations_to_small: iterations_to_small.unwrap_or(figures.iterations).min(figures.iterations),
-            residual: figures.residual,
-            left_over: figures.left_over,
-            force_scale: figures.force_scale,
-        })
-    }
-
-    /// Where the place is a zero, a correction goes on along the path until the quantity is zero at first order: its
-    /// gradient, which may have entries at forces that the factorisation eliminates, need not be a row (bordering: H. B.
-    /// Keller, in: Applications of Bifurcation Theory, Academic Press 1977, 359). `along` is the way with this factorisation.
-    /// `false` where the quantity does not change along it.
-    fn bring_to_zero(
-        &self,
-        closing: &dyn ClosingEquation,
-        left_over: f64,
-        iterate: &Iterate,
-        factorisation: &SystemFactorisation,
-        along: &mut Option<(DVector<f64>, f64)>,
-        correction: &mut DVector<f64>,
-    ) -> bool {
-        if !closing.has_slope_beside_row() {
-            return true;
-        }
-        let slope = |values: &DVector<f64>| {
-            let rate = self.rate_at(iterate, values, Kind::Increment);
-            closing.slope_beside_row(self, &iterate.state, &rate)
-        };
-        if along.is_none() {
-            let mut values = self.bordering();
-            if !factorisation.solve_once(&mut values) {
-                return false;
-            }
-            *along = slope(&values).filter(|slope| slope.is_finite() && *slope != 0.0).map(|slope| (values, slope));
-        }
-        let (Some((way, by_way)), Some(by_correction)) = (along, slope(correction)) else { return false };
-        correction.axpy((left_over - by_correction) / *by_way, way, 1.0);
-        true
-    }
-
-    /// The largest equilibrium residual over the forces of its own row, of the rows where these are far below the force
-    /// scale. `sizes` becomes those forces.
-    fn residual_of_rows(&self, state: &State, values: &DVector<f64>, scale: f64, sizes: &mut [f64]) -> f64 {
-        let structure = self.loading.structure;
-        structure.force_sizes(&state.displacement, USUAL, sizes);
-        for (freedom, size) in sizes.iter_mut().enumerate() {
-            *size +=
-                (state.load * self.loading.pattern.forces[freedom]).abs() + self.loading.held.forces[freedom].abs();
-        }
-        for (contact, reaction) in self.loading.contacts.iter().zip(&state.reactions) {
-            for node in contact.kinematics.nodes() {
-                sizes[structure.freedoms_of(*node)].iter_mut().for_each(|size| *size += reaction.size());
-            }
-        }
-        let rows =
-            structure.freedom_of.iter().zip(values.as_slice()).map(|(freedom, value)| (sizes[*freedom], value.abs()));
-        rows.filter(|(size, _)| *size < WEAK * scale)
-            .map(|(size, value)| value / size.max(f64::EPSILON * scale))
-            .fold(0.0, f64::max)
-    }
-
-    /// Whether a correction times a factor is below the rounding of every displacement and of the load.
-    fn is_rounding(&self, state: &State, correction: &DVector<f64>, factor: f64) -> bool {
-        let freedoms = &self.loading.structure.freedom_of;
-        let values = freedoms.iter().map(|freedom| state.displacement[*freedom]).chain(std::iter::once(state.load));
-        values.zip(correction.as_slice()).all(|(value, change)| (factor * change).abs() <= f64::EPSILON * value.abs())
-    }
-
-    /// Whether what is left over of each equation is within the rounding of the state's numbers; then the largest
-    /// equilibrium residual beyond it, over the force scale.
-    fn left_by_rounding(&self, state: &State, values: &DVector<f64>, scale: f64) -> Option<f64> {
-        let structure = self.loading.structure;
-        let rounding = structure.rounding(&state.displacement);
-        let mut residual = 0.0_f64;
-        for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
-            residual = residual.max((values[unknown].abs() - ROOM * rounding[*freedom]) / scale);
-        }
-        let reach = reach(state);
-        let geometric = values.as_slice()[structure.unknowns()..].iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-        let within = geometric <= ACCEPTED_RESIDUAL + ROOM * f64::EPSILON * reach;
-        (residual <= ACCEPTED_RESIDUAL && within).then_some(residual)
-    }
-
-    /// A point as it is, with its residual. Slips in planes have the directions that their tractions oppose.
-    pub fn judged(&self, state: State, force_scale: f64) -> Corrected {
-        let mut iterate = self.iterate(state);
-        for (contact, role) in self.roles.iter().enumerate() {
-            if let Role::Plane { .. } = role {
-                let normal = self.loading.frame(contact, &iterate.state).normal;
-                let traction = iterate.state.reactions[contact].tangential;
-                let traction = add(&traction, -dot(&traction, &normal), &normal);
-                iterate.directions[contact] = vector::direction_of(&traction, &iterate.directions[contact]);
-            }
-        }
-        self.judged_as_state(iterate, &[], force_scale)
-    }
-
-    /// The same of an iterate, without the equations in some rows.
-    pub(crate) fn judged_as_state(&self, mut iterate: Iterate, without: &[usize], force_scale: f64) -> Corrected {
-        self.make_consistent(&mut iterate);
-        let mut left_over = DVector::zeros(self.size);
-        let mut force = vec![0.0; self.loading.structure.freedoms()];
-        let (largest, forces) = self.residual(&iterate, &mut left_over, &mut force);
-        let geometric = (self.loading.structure.unknowns()..left_over.len())
-            .filter(|row| !without.contains(row))
-            .fold(0.0_f64, |largest, row| largest.max(left_over[row].abs()));
-        let residual = (largest / forces.max(force_scale).max(NO_FORCE)).max(geometric);
-        self.share(&mut iterate.state);
-        Corrected {
-            modes: self.modes_at(&iterate),
-            state: iterate.state,
-            directions: iterate.directions,
-            iterations_to_small: 0,
-            residual,
-            left_over,
-            force_scale: forces,
-        }
+        correct(self, guess, closing, force_scale)
     }
 }
 
-impl ModeSystem<'_> {
-    /// How far the chords of slips in planes are from where their directions would have them, in these rows.
-    pub(crate) fn off_track(&self, corrected: &Corrected, rows: &[usize]) -> f64 {
-        rows.iter().fold(0.0, |largest, row| largest.max(corrected.left_over[*row].abs()))
+/// Newton's method under way.
+struct NewtonIteration<'a, 'b> {
+    system: &'a ModeSystem<'b>,
+    closing: &'a dyn ClosingEquation,
+    /// The largest force met so far on the path.
+    force_scale: f64,
+    iterate: Iterate,
+    /// What is left over of each equation; the correction once it is solved for.
+    values: DVector<f64>,
+    force: Vec<f64>,
+    change: Rate,
+    iterations: u64,
+    iterations_to_small: Option<u64>,
+    small_by_correction: Option<u64>,
+    rises: u64,
+    best: Option<BestIterate>,
+    /// Sizes of the last correction and the one before.
+    correction: f64,
+    previous_correction: f64,
+    /// What the last correction left is as good as none, or below the rounding of each displacement.
+    nothing_left: bool,
+    /// Rows are judged by the largest force first, and each by its own once that is done.
+    row_by_row: bool,
+    factorisation: FactorisationInUse,
+}
+
+/// The factorisation that corrections are found with. Near the solution the last one serves on: what it is off by is as
+/// small as the error was.
+struct FactorisationInUse {
+    latest: Option<SystemFactorisation>,
+    /// Whether the first one was of these very equations.
+    had_own: bool,
+    /// Whether `latest` is that one, not used yet.
+    is_own: bool,
+    /// How many were made here.
+    made: u64,
+    /// Whether `latest` serves for the correction under way, though the iterate has moved.
+    reused: bool,
+    /// The way along the path and the change of the quantity along it, with `latest`, where the place is no equation of its
+    /// own.
+    along: Option<(DVector<f64>, f64)>,
+}
+
+/// The error of an iterate.
+struct IterateError {
+    /// Equilibrium residual over `scale`.
+    residual: f64,
+    /// Largest force at the iterate.
+    forces: f64,
+    /// What the residual is relative to.
+    scale: f64,
+    /// The largest of what is left over of the other equations.
+    geometric: f64,
+    error: f64,
+}
+
+/// How an iterate compares with those before.
+struct ErrorProgress {
+    best_before: Option<f64>,
+    /// The least error, with this iterate's.
+    least: f64,
+    improved: bool,
+}
+
+impl FactorisationInUse {
+    fn new(own: Option<SystemFactorisation>, serving: &mut Option<SystemFactorisation>) -> Self {
+        let had_own = own.is_some();
+        let latest = own.or_else(|| serving.take());
+        Self { latest, had_own, is_own: had_own, made: 0, reused: false, along: None }
     }
+
+    /// Decides whether the latest one serves for the next correction, too. `correction` is the size of the last one. Tells
+    /// whether it served for that.
+    fn decide_reuse(&mut self, error: f64, progress: &ErrorProgress, correction: f64, row_by_row: bool) -> bool {
+        let is_regular = self.latest.as_ref().is_some_and(|latest| {
+            let pivot_ratio = latest.pivot_ratio();
+            pivot_ratio >= REGULAR || correction <= STILL_FALLS * pivot_ratio
+        });
+        // One from elsewhere has to do better than what it would save.
+        let falls = self.had_own || self.made > 0 || progress.best_before.is_none_or(|least| error < SERVES_ON * least);
+        let serves = !self.is_own && error <= SMALL && progress.improved && falls && !row_by_row && is_regular;
+        std::mem::replace(&mut self.reused, serves)
+    }
+}
+
+impl<'a, 'b> NewtonIteration<'a, 'b> {
+    fn new(
+        system: &'a ModeSystem<'b>,
+        guess: Iterate,
+        closing: &'a dyn ClosingEquation,
+        force_scale: f64,
+        factorisation: FactorisationInUse,
+    ) -> Self {
+        let mut iterate = guess;
+        system.make_consistent(&mut iterate);
+        Self {
+            system,
+            closing,
+            force_scale,
+            iterate,
+            values: DVector::zeros(system.size),
+            force: vec![0.0; system.loading.structure.freedoms()],
+            change: system.no_rate(),
+            iterations: 0,
+            iterations_to_small: None,
+            small_by_correction: None,
+            rises: 0,
+            best: None,
+            correction: f64::INFINITY,
+            previous_correction: f64::INFINITY,
+            nothing_left: false,
+            row_by_row: false,
+            factorisation,
+        }
+    }
+
+    /// Iterates until the best iterate is as good as it gets.
+    fn run(&mut self, work: &mut Work) -> Result<(), Failure> {
+        loop {
+            let at = self.evaluate()?;
+            let progress = self.keep_best(&at);
+            let was_reused = self.factorisation.decide_reuse(at.error, &progress, self.correction, self.row_by_row);
+            if self.has_settled(&at, &progress, was_reused) || self.ends_at_rounding(&at, &progress) {
+                return Ok(());
+            }
+            if self.iterations == MOST_ITERATIONS {
+                let accepted = progress.least <= ACCEPTED_RESIDUAL || self.row_by_row;
+                return if accepted { Ok(()) } else { Err(Failure::NotConverged) };
+            }
+            let once = self.factorise_or_reuse(at.error, work);
+            self.solve(once)?;
+            self.judge_convergence()?;
+            self.update(work);
+        }
+    }
+
+    /// What is left over at the iterate.
+    fn evaluate(&mut self) -> Result<IterateError, Failure> {
+        let Self { system, iterate, values, force, .. } = self;
+        let (largest, forces) = system.residual(iterate, values, force);
+        let scale = forces.max(self.force_scale).max(NO_FORCE);
+        let residual = largest / scale;
+        let last = system.size - 1;
+        values[last] = self.closing.value(system, &iterate.state);
+        let geometric = largest_below_equilibrium(system, values);
+        let mut error = residual.max(geometric);
+        if self.row_by_row {
+            error = error.max(residual_of_rows(system, &iterate.state, values, scale, force));
+        }
+        if !error.is_finite() {
+            return Err(Failure::NotConverged);
+        }
+        if error <= SMALL {
+            self.iterations_to_small.get_or_insert(self.iterations);
+        }
+        Ok(IterateError { residual, forces, scale, geometric, error })
+    }
+
+    /// Keeps the iterate if it is the best so far.
+    fn keep_best(&mut self, at: &IterateError) -> ErrorProgress {
+        let error = at.error;
+        let best_before = self.best.as_ref().map(|best| best.error);
+        let improved = best_before.is_none_or(|least| error < 0.5 * least);
+        match &mut self.best {
+            Some(best) if error > best.error => {}
+            Some(best) => {
+                best.error = error;
+                best.iterate.set_to(&self.iterate);
+                (best.iterations, best.residual, best.force_scale) = (self.iterations, at.residual, at.forces);
+                best.left_over.copy_from(&self.values);
+            }
+            None => self.best = Some(self.as_best(error, at.residual, at.forces)),
+        }
+        let least = self.best.as_ref().map_or(f64::INFINITY, |best| best.error);
+        ErrorProgress { best_before, least, improved }
+    }
+
+    fn as_best(&self, error: f64, residual: f64, forces: f64) -> BestIterate {
+        BestIterate {
+            error,
+            iterate: self.iterate.clone(),
+            iterations: self.iterations,
+            residual,
+            left_over: self.values.clone(),
+            force_scale: forces,
+        }
+    }
+
+    /// Whether to go on gains nothing. Where that holds of the largest force, rows are judged by their own from here on.
+    fn has_settled(&mut self, at: &IterateError, progress: &ErrorProgress, was_reused: bool) -> bool {
+        let ErrorProgress { least, improved, .. } = *progress;
+        let rounding = !improved && self.is_left_by_rounding(at);
+        let stalled = !improved && (!was_reused || least <= ROUND_OFF || rounding);
+        let settled = (least <= ROUND_OFF && (!was_reused || self.nothing_left))
+            || at.error == 0.0
+            || (stalled && (self.row_by_row || least <= ACCEPTED_RESIDUAL || rounding));
+        if !settled || self.iterations == 0 {
+            return false;
+        }
+        let done = self.row_by_row || self.iterations == MOST_ITERATIONS;
+        let Self { system, iterate, values, force, .. } = self;
+        if done || residual_of_rows(system, &iterate.state, values, at.scale, force) <= ACCEPTED_RESIDUAL {
+            return true;
+        }
+        (self.row_by_row, self.best) = (true, None);
+        false
+    }
+
+    /// Whether all that is left over is rounding. It goes on as far as rounding lets it: a fresh factorisation would have
+    /// gone beyond the bar at once.
+    fn is_left_by_rounding(&self, at: &IterateError) -> bool {
+        let is_large = self.system.loading.structure.layout().is_some();
+        let at_place = || at.geometric <= AT_PLACE.max(ROOM * f64::EPSILON * reach(&self.iterate.state));
+        is_large
+            && at_place()
+            && left_by_rounding(self.system, &self.iterate.state, &self.values, at.scale) == Some(0.0)
+    }
+
+    /// Whether the iterate is the point because no displacements in this precision leave less: stiff elements next to large
+    /// displacements. The point is the one whose correction no longer falls.
+    fn ends_at_rounding(&mut self, at: &IterateError, progress: &ErrorProgress) -> bool {
+        let ended = self.iterations == MOST_ITERATIONS;
+        let falls_no_more = ended || self.correction >= NO_FALL * self.previous_correction;
+        if progress.least <= ACCEPTED_RESIDUAL || self.iterations == 0 || !falls_no_more {
+            return false;
+        }
+        let Some(residual) = left_by_rounding(self.system, &self.iterate.state, &self.values, at.scale) else {
+            return false;
+        };
+        self.best = Some(self.as_best(residual, residual, at.forces));
+        self.iterations_to_small = self.iterations_to_small.or(self.small_by_correction);
+        true
+    }
+
+    /// Sees to a factorisation for the next correction. Tells whether to solve with it once is enough: of a small
+    /// correction few digits count.
+    fn factorise_or_reuse(&mut self, error: f64, work: &mut Work) -> bool {
+        let Self { system, closing, iterate, factorisation, .. } = self;
+        let once = factorisation.reused || (factorisation.is_own && error <= SMALL);
+        if !factorisation.reused && !std::mem::take(&mut factorisation.is_own) {
+            let put_closing = |matrix: &mut dyn Sink| closing.write_gradient(system, &iterate.state, matrix);
+            factorisation.latest = system.factorise(iterate, Kind::Increment, put_closing);
+            factorisation.made += 1;
+            work.factorisations += 1;
+            factorisation.along = None;
+        }
+        once
+    }
+
+    /// Solves for the next correction.
+    fn solve(&mut self, once: bool) -> Result<(), Failure> {
+        let Self { system, closing, iterate, values, factorisation, .. } = self;
+        let last = system.size - 1;
+        let left_of_place = values[last];
+        if closing.has_slope_beside_row() {
+            values[last] = 0.0;
+        }
+        let FactorisationInUse { latest, along, .. } = factorisation;
+        let latest = latest.as_ref().ok_or(Failure::Singular)?;
+        // What one from elsewhere leaves over is more than rounding anyway.
+        let solved = if once { latest.solve_once(values) } else { latest.solve(values) };
+        if !solved || !bring_to_zero(system, *closing, left_of_place, iterate, latest, along, values) {
+            return Err(Failure::Singular);
+        }
+        self.previous_correction = self.correction;
+        self.correction = self.values.rows(0, self.system.loading.structure.unknowns() + 1).norm();
+        Ok(())
+    }
+
+    /// Gives up where the corrections do not fall, and foresees what the last one leaves.
+    fn judge_convergence(&mut self) -> Result<(), Failure> {
+        let (before, correction, reused) = (self.previous_correction, self.correction, self.factorisation.reused);
+        let begins =
+            self.iterations == 1 && self.system.may_be_shorter && self.system.loading.structure.layout().is_some();
+        if begins && !reused && correction > SMALL && correction > BEGINS_WELL * before {
+            return Err(Failure::NotConverged);
+        }
+        if !reused && correction > SMALL && before.is_finite() && correction > RISES * before {
+            self.rises += 1;
+            if self.rises == MOST_RISES {
+                return Err(Failure::NotConverged);
+            }
+        }
+        if correction <= SMALL {
+            self.small_by_correction.get_or_insert(self.iterations);
+        }
+        let contraction = if before.is_finite() { correction / before } else { SERVES_ON };
+        self.nothing_left = contraction <= SERVES_ON
+            && (contraction * correction <= NO_CORRECTION
+                || is_rounding(self.system, &self.iterate.state, &self.values, contraction));
+        Ok(())
+    }
+
+    fn update(&mut self, work: &mut Work) {
+        self.system.correct_by(&mut self.iterate, &self.values, &mut self.change);
+        self.iterations += 1;
+        work.newton_iterations += 1;
+    }
+
+    /// The best iterate as a point. `serving` becomes the last factorisation.
+    fn finish(self, serving: &mut Option<SystemFactorisation>) -> Result<Corrected, Failure> {
+        let Self { system, iterations_to_small, .. } = self;
+        let Some(mut best) = self.best else { return Err(Failure::NotConverged) };
+        let wrong_side = !self.closing.accepts(&best.iterate.state);
+        if wrong_side {
+            return Err(Failure::NotConverged);
+        }
+        system.share(&mut best.iterate.state);
+        *serving = self.factorisation.latest.and_then(|latest| tangent::may_serve(system, latest));
+        Ok(Corrected {
+            modes: system.modes_at(&best.iterate),
+            state: best.iterate.state,
+            directions: best.iterate.directions,
+            iterations_to_small: iterations_to_small.unwrap_or(best.iterations).min(best.iterations),
+            residual: best.residual,
+            left_over: best.left_over,
+            force_scale: best.force_scale,
+        })
+    }
+}
+
+/// Where the place is a zero, a correction goes on along the path until the quantity is zero at first order: its
+/// gradient, which may have entries at forces that the factorisation eliminates, need not be a row (bordering: H. B.
+/// Keller, in: Applications of Bifurcation Theory, Academic Press 1977, 359). `along` is the way with this factorisation.
+/// `false` where the quantity does not change along it.
+fn bring_to_zero(
+    system: &ModeSystem<'_>,
+    closing: &dyn ClosingEquation,
+    left_over: f64,
+    iterate: &Iterate,
+    factorisation: &SystemFactorisation,
+    along: &mut Option<(DVector<f64>, f64)>,
+    correction: &mut DVector<f64>,
+) -> bool {
+    if !closing.has_slope_beside_row() {
+        return true;
+    }
+    let slope = |values: &DVector<f64>| {
+        let rate = system.rate_at(iterate, values, Kind::Increment);
+        closing.slope_beside_row(system, &iterate.state, &rate)
+    };
+    if along.is_none() {
+        let mut values = system.bordering();
+        if !factorisation.solve_once(&mut values) {
+            return false;
+        }
+        *along = slope(&values).filter(|slope| slope.is_finite() && *slope != 0.0).map(|slope| (values, slope));
+    }
+    let (Some((way, by_way)), Some(by_correction)) = (along, slope(correction)) else { return false };
+    correction.axpy((left_over - by_correction) / *by_way, way, 1.0);
+    true
+}
+
+/// The largest equilibrium residual over the forces of its own row, of the rows where these are far below the force
+/// scale. `sizes` becomes those forces.
+fn residual_of_rows(
+    system: &ModeSystem<'_>,
+    state: &State,
+    values: &DVector<f64>,
+    scale: f64,
+    sizes: &mut [f64],
+) -> f64 {
+    let structure = system.loading.structure;
+    structure.force_sizes(&state.displacement, USUAL, sizes);
+    for (freedom, size) in sizes.iter_mut().enumerate() {
+        *size +=
+            (state.load * system.loading.pattern.forces[freedom]).abs() + system.loading.held.forces[freedom].abs();
+    }
+    for (contact, reaction) in system.loading.contacts.iter().zip(&state.reactions) {
+        for node in contact.kinematics.nodes() {
+            sizes[structure.freedoms_of(*node)].iter_mut().for_each(|size| *size += reaction.size());
+        }
+    }
+    let rows =
+        structure.freedom_of.iter().zip(values.as_slice()).map(|(freedom, value)| (sizes[*freedom], value.abs()));
+    rows.filter(|(size, _)| *size < WEAK * scale)
+        .map(|(size, value)| value / size.max(f64::EPSILON * scale))
+        .fold(0.0, f64::max)
+}
+
+/// Whether a correction times a factor is below the rounding of every displacement and of the load.
+fn is_rounding(system: &ModeSystem<'_>, state: &State, correction: &DVector<f64>, factor: f64) -> bool {
+    let freedoms = &system.loading.structure.freedom_of;
+    let values = freedoms.iter().map(|freedom| state.displacement[*freedom]).chain(std::iter::once(state.load));
+    values.zip(correction.as_slice()).all(|(value, change)| (factor * change).abs() <= f64::EPSILON * value.abs())
+}
+
+/// Whether what is left over of each equation is within the rounding of the state's numbers; then the largest
+/// equilibrium residual beyond it, over the force scale.
+fn left_by_rounding(system: &ModeSystem<'_>, state: &State, values: &DVector<f64>, scale: f64) -> Option<f64> {
+    let structure = system.loading.structure;
+    let rounding = structure.rounding(&state.displacement);
+    let mut residual = 0.0_f64;
+    for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
+        residual = residual.max((values[unknown].abs() - ROOM * rounding[*freedom]) / scale);
+    }
+    let reach = reach(state);
+    let geometric = largest_below_equilibrium(system, values);
+    let within = geometric <= ACCEPTED_RESIDUAL + ROOM * f64::EPSILON * reach;
+    (residual <= ACCEPTED_RESIDUAL && within).then_some(residual)
+}
+
+/// A point as it is, with its residual. Slips in planes have the directions that their tractions oppose.
+pub fn judged(system: &ModeSystem<'_>, state: State, force_scale: f64) -> Corrected {
+    let mut iterate = system.iterate(state);
+    for (contact, role) in system.roles.iter().enumerate() {
+        if let Role::Plane { .. } = role {
+            let normal = system.loading.frame(contact, &iterate.state).normal;
+            let traction = iterate.state.reactions[contact].tangential;
+            let traction = add(&traction, -dot(&traction, &normal), &normal);
+            iterate.directions[contact] = vector::direction_of(&traction, &iterate.directions[contact]);
+        }
+    }
+    judged_as_state(system, iterate, &[], force_scale)
+}
+
+/// The same of an iterate, without the equations in some rows.
+pub(crate) fn judged_as_state(
+    system: &ModeSystem<'_>,
+    mut iterate: Iterate,
+    without: &[usize],
+    force_scale: f64,
+) -> Corrected {
+    system.make_consistent(&mut iterate);
+    let mut left_over = DVector::zeros(system.size);
+    let mut force = vec![0.0; system.loading.structure.freedoms()];
+    let (largest, forces) = system.residual(&iterate, &mut left_over, &mut force);
+    let geometric = (system.loading.structure.unknowns()..left_over.len())
+        .filter(|row| !without.contains(row))
+        .fold(0.0_f64, |largest, row| largest.max(left_over[row].abs()));
+    let residual = (largest / forces.max(force_scale).max(NO_FORCE)).max(geometric);
+    system.share(&mut iterate.state);
+    Corrected {
+        modes: system.modes_at(&iterate),
+        state: iterate.state,
+        directions: iterate.directions,
+        iterations_to_small: 0,
+        residual,
+        left_over,
+        force_scale: forces,
+    }
+}
+
+/// How far the chords of slips in planes are from where their directions would have them, in these rows.
+pub(crate) fn off_track(corrected: &Corrected, rows: &[usize]) -> f64 {
+    rows.iter().fold(0.0, |largest, row| largest.max(corrected.left_over[*row].abs()))
 }
 
 /// The largest displacement, or the load: what the rounding of places is relative to.
@@ -365,8 +558,15 @@ fn reach(state: &State) -> f64 {
     state.displacement.iter().fold(state.load.abs(), |reach, value| reach.max(value.abs()))
 }
 
-/// What Newton's method says of its best iterate.
-struct Figures {
+/// The largest of what is left over of the equations other than equilibrium.
+fn largest_below_equilibrium(system: &ModeSystem<'_>, values: &DVector<f64>) -> f64 {
+    values.as_slice()[system.loading.structure.unknowns()..].iter().fold(0.0_f64, |m, v| m.max(v.abs()))
+}
+
+/// The best iterate so far, and what Newton's method says of it.
+struct BestIterate {
+    error: f64,
+    iterate: Iterate,
     iterations: u64,
     residual: f64,
     left_over: DVector<f64>,

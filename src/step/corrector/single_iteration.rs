@@ -9,47 +9,45 @@ use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cost_counters::Work;
 use nalgebra::DVector;
 
-impl ModeSystem<'_> {
-    /// The state after one iteration from a guess, with the factorisation of the equations at the guess; `None` where they
-    /// are singular there.
-    pub(crate) fn iterated_once(
-        &self,
-        guess: State,
-        closing: &dyn ClosingEquation,
-        work: &mut Work,
-    ) -> Option<(State, SystemFactorisation)> {
-        let mut iterate = self.iterate(guess);
-        self.make_consistent(&mut iterate);
-        let mut values = DVector::zeros(self.size());
-        let mut force = vec![0.0; self.loading.structure.freedoms()];
-        self.residual(&iterate, &mut values, &mut force);
-        let last = self.size() - 1;
-        values[last] = closing.value(self, &iterate.state);
-        let put_closing = |matrix: &mut dyn Sink| closing.write_gradient(self, &iterate.state, matrix);
-        work.factorisations += 1;
-        work.newton_iterations += 1;
-        let factorisation = self.factorise(&iterate, Kind::Increment, put_closing)?;
-        if !factorisation.solve_once(&mut values) || !values.iter().all(|value| value.is_finite()) {
-            return None;
-        }
-        Some((self.corrected_by(iterate, &values).state, factorisation))
+/// The state after one iteration from a guess, with the factorisation of the equations at the guess; `None` where they
+/// are singular there.
+pub(crate) fn iterated_once(
+    system: &ModeSystem<'_>,
+    guess: State,
+    closing: &dyn ClosingEquation,
+    work: &mut Work,
+) -> Option<(State, SystemFactorisation)> {
+    let mut iterate = system.iterate(guess);
+    system.make_consistent(&mut iterate);
+    let mut values = DVector::zeros(system.size());
+    let mut force = vec![0.0; system.loading.structure.freedoms()];
+    system.residual(&iterate, &mut values, &mut force);
+    let last = system.size() - 1;
+    values[last] = closing.value(system, &iterate.state);
+    let put_closing = |matrix: &mut dyn Sink| closing.write_gradient(system, &iterate.state, matrix);
+    work.factorisations += 1;
+    work.newton_iterations += 1;
+    let factorisation = system.factorise(&iterate, Kind::Increment, put_closing)?;
+    if !factorisation.solve_once(&mut values) || !values.iter().all(|value| value.is_finite()) {
+        return None;
     }
+    Some((system.corrected_by(iterate, &values).state, factorisation))
+}
 
-    /// About the path's direction, by a factorisation of the equations nearby, on the side of another.
-    pub(crate) fn direction_about(
-        &self,
-        state: &State,
-        factorisation: &SystemFactorisation,
-        towards: &Rate,
-    ) -> Option<Rate> {
-        let mut values = self.bordering();
-        if !factorisation.solve_once(&mut values) {
-            return None;
-        }
-        let mut rate = self.direction_from(&self.iterate(state.clone()), &values)?;
-        if rate.product(towards) < 0.0 {
-            rate.scale(-1.0);
-        }
-        Some(rate)
+/// About the path's direction, by a factorisation of the equations nearby, on the side of another.
+pub(crate) fn direction_about(
+    system: &ModeSystem<'_>,
+    state: &State,
+    factorisation: &SystemFactorisation,
+    towards: &Rate,
+) -> Option<Rate> {
+    let mut values = system.bordering();
+    if !factorisation.solve_once(&mut values) {
+        return None;
     }
+    let mut rate = system.direction_from(&system.iterate(state.clone()), &values)?;
+    if rate.product(towards) < 0.0 {
+        rate.scale(-1.0);
+    }
+    Some(rate)
 }

@@ -25,88 +25,92 @@ pub struct Pointed<'a> {
     pub rate: &'a Rate,
 }
 
-impl ModeSystem<'_> {
-    /// The drift at the end of an increment, from that at its start (`None`: none yet) and the point half way.
-    pub fn drift(&self, start: &Rate, before: Option<&Rate>, middle: Pointed<'_>, end: Pointed<'_>) -> Option<Rate> {
-        let iterate = self.iterate_of(end.corrected);
-        let mut values = DVector::zeros(self.size);
-        for (contact, role) in self.roles.iter().enumerate() {
-            let moved = before.map_or([0.0; 3], |before| self.loading.relative_rate(contact, self.anchor, before));
-            let row = self.row_of(contact);
-            match role {
-                Role::Free | Role::Frictionless | Role::Line { .. } | Role::Edge { .. } | Role::HeldBy => {}
-                Role::Stick | Role::Held => {
-                    // A gap is closed exactly.
-                    let tangents = usize::from(matches!(role, Role::Stick));
-                    for (k, direction) in self.held_directions(contact).iter().enumerate().skip(tangents) {
-                        values[row + k] = dot(direction, &moved);
-                    }
-                }
-                Role::Plane { track } => {
-                    let Track { start: begun, turn } = &self.tracks[*track];
-                    let frame = self.loading.frame(contact, &end.corrected.state);
-                    let direction = iterate.directions[contact];
-                    let chord = self.chord(contact, &end.corrected.state);
-                    let rule = Rule::new(&frame, begun, turn, &direction, &chord);
-                    let pressed = self.loading.contacts[contact].friction * self.anchor.reactions[contact].normal;
-                    let turned = before.filter(|_| pressed > 0.0).map_or(0.0, |before| {
-                        let across = cross(&begun.normal, &begun.direction);
-                        -dot(&before.reactions[contact].tangential, &across) / pressed
-                    });
-                    let defect = self.defect(contact, start, middle, end).unwrap_or(0.0);
-                    values[row + 1] = dot(&rule.across, &moved) - rule.by_first_turn * turned - rule.factor * defect;
+/// The drift at the end of an increment, from that at its start (`None`: none yet) and the point half way.
+pub fn drift(
+    system: &ModeSystem<'_>,
+    start: &Rate,
+    before: Option<&Rate>,
+    middle: Pointed<'_>,
+    end: Pointed<'_>,
+) -> Option<Rate> {
+    let iterate = system.iterate_of(end.corrected);
+    let mut values = DVector::zeros(system.size);
+    for (contact, role) in system.roles.iter().enumerate() {
+        let moved = before.map_or([0.0; 3], |before| system.loading.relative_rate(contact, system.anchor, before));
+        let row = system.row_of(contact);
+        match role {
+            Role::Free | Role::Frictionless | Role::Line { .. } | Role::Edge { .. } | Role::HeldBy => {}
+            Role::Stick | Role::Held => {
+                // A gap is closed exactly.
+                let tangents = usize::from(matches!(role, Role::Stick));
+                for (k, direction) in system.held_directions(contact).iter().enumerate().skip(tangents) {
+                    values[row + k] = dot(direction, &moved);
                 }
             }
+            Role::Plane { track } => {
+                let Track { start: begun, turn } = &system.tracks[*track];
+                let frame = system.loading.frame(contact, &end.corrected.state);
+                let direction = iterate.directions[contact];
+                let chord = system.chord(contact, &end.corrected.state);
+                let rule = Rule::new(&frame, begun, turn, &direction, &chord);
+                let pressed = system.loading.contacts[contact].friction * system.anchor.reactions[contact].normal;
+                let turned = before.filter(|_| pressed > 0.0).map_or(0.0, |before| {
+                    let across = cross(&begun.normal, &begun.direction);
+                    -dot(&before.reactions[contact].tangential, &across) / pressed
+                });
+                let defect = defect(system, contact, start, middle, end).unwrap_or(0.0);
+                values[row + 1] = dot(&rule.across, &moved) - rule.by_first_turn * turned - rule.factor * defect;
+            }
         }
-        let factorisation =
-            self.factorise_as_it_is(&iterate, Kind::Increment, |matrix| self.border(matrix, end.rate))?;
-        if !factorisation.solve(&mut values) {
-            return None;
-        }
-        Some(self.rate_at(&iterate, &values, Kind::Increment))
     }
+    let factorisation =
+        system.factorise_as_it_is(&iterate, Kind::Increment, |matrix| system.border(matrix, end.rate))?;
+    if !factorisation.solve(&mut values) {
+        return None;
+    }
+    Some(system.rate_at(&iterate, &values, Kind::Increment))
+}
 
-    /// `τ`
-    fn defect(&self, contact: usize, start: &Rate, middle: Pointed<'_>, end: Pointed<'_>) -> Option<f64> {
-        let Role::Plane { track } = self.roles[contact] else { return None };
-        let Track { start: begun, turn: own } = &self.tracks[track];
-        let direction_at = |corrected: &Corrected| match corrected.modes[contact] {
-            Mode::Slip { direction } => Some(direction),
-            Mode::Free | Mode::Stick => None,
-        };
-        let turn = |state: &State, rate: &Rate, direction: &Vector| {
-            slip_integration::turn_rate(self.loading, contact, state, rate, direction)
-        };
-        let (last, half) = (direction_at(end.corrected)?, direction_at(middle.corrected)?);
-        let first_turn = turn(self.anchor, start, &begun.direction);
-        let last_turn = turn(&end.corrected.state, end.rate, &last)?;
-        let angle = |corrected: &Corrected, direction: &Vector| {
-            let normal = self.loading.frame(contact, &corrected.state).normal;
-            slip_integration::angle(&normal, &begun.carried_to(&normal), direction)
-        };
-        let (last_angle, half_angle) = (angle(end.corrected, &last), angle(middle.corrected, &half));
-        let to_end = self.chord(contact, &end.corrected.state);
-        let to_half = self.chord(contact, &middle.corrected.state);
-        let from_half = add(&to_end, -1.0, &to_half);
-        let first_part = slip_integration::arc(size(&to_half), &begun.direction, &half);
-        let length = first_part + slip_integration::arc(size(&from_half), &half, &last);
-        if length <= 0.0 {
-            return None;
-        }
-        let x = first_part / length;
-        let y = 1.0 - x;
-        let settles = own.settling.is_some_and(|settling| settling.share() > 0.0);
-        let Some(first_turn) = first_turn.filter(|_| !settles) else {
-            // The quadratic through the end's turn misses what the rule has 2/3 of.
-            let square = last_turn * length - last_angle;
-            let quadratic = x * (last_angle - square) + x * x * square;
-            let scale = x * y * y / 0.125;
-            return Some(length * (half_angle - quadratic) / (1.5 * scale));
-        };
-        let cubic = y * y * x * length * first_turn + x * x * ((1.0 + 2.0 * y) * last_angle - y * length * last_turn);
-        // The cubic misses x² y² h⁴ θ''''/24.
-        let fourth = 24.0 * (half_angle - cubic) / (x * x * y * y);
-        let (mean, change) = (0.5 * (first_turn + last_turn) * length, (last_turn - first_turn) * length);
-        Some(length * (fourth - mean * mean * change) / 720.0)
+/// `τ`
+fn defect(system: &ModeSystem<'_>, contact: usize, start: &Rate, middle: Pointed<'_>, end: Pointed<'_>) -> Option<f64> {
+    let Role::Plane { track } = system.roles[contact] else { return None };
+    let Track { start: begun, turn: own } = &system.tracks[track];
+    let direction_at = |corrected: &Corrected| match corrected.modes[contact] {
+        Mode::Slip { direction } => Some(direction),
+        Mode::Free | Mode::Stick => None,
+    };
+    let turn = |state: &State, rate: &Rate, direction: &Vector| {
+        slip_integration::turn_rate(system.loading, contact, state, rate, direction)
+    };
+    let (last, half) = (direction_at(end.corrected)?, direction_at(middle.corrected)?);
+    let first_turn = turn(system.anchor, start, &begun.direction);
+    let last_turn = turn(&end.corrected.state, end.rate, &last)?;
+    let angle = |corrected: &Corrected, direction: &Vector| {
+        let normal = system.loading.frame(contact, &corrected.state).normal;
+        slip_integration::angle(&normal, &begun.carried_to(&normal), direction)
+    };
+    let (last_angle, half_angle) = (angle(end.corrected, &last), angle(middle.corrected, &half));
+    let to_end = system.chord(contact, &end.corrected.state);
+    let to_half = system.chord(contact, &middle.corrected.state);
+    let from_half = add(&to_end, -1.0, &to_half);
+    let first_part = slip_integration::arc(size(&to_half), &begun.direction, &half);
+    let length = first_part + slip_integration::arc(size(&from_half), &half, &last);
+    if length <= 0.0 {
+        return None;
     }
+    let x = first_part / length;
+    let y = 1.0 - x;
+    let settles = own.settling.is_some_and(|settling| settling.share() > 0.0);
+    let Some(first_turn) = first_turn.filter(|_| !settles) else {
+        // The quadratic through the end's turn misses what the rule has 2/3 of.
+        let square = last_turn * length - last_angle;
+        let quadratic = x * (last_angle - square) + x * x * square;
+        let scale = x * y * y / 0.125;
+        return Some(length * (half_angle - quadratic) / (1.5 * scale));
+    };
+    let cubic = y * y * x * length * first_turn + x * x * ((1.0 + 2.0 * y) * last_angle - y * length * last_turn);
+    // The cubic misses x² y² h⁴ θ''''/24.
+    let fourth = 24.0 * (half_angle - cubic) / (x * x * y * y);
+    let (mean, change) = (0.5 * (first_turn + last_turn) * length, (last_turn - first_turn) * length);
+    Some(length * (fourth - mean * mean * change) / 720.0)
 }

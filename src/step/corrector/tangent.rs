@@ -2,85 +2,89 @@
 
 use crate::algebra::SystemFactorisation;
 use crate::algebra::sparse::SparseFactorisation;
+use crate::algebra::sparse::preconditioned_refinement::Nearby;
 use crate::mechanics::equations::solution::{Corrected, Tangent};
 use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role};
 use crate::mechanics::problem::state::Rate;
 use crate::step::corrector::determinant_sign::UNCERTAIN;
 use crate::step::corrector::newton::REGULAR;
 
-impl ModeSystem<'_> {
-    /// The path's direction at a converged point, and an estimate of the point's error: the size of one more Newton
-    /// correction across the path.
-    ///
-    /// `serving` is a factorisation of the equations nearby, if there is one. Where it does not
-    /// serve, one of the point itself takes its place, and `factorisations` counts it.
-    pub fn tangent_and_error(
-        &self,
-        corrected: &Corrected,
-        towards: &Rate,
-        serving: &mut Option<SystemFactorisation>,
-        factorisations: &mut u64,
-    ) -> Option<Tangent> {
-        let iterate = self.iterate_of(corrected);
-        if let Some(SystemFactorisation::Sparse(nearby)) = serving
-            && let Some(rate) = self.tangent_nearby(nearby, &iterate, towards)
-            && let Some(error) = self.error_by(nearby, corrected)
-        {
-            let (determinant, stiffness_across) = (Some(nearby.determinant_sign()), Vec::new());
-            return Some(Tangent { rate, error, determinant, stiffness_across });
-        }
-        *factorisations += 1;
-        let factorisation = self.bordered(&iterate, towards)?;
-        let mut values = corrected.left_over.clone();
-        values[self.size - 1] = 0.0;
-        if !factorisation.solve(&mut values) {
-            return None;
-        }
-        let error = self.length_of(&values);
-        self.border_into(&mut values);
-        if !factorisation.solve(&mut values) {
-            return None;
-        }
-        let rate = self.direction_from(&iterate, &values)?;
-        let mut stiffness_across = Vec::new();
-        if self.has_tracks() {
-            let across = |(contact, role): (usize, &Role)| {
-                let Role::Plane { .. } = role else { return None };
-                values.fill(0.0);
-                values[self.row_of(contact) + 1] = 1.0;
-                factorisation.solve(&mut values).then(|| -values[self.column_of(contact) + 1])
-            };
-            stiffness_across = self.roles.iter().enumerate().map(across).collect();
-        }
-        let certain = factorisation.pivot_ratio() > UNCERTAIN;
-        let determinant = certain.then(|| factorisation.determinant_sign());
-        *serving = self.may_serve(factorisation);
-        Some(Tangent { rate, error, determinant, stiffness_across })
+/// The path's direction at a converged point, and an estimate of the point's error: the size of one more Newton
+/// correction across the path.
+///
+/// `serving` is a factorisation of the equations nearby, if there is one. Where it does not
+/// serve, one of the point itself takes its place, and `factorisations` counts it.
+pub fn tangent_and_error(
+    system: &ModeSystem<'_>,
+    corrected: &Corrected,
+    towards: &Rate,
+    serving: &mut Option<SystemFactorisation>,
+    factorisations: &mut u64,
+) -> Option<Tangent> {
+    let iterate = system.iterate_of(corrected);
+    if let Some(SystemFactorisation::Sparse(nearby)) = serving
+        && let Some(rate) = tangent_nearby(system, nearby, &iterate, towards)
+        && let Some(error) = error_by(system, nearby, corrected)
+    {
+        let (determinant, stiffness_across) = (Some(nearby.determinant_sign()), Vec::new());
+        return Some(Tangent { rate, error, determinant, stiffness_across });
     }
+    *factorisations += 1;
+    let factorisation = system.bordered(&iterate, towards)?;
+    let mut values = corrected.left_over.clone();
+    values[system.size - 1] = 0.0;
+    if !factorisation.solve(&mut values) {
+        return None;
+    }
+    let error = system.length_of(&values);
+    system.border_into(&mut values);
+    if !factorisation.solve(&mut values) {
+        return None;
+    }
+    let rate = system.direction_from(&iterate, &values)?;
+    let mut stiffness_across = Vec::new();
+    if system.has_tracks() {
+        let across = |(contact, role): (usize, &Role)| {
+            let Role::Plane { .. } = role else { return None };
+            values.fill(0.0);
+            values[system.row_of(contact) + 1] = 1.0;
+            factorisation.solve(&mut values).then(|| -values[system.column_of(contact) + 1])
+        };
+        stiffness_across = system.roles.iter().enumerate().map(across).collect();
+    }
+    let certain = factorisation.pivot_ratio() > UNCERTAIN;
+    let determinant = certain.then(|| factorisation.determinant_sign());
+    *serving = may_serve(system, factorisation);
+    Some(Tangent { rate, error, determinant, stiffness_across })
+}
 
-    /// An estimate of a point's error by a factorisation nearby.
-    pub(crate) fn error_by(&self, nearby: &SparseFactorisation, corrected: &Corrected) -> Option<f64> {
-        let mut values = corrected.left_over.clone();
-        values[self.size - 1] = 0.0;
-        let solved = nearby.solve_once(&mut values);
-        solved.then(|| self.length_of(&values))
-    }
+/// An estimate of a point's error by a factorisation nearby.
+pub(crate) fn error_by(system: &ModeSystem<'_>, nearby: &SparseFactorisation, corrected: &Corrected) -> Option<f64> {
+    let mut values = corrected.left_over.clone();
+    values[system.size - 1] = 0.0;
+    let solved = nearby.solve_once(&mut values);
+    solved.then(|| system.length_of(&values))
+}
 
-    /// A factorisation that may serve nearby. With slips in planes the directions have equations of their own; dense
-    /// matrices are factorised as fast.
-    pub(crate) fn may_serve(&self, factorisation: SystemFactorisation) -> Option<SystemFactorisation> {
-        let may = matches!(factorisation, SystemFactorisation::Sparse(_)) && !self.has_tracks();
-        may.then_some(factorisation)
-    }
+/// A factorisation that may serve nearby. With slips in planes the directions have equations of their own; dense
+/// matrices are factorised as fast.
+pub(crate) fn may_serve(system: &ModeSystem<'_>, factorisation: SystemFactorisation) -> Option<SystemFactorisation> {
+    let may = matches!(factorisation, SystemFactorisation::Sparse(_)) && !system.has_tracks();
+    may.then_some(factorisation)
+}
 
-    /// The path's direction by a factorisation of the equations nearby.
-    fn tangent_nearby(&self, nearby: &SparseFactorisation, iterate: &Iterate, towards: &Rate) -> Option<Rate> {
-        if nearby.pivot_ratio() < REGULAR {
-            return None;
-        }
-        let nearby = nearby.nearby(self.assemble_sparse(iterate, Kind::Rates)?)?;
-        let values = nearby.solve(&self.bordering())?;
-        // On the same side of both borders, so that the determinants have one sign.
-        self.direction_from(iterate, &values).filter(|rate| rate.product(towards) > 0.0)
+/// The path's direction by a factorisation of the equations nearby.
+fn tangent_nearby(
+    system: &ModeSystem<'_>,
+    nearby: &SparseFactorisation,
+    iterate: &Iterate,
+    towards: &Rate,
+) -> Option<Rate> {
+    if nearby.pivot_ratio() < REGULAR {
+        return None;
     }
+    let nearby = Nearby::new(nearby, system.assemble_sparse(iterate, Kind::Rates)?)?;
+    let values = nearby.solve(&system.bordering())?;
+    // On the same side of both borders, so that the determinants have one sign.
+    system.direction_from(iterate, &values).filter(|rate| rate.product(towards) > 0.0)
 }

@@ -30,7 +30,8 @@ use crate::complementarity::mpec::{Activities, PairActivity, Problem, Settings};
 use crate::mechanics::contact::vector::{Vector, add, dot};
 use crate::mechanics::contact::{Frame, Mode};
 use crate::mechanics::problem::state::{Rate, State};
-use crate::step::increment_mpec::{Foreseen, InReach, IncrementProgram, LOOSEST, Named, tangent_components};
+use crate::step::increment_mpec::solution_extraction;
+use crate::step::increment_mpec::{ForeseenModes, InReach, IncrementProgram, LOOSEST, Named, tangent_components};
 use nalgebra::DVector;
 
 /// Least member that is positive by itself, and how much larger it is than what the point leaves violated.
@@ -53,7 +54,7 @@ pub struct Arrived<'s> {
 
 /// One member of a pair along the increment.
 #[derive(Debug, Clone, Copy)]
-struct Member {
+struct PairMember {
     start: f64,
     end: f64,
     /// Rates at both ends, by the arc length over the one sought.
@@ -64,7 +65,7 @@ struct Member {
     is_slip: bool,
 }
 
-impl Member {
+impl PairMember {
     fn is_positive(&self, clear: f64) -> bool {
         let [first, last] = self.rates;
         let is_small = self.end.abs() <= clear;
@@ -94,181 +95,190 @@ impl Member {
     }
 }
 
-impl IncrementProgram<'_> {
-    /// What is shown of an increment of the arc length sought that ends at a point: [`Foreseen::Named`] where it solves the
-    /// program with `γ1` adapted to it, [`Foreseen::EndsAfter`] where it lies past the end of its mode,
-    /// [`Foreseen::Unclear`] where nothing is.
-    ///
-    /// `forward` is the direction at the start in the mode that leads to the end, and the equations of that mode are
-    /// regular at the end.
-    pub fn solved_at(&mut self, end: Arrived<'_>, present: &[Mode]) -> Foreseen {
-        if self.reach.iter().any(|entry| entry.tangents == 2) || self.is_any_node_pressed_twice(end.state) {
-            return Foreseen::Unclear;
+/// What is shown of an increment of the arc length sought that ends at a point: [`ForeseenModes::Named`] where it solves the
+/// program with `γ1` adapted to it, [`ForeseenModes::EndsAfter`] where it lies past the end of its mode,
+/// [`ForeseenModes::Unclear`] where nothing is.
+///
+/// `forward` is the direction at the start in the mode that leads to the end, and the equations of that mode are
+/// regular at the end.
+pub fn solved_at(program: &mut IncrementProgram<'_>, end: Arrived<'_>, present: &[Mode]) -> ForeseenModes {
+    if program.reach.iter().any(|entry| entry.tangents == 2) || is_any_node_pressed_twice(program, end.state) {
+        return ForeseenModes::Unclear;
+    }
+    let frames: Vec<Frame> =
+        program.reach.iter().map(|entry| program.loading.frame(entry.contact, end.state)).collect();
+    let x = variables_of(program, end.state, &frames);
+    if !x.iter().all(|value| value.is_finite()) {
+        return ForeseenModes::Unclear;
+    }
+    match clear_activities(program, &x, end, &frames) {
+        Ok(activities) if is_strict_solution(program, &x, end) => {
+            ForeseenModes::Named(Named::of(&solution_extraction::modes_at(program, &x, &activities, present)))
         }
-        let frames: Vec<Frame> = self.reach.iter().map(|entry| self.loading.frame(entry.contact, end.state)).collect();
-        let x = self.variables_of(end.state, &frames);
-        if !x.iter().all(|value| value.is_finite()) {
-            return Foreseen::Unclear;
-        }
-        match self.clear_activities(&x, end, &frames) {
-            Ok(activities) if self.is_strict_solution(&x, end) => {
-                Foreseen::Named(Named::of(&self.read(&x, &activities, present)))
+        Ok(_) => ForeseenModes::Unclear,
+        Err(refused) => refused,
+    }
+}
+
+/// The variables of the program at a state where the contacts in reach have these frames.
+pub(super) fn variables_of(program: &IncrementProgram<'_>, state: &State, frames: &[Frame]) -> DVector<f64> {
+    let structure = program.loading.structure;
+    let mut x = DVector::zeros(program.variables);
+    for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
+        x[unknown] = (state.displacement[*freedom] - program.base.displacement[*freedom]) / program.step;
+    }
+    x[structure.unknowns()] = (state.load - program.base.load) / program.step;
+    for (entry, here) in program.reach.iter().zip(frames) {
+        let reaction = &state.reactions[entry.contact];
+        x[entry.normal()] = reaction.normal / program.force;
+        if entry.tangents == 1 {
+            x[entry.tangential(0)] = tangent_components::components(here, &reaction.tangential)[0] / program.force;
+            let slip = tangent_components::components(&entry.frame, &chord(program, entry, state))[0] / program.step;
+            for (part, side) in entry.parts() {
+                x[part] = (side * slip).max(0.0);
             }
-            Ok(_) => Foreseen::Unclear,
-            Err(refused) => refused,
         }
     }
+    x
+}
 
-    /// The variables of the program at a state where the contacts in reach have these frames.
-    pub(super) fn variables_of(&self, state: &State, frames: &[Frame]) -> DVector<f64> {
-        let structure = self.loading.structure;
-        let mut x = DVector::zeros(self.variables);
-        for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
-            x[unknown] = (state.displacement[*freedom] - self.base.displacement[*freedom]) / self.step;
-        }
-        x[structure.unknowns()] = (state.load - self.base.load) / self.step;
-        for (entry, here) in self.reach.iter().zip(frames) {
-            let reaction = &state.reactions[entry.contact];
-            x[entry.normal()] = reaction.normal / self.force;
-            if entry.tangents == 1 {
-                x[entry.tangential(0)] = tangent_components::components(here, &reaction.tangential)[0] / self.force;
-                let slip = tangent_components::components(&entry.frame, &self.chord(entry, state))[0] / self.step;
-                for (part, side) in entry.parts() {
-                    x[part] = (side * slip).max(0.0);
-                }
-            }
-        }
-        x
-    }
+/// The way of a contact's node against its obstacle.
+fn chord(program: &IncrementProgram<'_>, entry: &InReach, state: &State) -> Vector {
+    let before = program.loading.relative(entry.contact, program.base);
+    add(&program.loading.relative(entry.contact, state), -1.0, &before)
+}
 
-    /// The way of a contact's node against its obstacle.
-    fn chord(&self, entry: &InReach, state: &State) -> Vector {
-        let before = self.loading.relative(entry.contact, self.base);
-        add(&self.loading.relative(entry.contact, state), -1.0, &before)
-    }
-
-    /// Which member of each pair is zero, where the variables are feasible and that is certain.
-    fn clear_activities(&self, x: &DVector<f64>, end: Arrived<'_>, frames: &[Frame]) -> Result<Activities, Foreseen> {
-        let mut equality = DVector::zeros(self.equalities());
-        self.equality_values(x, &mut equality);
-        // Not `max`, which passes over what is not a number.
-        let larger = |most: f64, value: f64| if most.is_nan() || value.abs() <= most { most } else { value.abs() };
-        let members = self.members(x, end, frames);
-        let rounding = self.rounding(x);
-        let left = equality.iter().copied().fold(0.0, larger);
-        let clear = CLEAR.max(LEEWAY * left.max(rounding).max(end.error / self.step));
-        let smaller = members.iter().map(|[first, second]| first.end.min(second.part()));
-        let feasible = Settings::warm().tolerance.max(rounding).min(LOOSEST);
-        let is_feasible = smaller.fold(left, larger) <= feasible;
-        let is_near = end.error <= LOOSEST * self.step;
-        if !is_feasible || !is_near {
-            // Where there is no force against a slip, it may have either sense.
-            let is_broken = |[first, second]: &[Member; 2]| {
-                let turns = second.is_slip && first.end.abs() <= feasible;
-                [first.end < -feasible, second.end < -feasible && (turns || !second.is_slip)]
-            };
-            let broken = members.iter().flat_map(|pair| pair.iter().zip(is_broken(pair)));
-            let parts = broken.filter(|(_, is_broken)| *is_broken).map(|(member, _)| member.ends_after());
-            let part = parts.fold(f64::INFINITY, f64::min);
-            let is_past = is_near && left <= feasible && part > 0.0 && part < 1.0;
-            return Err(if is_past { Foreseen::EndsAfter(part) } else { Foreseen::Unclear });
-        }
-        let activity = |[first, second]: &[Member; 2]| match (first.is_positive(clear), second.is_positive(clear)) {
-            (true, false) => PairActivity::SecondZero,
-            (false, true) => PairActivity::FirstZero,
-            (false, false) => PairActivity::BothZero,
-            (true, true) => PairActivity::NeitherZero,
+/// Which member of each pair is zero, where the variables are feasible and that is certain.
+fn clear_activities(
+    program: &IncrementProgram<'_>,
+    x: &DVector<f64>,
+    end: Arrived<'_>,
+    frames: &[Frame],
+) -> Result<Activities, ForeseenModes> {
+    let mut equality = DVector::zeros(program.equalities());
+    program.equality_values(x, &mut equality);
+    // Not `max`, which passes over what is not a number.
+    let larger = |most: f64, value: f64| if most.is_nan() || value.abs() <= most { most } else { value.abs() };
+    let members = members(program, x, end, frames);
+    let rounding = program.rounding(x);
+    let left = equality.iter().copied().fold(0.0, larger);
+    let clear = CLEAR.max(LEEWAY * left.max(rounding).max(end.error / program.step));
+    let smaller = members.iter().map(|[first, second]| first.end.min(second.part()));
+    let feasible = Settings::warm().tolerance.max(rounding).min(LOOSEST);
+    let is_feasible = smaller.fold(left, larger) <= feasible;
+    let is_near = end.error <= LOOSEST * program.step;
+    if !is_feasible || !is_near {
+        // Where there is no force against a slip, it may have either sense.
+        let is_broken = |[first, second]: &[PairMember; 2]| {
+            let turns = second.is_slip && first.end.abs() <= feasible;
+            [first.end < -feasible, second.end < -feasible && (turns || !second.is_slip)]
         };
-        let pairs: Vec<PairActivity> = members.iter().map(activity).collect();
-        let is_clear = |pair: &PairActivity| matches!(pair, PairActivity::FirstZero | PairActivity::SecondZero);
-        let mut rest = &pairs[..];
-        for entry in &self.reach {
-            let (own, others) = rest.split_at(1 + 2 * entry.tangents);
-            rest = others;
-            let is_apart = own[0] == PairActivity::SecondZero;
-            if !is_clear(&own[0]) || !is_apart && !own.iter().all(is_clear) {
-                return Err(Foreseen::Unclear);
-            }
-        }
-        Ok(Activities { pairs, cones: Vec::new() })
+        let broken = members.iter().flat_map(|pair| pair.iter().zip(is_broken(pair)));
+        let parts = broken.filter(|(_, is_broken)| *is_broken).map(|(member, _)| member.ends_after());
+        let part = parts.fold(f64::INFINITY, f64::min);
+        let is_past = is_near && left <= feasible && part > 0.0 && part < 1.0;
+        return Err(if is_past { ForeseenModes::EndsAfter(part) } else { ForeseenModes::Unclear });
     }
+    let activity = |[first, second]: &[PairMember; 2]| match (first.is_positive(clear), second.is_positive(clear)) {
+        (true, false) => PairActivity::SecondZero,
+        (false, true) => PairActivity::FirstZero,
+        (false, false) => PairActivity::BothZero,
+        (true, true) => PairActivity::NeitherZero,
+    };
+    let pairs: Vec<PairActivity> = members.iter().map(activity).collect();
+    let is_clear = |pair: &PairActivity| matches!(pair, PairActivity::FirstZero | PairActivity::SecondZero);
+    let mut rest = &pairs[..];
+    for entry in &program.reach {
+        let (own, others) = rest.split_at(1 + 2 * entry.tangents);
+        rest = others;
+        let is_apart = own[0] == PairActivity::SecondZero;
+        if !is_clear(&own[0]) || !is_apart && !own.iter().all(is_clear) {
+            return Err(ForeseenModes::Unclear);
+        }
+    }
+    Ok(Activities { pairs, cones: Vec::new() })
+}
 
-    /// Both members of every pair, in the order of [`Problem::pair_values`].
-    fn members(&self, x: &DVector<f64>, end: Arrived<'_>, frames: &[Frame]) -> Vec<[Member; 2]> {
-        let per_force = self.step / self.force;
-        let of_forces = self.forward.largest_reaction().max(end.rate.largest_reaction()) * per_force;
-        let member = |start: f64, end: f64, rates: [f64; 2], rounding: f64, is_slip: bool| Member {
-            start,
-            end,
-            rates,
-            rounding: ROUNDING_OF_RATES * rounding,
-            is_slip,
-        };
-        let mut members = Vec::with_capacity(self.pairs());
-        for (entry, here) in self.reach.iter().zip(frames) {
-            let (contact, friction) = (entry.contact, entry.friction);
-            let ends = [(self.forward, &entry.frame), (end.rate, here)];
-            let moved = [(self.base, self.forward), (end.state, end.rate)];
-            let moved = moved.map(|(state, rate)| self.loading.relative_rate(contact, state, rate));
-            let velocities = [dot(&entry.frame.normal, &moved[0]), dot(&here.normal, &moved[1])];
-            let pressed = self.base.reactions[contact].normal / self.force;
-            let pressed_rates = ends.map(|(rate, _)| rate.reactions[contact].normal * per_force);
+/// Both members of every pair, in the order of [`Problem::pair_values`].
+fn members(
+    program: &IncrementProgram<'_>,
+    x: &DVector<f64>,
+    end: Arrived<'_>,
+    frames: &[Frame],
+) -> Vec<[PairMember; 2]> {
+    let per_force = program.step / program.force;
+    let of_forces = program.forward.largest_reaction().max(end.rate.largest_reaction()) * per_force;
+    let member = |start: f64, end: f64, rates: [f64; 2], rounding: f64, is_slip: bool| PairMember {
+        start,
+        end,
+        rates,
+        rounding: ROUNDING_OF_RATES * rounding,
+        is_slip,
+    };
+    let mut members = Vec::with_capacity(program.pairs());
+    for (entry, here) in program.reach.iter().zip(frames) {
+        let (contact, friction) = (entry.contact, entry.friction);
+        let ends = [(program.forward, &entry.frame), (end.rate, here)];
+        let moved = [(program.base, program.forward), (end.state, end.rate)];
+        let moved = moved.map(|(state, rate)| program.loading.relative_rate(contact, state, rate));
+        let velocities = [dot(&entry.frame.normal, &moved[0]), dot(&here.normal, &moved[1])];
+        let pressed = program.base.reactions[contact].normal / program.force;
+        let pressed_rates = ends.map(|(rate, _)| rate.reactions[contact].normal * per_force);
+        members.push([
+            member(entry.frame.gap / program.step, here.gap / program.step, velocities, 1.0, false),
+            member(pressed, x[entry.normal()], pressed_rates, of_forces, false),
+        ]);
+        if entry.tangents == 0 {
+            continue;
+        }
+        let traction_rates = ends.map(|(rate, frame)| {
+            tangent_components::components(frame, &rate.reactions[contact].tangential)[0] * per_force
+        });
+        let slip_rates = ends.map(|(rate, _)| program.motion(entry, rate)[0]);
+        let slipped: f64 = entry.parts().map(|(part, side)| side * x[part]).iter().sum();
+        for (_, side) in entry.parts() {
+            let off_cone = |normal: f64, traction: f64| (friction * normal + side * traction) / (1.0 + friction);
+            let ends = (off_cone(pressed, entry.traction[0]), off_cone(x[entry.normal()], x[entry.tangential(0)]));
+            let rates = [0, 1].map(|k| off_cone(pressed_rates[k], traction_rates[k]));
             members.push([
-                member(entry.frame.gap / self.step, here.gap / self.step, velocities, 1.0, false),
-                member(pressed, x[entry.normal()], pressed_rates, of_forces, false),
+                member(ends.0, ends.1, rates, of_forces, false),
+                member(0.0, side * slipped, slip_rates.map(|rate| side * rate), 1.0, true),
             ]);
-            if entry.tangents == 0 {
-                continue;
-            }
-            let traction_rates = ends.map(|(rate, frame)| {
-                tangent_components::components(frame, &rate.reactions[contact].tangential)[0] * per_force
-            });
-            let slip_rates = ends.map(|(rate, _)| self.motion(entry, rate)[0]);
-            let slipped: f64 = entry.parts().map(|(part, side)| side * x[part]).iter().sum();
-            for (_, side) in entry.parts() {
-                let off_cone = |normal: f64, traction: f64| (friction * normal + side * traction) / (1.0 + friction);
-                let ends = (off_cone(pressed, entry.traction[0]), off_cone(x[entry.normal()], x[entry.tangential(0)]));
-                let rates = [0, 1].map(|k| off_cone(pressed_rates[k], traction_rates[k]));
-                members.push([
-                    member(ends.0, ends.1, rates, of_forces, false),
-                    member(0.0, side * slipped, slip_rates.map(|rate| side * rate), 1.0, true),
-                ]);
-            }
         }
-        members
     }
+    members
+}
 
-    /// Whether the objective has a strict maximum along the curve at its end, with `γ1` adapted to it.
-    fn is_strict_solution(&mut self, x: &DVector<f64>, end: Arrived<'_>) -> bool {
-        let load = self.loading.structure.unknowns();
-        let (mut along_forward, mut along_end) = (x[load] * self.forward.load, x[load] * end.rate.load);
-        for (unknown, freedom) in self.loading.structure.freedom_of.iter().enumerate() {
-            along_forward += x[unknown] * self.forward.displacement[*freedom];
-            along_end += x[unknown] * end.rate.displacement[*freedom];
-        }
-        if along_end.is_nan() || along_end < FORWARD {
-            return false;
-        }
-        let linear = |rate: &Rate| self.dissipation_along(rate) + self.forward_weight * self.forward.product(rate);
-        let at_start = linear(self.forward);
-        let at_end = linear(end.rate) / along_end;
-        let dissipated: f64 = self.reach.iter().map(|entry| self.dissipated(entry, x)).sum();
-        let of_chord = dissipated + self.forward_weight * along_forward;
-        // γ1 > 0, φ'' < 0, and more is gained than by staying.
-        let (arc_weight, curvature) = (at_end, 2.0 * at_start + 3.0 * at_end - 6.0 * of_chord);
-        let is_strict = arc_weight > 0.0 && curvature < 0.0 && of_chord > 0.5 * arc_weight;
-        if is_strict {
-            self.arc_weight = arc_weight;
-        }
-        is_strict
+/// Whether the objective has a strict maximum along the curve at its end, with `γ1` adapted to it.
+fn is_strict_solution(program: &mut IncrementProgram<'_>, x: &DVector<f64>, end: Arrived<'_>) -> bool {
+    let load = program.loading.structure.unknowns();
+    let (mut along_forward, mut along_end) = (x[load] * program.forward.load, x[load] * end.rate.load);
+    for (unknown, freedom) in program.loading.structure.freedom_of.iter().enumerate() {
+        along_forward += x[unknown] * program.forward.displacement[*freedom];
+        along_end += x[unknown] * end.rate.displacement[*freedom];
     }
+    if along_end.is_nan() || along_end < FORWARD {
+        return false;
+    }
+    let linear = |rate: &Rate| program.dissipation_along(rate) + program.forward_weight * program.forward.product(rate);
+    let at_start = linear(program.forward);
+    let at_end = linear(end.rate) / along_end;
+    let dissipated: f64 = program.reach.iter().map(|entry| dissipated(program, entry, x)).sum();
+    let of_chord = dissipated + program.forward_weight * along_forward;
+    // γ1 > 0, φ'' < 0, and more is gained than by staying.
+    let (arc_weight, curvature) = (at_end, 2.0 * at_start + 3.0 * at_end - 6.0 * of_chord);
+    let is_strict = arc_weight > 0.0 && curvature < 0.0 && of_chord > 0.5 * arc_weight;
+    if is_strict {
+        program.arc_weight = arc_weight;
+    }
+    is_strict
+}
 
-    fn dissipated(&self, entry: &InReach, x: &DVector<f64>) -> f64 {
-        if entry.tangents == 0 { 0.0 } else { -self.dissipation_of(entry, x) }
-    }
+fn dissipated(program: &IncrementProgram<'_>, entry: &InReach, x: &DVector<f64>) -> f64 {
+    if entry.tangents == 0 { 0.0 } else { -program.dissipation_of(entry, x) }
+}
 
-    /// Whether some node is closed against two obstacles.
-    fn is_any_node_pressed_twice(&self, state: &State) -> bool {
-        self.loading.corners.iter().any(|corner| corner.closed(self.loading, state).len() >= 2)
-    }
+/// Whether some node is closed against two obstacles.
+fn is_any_node_pressed_twice(program: &IncrementProgram<'_>, state: &State) -> bool {
+    program.loading.corners.iter().any(|corner| corner.closed(program.loading, state).len() >= 2)
 }

@@ -8,28 +8,25 @@ use crate::mechanics::problem::state::State;
 use crate::step::increment_mpec::{InReach, IncrementProgram, tangent_components};
 use nalgebra::{DMatrix, DVector};
 
-impl IncrementProgram<'_> {
-    /// Contacts with friction.
-    fn rough(&self) -> impl Iterator<Item = &InReach> {
-        self.reach.iter().filter(|entry| entry.friction > 0.0)
-    }
+/// Contacts with friction.
+fn rough<'a>(program: &'a IncrementProgram<'_>) -> impl Iterator<Item = &'a InReach> {
+    program.reach.iter().filter(|entry| entry.friction > 0.0)
+}
 
-    /// Contacts with friction whose cone is a second-order one.
-    fn coned(&self) -> impl Iterator<Item = &InReach> {
-        self.reach.iter().filter(|entry| entry.tangents == 2)
-    }
+/// Contacts with friction whose cone is a second-order one.
+fn coned<'a>(program: &'a IncrementProgram<'_>) -> impl Iterator<Item = &'a InReach> {
+    program.reach.iter().filter(|entry| entry.tangents == 2)
+}
 
-    /// Contacts with friction whose cone is polyhedral.
-    fn split(&self) -> impl Iterator<Item = &InReach> {
-        self.reach.iter().filter(|entry| entry.tangents == 1)
-    }
+/// Contacts with friction whose cone is polyhedral.
+fn split<'a>(program: &'a IncrementProgram<'_>) -> impl Iterator<Item = &'a InReach> {
+    program.reach.iter().filter(|entry| entry.tangents == 1)
+}
 
-    /// Slip along each tangent as a combination of variables: `(variable, factor)`.
-    fn slip_terms(&self, entry: &InReach, tangent: usize) -> impl Iterator<Item = (usize, f64)> {
-        let terms =
-            if entry.tangents == 2 { [Some((entry.slip(tangent), 1.0)), None] } else { entry.parts().map(Some) };
-        terms.into_iter().flatten()
-    }
+/// Slip along each tangent as a combination of variables: `(variable, factor)`.
+fn slip_terms(entry: &InReach, tangent: usize) -> impl Iterator<Item = (usize, f64)> {
+    let terms = if entry.tangents == 2 { [Some((entry.slip(tangent), 1.0)), None] } else { entry.parts().map(Some) };
+    terms.into_iter().flatten()
 }
 
 /// Writes an entry, unless it is zero.
@@ -53,11 +50,11 @@ impl Problem for IncrementProgram<'_> {
     }
 
     fn pairs(&self) -> usize {
-        self.reach.len() + 2 * self.split().count()
+        self.reach.len() + 2 * split(self).count()
     }
 
     fn cone_sizes(&self) -> Vec<usize> {
-        self.coned().map(|_| 3).collect()
+        coned(self).map(|_| 3).collect()
     }
 
     fn bounds(&self) -> (DVector<f64>, DVector<f64>) {
@@ -65,7 +62,7 @@ impl Problem for IncrementProgram<'_> {
         for entry in &self.reach {
             lower[entry.normal()] = 0.0;
         }
-        for entry in self.split() {
+        for entry in split(self) {
             for (part, _) in entry.parts() {
                 lower[part] = 0.0;
             }
@@ -87,7 +84,7 @@ impl Problem for IncrementProgram<'_> {
         let load = x[structure.unknowns()];
         squared += load * load;
         forward += load * self.forward.load;
-        let dissipated: f64 = self.rough().map(|entry| self.dissipation_of(entry, x)).sum();
+        let dissipated: f64 = rough(self).map(|entry| self.dissipation_of(entry, x)).sum();
         0.5 * self.arc_weight * squared - self.forward_weight * forward + dissipated
     }
 
@@ -100,9 +97,9 @@ impl Problem for IncrementProgram<'_> {
         }
         let load = structure.unknowns();
         gradient[load] = self.arc_weight * x[load] - self.forward_weight * self.forward.load;
-        for entry in self.rough() {
+        for entry in rough(self) {
             for tangent in 0..entry.tangents {
-                for (variable, factor) in self.slip_terms(entry, tangent) {
+                for (variable, factor) in slip_terms(entry, tangent) {
                     gradient[variable] = factor * entry.traction[tangent];
                 }
             }
@@ -130,8 +127,7 @@ impl Problem for IncrementProgram<'_> {
                 }
             }
             for (t, motion) in motion.into_iter().enumerate().take(entry.tangents) {
-                values[row] =
-                    self.slip_terms(entry, t).fold(motion, |rest, (variable, factor)| rest - factor * x[variable]);
+                values[row] = slip_terms(entry, t).fold(motion, |rest, (variable, factor)| rest - factor * x[variable]);
                 row += 1;
             }
         }
@@ -169,15 +165,15 @@ impl Problem for IncrementProgram<'_> {
             }
             for (t, driven) in driven.into_iter().enumerate().take(entry.tangents) {
                 put(jacobian, (row, unknowns), driven);
-                for (variable, factor) in self.slip_terms(entry, t) {
+                for (variable, factor) in slip_terms(entry, t) {
                     jacobian[(row, variable)] = -factor;
                 }
                 row += 1;
             }
             if frame.curvature != 0.0 {
-                self.add_turn_of_reaction(entry, &frame, &state, x, jacobian);
+                add_turn_of_reaction(self, entry, (&frame, &state), x, jacobian);
             }
-            self.add_curvature_of_motion(entry, &frame, &state, x, jacobian);
+            add_curvature_of_motion(self, entry, (&frame, &state), x, jacobian);
         }
     }
 
@@ -223,7 +219,7 @@ impl Problem for IncrementProgram<'_> {
     }
 
     fn cone_values(&self, x: &DVector<f64>, first: &mut DVector<f64>, second: &mut DVector<f64>) {
-        for (place, entry) in self.coned().enumerate() {
+        for (place, entry) in coned(self).enumerate() {
             let (a, b) = entry.cone_members(x);
             first.rows_mut(3 * place, 3).copy_from_slice(&a);
             second.rows_mut(3 * place, 3).copy_from_slice(&b);
@@ -231,7 +227,7 @@ impl Problem for IncrementProgram<'_> {
     }
 
     fn cone_jacobians(&self, _x: &DVector<f64>, first: &mut DMatrix<f64>, second: &mut DMatrix<f64>) {
-        for (place, entry) in self.coned().enumerate() {
+        for (place, entry) in coned(self).enumerate() {
             let row = 3 * place;
             first[(row, entry.normal())] = entry.friction / (1.0 + entry.friction);
             second[(row, entry.bound())] = 1.0;
@@ -251,55 +247,51 @@ impl Problem for IncrementProgram<'_> {
     }
 }
 
-impl IncrementProgram<'_> {
-    /// On a curved obstacle the reaction turns with the node's place.
-    fn add_turn_of_reaction(
-        &self,
-        entry: &InReach,
-        frame: &Frame,
-        state: &State,
-        x: &DVector<f64>,
-        jacobian: &mut SparseRows,
-    ) {
-        let tangents = entry.tangents_at(frame);
-        let turn = |motion: &Vector| {
-            let of_normal = scaled(&frame.normal_change(motion), x[entry.normal()] * self.step);
-            (0..entry.tangents).fold(of_normal, |sum, t| {
-                add(&sum, x[entry.tangential(t)] * self.step, &entry.tangent_change(frame, &tangents[t], motion))
-            })
-        };
-        let load = self.loading.structure.unknowns();
-        let driven = turn(&self.loading.driven(entry.contact, state));
-        let columns = self.columns_of(entry, state);
-        for (row, own) in &columns {
-            jacobian[(*row, load)] -= dot(own, &driven);
-            for (column, motion) in &columns {
-                jacobian[(*row, *column)] -= dot(own, &turn(motion));
-            }
+/// On a curved obstacle the reaction turns with the node's place.
+fn add_turn_of_reaction(
+    program: &IncrementProgram<'_>,
+    entry: &InReach,
+    (frame, state): (&Frame, &State),
+    x: &DVector<f64>,
+    jacobian: &mut SparseRows,
+) {
+    let tangents = entry.tangents_at(frame);
+    let turn = |motion: &Vector| {
+        let of_normal = scaled(&frame.normal_change(motion), x[entry.normal()] * program.step);
+        (0..entry.tangents).fold(of_normal, |sum, t| {
+            add(&sum, x[entry.tangential(t)] * program.step, &entry.tangent_change(frame, &tangents[t], motion))
+        })
+    };
+    let load = program.loading.structure.unknowns();
+    let driven = turn(&program.loading.driven(entry.contact, state));
+    let columns = program.columns_of(entry, state);
+    for (row, own) in &columns {
+        jacobian[(*row, load)] -= dot(own, &driven);
+        for (column, motion) in &columns {
+            jacobian[(*row, *column)] -= dot(own, &turn(motion));
         }
     }
+}
 
-    /// Where several nodes move a contact, its force turns with them.
-    fn add_curvature_of_motion(
-        &self,
-        entry: &InReach,
-        frame: &Frame,
-        state: &State,
-        x: &DVector<f64>,
-        jacobian: &mut SparseRows,
-    ) {
-        let structure = self.loading.structure;
-        let tangents = entry.tangents_at(frame);
-        let of_normal = scaled(&frame.normal, x[entry.normal()] * self.step);
-        let force =
-            (0..entry.tangents).fold(of_normal, |sum, t| add(&sum, x[entry.tangential(t)] * self.step, &tangents[t]));
-        let contact = &self.loading.contacts[entry.contact];
-        contact_motion::each_curvature(structure, contact, &state.displacement, &force, |row, column, value| {
-            let Some(row) = structure.unknown_of[row] else { return };
-            match structure.unknown_of[column] {
-                Some(column) => jacobian[(row, column)] -= value,
-                None => jacobian[(row, structure.unknowns())] -= value * self.loading.support_rate(column),
-            }
-        });
-    }
+/// Where several nodes move a contact, its force turns with them.
+fn add_curvature_of_motion(
+    program: &IncrementProgram<'_>,
+    entry: &InReach,
+    (frame, state): (&Frame, &State),
+    x: &DVector<f64>,
+    jacobian: &mut SparseRows,
+) {
+    let structure = program.loading.structure;
+    let tangents = entry.tangents_at(frame);
+    let of_normal = scaled(&frame.normal, x[entry.normal()] * program.step);
+    let force =
+        (0..entry.tangents).fold(of_normal, |sum, t| add(&sum, x[entry.tangential(t)] * program.step, &tangents[t]));
+    let contact = &program.loading.contacts[entry.contact];
+    contact_motion::each_curvature(structure, contact, &state.displacement, &force, |row, column, value| {
+        let Some(row) = structure.unknown_of[row] else { return };
+        match structure.unknown_of[column] {
+            Some(column) => jacobian[(row, column)] -= value,
+            None => jacobian[(row, structure.unknowns())] -= value * program.loading.support_rate(column),
+        }
+    });
 }

@@ -38,7 +38,7 @@ mod tests_of_certificate;
 #[cfg(test)]
 mod tests_of_chains;
 
-use crate::complementarity::mpec::{self, Finish, PairActivity, Settings, Solution, StationarityKind};
+use crate::complementarity::mpec::{self, Finish, PairActivity, ProgramSolution, Settings, StationarityKind};
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled};
 use crate::mechanics::contact::{Frame, Mode};
 use crate::mechanics::equations::slip_integration::Start;
@@ -47,7 +47,7 @@ use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::cancel::CancelFlag;
 pub use certificate::Arrived;
 use nalgebra::DVector;
-pub use search::{End, Searched};
+pub use search::{ProgramEnd, Searched};
 use smallvec::SmallVec;
 use tangent_components::Components;
 
@@ -150,7 +150,7 @@ impl Named {
 
 /// What the modes of a start lead to.
 #[derive(Debug, Clone)]
-pub enum Foreseen {
+pub enum ForeseenModes {
     /// A solution, with contacts that are not about to change.
     Named(Named),
     /// Some contact changes after this part of the arc length.
@@ -163,7 +163,7 @@ pub enum Foreseen {
 
 /// Work of the programs solved.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Counts {
+pub struct ProgramCounts {
     pub qp_solves: u64,
     pub mpec_solves: u64,
     pub sqp_iterations: u64,
@@ -171,8 +171,8 @@ pub struct Counts {
     pub last_relaxation: Option<f64>,
 }
 
-impl Counts {
-    fn add(&mut self, solution: &Solution) {
+impl ProgramCounts {
+    fn add(&mut self, solution: &ProgramSolution) {
         self.qp_solves += solution.counts.qp_solves as u64;
         self.mpec_solves += 1;
         self.sqp_iterations += solution.counts.sqp_iterations as u64;
@@ -306,15 +306,25 @@ impl<'a> IncrementProgram<'a> {
     /// Solves from a start and reads the contact modes off the solution; `None` where no solution was found.
     ///
     /// `present` decides where a pair is biactive.
-    pub fn name(&mut self, start: &DVector<f64>, present: &[Mode], cancel: &CancelFlag) -> (Option<Named>, Counts) {
+    pub fn name(
+        &mut self,
+        start: &DVector<f64>,
+        present: &[Mode],
+        cancel: &CancelFlag,
+    ) -> (Option<Named>, ProgramCounts) {
         match self.solve(start, present, None, cancel) {
-            (Foreseen::Named(named), counts) => (Some(named), counts),
-            (Foreseen::EndsAfter(_) | Foreseen::Untold | Foreseen::Unclear, counts) => (None, counts),
+            (ForeseenModes::Named(named), counts) => (Some(named), counts),
+            (ForeseenModes::EndsAfter(_) | ForeseenModes::Untold | ForeseenModes::Unclear, counts) => (None, counts),
         }
     }
 
     /// The same in the branch of the modes `present` alone: whether they hold for an increment of this length.
-    pub fn foresee(&mut self, start: &DVector<f64>, present: &[Mode], cancel: &CancelFlag) -> (Foreseen, Counts) {
+    pub fn foresee(
+        &mut self,
+        start: &DVector<f64>,
+        present: &[Mode],
+        cancel: &CancelFlag,
+    ) -> (ForeseenModes, ProgramCounts) {
         let members = self.zero_members(present, start);
         self.solve(start, present, Some(&members), cancel)
     }
@@ -325,7 +335,7 @@ impl<'a> IncrementProgram<'a> {
         present: &[Mode],
         branch: Option<&[PairActivity]>,
         cancel: &CancelFlag,
-    ) -> (Foreseen, Counts) {
+    ) -> (ForeseenModes, ProgramCounts) {
         // The start is a predictor in a mode that is likely right: where no solution lies near it, a shorter increment
         // helps more than a longer search.
         let warm = Settings::warm();
@@ -339,7 +349,7 @@ impl<'a> IncrementProgram<'a> {
             tolerance: warm.tolerance.max(self.rounding(start)).min(LOOSEST),
             ..warm
         };
-        let mut counts = Counts::default();
+        let mut counts = ProgramCounts::default();
         let mut start = start.clone();
         for _ in 0..MOST_ADAPTATIONS {
             let solution = match branch {
@@ -350,20 +360,25 @@ impl<'a> IncrementProgram<'a> {
             counts.add(&solution);
             let size = solution.x.rows(0, self.loading.structure.unknowns() + 1).norm();
             match solution.status {
-                mpec::Status::Feasible if branch.is_some() => return (Foreseen::EndsAfter(size), counts),
-                mpec::Status::Solved if solution.stationarity == StationarityKind::OneBranch && branch.is_some() => {
-                    return (Foreseen::Untold, counts);
+                mpec::SolveStatus::Feasible if branch.is_some() => return (ForeseenModes::EndsAfter(size), counts),
+                mpec::SolveStatus::Solved
+                    if solution.stationarity == StationarityKind::OneBranch && branch.is_some() =>
+                {
+                    return (ForeseenModes::Untold, counts);
                 }
-                mpec::Status::Solved | mpec::Status::PatternSettled | mpec::Status::Feasible => {}
+                mpec::SolveStatus::Solved | mpec::SolveStatus::PatternSettled | mpec::SolveStatus::Feasible => {}
                 _ => break,
             }
             if (0.5..=2.0).contains(&size) {
-                return (Foreseen::Named(self.end(solution, present, cancel)), counts);
+                return (
+                    ForeseenModes::Named(solution_extraction::named_modes(self, solution, present, cancel)),
+                    counts,
+                );
             }
             self.arc_weight *= size.clamp(0.02, 50.0);
             start = solution.x;
         }
-        (Foreseen::Unclear, counts)
+        (ForeseenModes::Unclear, counts)
     }
 
     /// The members of the pairs that are zero in given modes.

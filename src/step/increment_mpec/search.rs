@@ -1,11 +1,12 @@
 //! The program solved by itself, with nothing known of its end: the products relaxed to `ε`, `ε` falling to its last value,
 //! each relaxed program by sequential quadratic programming, each quadratic program by the interior-point method.
 
-use crate::complementarity::mpec::{self, Finish, Iterate, Settings, Status};
+use crate::complementarity::mpec::{self, Finish, Settings, SolveStatus, SolverIterate};
 use crate::mechanics::contact::Mode;
 use crate::mechanics::problem::state::State;
 use crate::resources::cancel::CancelFlag;
-use crate::step::increment_mpec::{Counts, InReach, IncrementProgram, LOOSEST};
+use crate::step::increment_mpec::solution_extraction;
+use crate::step::increment_mpec::{InReach, IncrementProgram, LOOSEST, ProgramCounts};
 use nalgebra::DVector;
 
 /// The largest first bound on the products, the factor from one to the next, and the last.
@@ -21,7 +22,7 @@ const ENUMERATED: usize = 6;
 
 /// Where the program ends.
 #[derive(Debug, Clone)]
-pub struct End {
+pub struct ProgramEnd {
     /// The contact modes at the end of the increment.
     pub modes: Vec<Mode>,
     /// The state there, as exact as the program is.
@@ -35,10 +36,10 @@ pub struct End {
 /// One search.
 pub struct Searched {
     /// `None` where no stationary point was found.
-    pub end: Option<End>,
-    pub counts: Counts,
+    pub end: Option<ProgramEnd>,
+    pub counts: ProgramCounts,
     /// Where they are kept.
-    pub iterates: Vec<Iterate>,
+    pub iterates: Vec<SolverIterate>,
 }
 
 /// One contact at an iterate, dimensionless.
@@ -53,97 +54,95 @@ pub struct ContactAt {
     pub slip: f64,
 }
 
-impl IncrementProgram<'_> {
-    /// Keeps searches from going to solutions far away, of which the arc length cannot become the one sought.
-    pub fn stay_near(&mut self) {
-        self.most_motion = MOST_MOTION;
-    }
+/// Keeps searches from going to solutions far away, of which the arc length cannot become the one sought.
+pub fn stay_near(program: &mut IncrementProgram<'_>) {
+    program.most_motion = MOST_MOTION;
+}
 
-    /// The contacts in reach, and the state, at variables of the program.
-    pub fn contacts_at(&self, variables: &DVector<f64>) -> (State, Vec<ContactAt>) {
-        let state = self.end_state(variables);
-        let of = |entry: &InReach| {
-            let reaction = state.reactions[entry.contact];
-            let slip = match entry.tangents {
-                0 => 0.0,
-                1 => entry.parts().map(|(part, side)| side * variables[part]).iter().sum::<f64>().abs(),
-                _ => variables[entry.slip(0)].hypot(variables[entry.slip(1)]),
-            };
-            ContactAt {
-                contact: entry.contact,
-                gap: self.loading.gap(entry.contact, &state),
-                normal: reaction.normal,
-                within_cone: entry.friction * reaction.normal - reaction.tangential_size(),
-                slip: self.step * slip,
-            }
+/// The contacts in reach, and the state, at variables of the program.
+pub fn contacts_at(program: &IncrementProgram<'_>, variables: &DVector<f64>) -> (State, Vec<ContactAt>) {
+    let state = solution_extraction::end_state(program, variables);
+    let of = |entry: &InReach| {
+        let reaction = state.reactions[entry.contact];
+        let slip = match entry.tangents {
+            0 => 0.0,
+            1 => entry.parts().map(|(part, side)| side * variables[part]).iter().sum::<f64>().abs(),
+            _ => variables[entry.slip(0)].hypot(variables[entry.slip(1)]),
         };
-        let contacts = self.reach.iter().map(of).collect();
-        (state, contacts)
-    }
+        ContactAt {
+            contact: entry.contact,
+            gap: program.loading.gap(entry.contact, &state),
+            normal: reaction.normal,
+            within_cone: entry.friction * reaction.normal - reaction.tangential_size(),
+            slip: program.step * slip,
+        }
+    };
+    let contacts = program.reach.iter().map(of).collect();
+    (state, contacts)
+}
 
-    /// The arc length at variables of the program over the one sought.
-    pub fn size(&self, variables: &DVector<f64>) -> f64 {
-        variables.rows(0, self.loading.structure.unknowns() + 1).norm()
-    }
+/// The arc length at variables of the program over the one sought.
+pub fn arc_length_ratio(program: &IncrementProgram<'_>, variables: &DVector<f64>) -> f64 {
+    variables.rows(0, program.loading.structure.unknowns() + 1).norm()
+}
 
-    /// The first bound on the products. A bound `ε` lets a contact within its cone slip by about `ε` over its distance from
-    /// it and dissipate without having to: that has to be little beside what the objective gains along the path.
-    pub fn first_relaxation(&self) -> f64 {
-        let tractions = self.reach.iter().flat_map(|entry| &entry.traction[..entry.tangents]);
-        let largest = tractions.fold(0.0_f64, |largest, traction| largest.max(traction.abs()));
-        (FIRST * (self.arc_weight / largest).min(1.0)).max(LAST)
-    }
+/// The first bound on the products. A bound `ε` lets a contact within its cone slip by about `ε` over its distance from
+/// it and dissipate without having to: that has to be little beside what the objective gains along the path.
+pub fn first_relaxation(program: &IncrementProgram<'_>) -> f64 {
+    let tractions = program.reach.iter().flat_map(|entry| &entry.traction[..entry.tangents]);
+    let largest = tractions.fold(0.0_f64, |largest, traction| largest.max(traction.abs()));
+    (FIRST * (program.arc_weight / largest).min(1.0)).max(LAST)
+}
 
-    /// Solves from a start, `γ1` and `γ2` as they are; `present` decides where a pair is biactive.
-    pub fn search(
-        &self,
-        start: &DVector<f64>,
-        first_relaxation: f64,
-        present: &[Mode],
-        keep_iterates: bool,
-        cancel: &CancelFlag,
-    ) -> Searched {
-        let default = Settings::default();
-        let settings = Settings {
-            first_relaxation,
-            relaxation_factor: FACTOR,
-            last_relaxation: LAST,
-            tolerance: default.tolerance.max(self.rounding(start)).min(LOOSEST),
-            iteration_limit: MOST_ITERATIONS,
-            finish: Finish::PatternSettled,
-            restarts: 0,
-            enumeration_limit: ENUMERATED,
-            looks_beyond: false,
-            whole_sequence: true,
-            interior_only: true,
-            keep_iterates,
-            ..default
-        };
-        let Ok(solution) = mpec::solve(self, start, &settings, cancel) else {
-            return Searched { end: None, counts: Counts::default(), iterates: Vec::new() };
-        };
-        let mut counts = Counts::default();
-        counts.add(&solution);
-        let iterates = solution.iterates.clone();
-        let is_found = matches!(solution.status, Status::Solved | Status::PatternSettled | Status::Feasible);
-        let end = is_found.then(|| {
-            let variables = solution.x.clone();
-            let size = self.size(&variables);
-            let state = self.end_state(&variables);
-            let modes = self.end(solution, present, cancel).modes;
-            End { modes, state, variables, size }
-        });
-        Searched { end, counts, iterates }
-    }
+/// Solves from a start, `γ1` and `γ2` as they are; `present` decides where a pair is biactive.
+pub fn search_from(
+    program: &IncrementProgram<'_>,
+    start: &DVector<f64>,
+    first_relaxation: f64,
+    present: &[Mode],
+    keep_iterates: bool,
+    cancel: &CancelFlag,
+) -> Searched {
+    let default = Settings::default();
+    let settings = Settings {
+        first_relaxation,
+        relaxation_factor: FACTOR,
+        last_relaxation: LAST,
+        tolerance: default.tolerance.max(program.rounding(start)).min(LOOSEST),
+        iteration_limit: MOST_ITERATIONS,
+        finish: Finish::PatternSettled,
+        restarts: 0,
+        enumeration_limit: ENUMERATED,
+        looks_beyond: false,
+        whole_sequence: true,
+        interior_only: true,
+        keep_iterates,
+        ..default
+    };
+    let Ok(solution) = mpec::solve(program, start, &settings, cancel) else {
+        return Searched { end: None, counts: ProgramCounts::default(), iterates: Vec::new() };
+    };
+    let mut counts = ProgramCounts::default();
+    counts.add(&solution);
+    let iterates = solution.iterates.clone();
+    let is_found = matches!(solution.status, SolveStatus::Solved | SolveStatus::PatternSettled | SolveStatus::Feasible);
+    let end = is_found.then(|| {
+        let variables = solution.x.clone();
+        let size = arc_length_ratio(program, &variables);
+        let state = solution_extraction::end_state(program, &variables);
+        let modes = solution_extraction::named_modes(program, solution, present, cancel).modes;
+        ProgramEnd { modes, state, variables, size }
+    });
+    Searched { end, counts, iterates }
+}
 
-    /// The next smaller first bound; `None` past the last.
-    pub fn tighter(relaxation: f64) -> Option<f64> {
-        (relaxation > LAST).then(|| (FACTOR * relaxation).max(LAST))
-    }
+/// The next smaller first bound; `None` past the last.
+pub fn tighter(relaxation: f64) -> Option<f64> {
+    (relaxation > LAST).then(|| (FACTOR * relaxation).max(LAST))
+}
 
-    /// Adapts `γ1` to a solution whose arc length is not the one sought: along a straight direction the arc length is
-    /// inversely proportional to it.
-    pub fn adapt(&mut self, size: f64) {
-        self.arc_weight *= size.clamp(0.02, 50.0);
-    }
+/// Adapts `γ1` to a solution whose arc length is not the one sought: along a straight direction the arc length is
+/// inversely proportional to it.
+pub fn adapt_arc_weight(program: &mut IncrementProgram<'_>, size: f64) {
+    program.arc_weight *= size.clamp(0.02, 50.0);
 }

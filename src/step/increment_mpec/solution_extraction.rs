@@ -1,7 +1,7 @@
 //! What is read off the end of an increment: contact modes, the state, and the state made exact.
 
 use crate::complementarity::mpec::semismooth::{self, Polished};
-use crate::complementarity::mpec::{Activities, ConeActivity, PairActivity, Problem, Solution};
+use crate::complementarity::mpec::{Activities, ConeActivity, PairActivity, Problem, ProgramSolution};
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::problem::state::State;
 use crate::resources::cancel::CancelFlag;
@@ -15,103 +15,111 @@ const SAME: f64 = 1e-9;
 /// Least cosine between the motion that the program found and the exact one.
 const SAME_WAY: f64 = 0.9;
 
-impl IncrementProgram<'_> {
-    /// What a solution of the program says. Where there are cones, it is first made exact, so that directions of slip are
-    /// those of the increment's own end.
-    pub(super) fn end(&self, solution: Solution, present: &[Mode], cancel: &CancelFlag) -> Named {
-        if let Some(exact) = self.exact_end(&solution.x, cancel)
-            && let Ok(activities) = Activities::at(self, &exact, SAME)
-        {
-            return Named {
-                modes: self.read(&exact, &activities, present),
-                #[cfg(test)]
-                end: Some(self.end_state(&exact)),
-            };
-        }
-        let activities = Activities { pairs: solution.activity, cones: solution.cone_activity };
-        Named {
-            modes: self.read(&solution.x, &activities, present),
+/// What a solution of the program says. Where there are cones, it is first made exact, so that directions of slip are
+/// those of the increment's own end.
+pub(super) fn named_modes(
+    program: &IncrementProgram<'_>,
+    solution: ProgramSolution,
+    present: &[Mode],
+    cancel: &CancelFlag,
+) -> Named {
+    if let Some(exact) = exact_end(program, &solution.x, cancel)
+        && let Ok(activities) = Activities::at(program, &exact, SAME)
+    {
+        return Named {
+            modes: modes_at(program, &exact, &activities, present),
             #[cfg(test)]
-            end: None,
-        }
-    }
-
-    /// The exact end near variables of the program, where there are cones.
-    fn exact_end(&self, x: &DVector<f64>, cancel: &CancelFlag) -> Option<DVector<f64>> {
-        if self.cone_sizes().is_empty() {
-            return None;
-        }
-        let polished = self.polish(x, cancel).filter(|polished| polished.is_converged)?;
-        let moved = self.loading.structure.unknowns() + 1;
-        let (before, after) = (x.rows(0, moved), polished.x.rows(0, moved));
-        // Another solution than the program's is no answer to what the program chose.
-        (before.dot(&after) >= SAME_WAY * before.norm() * after.norm()).then_some(polished.x)
-    }
-
-    /// The contact modes at variables of the program; `present` decides where a pair is biactive.
-    pub(super) fn read(&self, x: &DVector<f64>, activities: &Activities, present: &[Mode]) -> Vec<Mode> {
-        let mut modes = vec![Mode::Free; self.loading.contacts.len()];
-        let mut pairs = activities.pairs.iter().copied();
-        let mut next = || pairs.next().unwrap_or(PairActivity::NeitherZero);
-        let mut cones = activities.cones.iter().copied();
-        for entry in &self.reach {
-            let present = present[entry.contact];
-            let normal = next();
-            let closed = if entry.tangents == 0 {
-                Mode::Slip { direction: Default::default() }
-            } else if entry.tangents == 2 {
-                let activity = cones.next().unwrap_or(ConeActivity::NotComplementary);
-                closed_in_space(entry, x, activity, present)
-            } else {
-                match (next(), next()) {
-                    (PairActivity::FirstZero, _) => tangent_components::slip(&entry.frame.tangents, [1.0, 0.0]),
-                    (_, PairActivity::FirstZero) => tangent_components::slip(&entry.frame.tangents, [-1.0, 0.0]),
-                    (PairActivity::BothZero, _) | (_, PairActivity::BothZero) if present.is_active() => present,
-                    _ => Mode::Stick,
-                }
-            };
-            modes[entry.contact] = match normal {
-                PairActivity::FirstZero => closed,
-                PairActivity::BothZero => present,
-                PairActivity::SecondZero | PairActivity::NeitherZero => Mode::Free,
-            };
-        }
-        modes
-    }
-
-    /// The state at variables of the program, reactions included.
-    pub(super) fn end_state(&self, x: &DVector<f64>) -> State {
-        let mut state = self.state(x);
-        state.reactions.fill(Reaction::default());
-        for entry in &self.reach {
-            let mut tangential = [0.0; 2];
-            if entry.friction > 0.0 {
-                for (k, component) in tangential.iter_mut().enumerate().take(entry.tangents) {
-                    *component = x[entry.tangential(k)] * self.force;
-                }
-            }
-            let tangents = entry.tangents_at(&self.loading.frame(entry.contact, &state));
-            state.reactions[entry.contact] =
-                tangent_components::reaction(&tangents, x[entry.normal()] * self.force, tangential);
-        }
-        state
-    }
-
-    /// The increment's equilibrium, contact and friction with the arc length exactly the one sought, by the semismooth
-    /// Newton method from variables of the program: what serves where a mode's own equations cannot start, since the
-    /// direction of slip is not known.
-    pub(super) fn polish(&self, x: &DVector<f64>, cancel: &CancelFlag) -> Option<Polished> {
-        let moved = self.loading.structure.unknowns() + 1;
-        let arc_length = |x: &DVector<f64>| {
-            let size = x.rows(0, moved).norm();
-            let mut gradient = DVector::zeros(x.len());
-            if size > 0.0 {
-                gradient.rows_mut(0, moved).copy_from(&(x.rows(0, moved) / size));
-            }
-            (size - 1.0, gradient)
+            end: Some(end_state(program, &exact)),
         };
-        semismooth::polish(self, x, Some(&arc_length), cancel).ok()
     }
+    let activities = Activities { pairs: solution.activity, cones: solution.cone_activity };
+    Named {
+        modes: modes_at(program, &solution.x, &activities, present),
+        #[cfg(test)]
+        end: None,
+    }
+}
+
+/// The exact end near variables of the program, where there are cones.
+fn exact_end(program: &IncrementProgram<'_>, x: &DVector<f64>, cancel: &CancelFlag) -> Option<DVector<f64>> {
+    if program.cone_sizes().is_empty() {
+        return None;
+    }
+    let polished = polish(program, x, cancel).filter(|polished| polished.is_converged)?;
+    let moved = program.loading.structure.unknowns() + 1;
+    let (before, after) = (x.rows(0, moved), polished.x.rows(0, moved));
+    // Another solution than the program's is no answer to what the program chose.
+    (before.dot(&after) >= SAME_WAY * before.norm() * after.norm()).then_some(polished.x)
+}
+
+/// The contact modes at variables of the program; `present` decides where a pair is biactive.
+pub(super) fn modes_at(
+    program: &IncrementProgram<'_>,
+    x: &DVector<f64>,
+    activities: &Activities,
+    present: &[Mode],
+) -> Vec<Mode> {
+    let mut modes = vec![Mode::Free; program.loading.contacts.len()];
+    let mut pairs = activities.pairs.iter().copied();
+    let mut next = || pairs.next().unwrap_or(PairActivity::NeitherZero);
+    let mut cones = activities.cones.iter().copied();
+    for entry in &program.reach {
+        let present = present[entry.contact];
+        let normal = next();
+        let closed = if entry.tangents == 0 {
+            Mode::Slip { direction: Default::default() }
+        } else if entry.tangents == 2 {
+            let activity = cones.next().unwrap_or(ConeActivity::NotComplementary);
+            closed_in_space(entry, x, activity, present)
+        } else {
+            match (next(), next()) {
+                (PairActivity::FirstZero, _) => tangent_components::slip(&entry.frame.tangents, [1.0, 0.0]),
+                (_, PairActivity::FirstZero) => tangent_components::slip(&entry.frame.tangents, [-1.0, 0.0]),
+                (PairActivity::BothZero, _) | (_, PairActivity::BothZero) if present.is_active() => present,
+                _ => Mode::Stick,
+            }
+        };
+        modes[entry.contact] = match normal {
+            PairActivity::FirstZero => closed,
+            PairActivity::BothZero => present,
+            PairActivity::SecondZero | PairActivity::NeitherZero => Mode::Free,
+        };
+    }
+    modes
+}
+
+/// The state at variables of the program, reactions included.
+pub(super) fn end_state(program: &IncrementProgram<'_>, x: &DVector<f64>) -> State {
+    let mut state = program.state(x);
+    state.reactions.fill(Reaction::default());
+    for entry in &program.reach {
+        let mut tangential = [0.0; 2];
+        if entry.friction > 0.0 {
+            for (k, component) in tangential.iter_mut().enumerate().take(entry.tangents) {
+                *component = x[entry.tangential(k)] * program.force;
+            }
+        }
+        let tangents = entry.tangents_at(&program.loading.frame(entry.contact, &state));
+        state.reactions[entry.contact] =
+            tangent_components::reaction(&tangents, x[entry.normal()] * program.force, tangential);
+    }
+    state
+}
+
+/// The increment's equilibrium, contact and friction with the arc length exactly the one sought, by the semismooth
+/// Newton method from variables of the program: what serves where a mode's own equations cannot start, since the
+/// direction of slip is not known.
+pub(super) fn polish(program: &IncrementProgram<'_>, x: &DVector<f64>, cancel: &CancelFlag) -> Option<Polished> {
+    let moved = program.loading.structure.unknowns() + 1;
+    let arc_length = |x: &DVector<f64>| {
+        let size = x.rows(0, moved).norm();
+        let mut gradient = DVector::zeros(x.len());
+        if size > 0.0 {
+            gradient.rows_mut(0, moved).copy_from(&(x.rows(0, moved) / size));
+        }
+        (size - 1.0, gradient)
+    };
+    semismooth::polish(program, x, Some(&arc_length), cancel).ok()
 }
 
 /// The mode of a closed contact in 3D.

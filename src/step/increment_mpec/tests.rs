@@ -29,7 +29,11 @@ fn kkt_holds(name: &str, forward: impl Fn(&Scene) -> Rate) {
     let start = program.variables_at(&forward);
     let settings = Settings::warm();
     let solution = mpec::solve(&program, &start, &settings, &CancelFlag::default()).unwrap();
-    assert!(matches!(solution.status, mpec::Status::Solved | mpec::Status::Feasible), "{:?}", solution.status);
+    assert!(
+        matches!(solution.status, mpec::SolveStatus::Solved | mpec::SolveStatus::Feasible),
+        "{:?}",
+        solution.status
+    );
     let x = &solution.x;
     let moved = x.rows(0, scene.structure.unknowns() + 1).norm();
     assert!(moved > 0.05, "{name}: the step must not be zero, {moved}");

@@ -11,6 +11,7 @@ use crate::mechanics::structure::elements::Element;
 use crate::mechanics::structure::elements::bar::Bar;
 use crate::mechanics::structure::elements::spring::Spring;
 use crate::model::request::Strain;
+use crate::step::increment_mpec::solution_extraction;
 use crate::step::increment_mpec::*;
 use nalgebra::DMatrix;
 use std::sync::Arc;
@@ -151,7 +152,7 @@ fn off_balance(scene: &OneBar, base: &State, end: &State, step: f64) -> f64 {
 /// What a march along the tractrix took and how far off it ended.
 struct March {
     increments: u64,
-    counts: Counts,
+    counts: ProgramCounts,
     /// Largest distance from the exact track.
     error: f64,
     worst_residual: f64,
@@ -166,7 +167,8 @@ fn march(step: f64) -> March {
     let mut base = scene.at_rest();
     let mut forward = scene.rate([1.0, 0.0, 0.0], 0.5);
     let mut modes = vec![Mode::Stick];
-    let mut march = March { increments: 0, counts: Counts::default(), error: 0.0, worst_residual: 0.0, seconds: 0.0 };
+    let mut march =
+        March { increments: 0, counts: ProgramCounts::default(), error: 0.0, worst_residual: 0.0, seconds: 0.0 };
     let clock = std::time::Instant::now();
     let track = |w: f64| {
         let c = friction * h;
@@ -271,7 +273,8 @@ fn the_landing_converges_quadratically_from_the_predictor() {
     let base = scene.at_rest();
     let forward = scene.rate([0.8, 0.1, -0.5], 0.05);
     let program = IncrementProgram::new(scene.loading(), &base, &forward, 0.02, 0.02);
-    let end = program.polish(&program.variables_at(&forward), &CancelFlag::default()).expect("finite");
+    let end =
+        solution_extraction::polish(&program, &program.variables_at(&forward), &CancelFlag::default()).expect("finite");
     println!("residuals of the landing: {:?}", end.residuals);
     assert!(end.is_converged, "{:?}", end.residuals);
     assert!(end.residuals.last().is_some_and(|last| *last < 1e-14), "{:?}", end.residuals);
@@ -382,7 +385,11 @@ fn karush_kuhn_tucker_conditions_of_the_increment_in_space() {
     program.arc_weight = 1.3;
     let start = program.variables_at(&forward);
     let solution = mpec::solve(&program, &start, &Settings::warm(), &CancelFlag::default()).unwrap();
-    assert!(matches!(solution.status, mpec::Status::Solved | mpec::Status::Feasible), "{:?}", solution.status);
+    assert!(
+        matches!(solution.status, mpec::SolveStatus::Solved | mpec::SolveStatus::Feasible),
+        "{:?}",
+        solution.status
+    );
     let x = &solution.x;
     let moved = x.rows(0, 4).norm();
     assert!(moved > 0.05, "the step must not be zero, {moved}");

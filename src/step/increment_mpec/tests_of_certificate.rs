@@ -7,8 +7,10 @@ use crate::continuation::path::mpec_verification;
 use crate::continuation::scene::Scene;
 use crate::result::increment::Increment;
 use crate::step::corrector::cost_counters::Work;
+use crate::step::increment_mpec::certificate;
+use crate::step::increment_mpec::solution_extraction;
 use crate::step::increment_mpec::*;
-use crate::step::segment::{Reached, Start as Beginning};
+use crate::step::segment::{Reached, StepStart as Beginning};
 use serde_json::{Map, json};
 
 /// Where an increment began.
@@ -42,9 +44,11 @@ impl Begun {
     }
 
     /// What is shown of the increment to a point; nothing where no contact is in reach.
-    fn shown(&self, loading: Loading<'_>, reached: &Reached) -> Foreseen {
+    fn shown(&self, loading: Loading<'_>, reached: &Reached) -> ForeseenModes {
         let program = self.program(loading, reached);
-        program.map_or(Foreseen::Unclear, |mut program| program.solved_at(arrived(reached), &self.modes))
+        program.map_or(ForeseenModes::Unclear, |mut program| {
+            certificate::solved_at(&mut program, arrived(reached), &self.modes)
+        })
     }
 }
 
@@ -113,24 +117,28 @@ fn what_is_shown_is_a_solution_that_the_search_finds() {
             let Some(reached) = begun.reach(loading, way).filter(|_| way > 1e-4) else { return };
             let Some(mut program) = begun.program(loading, &reached) else { return };
             asked += 1;
-            let Foreseen::Named(named) = program.solved_at(arrived(&reached), &begun.modes) else { return };
+            let ForeseenModes::Named(named) = certificate::solved_at(&mut program, arrived(&reached), &begun.modes)
+            else {
+                return;
+            };
             shown += 1;
             assert!(crate::mechanics::contact::all_continue(&named.modes, &begun.modes), "{:?}", increment.index);
             let weight = program.arc_weight;
             program.divide_objective(weight);
             let state = &reached.corrected.state;
             let frames: Vec<_> = program.reach.iter().map(|entry| loading.frame(entry.contact, state)).collect();
-            let end = program.variables_of(state, &frames);
+            let end = certificate::variables_of(&program, state, &frames);
             let mut start = end.clone();
             start.iter_mut().for_each(|value| *value *= 1.0 + 1e-3 * part(&mut random));
             let solution = mpec::solve(&program, &start, &Settings::warm(), &CancelFlag::default()).unwrap();
-            assert_eq!(solution.status, mpec::Status::Solved, "increment {}", increment.index);
+            assert_eq!(solution.status, mpec::SolveStatus::Solved, "increment {}", increment.index);
             // The search ends within its tolerances: no point of it is better, and it is near.
             let moved = loading.structure.unknowns() + 1;
             let apart = (solution.x.rows(0, moved) - end.rows(0, moved)).amax();
             let gained = program.objective(&end) - solution.objective;
             assert!(gained < 1e-9 && apart < 5e-3, "increment {}: {gained:e}, {apart:e}", increment.index);
-            let found = program.end(solution, &begun.modes, &CancelFlag::default()).modes;
+            let found =
+                solution_extraction::named_modes(&program, solution, &begun.modes, &CancelFlag::default()).modes;
             assert!(crate::mechanics::contact::all_continue(&found, &begun.modes), "increment {}", increment.index);
         });
     }
@@ -153,7 +161,7 @@ fn past_the_end_of_a_mode_nothing_is_shown_but_where_it_ends() {
             changes += 1;
             // A slip that turned back on the way is still one in its old sense until it has come back.
             let Some(reached) = begun.reach(loading, 3.0 * increment.step) else { return };
-            let Foreseen::EndsAfter(part) = begun.shown(loading, &reached) else { return };
+            let ForeseenModes::EndsAfter(part) = begun.shown(loading, &reached) else { return };
             let (found, there) = (part * reached.step, increment.step);
             assert!(found > 0.4 * there && found < 1.7 * there, "{name}, {}: {found} for {there}", increment.index);
             ends += 1;
@@ -174,14 +182,14 @@ fn nothing_is_shown_where_a_condition_fails() {
         }
         let Some(reached) = begun.reach(loading, increment.step) else { return };
         let shown = |reached: &Reached| begun.shown(loading, reached);
-        if !matches!(shown(&reached), Foreseen::Named(_)) {
+        if !matches!(shown(&reached), ForeseenModes::Named(_)) {
             return;
         }
         seen += 1;
         let unclear = |change: &dyn Fn(&mut Reached)| {
             let mut changed = reached.clone();
             change(&mut changed);
-            assert!(matches!(shown(&changed), Foreseen::Unclear), "increment {}", increment.index);
+            assert!(matches!(shown(&changed), ForeseenModes::Unclear), "increment {}", increment.index);
         };
         unclear(&|reached| reached.corrected.state.load += 1e-5);
         unclear(&|reached| reached.corrected.state.reactions[0].normal += 1e-5);
@@ -219,7 +227,7 @@ fn a_contact_that_may_do_either_is_refused() {
     let mut program = IncrementProgram::new(loading, &begun.state, &begun.rate, 0.1, 1.0);
     assert!(program.pairs() > 0);
     let end = Arrived { state: &end, rate: &begun.rate, error: 0.0 };
-    assert!(matches!(program.solved_at(end, &begun.modes), Foreseen::Unclear));
+    assert!(matches!(certificate::solved_at(&mut program, end, &begun.modes), ForeseenModes::Unclear));
 }
 
 /// Where slip turns in a plane, and where two obstacles press one node, the search has the word.
@@ -236,7 +244,7 @@ fn circular_cones_and_corners_are_left_to_the_search() {
             };
             if scene.structure.dimension == 3 || scene.corners.iter().any(|corner| closed(corner) >= 2) {
                 asked += 1;
-                assert!(matches!(begun.shown(loading, &reached), Foreseen::Unclear));
+                assert!(matches!(begun.shown(loading, &reached), ForeseenModes::Unclear));
             }
         });
     }

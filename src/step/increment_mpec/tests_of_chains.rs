@@ -78,7 +78,7 @@ impl Chain {
 }
 
 /// Runs increments until the load has passed `until`; returns the work and the worst distance from what is known.
-fn run(chain: &Chain, step: f64, until: f64) -> (Counts, u64, f64) {
+fn run(chain: &Chain, step: f64, until: f64) -> (ProgramCounts, u64, f64) {
     let mut base = chain.pressed();
     let mut forward = Rate {
         displacement: vec![0.0; 3 * chain.blocks],
@@ -86,7 +86,7 @@ fn run(chain: &Chain, step: f64, until: f64) -> (Counts, u64, f64) {
         reactions: vec![Reaction::default(); chain.blocks],
     };
     let mut modes = vec![Mode::Stick; chain.blocks];
-    let (mut work, mut increments, mut worst) = (Counts::default(), 0, 0.0_f64);
+    let (mut work, mut increments, mut worst) = (ProgramCounts::default(), 0, 0.0_f64);
     while base.load < until {
         let mut program = IncrementProgram::new(chain.loading(), &base, &forward, step, chain.weight);
         let start = program.variables_at(&forward);

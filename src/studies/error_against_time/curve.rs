@@ -2,8 +2,8 @@
 
 use crate::check::scenes::exact;
 use crate::result::increment::PointKind;
-use crate::studies::error_against_time::interpolation::Polynomial;
-use crate::studies::error_against_time::trace::{Point, Scales, TracedStage, distance};
+use crate::studies::error_against_time::interpolation::SegmentPolynomial;
+use crate::studies::error_against_time::trace::{ScaledPoint, TraceScales, TracedStage, distance};
 
 /// Vertices of an exact stage, roughly; a piece gets two at least.
 const VERTICES: usize = 2000;
@@ -11,7 +11,7 @@ const VERTICES: usize = 2000;
 /// What runs from one vertex to the next.
 enum Segment {
     Straight,
-    Polynomial(Polynomial),
+    Polynomial(SegmentPolynomial),
     /// The parameters at both ends.
     Exact {
         piece: usize,
@@ -24,12 +24,12 @@ enum Segment {
 pub(super) struct Curve {
     pub stage: usize,
     /// Two or more.
-    pub vertices: Vec<Point>,
+    pub vertices: Vec<ScaledPoint>,
     /// Sum of the chords up to each vertex.
     pub arc: Vec<f64>,
-    pub events: Vec<(PointKind, Point)>,
+    pub events: Vec<(PointKind, ScaledPoint)>,
     segments: Vec<Segment>,
-    exact: Option<(Vec<exact::Piece>, Scales)>,
+    exact: Option<(Vec<exact::Piece>, TraceScales)>,
 }
 
 impl Curve {
@@ -44,7 +44,7 @@ impl Curve {
         let mut first = 0;
         for last in ends {
             segments.extend(
-                (first..last).map(|segment| Segment::Polynomial(Polynomial::new(&points, segment, first, last))),
+                (first..last).map(|segment| Segment::Polynomial(SegmentPolynomial::new(&points, segment, first, last))),
             );
             first = last;
         }
@@ -53,7 +53,7 @@ impl Curve {
     }
 
     /// A stage in closed form.
-    pub fn exact(number: usize, stage: exact::Stage, scales: &Scales) -> Self {
+    pub fn exact(number: usize, stage: exact::Stage, scales: &TraceScales) -> Self {
         let parts = (VERTICES / stage.pieces.len().max(1)).max(2);
         let scaled = |place: exact::Place| scales.point(number, place.displacements.into_iter(), place.load);
         let (mut vertices, mut segments, mut events) = (Vec::new(), Vec::new(), Vec::new());
@@ -75,10 +75,10 @@ impl Curve {
 
     fn new(
         stage: usize,
-        mut vertices: Vec<Point>,
+        mut vertices: Vec<ScaledPoint>,
         mut segments: Vec<Segment>,
-        events: Vec<(PointKind, Point)>,
-        exact: Option<(Vec<exact::Piece>, Scales)>,
+        events: Vec<(PointKind, ScaledPoint)>,
+        exact: Option<(Vec<exact::Piece>, TraceScales)>,
     ) -> Self {
         if vertices.len() == 1 {
             vertices.push(vertices[0].clone());
@@ -100,14 +100,14 @@ impl Curve {
     /// Largest distance of the curve from the middle of a chord.
     pub fn sag(&self) -> f64 {
         let sags = self.vertices.windows(2).enumerate().map(|(segment, ends)| {
-            let middle: Point = ends[0].iter().zip(&ends[1]).map(|(from, to)| 0.5 * (from + to)).collect();
+            let middle: ScaledPoint = ends[0].iter().zip(&ends[1]).map(|(from, to)| 0.5 * (from + to)).collect();
             distance(&self.at(segment, 0.5), &middle)
         });
         sags.fold(0.0, f64::max)
     }
 
     /// The point at a part of the way along a segment, from 0 to 1.
-    pub fn at(&self, segment: usize, part: f64) -> Point {
+    pub fn at(&self, segment: usize, part: f64) -> ScaledPoint {
         match (&self.segments[segment], &self.exact) {
             (Segment::Polynomial(polynomial), _) => polynomial.at(&self.vertices, part),
             (Segment::Exact { piece, from, to }, Some((pieces, scales))) => {

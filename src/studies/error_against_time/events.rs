@@ -2,7 +2,7 @@
 
 use crate::result::increment::PointKind;
 use crate::studies::error_against_time::curve::Curve;
-use crate::studies::error_against_time::trace::{Point, Trace, distance};
+use crate::studies::error_against_time::trace::{ScaledPoint, StudyTrace, distance};
 use serde::{Deserialize, Serialize};
 
 /// Comparisons of one event with another that are made. Past it only events before the first and after the last
@@ -23,33 +23,35 @@ pub struct EventsFound {
     pub largest_error: Option<f64>,
 }
 
-struct Event<'a> {
+struct ComparedEvent<'a> {
     stage: usize,
     kind: PointKind,
-    point: &'a Point,
+    point: &'a ScaledPoint,
 }
 
-impl Event<'_> {
+impl ComparedEvent<'_> {
     fn is_like(&self, other: &Self) -> bool {
         self.stage == other.stage && self.kind == other.kind
     }
 }
 
-pub(super) fn compare(trace: &Trace, curves: &[Curve]) -> EventsFound {
-    let found: Vec<Event> = trace
+pub(super) fn compare(trace: &StudyTrace, curves: &[Curve]) -> EventsFound {
+    let found: Vec<ComparedEvent> = trace
         .stages
         .iter()
         .flat_map(|stage| {
-            stage.events.iter().map(|event| Event {
+            stage.events.iter().map(|event| ComparedEvent {
                 stage: stage.stage,
                 kind: event.kind,
                 point: &stage.points[event.point],
             })
         })
         .collect();
-    let expected: Vec<Event> = curves
+    let expected: Vec<ComparedEvent> = curves
         .iter()
-        .flat_map(|curve| curve.events.iter().map(|(kind, point)| Event { stage: curve.stage, kind: *kind, point }))
+        .flat_map(|curve| {
+            curve.events.iter().map(|(kind, point)| ComparedEvent { stage: curve.stage, kind: *kind, point })
+        })
         .collect();
     let pairs = in_common(&found, &expected);
     let errors = pairs.iter().map(|(mine, theirs)| distance(found[*mine].point, expected[*theirs].point));
@@ -62,7 +64,7 @@ pub(super) fn compare(trace: &Trace, curves: &[Curve]) -> EventsFound {
 }
 
 /// Pairs of like events, in order, as many as possible.
-fn in_common(found: &[Event], expected: &[Event]) -> Vec<(usize, usize)> {
+fn in_common(found: &[ComparedEvent], expected: &[ComparedEvent]) -> Vec<(usize, usize)> {
     let alike = found.iter().zip(expected).take_while(|(a, b)| a.is_like(b)).count();
     let mut pairs: Vec<(usize, usize)> = (0..alike).map(|index| (index, index)).collect();
     let (rest, other_rest) = (&found[alike..], &expected[alike..]);

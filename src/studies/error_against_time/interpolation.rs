@@ -7,7 +7,7 @@
 //! Multivariate Approximation and Interpolation, Elsevier 2006, 39). Neighbours are so far apart that round-off is not
 //! magnified, and only as many as the curve runs along their chord at no steep angle.
 
-use crate::studies::error_against_time::trace::{Point, distance};
+use crate::studies::error_against_time::trace::{ScaledPoint, distance};
 
 /// Points of a polynomial at most.
 const MOST: usize = 8;
@@ -18,7 +18,7 @@ const GENTLE: f64 = 0.5;
 
 /// A polynomial from one point to the next.
 #[derive(Debug, Clone)]
-pub(super) struct Polynomial {
+pub(super) struct SegmentPolynomial {
     /// Which of the points, in order.
     nodes: Vec<usize>,
     /// Places along the chord; 0 and 1 are the segment's ends.
@@ -29,9 +29,9 @@ pub(super) struct Polynomial {
     start: usize,
 }
 
-impl Polynomial {
+impl SegmentPolynomial {
     /// Between the points `segment` and `segment + 1`, with neighbours from `first` to `last`.
-    pub fn new(points: &[Point], segment: usize, first: usize, last: usize) -> Self {
+    pub fn new(points: &[ScaledPoint], segment: usize, first: usize, last: usize) -> Self {
         let mut nodes = neighbours(points, segment, first, last);
         let places = loop {
             match places(points, segment, &nodes) {
@@ -62,7 +62,7 @@ impl Polynomial {
     }
 
     /// The point at a part of the way, from 0 to 1.
-    pub fn at(&self, points: &[Point], part: f64) -> Point {
+    pub fn at(&self, points: &[ScaledPoint], part: f64) -> ScaledPoint {
         if let Some(node) = self.places.iter().position(|place| *place == part) {
             return points[self.nodes[node]].clone();
         }
@@ -82,7 +82,7 @@ impl Polynomial {
 }
 
 /// The two points of a segment and neighbours on both sides, in order, as far as there are any.
-fn neighbours(points: &[Point], segment: usize, first: usize, last: usize) -> Vec<usize> {
+fn neighbours(points: &[ScaledPoint], segment: usize, first: usize, last: usize) -> Vec<usize> {
     let closest = CLOSEST * distance(&points[segment], &points[segment + 1]);
     let mut nodes = std::collections::VecDeque::from([segment, segment + 1]);
     let (mut before, mut after) = (true, true);
@@ -106,7 +106,7 @@ fn neighbours(points: &[Point], segment: usize, first: usize, last: usize) -> Ve
 
 /// Places of the nodes along the chord from the first to the last, 0 and 1 at the segment's ends; none where the curve
 /// runs at too steep an angle.
-fn places(points: &[Point], segment: usize, nodes: &[usize]) -> Option<Vec<f64>> {
+fn places(points: &[ScaledPoint], segment: usize, nodes: &[usize]) -> Option<Vec<f64>> {
     let (from, to) = (&points[*nodes.first()?], &points[*nodes.last()?]);
     let length = distance(from, to);
     let along: Vec<f64> = nodes

@@ -8,7 +8,7 @@
 use crate::resources::cancel::CancelFlag;
 use crate::studies::error_against_time::curve::Curve;
 use crate::studies::error_against_time::nearest::{chord, distance_from_segment};
-use crate::studies::error_against_time::trace::{Point, distance};
+use crate::studies::error_against_time::trace::{ScaledPoint, distance};
 
 /// Bisections of the logarithm of the distance: from seventeen decades to a part in a hundred.
 const BISECTIONS: usize = 12;
@@ -17,7 +17,7 @@ const DECADES: f64 = 1e-17;
 const SLACK: f64 = 4.0;
 
 /// The largest distance of any point; infinite where it overflows, and when cancelled.
-pub(super) fn path_error(points: &[Point], curve: &Curve, cancel: &CancelFlag) -> f64 {
+pub(super) fn path_error(points: &[ScaledPoint], curve: &Curve, cancel: &CancelFlag) -> f64 {
     let polygon = Polygon { vertices: &curve.vertices, arc: &curve.arc, backward: false };
     let Some(start) = curve.vertices.first() else { return f64::INFINITY };
     // Everything fits onto the first place within this.
@@ -84,7 +84,7 @@ fn distance_from_window(curve: &Curve, polygon: &Polygon<'_>, (from, to): (f64, 
 /// segment, the rest the part of the way.
 #[derive(Clone, Copy)]
 struct Polygon<'a> {
-    vertices: &'a [Point],
+    vertices: &'a [ScaledPoint],
     arc: &'a [f64],
     backward: bool,
 }
@@ -130,7 +130,7 @@ impl Polygon<'_> {
     }
 
     /// The earliest places of points in order, each within a distance; none where they do not fit.
-    fn places<'b>(&self, points: impl Iterator<Item = &'b Point>, within: f64) -> Option<Vec<f64>> {
+    fn places<'b>(&self, points: impl Iterator<Item = &'b ScaledPoint>, within: f64) -> Option<Vec<f64>> {
         let mut place = 0.0;
         points
             .map(|point| {

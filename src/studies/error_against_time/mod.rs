@@ -48,7 +48,7 @@ pub(crate) mod reference;
 pub(crate) mod report;
 pub(crate) mod row;
 pub(crate) mod run;
-pub(crate) mod table;
+pub mod table;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
@@ -59,5 +59,5 @@ pub use events::EventsFound;
 pub use plan::{Plan, plan};
 pub use reference::{Reference, ReferenceKind};
 pub use report::{MethodOrder, Report};
-pub use row::{Row, Run, Time};
+pub use row::{Run, StudyRow, Time};
 pub use run::run;

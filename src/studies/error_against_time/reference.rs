@@ -13,7 +13,7 @@ use crate::result::stop_reason::StopReason;
 use crate::studies::error_against_time::curve::Curve;
 use crate::studies::error_against_time::events::{self, EventsFound};
 use crate::studies::error_against_time::matching::path_error;
-use crate::studies::error_against_time::trace::{Scales, Trace};
+use crate::studies::error_against_time::trace::{StudyTrace, TraceScales};
 use serde::{Deserialize, Serialize};
 
 /// Errors below this are round-off and the tolerance of Newton's method.
@@ -88,7 +88,7 @@ enum Source {
 /// A reference ready to be measured against.
 pub(super) struct Standard {
     source: Source,
-    scales: Scales,
+    scales: TraceScales,
     pub reference: Reference,
 }
 
@@ -104,7 +104,7 @@ impl Standard {
     pub fn new(request: &StudyRequest, cancel: &CancelFlag) -> Result<Option<Self>, InputErrors> {
         let fine = request.finer_job(request.study.refinement as f64);
         let scene = Scene::new(&fine)?;
-        let scales = Scales::new(&request.model, scene.plan());
+        let scales = TraceScales::new(&request.model, scene.plan());
         if let Some(exact) = exact_of(request, &fine)? {
             let reference = Reference {
                 kind: ReferenceKind::Exact,
@@ -149,12 +149,12 @@ impl Standard {
         }
     }
 
-    pub fn scales(&self) -> &Scales {
+    pub fn scales(&self) -> &TraceScales {
         &self.scales
     }
 
     /// Without a meaning when cancelled meanwhile.
-    pub fn measure(&self, trace: &Trace, cancel: &CancelFlag) -> Measured {
+    pub fn measure(&self, trace: &StudyTrace, cancel: &CancelFlag) -> Measured {
         match &self.source {
             Source::Fine(curves) => against(trace, curves, cancel),
             Source::Exact(exact) => {
@@ -173,7 +173,7 @@ impl Standard {
     }
 }
 
-fn against(trace: &Trace, curves: &[Curve], cancel: &CancelFlag) -> Measured {
+fn against(trace: &StudyTrace, curves: &[Curve], cancel: &CancelFlag) -> Measured {
     let mut largest = None;
     let mut outside = 0;
     for stage in &trace.stages {
@@ -192,7 +192,7 @@ fn against(trace: &Trace, curves: &[Curve], cancel: &CancelFlag) -> Measured {
 
 /// A whole path of the method `auto`.
 struct FinePath {
-    trace: Trace,
+    trace: StudyTrace,
     report: Report,
     /// Of every point.
     places: Vec<PlaceOnPath>,
@@ -214,8 +214,8 @@ impl PlaceOnPath {
 }
 
 /// `None` when cancelled, or without a report, which is a defect.
-fn traced(scene: &Scene, scales: &Scales, cancel: &CancelFlag) -> Option<FinePath> {
-    let (mut trace, mut places, mut largest_estimate) = (Trace::default(), Vec::new(), 0.0_f64);
+fn traced(scene: &Scene, scales: &TraceScales, cancel: &CancelFlag) -> Option<FinePath> {
+    let (mut trace, mut places, mut largest_estimate) = (StudyTrace::default(), Vec::new(), 0.0_f64);
     let mut path = Path::new(scene, cancel.clone());
     for increment in path.by_ref() {
         trace.add(scales, &increment);
@@ -228,8 +228,13 @@ fn traced(scene: &Scene, scales: &Scales, cancel: &CancelFlag) -> Option<FinePat
 
 /// The same path once more, with its points in the middle between those of the first time: where a curve through those is
 /// farthest from the path. Arc lengths are sums of chords, and differ a little; events set them right.
-fn traced_between(scene: &Scene, scales: &Scales, places: &[PlaceOnPath], cancel: &CancelFlag) -> Option<Trace> {
-    let mut trace = Trace::default();
+fn traced_between(
+    scene: &Scene,
+    scales: &TraceScales,
+    places: &[PlaceOnPath],
+    cancel: &CancelFlag,
+) -> Option<StudyTrace> {
+    let mut trace = StudyTrace::default();
     let mut path = Path::new(scene, cancel.clone());
     let mut events = places.iter().filter(|place| place.is_event);
     let (mut segment, mut ahead) = (0, 0.0);

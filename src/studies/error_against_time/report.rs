@@ -4,7 +4,7 @@ use crate::model::request::Method;
 use crate::model::request::study::Parameter;
 use crate::studies::error_against_time::plan::Plan;
 use crate::studies::error_against_time::reference::Reference;
-use crate::studies::error_against_time::row::{Row, Run, slope};
+use crate::studies::error_against_time::row::{Run, StudyRow, slope};
 use serde::{Deserialize, Serialize};
 
 /// What a study has found.
@@ -16,7 +16,7 @@ pub struct Report {
     pub name: Option<String>,
     pub parameter: Parameter,
     pub reference: Reference,
-    pub rows: Vec<Row>,
+    pub rows: Vec<StudyRow>,
     pub orders: Vec<MethodOrder>,
     /// Every path was traced as often as was asked for.
     pub complete: bool,
@@ -35,7 +35,7 @@ impl Report {
     /// the first.
     pub fn of_runs(name: Option<String>, plan: &Plan, runs: &[Run]) -> Option<Self> {
         let last = runs.last()?;
-        let mut rows: Vec<Row> = Vec::new();
+        let mut rows: Vec<StudyRow> = Vec::new();
         for run in runs.iter().rev() {
             if rows.iter().all(|known| known.row != run.row.row) {
                 rows.push(run.row.clone());
@@ -50,7 +50,7 @@ impl Report {
         name: Option<String>,
         parameter: Parameter,
         reference: Reference,
-        rows: Vec<Row>,
+        rows: Vec<StudyRow>,
         complete: bool,
     ) -> Self {
         let mut methods: Vec<Method> = rows.iter().map(|row| row.method).collect();
@@ -58,7 +58,7 @@ impl Report {
         let orders = methods
             .into_iter()
             .map(|method| {
-                let its: Vec<&Row> = rows.iter().filter(|row| row.method == method).collect();
+                let its: Vec<&StudyRow> = rows.iter().filter(|row| row.method == method).collect();
                 MethodOrder { method, order: slope(&its, parameter == Parameter::ArcLength) }
             })
             .collect();
@@ -66,7 +66,7 @@ impl Report {
     }
 
     /// Methods in the table's order, each with its rows.
-    pub fn by_method(&self) -> impl Iterator<Item = (&MethodOrder, Vec<&Row>)> {
+    pub fn by_method(&self) -> impl Iterator<Item = (&MethodOrder, Vec<&StudyRow>)> {
         self.orders.iter().map(|order| (order, self.rows.iter().filter(|row| row.method == order.method).collect()))
     }
 }

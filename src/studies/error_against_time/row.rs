@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[cfg_attr(feature = "server", schema(as = StudyRow))]
-pub struct Row {
+pub struct StudyRow {
     /// Place in the table, from 0: the rungs of the first method from coarse to fine, then those of the next.
     pub row: u64,
     pub method: Method,
@@ -75,12 +75,12 @@ pub struct Run {
     /// Solver time of this one path.
     pub elapsed_s: f64,
     /// The row as it stands now.
-    pub row: Row,
+    pub row: StudyRow,
     /// What its error is measured against.
     pub reference: Reference,
 }
 
-impl Row {
+impl StudyRow {
     /// What an order is read against: the mean step, or the value of what is varied.
     pub fn setting(&self, by_step: bool) -> f64 {
         if by_step { self.mean_step } else { self.value }
@@ -97,12 +97,12 @@ impl Row {
 const LEAST_SPREAD: f64 = 0.5 * 0.2231 * 0.2231;
 
 /// The slope through two rows.
-pub(super) fn order(coarse: &Row, fine: &Row, by_step: bool) -> Option<f64> {
+pub(super) fn order(coarse: &StudyRow, fine: &StudyRow, by_step: bool) -> Option<f64> {
     slope(&[coarse, fine], by_step)
 }
 
 /// The slope of the least squares through all rows whose error can be read.
-pub(super) fn slope(rows: &[&Row], by_step: bool) -> Option<f64> {
+pub(super) fn slope(rows: &[&StudyRow], by_step: bool) -> Option<f64> {
     let logarithms: Vec<(f64, f64)> = rows
         .iter()
         .filter_map(|row| Some((row.setting(by_step).ln(), row.readable()?.ln())))

@@ -10,8 +10,8 @@ use crate::result::stop_reason::StopReason;
 use crate::studies::error_against_time::plan::{Plan, plan};
 use crate::studies::error_against_time::reference::Standard;
 use crate::studies::error_against_time::report::Report;
-use crate::studies::error_against_time::row::{Row, Run, Time, order};
-use crate::studies::error_against_time::trace::Trace;
+use crate::studies::error_against_time::row::{Run, StudyRow, Time, order};
+use crate::studies::error_against_time::trace::StudyTrace;
 use std::ops::ControlFlow;
 
 /// Runs a study; `done` are its first runs, from an earlier attempt, and every further one goes to `accept`, which breaks
@@ -29,7 +29,7 @@ pub fn run(
 ) -> Result<Option<Report>, InputErrors> {
     let plan = plan(request)?;
     let Some(standard) = Standard::new(request, cancel)? else { return Ok(None) };
-    let mut found = Found { plan: &plan, rows: Vec::new(), times: vec![Vec::new(); plan.rows as usize] };
+    let mut found = StudyInProgress { plan: &plan, rows: Vec::new(), times: vec![Vec::new(); plan.rows as usize] };
     for run in done {
         found.take(&run);
     }
@@ -57,13 +57,13 @@ pub fn run(
 }
 
 /// What there is so far.
-struct Found<'a> {
+struct StudyInProgress<'a> {
     plan: &'a Plan,
-    rows: Vec<Row>,
+    rows: Vec<StudyRow>,
     times: Vec<Vec<f64>>,
 }
 
-impl Found<'_> {
+impl StudyInProgress<'_> {
     fn runs(&self) -> u64 {
         self.rows.len() as u64 + self.times.iter().map(|times| times.len() as u64).sum::<u64>()
     }
@@ -105,9 +105,9 @@ fn first(
     standard: &Standard,
     (row, method, value): (u64, Method, f64),
     cancel: &CancelFlag,
-) -> Option<(f64, Row)> {
+) -> Option<(f64, StudyRow)> {
     let mut path = TracedPath::new(scene, cancel.clone());
-    let mut trace = Trace::default();
+    let mut trace = StudyTrace::default();
     let (mut arc_length, mut largest_estimate) = (0.0, 0.0_f64);
     for increment in path.by_ref() {
         trace.add(standard.scales(), &increment);
@@ -119,7 +119,7 @@ fn first(
     if cancel.is_cancelled() {
         return None;
     }
-    let row = Row {
+    let row = StudyRow {
         row,
         method,
         value,

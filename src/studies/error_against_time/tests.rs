@@ -7,20 +7,20 @@ use crate::result::stop_reason::StopReason;
 use crate::studies::error_against_time::curve::Curve;
 use crate::studies::error_against_time::events::{self, EventsFound};
 use crate::studies::error_against_time::matching;
-use crate::studies::error_against_time::row::{Row, Time, slope};
-use crate::studies::error_against_time::trace::{Event, Point, Trace, TracedStage};
+use crate::studies::error_against_time::row::{StudyRow, Time, slope};
+use crate::studies::error_against_time::trace::{ScaledPoint, StudyTrace, TracedEvent, TracedStage};
 
-fn path_error(points: &[Point], curve: &Curve) -> f64 {
+fn path_error(points: &[ScaledPoint], curve: &Curve) -> f64 {
     matching::path_error(points, curve, &CancelFlag::default())
 }
 
-fn through(points: Vec<Point>, corners: &[usize]) -> Curve {
-    let events = corners.iter().map(|point| Event { kind: PointKind::ContactChange, point: *point }).collect();
+fn through(points: Vec<ScaledPoint>, corners: &[usize]) -> Curve {
+    let events = corners.iter().map(|point| TracedEvent { kind: PointKind::ContactChange, point: *point }).collect();
     Curve::interpolating(TracedStage { stage: 0, points, events })
 }
 
 /// A helix at uneven places: radius 1, rise 0.3 a turn, in four dimensions.
-fn helix(angle: f64) -> Point {
+fn helix(angle: f64) -> ScaledPoint {
     vec![angle.cos(), angle.sin(), 0.3 * angle, 0.1]
 }
 
@@ -31,7 +31,7 @@ fn angles(count: u32) -> Vec<f64> {
 
 #[test]
 fn a_smooth_curve_is_followed_to_eighth_order() {
-    let between: Vec<Point> =
+    let between: Vec<ScaledPoint> =
         (0..=500).map(|k| helix(3.0 * (1.0 + 0.1 * 9.0_f64.sin() / 9.0) * f64::from(k) / 500.0)).collect();
     let errors: Vec<f64> = [20, 40, 80]
         .iter()
@@ -46,7 +46,7 @@ fn a_smooth_curve_is_followed_to_eighth_order() {
 fn points_beside_a_curve_are_as_far_as_they_are() {
     let curve = through(angles(60).into_iter().map(helix).collect(), &[]);
     for aside in [1e-3, 1e-6, 1e-9] {
-        let points: Vec<Point> = (1..30)
+        let points: Vec<ScaledPoint> = (1..30)
             .map(|k| helix(0.1 * f64::from(k)))
             .map(|point| vec![point[0], point[1], point[2], 0.1 + aside])
             .collect();
@@ -59,8 +59,8 @@ fn points_beside_a_curve_are_as_far_as_they_are() {
 #[test]
 fn corners_are_not_smoothed() {
     let along = |x: f64| if x <= 1.0 { vec![x, 0.0] } else { vec![1.0 + 0.8 * (x - 1.0), 0.6 * (x - 1.0)] };
-    let points: Vec<Point> = (0..=20).map(|k| along(f64::from(k) / 10.0)).collect();
-    let between: Vec<Point> = (0..=200).map(|k| along(f64::from(k) / 100.0)).collect();
+    let points: Vec<ScaledPoint> = (0..=20).map(|k| along(f64::from(k) / 10.0)).collect();
+    let between: Vec<ScaledPoint> = (0..=200).map(|k| along(f64::from(k) / 100.0)).collect();
     assert!(path_error(&between, &through(points.clone(), &[10])) < 1e-15);
     assert!(path_error(&between, &through(points, &[])) > 1e-4);
 }
@@ -70,9 +70,9 @@ fn corners_are_not_smoothed() {
 fn order_counts() {
     let line = |x: f64| vec![x, 0.0];
     let curve = through((0..=10).map(|k| line(f64::from(k))).collect(), &[]);
-    let forth: Vec<Point> = [0.0, 2.5, 5.0].map(line).to_vec();
+    let forth: Vec<ScaledPoint> = [0.0, 2.5, 5.0].map(line).to_vec();
     assert!(path_error(&forth, &curve) < 1e-15);
-    let and_back: Vec<Point> = [0.0, 2.5, 5.0, 3.0, 1.0].map(line).to_vec();
+    let and_back: Vec<ScaledPoint> = [0.0, 2.5, 5.0, 3.0, 1.0].map(line).to_vec();
     // Best laid with 5 and 1 onto 3.
     assert!((path_error(&and_back, &curve) - 2.0).abs() < 0.05, "{}", path_error(&and_back, &curve));
 }
@@ -86,7 +86,7 @@ fn a_hairpin_that_is_cut_off_does_not_hold_the_rest_up() {
         s => vec![2.1 - s, 0.1],
     };
     let curve = through((0..=31).map(|k| hairpin(0.1 * f64::from(k))).collect(), &[10, 11]);
-    let cut: Vec<Point> = [0.0, 0.3, 0.6, 1.5, 1.8, 2.1, 2.5, 3.0].map(hairpin).to_vec();
+    let cut: Vec<ScaledPoint> = [0.0, 0.3, 0.6, 1.5, 1.8, 2.1, 2.5, 3.0].map(hairpin).to_vec();
     assert!(path_error(&cut, &curve) < 1e-14, "{:e}", path_error(&cut, &curve));
 }
 
@@ -107,7 +107,7 @@ fn points_that_nearly_coincide_do_no_harm() {
     let doubled: Vec<f64> = places.iter().map(|angle| angle + 1e-11).collect();
     places.extend(doubled.iter().take(40));
     places.sort_by(f64::total_cmp);
-    let points: Vec<Point> = (1..300).map(|k| helix(0.01 * f64::from(k))).collect();
+    let points: Vec<ScaledPoint> = (1..300).map(|k| helix(0.01 * f64::from(k))).collect();
     let error = path_error(&points, &through(places.into_iter().map(helix).collect(), &[]));
     assert!(error < 1e-7, "{error:e}");
 }
@@ -118,10 +118,10 @@ fn events_are_compared_as_a_sequence() {
     let stage = |kinds: &[PointKind], shift: f64| TracedStage {
         stage: 0,
         points: (0..=kinds.len()).map(|k| vec![k as f64, shift]).collect(),
-        events: kinds.iter().enumerate().map(|(k, kind)| Event { kind: *kind, point: k + 1 }).collect(),
+        events: kinds.iter().enumerate().map(|(k, kind)| TracedEvent { kind: *kind, point: k + 1 }).collect(),
     };
     let expected = [Curve::interpolating(stage(&[SmoothLimit, ContactChange, NonsmoothLimit, End], 0.0))];
-    let found = |kinds: &[PointKind]| events::compare(&Trace { stages: vec![stage(kinds, 0.5)] }, &expected);
+    let found = |kinds: &[PointKind]| events::compare(&StudyTrace { stages: vec![stage(kinds, 0.5)] }, &expected);
     let all = found(&[SmoothLimit, ContactChange, NonsmoothLimit, End]);
     assert_eq!(all, EventsFound { expected: 4, found: 4, others: 0, largest_error: Some(0.5) });
     let one_missing = found(&[SmoothLimit, NonsmoothLimit, End]);
@@ -133,8 +133,8 @@ fn events_are_compared_as_a_sequence() {
     assert_eq!(found(&[]), EventsFound { expected: 4, found: 0, others: 0, largest_error: None });
 }
 
-fn row(mean_step: f64, path_error: f64, resolved: bool) -> Row {
-    Row {
+fn row(mean_step: f64, path_error: f64, resolved: bool) -> StudyRow {
+    StudyRow {
         row: 0,
         method: Method::Auto,
         value: 1.0,

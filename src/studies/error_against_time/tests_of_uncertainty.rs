@@ -5,7 +5,7 @@ use crate::model::decode;
 use crate::model::request::study::{ReferenceChoice, Study, StudyRequest};
 use crate::resources::cancel::CancelFlag;
 use crate::studies::error_against_time::reference::{Standard, exact_of};
-use crate::studies::error_against_time::trace::{Trace, TracedStage};
+use crate::studies::error_against_time::trace::{StudyTrace, TracedStage};
 
 /// Places at which each segment of a reference is compared.
 const PARTS: usize = 10;
@@ -38,7 +38,7 @@ fn stated_and_true(name: &str, arc_length: f64) -> (f64, f64) {
             .collect(),
         events: Vec::new(),
     });
-    let trace = Trace { stages: stages.collect() };
+    let trace = StudyTrace { stages: stages.collect() };
     let auto = request(name, arc_length, ReferenceChoice::Auto);
     let better = match exact_of(&auto, &auto.finer_job(1.0)).expect("a choice") {
         Some(_) => auto,

@@ -5,11 +5,11 @@ use crate::result::increment::{Increment, PointKind};
 use crate::result::plan::Plan;
 
 /// Displacement components over their scale, then the load factor over its stage's.
-pub(super) type Point = Vec<f64>;
+pub(super) type ScaledPoint = Vec<f64>;
 
 /// What makes points dimensionless.
 #[derive(Debug, Clone)]
-pub(super) struct Scales {
+pub(super) struct TraceScales {
     pub displacement: f64,
     /// Stage names and load scales.
     loads: Vec<(String, f64)>,
@@ -17,7 +17,7 @@ pub(super) struct Scales {
 
 /// A path's points, stage by stage.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Trace {
+pub(super) struct StudyTrace {
     pub stages: Vec<TracedStage>,
 }
 
@@ -26,19 +26,19 @@ pub(super) struct TracedStage {
     /// Place among the model's stages.
     pub stage: usize,
     /// The first is where the stage begins, at no load.
-    pub points: Vec<Point>,
-    pub events: Vec<Event>,
+    pub points: Vec<ScaledPoint>,
+    pub events: Vec<TracedEvent>,
 }
 
 /// Something that happens at a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Event {
+pub(super) struct TracedEvent {
     pub kind: PointKind,
     /// Which point of the stage.
     pub point: usize,
 }
 
-impl Scales {
+impl TraceScales {
     pub fn new(model: &Model, plan: &Plan) -> Self {
         let names = model.stages.iter().map(|stage| stage.name.clone());
         Self { displacement: plan.displacement_scale, loads: names.zip(plan.load_scales.iter().copied()).collect() }
@@ -48,13 +48,13 @@ impl Scales {
         self.loads[stage].1
     }
 
-    pub fn point(&self, stage: usize, displacements: impl Iterator<Item = f64>, load: f64) -> Point {
+    pub fn point(&self, stage: usize, displacements: impl Iterator<Item = f64>, load: f64) -> ScaledPoint {
         displacements.map(|value| value / self.displacement).chain([load / self.load(stage)]).collect()
     }
 }
 
-impl Trace {
-    pub fn add(&mut self, scales: &Scales, increment: &Increment) {
+impl StudyTrace {
+    pub fn add(&mut self, scales: &TraceScales, increment: &Increment) {
         let known = self.stages.last().map(|last| last.stage);
         let same = known.is_some_and(|stage| *scales.loads[stage].0 == *increment.stage);
         if !same {
@@ -72,7 +72,7 @@ impl Trace {
         stage.points.push(scales.point(stage.stage, displacements, increment.load_factor));
         match increment.point.kind {
             PointKind::Start | PointKind::Regular => {}
-            kind => stage.events.push(Event { kind, point: stage.points.len() - 1 }),
+            kind => stage.events.push(TracedEvent { kind, point: stage.points.len() - 1 }),
         }
     }
 

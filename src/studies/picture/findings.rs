@@ -1,6 +1,7 @@
 //! What studies and sweeps find, in the forms in which it is read: called by `command` and `http`.
 
 use crate::studies::error_against_time::Report;
+use crate::studies::error_against_time::table;
 use crate::studies::picture::{PlotError, study, sweep};
 use crate::studies::sweeps::Found;
 use serde::Serialize;
@@ -33,11 +34,11 @@ impl Findings for Report {
     const NOT_DRAWN: &'static str = "no path of it has an error yet";
 
     fn csv(&self) -> serde_json::Result<String> {
-        self.csv()
+        table::csv(self)
     }
 
     fn text(&self) -> serde_json::Result<String> {
-        self.text()
+        table::text(self)
     }
 
     fn svg(&self) -> Result<String, PlotError> {

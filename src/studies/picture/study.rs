@@ -3,7 +3,7 @@
 
 use crate::model::request::Method;
 use crate::model::request::study::Parameter;
-use crate::studies::error_against_time::{Report, Row};
+use crate::studies::error_against_time::{Report, StudyRow};
 use crate::studies::picture::PlotError;
 use crate::studies::picture::labels::Map;
 use crate::studies::picture::shapes::{self, Drawn, FAINT_INK, FINE, INK, Lettering, PAPER, Place, Sheet};
@@ -72,7 +72,7 @@ struct Dot {
 }
 
 impl Dot {
-    fn of(row: &Row, against: Against) -> Option<Self> {
+    fn of(row: &StudyRow, against: Against) -> Option<Self> {
         let (across, spread) = match against {
             Against::Time => row.time.map(|time| (time.median_s, Some((time.least_s, time.largest_s))))?,
             Against::Setting(parameter) => (row.setting(parameter == Parameter::ArcLength), None),

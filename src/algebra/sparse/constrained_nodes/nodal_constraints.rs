@@ -7,18 +7,18 @@ use std::sync::Arc;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Holding {
     /// Unknowns of the node: at most three.
-    pub unknowns: Places,
-    pub rows: Places,
-    pub columns: Places,
+    pub unknowns: IndexList,
+    pub rows: IndexList,
+    pub columns: IndexList,
 }
 
 /// Some numbers of rows, columns or unknowns.
-pub type Places = SmallVec<[usize; 3]>;
+pub type IndexList = SmallVec<[usize; 3]>;
 
 impl Holding {
     /// Of a node that nothing holds yet.
     pub fn new(unknowns: impl IntoIterator<Item = usize>) -> Self {
-        Self { unknowns: unknowns.into_iter().collect(), rows: Places::new(), columns: Places::new() }
+        Self { unknowns: unknowns.into_iter().collect(), rows: IndexList::new(), columns: IndexList::new() }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::algebra::Inertia;
 use crate::algebra::dense::assembly::Sink;
-use crate::algebra::sparse::factors::entries::Entries;
+use crate::algebra::sparse::factors::entries::SparseEntries;
 use crate::algebra::sparse::factors::ldl::SymmetricFactor;
 use crate::algebra::sparse::factors::pattern::Pattern;
 use nalgebra::DVector;
@@ -16,9 +16,9 @@ pub struct Bordered {
     /// Entries of `K`, both triangles.
     pub(crate) values: Vec<f64>,
     /// Columns of `B`.
-    pub(crate) right: Vec<Entries>,
+    pub(crate) right: Vec<SparseEntries>,
     /// Rows of `[C, D]`.
-    pub(crate) lower: Vec<Entries>,
+    pub(crate) lower: Vec<SparseEntries>,
     /// Entries of `K` that were put in one by one: only these may be unsymmetric.
     pub(crate) touched: Vec<(usize, usize)>,
     /// Some entry had no place.
@@ -31,8 +31,8 @@ impl Bordered {
         Self {
             values: vec![0.0; pattern.entries()],
             pattern,
-            right: vec![Entries::new(); borders],
-            lower: vec![Entries::new(); borders],
+            right: vec![SparseEntries::new(); borders],
+            lower: vec![SparseEntries::new(); borders],
             touched: Vec::new(),
             is_outside: false,
         }
@@ -52,8 +52,8 @@ impl Bordered {
     #[must_use]
     pub fn widened(mut self, borders: usize) -> Self {
         let count = self.lower.len() + borders;
-        self.right.resize(count, Entries::new());
-        self.lower.resize(count, Entries::new());
+        self.right.resize(count, SparseEntries::new());
+        self.lower.resize(count, SparseEntries::new());
         self
     }
 
@@ -86,7 +86,7 @@ impl Bordered {
     pub fn minus(&self, other: &Self, factor: f64) -> Self {
         let mut change = self.clone();
         change.values.iter_mut().zip(&other.values).for_each(|(value, other)| *value = (*value - other) * factor);
-        let lists = |own: &mut [Entries], others: &[Entries]| {
+        let lists = |own: &mut [SparseEntries], others: &[SparseEntries]| {
             for (own, other) in own.iter_mut().zip(others) {
                 own.extend(other.iter().map(|(place, value)| (*place, -value)));
                 own.sort_by_key(|(place, _)| *place);
@@ -218,7 +218,7 @@ impl Bordered {
     /// The matrix with a symmetric `K`: a row `a` that it has more becomes a border `[[K, e], [a, -1]]`.
     pub(crate) fn symmetrised(&self) -> Self {
         let mut whole = self.clone();
-        let mut extra: Vec<(usize, Entries)> = Vec::new();
+        let mut extra: Vec<(usize, SparseEntries)> = Vec::new();
         let mut touched: Vec<(usize, usize)> =
             self.touched.iter().filter(|(row, column)| row > column).copied().collect();
         touched.extend(self.touched.iter().filter(|(row, column)| row < column).map(|(row, column)| (*column, *row)));
@@ -251,7 +251,7 @@ impl Bordered {
     }
 
     pub(crate) fn is_finite(&self) -> bool {
-        let finite = |entries: &Entries| entries.iter().all(|(_, value)| value.is_finite());
+        let finite = |entries: &SparseEntries| entries.iter().all(|(_, value)| value.is_finite());
         self.values.iter().all(|value| value.is_finite())
             && self.right.iter().all(finite)
             && self.lower.iter().all(finite)

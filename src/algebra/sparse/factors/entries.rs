@@ -3,4 +3,4 @@
 use smallvec::SmallVec;
 
 /// Entries of a row or a column: place and value.
-pub type Entries = SmallVec<[(usize, f64); 3]>;
+pub type SparseEntries = SmallVec<[(usize, f64); 3]>;

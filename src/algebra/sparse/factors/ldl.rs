@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 /// Why a matrix was not factorised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Failure {
+pub enum LdlFailure {
     /// A number is not finite, or became so.
     NotFinite,
     /// More pivots had to be raised than is worth it.
@@ -46,10 +46,10 @@ const MOST_RAISED: usize = 256;
 
 impl SymmetricFactor {
     /// Factorises; `values` as the pattern has them. Only one triangle is read.
-    pub fn new(pattern: Arc<Pattern>, values: &[f64]) -> Result<Self, Failure> {
+    pub fn new(pattern: Arc<Pattern>, values: &[f64]) -> Result<Self, LdlFailure> {
         let size = pattern.size();
         if !values.iter().all(|value| value.is_finite()) {
-            return Err(Failure::NotFinite);
+            return Err(LdlFailure::NotFinite);
         }
         let scales = scales(&pattern, values);
         let mut scaled = vec![0.0; values.len()];
@@ -71,13 +71,13 @@ impl SymmetricFactor {
                 }
             });
             if small.iter().any(|(_, pivot)| !pivot.is_finite()) {
-                return Err(Failure::NotFinite);
+                return Err(LdlFailure::NotFinite);
             }
             if small.is_empty() {
                 return Ok(factor);
             }
             if factor.raised.len() + small.len() > MOST_RAISED {
-                return Err(Failure::TooManySmallPivots);
+                return Err(LdlFailure::TooManySmallPivots);
             }
             small.into_iter().for_each(|(unknown, _)| factor.raise(Some(unknown), &mut scaled));
         }
@@ -99,7 +99,7 @@ impl SymmetricFactor {
         }
     }
 
-    fn factorise(&mut self, scaled: &[f64]) -> Result<(), Failure> {
+    fn factorise(&mut self, scaled: &[f64]) -> Result<(), LdlFailure> {
         let symbolic = &self.pattern.symbolic;
         if let Some((blocks, (order, place_of))) = symbolic.in_pieces() {
             let pattern = &self.pattern;
@@ -117,7 +117,7 @@ impl SymmetricFactor {
         budget::spend(usize::try_from(symbolic.fill.multiplications).unwrap_or(usize::MAX));
         let symbolic = &symbolic.cholesky;
         let request = symbolic.factorize_numeric_ldlt_scratch::<f64>(Par::Seq, Default::default());
-        let mut memory = MemBuffer::try_new(request).map_err(|_| Failure::OutOfMemory)?;
+        let mut memory = MemBuffer::try_new(request).map_err(|_| LdlFailure::OutOfMemory)?;
         let regularization = LdltRegularization {
             dynamic_regularization_signs: None,
             dynamic_regularization_delta: ZERO,
@@ -134,7 +134,7 @@ impl SymmetricFactor {
         );
         match done {
             Ok(_) => Ok(()),
-            Err(LdltError::ZeroPivot { .. }) => Err(Failure::NotFinite),
+            Err(LdltError::ZeroPivot { .. }) => Err(LdlFailure::NotFinite),
         }
     }
 

@@ -1,7 +1,7 @@
 //! A held node made from the borders of a matrix, and what it does to the matrix.
 
 use crate::algebra::sparse::constrained_nodes::held_node::{Coupling, HeldNode, gathered, times, transposed_times};
-use crate::algebra::sparse::constrained_nodes::nodal_constraints::{Friction, Holding, Places};
+use crate::algebra::sparse::constrained_nodes::nodal_constraints::{Friction, Holding, IndexList};
 use crate::algebra::sparse::factors::bordered_matrix::Bordered;
 use nalgebra::{Matrix3, Vector3};
 use smallvec::SmallVec;
@@ -12,167 +12,183 @@ const NOTHING: f64 = 1e-14;
 /// A node whose held directions are nearer than this to each other is left to the borders.
 const DEPENDENT: f64 = 1e-6;
 
-impl HeldNode {
-    /// Adds its numbers to those of the nodes before it, and its couplings to theirs; with the place that it is to have.
-    pub(super) fn new(
-        matrix: &Bordered,
-        holding: &Holding,
-        is_reaction: &[bool],
-        friction: Friction,
-        place: usize,
-        numbers: &mut Vec<f64>,
-        coupled: &mut Vec<Coupling>,
-    ) -> Option<Self> {
-        let n = matrix.pattern.size();
-        let (count, held) = (holding.unknowns.len(), holding.rows.len());
-        if held == 0 || held > count || holding.columns.len() != held || !same_columns(matrix, &holding.unknowns) {
-            return None;
-        }
-        let unknowns = held_first(matrix, holding);
-        let local = |unknown: usize| unknowns.iter().position(|own| *own == unknown);
-        let (mut rows, mut columns) = (Matrix3::zeros(), Matrix3::zeros());
-        let mut couplings: SmallVec<[Coupling; 3]> = SmallVec::new();
-        for (index, row) in holding.rows.iter().enumerate() {
-            for (column, value) in &matrix.lower[*row] {
-                if *column < n {
-                    rows[(index, local(*column)?)] += value;
-                } else if is_reaction[*column - n] {
-                    return None;
-                } else {
-                    couplings.push(Coupling { node: place, row: index, border: *column - n, value: *value });
-                }
-            }
-        }
-        for (index, column) in holding.columns.iter().enumerate() {
-            for (row, value) in &matrix.right[*column] {
-                columns[(local(*row)?, index)] += value;
-            }
-        }
-        let is_first = held == count || rows.columns(held, count - held).iter().all(|value| *value == 0.0);
-        let rotation = if is_first { Matrix3::identity() } else { completed(&rows, held, count)? };
-        let largest = columns.amax();
-        let (constraint, turned) =
-            if is_first { (rows, columns) } else { (rows * rotation, rotation.tr_mul(&columns)) };
-        let constraint = leading(&constraint, held);
-        let reaction = leading(&turned, held);
-        let mut rest = turned;
-        rest.rows_mut(0, held).fill(0.0);
-        let rubs = rest.amax() > NOTHING * largest;
-        let keeps = rubs && friction == Friction::Bordered;
-        let folds = rubs && !keeps;
-        let sign_of = |block: &Matrix3<f64>| if held == 1 { block[(0, 0)] } else { block.determinant() }.signum();
-        let sign = sign_of(&constraint) * if held % 2 == 1 { -1.0 } else { 1.0 };
-        let sign = if keeps { sign } else { sign * sign_of(&reaction) };
-        let reaction = inverse(&reaction, held)?;
-        let constraint = inverse(&constraint, held)?;
-        let mut own = [[u32::MAX; 3]; 3];
-        for (own, given) in own.iter_mut().zip([&unknowns, &holding.rows, &holding.columns]) {
-            for (own, given) in own.iter_mut().zip(given) {
-                *own = u32::try_from(*given).ok()?;
-            }
-        }
-        let first = u32::try_from(numbers.len()).ok()?;
-        put(&constraint, 0..held, held, numbers);
-        put(&reaction, 0..held, held, numbers);
-        if folds {
-            put(&(rest * reaction), held..count, held, numbers);
-        }
-        if !is_first {
-            put(&rotation, 0..count, count, numbers);
-        }
-        coupled.extend(couplings);
-        Some(Self {
-            unknowns: own[0],
-            rows: own[1],
-            columns: own[2],
-            count: count as u8,
-            held: held as u8,
-            turns: !is_first,
-            folds,
-            keeps,
-            sign: if sign < 0.0 { -1 } else { 1 },
-            numbers: first,
-            before: 0,
-        })
+/// Adds its numbers to those of the nodes before it, and its couplings to theirs; with the place that it is to have.
+pub(super) fn from_borders(
+    matrix: &Bordered,
+    holding: &Holding,
+    is_reaction: &[bool],
+    friction: Friction,
+    place: usize,
+    numbers: &mut Vec<f64>,
+    coupled: &mut Vec<Coupling>,
+) -> Option<HeldNode> {
+    let (count, held) = (holding.unknowns.len(), holding.rows.len());
+    if held == 0 || held > count || holding.columns.len() != held || !same_columns(matrix, &holding.unknowns) {
+        return None;
     }
-
-    /// `Qᵀ K Q`; columns of one node have one pattern.
-    pub(super) fn rotate_matrix(&self, matrix: &Bordered, numbers: &[f64], values: &mut [f64]) {
-        if !self.turns {
-            return;
-        }
-        let (rotation, count) = (self.matrices(numbers).rotation, self.count());
-        for by_row in [false, true] {
-            self.each_place(matrix, by_row, |places| {
-                let before = gathered(places[..count].iter().copied(), values);
-                let turned = transposed_times(rotation, count, &before);
-                places[..count].iter().zip(turned.iter()).for_each(|(place, value)| values[*place] = *value);
-            });
+    let unknowns = held_first(matrix, holding);
+    let LocalBlocks { rows, columns, couplings } = local_blocks(matrix, holding, is_reaction, &unknowns, place)?;
+    let is_first = held == count || rows.columns(held, count - held).iter().all(|value| *value == 0.0);
+    let rotation = if is_first { Matrix3::identity() } else { completed(&rows, held, count)? };
+    let largest = columns.amax();
+    let (constraint, turned) = if is_first { (rows, columns) } else { (rows * rotation, rotation.tr_mul(&columns)) };
+    let constraint = leading(&constraint, held);
+    let reaction = leading(&turned, held);
+    let mut rest = turned;
+    rest.rows_mut(0, held).fill(0.0);
+    let rubs = rest.amax() > NOTHING * largest;
+    let keeps = rubs && friction == Friction::Bordered;
+    let folds = rubs && !keeps;
+    let sign_of = |block: &Matrix3<f64>| if held == 1 { block[(0, 0)] } else { block.determinant() }.signum();
+    let sign = sign_of(&constraint) * if held % 2 == 1 { -1.0 } else { 1.0 };
+    let sign = if keeps { sign } else { sign * sign_of(&reaction) };
+    let reaction = inverse(&reaction, held)?;
+    let constraint = inverse(&constraint, held)?;
+    let mut own = [[u32::MAX; 3]; 3];
+    for (own, given) in own.iter_mut().zip([&unknowns, &holding.rows, &holding.columns]) {
+        for (own, given) in own.iter_mut().zip(given) {
+            *own = u32::try_from(*given).ok()?;
         }
     }
-
-    /// Calls with the places of the entries that the node's columns (or rows) have in each row (or column).
-    fn each_place(&self, matrix: &Bordered, by_row: bool, mut each: impl FnMut([usize; 3])) {
-        let pattern = &matrix.pattern;
-        let mut starts = [0; 3];
-        self.unknowns().zip(&mut starts).for_each(|(unknown, start)| *start = pattern.starts[unknown]);
-        for entry in 0..pattern.column(self.unknown(0)).len() {
-            let mut places = [0; 3];
-            for (place, start) in places.iter_mut().zip(&starts).take(self.count()) {
-                let own = start + entry;
-                *place = if by_row { pattern.mirrors[own] } else { own };
-            }
-            each(places);
-        }
+    let first = u32::try_from(numbers.len()).ok()?;
+    put(&constraint, 0..held, held, numbers);
+    put(&reaction, 0..held, held, numbers);
+    if folds {
+        put(&(rest * reaction), held..count, held, numbers);
     }
-
-    /// The entries of its columns (or rows) `H`, added to those taken before, and where each of them begins.
-    pub(super) fn take(
-        &self,
-        matrix: &Bordered,
-        values: &[f64],
-        by_row: bool,
-        taken: &mut Vec<(usize, f64)>,
-        starts: &mut Vec<u32>,
-    ) {
-        let pattern = &matrix.pattern;
-        for unknown in self.held() {
-            starts.push(taken.len() as u32);
-            for place in pattern.column(unknown) {
-                let value = values[if by_row { pattern.mirrors[place] } else { place }];
-                if value != 0.0 {
-                    taken.push((pattern.rows[place], value));
-                }
-            }
-        }
+    if !is_first {
+        put(&rotation, 0..count, count, numbers);
     }
+    coupled.extend(couplings);
+    Some(HeldNode {
+        unknowns: own[0],
+        rows: own[1],
+        columns: own[2],
+        count: count as u8,
+        held: held as u8,
+        turns: !is_first,
+        folds,
+        keeps,
+        sign: if sign < 0.0 { -1 } else { 1 },
+        numbers: first,
+        before: 0,
+    })
+}
 
-    /// Rows `T` less `F R⁻¹` times rows `H`.
-    pub(super) fn fold(&self, matrix: &Bordered, numbers: &[f64], values: &mut [f64]) {
-        if !self.folds {
-            return;
-        }
-        let (friction, held, count) = (self.matrices(numbers).friction, self.held_count(), self.count());
-        self.each_place(matrix, true, |places| {
-            let taken = times(friction, count - held, &gathered(places[..held].iter().copied(), values));
-            places[held..count].iter().zip(taken.iter()).for_each(|(place, value)| values[*place] -= value);
+/// `Qᵀ K Q`; columns of one node have one pattern.
+pub(super) fn rotate_matrix(node: &HeldNode, matrix: &Bordered, numbers: &[f64], values: &mut [f64]) {
+    if !node.turns {
+        return;
+    }
+    let (rotation, count) = (node.matrices(numbers).rotation, node.count());
+    for by_row in [false, true] {
+        each_place(node, matrix, by_row, |places| {
+            let before = gathered(places[..count].iter().copied(), values);
+            let turned = transposed_times(rotation, count, &before);
+            places[..count].iter().zip(turned.iter()).for_each(|(place, value)| values[*place] = *value);
         });
     }
+}
 
-    /// Leaves a one on the diagonal in the held rows and columns.
-    pub(super) fn clear(&self, matrix: &Bordered, values: &mut [f64]) {
-        let pattern = &matrix.pattern;
-        for column in self.held() {
-            for place in pattern.column(column) {
-                values[pattern.mirrors[place]] = 0.0;
-                values[place] = if pattern.rows[place] == column { 1.0 } else { 0.0 };
+/// Calls with the places of the entries that the node's columns (or rows) have in each row (or column).
+fn each_place(node: &HeldNode, matrix: &Bordered, by_row: bool, mut each: impl FnMut([usize; 3])) {
+    let pattern = &matrix.pattern;
+    let mut starts = [0; 3];
+    node.unknowns().zip(&mut starts).for_each(|(unknown, start)| *start = pattern.starts[unknown]);
+    for entry in 0..pattern.column(node.unknown(0)).len() {
+        let mut places = [0; 3];
+        for (place, start) in places.iter_mut().zip(&starts).take(node.count()) {
+            let own = start + entry;
+            *place = if by_row { pattern.mirrors[own] } else { own };
+        }
+        each(places);
+    }
+}
+
+/// The entries of its columns (or rows) `H`, added to those taken before, and where each of them begins.
+pub(super) fn take(
+    node: &HeldNode,
+    matrix: &Bordered,
+    values: &[f64],
+    by_row: bool,
+    taken: &mut Vec<(usize, f64)>,
+    starts: &mut Vec<u32>,
+) {
+    let pattern = &matrix.pattern;
+    for unknown in node.held() {
+        starts.push(taken.len() as u32);
+        for place in pattern.column(unknown) {
+            let value = values[if by_row { pattern.mirrors[place] } else { place }];
+            if value != 0.0 {
+                taken.push((pattern.rows[place], value));
             }
         }
     }
 }
 
+/// Rows `T` less `F R⁻¹` times rows `H`.
+pub(super) fn fold(node: &HeldNode, matrix: &Bordered, numbers: &[f64], values: &mut [f64]) {
+    if !node.folds {
+        return;
+    }
+    let (friction, held, count) = (node.matrices(numbers).friction, node.held_count(), node.count());
+    each_place(node, matrix, true, |places| {
+        let taken = times(friction, count - held, &gathered(places[..held].iter().copied(), values));
+        places[held..count].iter().zip(taken.iter()).for_each(|(place, value)| values[*place] -= value);
+    });
+}
+
+/// Leaves a one on the diagonal in the held rows and columns.
+pub(super) fn clear(node: &HeldNode, matrix: &Bordered, values: &mut [f64]) {
+    let pattern = &matrix.pattern;
+    for column in node.held() {
+        for place in pattern.column(column) {
+            values[pattern.mirrors[place]] = 0.0;
+            values[place] = if pattern.rows[place] == column { 1.0 } else { 0.0 };
+        }
+    }
+}
+
+/// What the borders that hold a node have at its unknowns.
+struct LocalBlocks {
+    rows: Matrix3<f64>,
+    columns: Matrix3<f64>,
+    /// What they have at other borders.
+    couplings: SmallVec<[Coupling; 3]>,
+}
+
+fn local_blocks(
+    matrix: &Bordered,
+    holding: &Holding,
+    is_reaction: &[bool],
+    unknowns: &[usize],
+    place: usize,
+) -> Option<LocalBlocks> {
+    let n = matrix.pattern.size();
+    let local = |unknown: usize| unknowns.iter().position(|own| *own == unknown);
+    let (mut rows, mut columns) = (Matrix3::zeros(), Matrix3::zeros());
+    let mut couplings: SmallVec<[Coupling; 3]> = SmallVec::new();
+    for (index, row) in holding.rows.iter().enumerate() {
+        for (column, value) in &matrix.lower[*row] {
+            if *column < n {
+                rows[(index, local(*column)?)] += value;
+            } else if is_reaction[*column - n] {
+                return None;
+            } else {
+                couplings.push(Coupling { node: place, row: index, border: *column - n, value: *value });
+            }
+        }
+    }
+    for (index, column) in holding.columns.iter().enumerate() {
+        for (row, value) in &matrix.right[*column] {
+            columns[(local(*row)?, index)] += value;
+        }
+    }
+    Some(LocalBlocks { rows, columns, couplings })
+}
+
 /// The node's unknowns, those first that are held where border rows hold as many as they name.
-fn held_first(matrix: &Bordered, holding: &Holding) -> Places {
+fn held_first(matrix: &Bordered, holding: &Holding) -> IndexList {
     if holding.rows.len() == holding.unknowns.len() {
         return holding.unknowns.clone();
     }

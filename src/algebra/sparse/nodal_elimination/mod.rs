@@ -17,11 +17,11 @@ pub(crate) mod nodes;
 
 pub(super) use crate::algebra::sparse::constrained_nodes::held_node::{Coupling, HeldNode, Matrices, gathered, times};
 pub(super) use crate::algebra::sparse::constrained_nodes::nodal_constraints::Friction;
-pub use crate::algebra::sparse::constrained_nodes::nodal_constraints::{Holding, Holdings, Places};
+pub use crate::algebra::sparse::constrained_nodes::nodal_constraints::{Holding, Holdings, IndexList};
 
 use crate::algebra::sparse::constrained_nodes::node_cache::Nodes;
 use crate::algebra::sparse::factors::bordered_matrix::Bordered;
-use crate::algebra::sparse::factors::entries::Entries;
+use crate::algebra::sparse::factors::entries::SparseEntries;
 use smallvec::SmallVec;
 use std::sync::Arc;
 
@@ -41,18 +41,22 @@ impl Elimination {
         let all = Nodes::of(matrix, holdings, friction);
         let (nodes, numbers) = (&all.nodes, &all.numbers);
         let mut values = matrix.values.clone();
-        nodes.iter().for_each(|node| node.rotate_matrix(matrix, numbers, &mut values));
+        nodes.iter().for_each(|node| constrained_node_basis::rotate_matrix(node, matrix, numbers, &mut values));
         let held = nodes.last().map_or(0, |node| node.before as usize + node.held_count());
         let most = nodes.iter().flat_map(HeldNode::held).map(|unknown| matrix.pattern.column(unknown).len());
         let mut entries = Vec::with_capacity(2 * most.sum::<usize>());
         let [mut rows_at, mut columns_at] = [(); 2].map(|()| Vec::with_capacity(held + 1));
         // All rows and columns are taken before any is cleared: those of neighbours have entries in each other's.
-        nodes.iter().for_each(|node| node.take(matrix, &values, true, &mut entries, &mut rows_at));
+        nodes
+            .iter()
+            .for_each(|node| constrained_node_basis::take(node, matrix, &values, true, &mut entries, &mut rows_at));
         rows_at.push(entries.len() as u32);
-        nodes.iter().for_each(|node| node.fold(matrix, numbers, &mut values));
-        nodes.iter().for_each(|node| node.take(matrix, &values, false, &mut entries, &mut columns_at));
+        nodes.iter().for_each(|node| constrained_node_basis::fold(node, matrix, numbers, &mut values));
+        nodes
+            .iter()
+            .for_each(|node| constrained_node_basis::take(node, matrix, &values, false, &mut entries, &mut columns_at));
         columns_at.push(entries.len() as u32);
-        nodes.iter().for_each(|node| node.clear(matrix, &mut values));
+        nodes.iter().for_each(|node| constrained_node_basis::clear(node, matrix, &mut values));
         (Self { nodes: all, columns_at, rows_at, entries }, values)
     }
 
@@ -98,8 +102,8 @@ impl Elimination {
     }
 
     /// Entries of a row or a column over the rotated unknowns: those that are not held, and those that are.
-    pub fn rotated(&self, entries: &[(usize, f64)]) -> (Entries, Entries) {
-        let (mut free, mut held) = (Entries::with_capacity(entries.len()), Entries::new());
+    pub fn rotated(&self, entries: &[(usize, f64)]) -> (SparseEntries, SparseEntries) {
+        let (mut free, mut held) = (SparseEntries::with_capacity(entries.len()), SparseEntries::new());
         let mut at_nodes: SmallVec<[(u32, u32, f64); 8]> = SmallVec::new();
         for (unknown, value) in entries {
             match self.nodes.place_of[*unknown] {
@@ -130,13 +134,18 @@ impl Elimination {
     }
 
     /// Splits entries of a column of the rotated matrix: adds to those that are not held, and to those that are.
-    pub fn split_into(&self, entries: impl Iterator<Item = (usize, f64)>, free: &mut Entries, held: &mut Entries) {
+    pub fn split_into(
+        &self,
+        entries: impl Iterator<Item = (usize, f64)>,
+        free: &mut SparseEntries,
+        held: &mut SparseEntries,
+    ) {
         entries.for_each(|entry| if self.is_held(entry.0) { &mut *held } else { &mut *free }.push(entry));
     }
 
     /// What entries of a column at held unknowns become in the other equations of their nodes, where friction is folded.
-    pub fn folded(&self, held: &[(usize, f64)]) -> Entries {
-        let mut free = Entries::new();
+    pub fn folded(&self, held: &[(usize, f64)]) -> SparseEntries {
+        let mut free = SparseEntries::new();
         for (unknown, value) in held {
             let Some((node, local)) = self.nodes.place_of[*unknown] else { continue };
             let node = &self.nodes()[node as usize];

@@ -4,7 +4,8 @@ use crate::algebra::sparse::constrained_nodes::held_node::HeldNode;
 use crate::algebra::sparse::constrained_nodes::nodal_constraints::{Friction, Holdings};
 use crate::algebra::sparse::constrained_nodes::node_cache::Nodes;
 use crate::algebra::sparse::factors::bordered_matrix::Bordered;
-use crate::algebra::sparse::factors::entries::Entries;
+use crate::algebra::sparse::factors::entries::SparseEntries;
+use crate::algebra::sparse::nodal_elimination::constrained_node_basis;
 use std::sync::Arc;
 
 /// Numbers of a node, and entries of its borders, as they mostly are in the plane.
@@ -34,7 +35,15 @@ impl Nodes {
                 continue;
             }
             let place = nodes.len();
-            let node = HeldNode::new(matrix, holding, &is_reaction, friction, place, &mut numbers, &mut couplings);
+            let node = constrained_node_basis::from_borders(
+                matrix,
+                holding,
+                &is_reaction,
+                friction,
+                place,
+                &mut numbers,
+                &mut couplings,
+            );
             let Some(mut node) = node else { continue };
             for (local, unknown) in node.unknowns().enumerate() {
                 place_of[unknown] = Some((place as u32, local as u32));
@@ -62,7 +71,7 @@ impl Nodes {
     /// Whether the entries of the rows and columns of the holdings are these.
     fn has_borders(&self, matrix: &Bordered, holdings: &Holdings) -> bool {
         let mut left = &self.borders[..];
-        let is_next = |list: &Entries| {
+        let is_next = |list: &SparseEntries| {
             let Some((own, rest)) = left.split_at_checked(list.len()) else { return false };
             left = rest.get(1..).unwrap_or_default();
             own == &list[..] && rest.first().is_some_and(|(length, _)| *length == list.len())
@@ -84,7 +93,7 @@ fn enters(matrix: &Bordered) -> Vec<bool> {
 }
 
 /// The rows and columns of holdings.
-fn borders<'a>(matrix: &'a Bordered, holdings: &'a Holdings) -> impl Iterator<Item = &'a Entries> {
+fn borders<'a>(matrix: &'a Bordered, holdings: &'a Holdings) -> impl Iterator<Item = &'a SparseEntries> {
     holdings.iter().flat_map(|holding| {
         let rows = holding.rows.iter().map(|row| &matrix.lower[*row]);
         rows.chain(holding.columns.iter().map(|column| &matrix.right[*column]))

@@ -30,7 +30,7 @@
 
 use crate::algebra::{nearest_null_space, null_space_as_scaled};
 use crate::branching::bifurcation::branch_directions::null_derivatives::Derivative;
-use crate::branching::bifurcation::branch_directions::{MOST_MODES, NO_CURVATURE, Null, Point};
+use crate::branching::bifurcation::branch_directions::{BranchingPoint, MOST_MODES, NO_CURVATURE, Null};
 use crate::complementarity::rates::combinations::combinations;
 use crate::mechanics::equations::scaled_rows::{RANK, scaled_rows};
 use crate::mechanics::problem::state::Rate;
@@ -48,11 +48,11 @@ const DEPENDENT: f64 = 1e-6;
 pub(super) struct Fold {
     /// `f`
     pub flat: Null,
-    parts: Vec<Part>,
+    parts: Vec<FoldProjection>,
 }
 
 /// What is at a fold.
-struct Part {
+struct FoldProjection {
     /// `g`
     steep: Null,
     /// `(2 |σ/c|)^½`
@@ -77,12 +77,12 @@ impl Fold {
     }
 
     /// The parts with arms.
-    fn wide(&self) -> impl Iterator<Item = &Part> {
+    fn wide(&self) -> impl Iterator<Item = &FoldProjection> {
         self.parts.iter().filter(|part| part.width > NO_WIDTH)
     }
 
     /// The direction in which the arms leave; `None` where those of some part leave in the other sense.
-    pub fn ahead(&self, point: &Point<'_>) -> Option<Null> {
+    pub fn ahead(&self, point: &BranchingPoint<'_>) -> Option<Null> {
         let sense = self.wide().next()?.sense;
         let agree = self.wide().all(|part| part.sense == sense);
         agree.then(|| point.combined(std::slice::from_ref(&self.flat), &[sense]))
@@ -100,7 +100,7 @@ impl Fold {
     }
 
     fn sum(&self, shares: impl Iterator<Item = f64>) -> Option<Rate> {
-        let scaled = |(part, share): (&Part, f64)| {
+        let scaled = |(part, share): (&FoldProjection, f64)| {
             let mut rate = part.steep.rate.clone();
             rate.scale(share);
             rate
@@ -112,127 +112,125 @@ impl Fold {
     }
 }
 
-impl Point<'_> {
-    /// The null vectors of the mode, orthonormal in displacements and load.
-    pub(super) fn orthonormal_nulls(&self) -> Option<Vec<Null>> {
-        let (matrix, _) = scaled_rows(&self.system, self.here.loading, self.here.state);
-        self.orthonormal(&null_space_as_scaled(matrix, RANK)?)
-    }
+/// The null vectors of the mode, orthonormal in displacements and load.
+pub(super) fn orthonormal_nulls(point: &BranchingPoint<'_>) -> Option<Vec<Null>> {
+    let (matrix, _) = scaled_rows(&point.system, point.here.loading, point.here.state);
+    orthonormal(point, &null_space_as_scaled(matrix, RANK)?)
+}
 
-    fn orthonormal(&self, basis: &DMatrix<f64>) -> Option<Vec<Null>> {
-        let mut nulls: Vec<Null> = Vec::with_capacity(basis.ncols());
-        for column in basis.column_iter() {
-            let values = column.into_owned();
-            let mut null = Null { rate: self.system.rate_from(self.here.state, &values), values };
-            let whole = null.rate.size();
-            // Once more for what rounding left.
-            for _ in 0..2 {
-                for known in &nulls {
-                    let share = null.rate.product(&known.rate);
-                    null = self.combined(&[null, known.clone()], &[1.0, -share]);
-                }
+fn orthonormal(point: &BranchingPoint<'_>, basis: &DMatrix<f64>) -> Option<Vec<Null>> {
+    let mut nulls: Vec<Null> = Vec::with_capacity(basis.ncols());
+    for column in basis.column_iter() {
+        let values = column.into_owned();
+        let mut null = Null { rate: point.system.rate_from(point.here.state, &values), values };
+        let whole = null.rate.size();
+        // Once more for what rounding left.
+        for _ in 0..2 {
+            for known in &nulls {
+                let share = null.rate.product(&known.rate);
+                null = point.combined(&[null, known.clone()], &[1.0, -share]);
             }
-            let size = null.rate.size();
-            if !(size.is_finite() && size > NO_MOTION * whole && size > NO_MOTION * null.rate.largest_reaction()) {
-                return None;
-            }
-            nulls.push(self.combined(&[null], &[1.0 / size]));
         }
-        Some(nulls)
-    }
-
-    /// The plane that comes nearest to two null vectors.
-    pub(super) fn plane(&self) -> Option<Plane> {
-        let (matrix, sizes) = scaled_rows(&self.system, self.here.loading, self.here.state);
-        let left = nearest_null_space(matrix.transpose(), 1)?.column(0).component_div(&sizes);
-        let nulls = self.orthonormal(&nearest_null_space(matrix, 2)?)?;
-        let [first, second] = &nulls[..] else { return None };
-        let [along_first, along_second] = [first, second].map(|null| self.second_derivative(&null.rate));
-        let mixed = left.dot(&along_first.times(&second.values));
-        let form = Matrix2::new(
-            left.dot(&along_first.times(&first.values)),
-            mixed,
-            mixed,
-            left.dot(&along_second.times(&second.values)),
-        );
-        let size = left.amax() * along_first.amax().max(along_second.amax());
-        let eigen = form.symmetric_eigen();
-        let (steep, flat) = if eigen.eigenvalues[0].abs() >= eigen.eigenvalues[1].abs() { (0, 1) } else { (1, 0) };
-        let (most, least) = (eigen.eigenvalues[steep], eigen.eigenvalues[flat]);
-        if !most.is_finite() || most.abs() <= NO_CURVATURE * size {
-            return Some(Plane::Continuum);
-        }
-        let combined = |weights: [f64; 2]| self.unit(&self.combined(&[first.clone(), second.clone()], &weights));
-        let [flat, steep] = [flat, steep].map(|column| [0, 1].map(|row| eigen.eigenvectors[(row, column)]));
-        if least.abs() > NO_CURVATURE * most.abs() {
-            if least * most > 0.0 {
-                return Some(Plane::Roots(Vec::new()));
-            }
-            let part = (-least / most).sqrt();
-            let roots = [part, -part].map(|part| combined([0, 1].map(|row| flat[row] + part * steep[row])));
-            return Some(Plane::Roots(roots.to_vec()));
-        }
-        Some(Plane::Fold(Box::new(self.fold(&DMatrix::from_columns(&[left]), combined(flat), vec![combined(steep)]))))
-    }
-
-    /// The fold of so many null vectors; `None` where the equations are not those of parts that nothing joins.
-    pub(super) fn fold_of_parts(&self, count: usize) -> Option<Fold> {
-        let (matrix, sizes) = scaled_rows(&self.system, self.here.loading, self.here.state);
-        let mut left = nearest_null_space(matrix.transpose(), count.checked_sub(1)?)?;
-        left.column_iter_mut().for_each(|mut column| column.component_div_assign(&sizes));
-        let nulls = self.orthonormal(&nearest_null_space(matrix, count)?)?;
-        let derivatives: Vec<Derivative> = nulls.iter().map(|null| self.second_derivative(&null.rate)).collect();
-        let largest = derivatives.iter().map(Derivative::amax).fold(0.0, f64::max);
-        // Of each form the vector whose square it is.
-        let mut squares = DMatrix::zeros(left.ncols(), count);
-        for (mut row, left) in squares.row_iter_mut().zip(left.column_iter()) {
-            let form = DMatrix::from_fn(count, count, |i, j| left.dot(&derivatives[i].times(&nulls[j].values)));
-            let eigen = ((&form + form.transpose()) * 0.5).symmetric_eigen();
-            let sizes = eigen.eigenvalues.abs();
-            let most = sizes.imax();
-            let is_square = (0..count).all(|other| other == most || sizes[other] <= NO_CURVATURE * sizes[most]);
-            if !(is_square && sizes[most] > NO_CURVATURE * left.amax() * largest) {
-                return None;
-            }
-            row.copy_from(&eigen.eigenvectors.column(most).transpose());
-        }
-        // Motions along which one of the coordinates changes, and none.
-        let dual = squares.clone().pseudo_inverse(DEPENDENT).ok()?;
-        if (&squares * &dual - DMatrix::identity(left.ncols(), left.ncols())).amax() > DEPENDENT {
+        let size = null.rate.size();
+        if !(size.is_finite() && size > NO_MOTION * whole && size > NO_MOTION * null.rate.largest_reaction()) {
             return None;
         }
-        let motion = |weights: &DVector<f64>| self.unit(&self.combined(&nulls, weights.as_slice()));
-        let flat = nearest_null_space(squares, 1)?.column(0).into_owned();
-        let steep = dual.column_iter().map(|column| motion(&column.into_owned())).collect();
-        Some(self.fold(&left, motion(&flat), steep))
+        nulls.push(point.combined(&[null], &[1.0 / size]));
     }
+    Some(nulls)
+}
 
-    fn unit(&self, null: &Null) -> Null {
-        self.combined(std::slice::from_ref(null), &[1.0 / null.rate.size()])
+/// The plane that comes nearest to two null vectors.
+pub(super) fn plane(point: &BranchingPoint<'_>) -> Option<Plane> {
+    let (matrix, sizes) = scaled_rows(&point.system, point.here.loading, point.here.state);
+    let left = nearest_null_space(matrix.transpose(), 1)?.column(0).component_div(&sizes);
+    let nulls = orthonormal(point, &nearest_null_space(matrix, 2)?)?;
+    let [first, second] = &nulls[..] else { return None };
+    let [along_first, along_second] = [first, second].map(|null| point.second_derivative(&null.rate));
+    let mixed = left.dot(&along_first.times(&second.values));
+    let form = Matrix2::new(
+        left.dot(&along_first.times(&first.values)),
+        mixed,
+        mixed,
+        left.dot(&along_second.times(&second.values)),
+    );
+    let size = left.amax() * along_first.amax().max(along_second.amax());
+    let eigen = form.symmetric_eigen();
+    let (steep, flat) = if eigen.eigenvalues[0].abs() >= eigen.eigenvalues[1].abs() { (0, 1) } else { (1, 0) };
+    let (most, least) = (eigen.eigenvalues[steep], eigen.eigenvalues[flat]);
+    if !most.is_finite() || most.abs() <= NO_CURVATURE * size {
+        return Some(Plane::Continuum);
     }
-
-    fn fold(&self, left: &DMatrix<f64>, mut flat: Null, steep: Vec<Null>) -> Fold {
-        let curvatures: Vec<f64> = left
-            .column_iter()
-            .zip(&steep)
-            .map(|(left, steep)| left.dot(&self.second_derivative(&steep.rate).times(&steep.values)))
-            .collect();
-        // Differences along the root itself are exact where it is a straight line, and those along others are not.
-        for _ in 0..2 {
-            let along = self.second_derivative(&flat.rate);
-            let (mut nulls, mut weights) = (vec![flat], vec![1.0]);
-            for ((left, steep), curvature) in left.column_iter().zip(&steep).zip(&curvatures) {
-                weights.push(-left.dot(&along.times(&steep.values)) / curvature);
-                nulls.push(steep.clone());
-            }
-            flat = self.unit(&self.combined(&nulls, &weights));
+    let combined = |weights: [f64; 2]| unit(point, &point.combined(&[first.clone(), second.clone()], &weights));
+    let [flat, steep] = [flat, steep].map(|column| [0, 1].map(|row| eigen.eigenvectors[(row, column)]));
+    if least.abs() > NO_CURVATURE * most.abs() {
+        if least * most > 0.0 {
+            return Some(Plane::Roots(Vec::new()));
         }
-        let force = self.system.matrix(self.here.state).rows(0, left.nrows()) * &flat.values;
-        let part = |((left, steep), curvature): ((DVectorView<'_, f64>, Null), &f64)| {
-            let ratio = left.dot(&force) / curvature;
-            Part { steep, width: (2.0 * ratio.abs()).sqrt(), sense: -ratio.signum() }
-        };
-        let parts = left.column_iter().zip(steep).zip(&curvatures).map(part).collect();
-        Fold { flat, parts }
+        let part = (-least / most).sqrt();
+        let roots = [part, -part].map(|part| combined([0, 1].map(|row| flat[row] + part * steep[row])));
+        return Some(Plane::Roots(roots.to_vec()));
     }
+    Some(Plane::Fold(Box::new(fold(point, &DMatrix::from_columns(&[left]), combined(flat), vec![combined(steep)]))))
+}
+
+/// The fold of so many null vectors; `None` where the equations are not those of parts that nothing joins.
+pub(super) fn fold_of_parts(point: &BranchingPoint<'_>, count: usize) -> Option<Fold> {
+    let (matrix, sizes) = scaled_rows(&point.system, point.here.loading, point.here.state);
+    let mut left = nearest_null_space(matrix.transpose(), count.checked_sub(1)?)?;
+    left.column_iter_mut().for_each(|mut column| column.component_div_assign(&sizes));
+    let nulls = orthonormal(point, &nearest_null_space(matrix, count)?)?;
+    let derivatives: Vec<Derivative> = nulls.iter().map(|null| point.second_derivative(&null.rate)).collect();
+    let largest = derivatives.iter().map(Derivative::amax).fold(0.0, f64::max);
+    // Of each form the vector whose square it is.
+    let mut squares = DMatrix::zeros(left.ncols(), count);
+    for (mut row, left) in squares.row_iter_mut().zip(left.column_iter()) {
+        let form = DMatrix::from_fn(count, count, |i, j| left.dot(&derivatives[i].times(&nulls[j].values)));
+        let eigen = ((&form + form.transpose()) * 0.5).symmetric_eigen();
+        let sizes = eigen.eigenvalues.abs();
+        let most = sizes.imax();
+        let is_square = (0..count).all(|other| other == most || sizes[other] <= NO_CURVATURE * sizes[most]);
+        if !(is_square && sizes[most] > NO_CURVATURE * left.amax() * largest) {
+            return None;
+        }
+        row.copy_from(&eigen.eigenvectors.column(most).transpose());
+    }
+    // Motions along which one of the coordinates changes, and none.
+    let dual = squares.clone().pseudo_inverse(DEPENDENT).ok()?;
+    if (&squares * &dual - DMatrix::identity(left.ncols(), left.ncols())).amax() > DEPENDENT {
+        return None;
+    }
+    let motion = |weights: &DVector<f64>| unit(point, &point.combined(&nulls, weights.as_slice()));
+    let flat = nearest_null_space(squares, 1)?.column(0).into_owned();
+    let steep = dual.column_iter().map(|column| motion(&column.into_owned())).collect();
+    Some(fold(point, &left, motion(&flat), steep))
+}
+
+fn unit(point: &BranchingPoint<'_>, null: &Null) -> Null {
+    point.combined(std::slice::from_ref(null), &[1.0 / null.rate.size()])
+}
+
+fn fold(point: &BranchingPoint<'_>, left: &DMatrix<f64>, mut flat: Null, steep: Vec<Null>) -> Fold {
+    let curvatures: Vec<f64> = left
+        .column_iter()
+        .zip(&steep)
+        .map(|(left, steep)| left.dot(&point.second_derivative(&steep.rate).times(&steep.values)))
+        .collect();
+    // Differences along the root itself are exact where it is a straight line, and those along others are not.
+    for _ in 0..2 {
+        let along = point.second_derivative(&flat.rate);
+        let (mut nulls, mut weights) = (vec![flat], vec![1.0]);
+        for ((left, steep), curvature) in left.column_iter().zip(&steep).zip(&curvatures) {
+            weights.push(-left.dot(&along.times(&steep.values)) / curvature);
+            nulls.push(steep.clone());
+        }
+        flat = unit(point, &point.combined(&nulls, &weights));
+    }
+    let force = point.system.matrix(point.here.state).rows(0, left.nrows()) * &flat.values;
+    let part = |((left, steep), curvature): ((DVectorView<'_, f64>, Null), &f64)| {
+        let ratio = left.dot(&force) / curvature;
+        FoldProjection { steep, width: (2.0 * ratio.abs()).sqrt(), sense: -ratio.signum() }
+    };
+    let parts = left.column_iter().zip(steep).zip(&curvatures).map(part).collect();
+    Fold { flat, parts }
 }

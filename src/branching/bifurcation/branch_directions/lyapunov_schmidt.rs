@@ -31,14 +31,14 @@ const SINGULAR: f64 = 1e-8;
 const DIFFERENCE: f64 = 1e-3;
 
 /// The equations for the shares of the path's own motion and of the null vectors beside it.
-pub(super) struct Reduced {
+pub(super) struct LyapunovSchmidtEquations {
     /// `ψ_j F''(X_l, X_i)` of each `j`, the path's own motion first.
     quadratic: Vec<DMatrix<f64>>,
     /// Coefficients of each `c_j`, where they count.
     cubic: Option<Vec<DVector<f64>>>,
 }
 
-impl Reduced {
+impl LyapunovSchmidtEquations {
     /// With cubics where the equations are not `curved`.
     pub fn new(
         system: &ModeSystem<'_>,

@@ -31,12 +31,12 @@ pub(crate) mod second_order_by_mode;
 #[cfg(test)]
 mod tests;
 
-pub use second_order_by_mode::{Told, in_each_mode};
+pub use second_order_by_mode::{SecondOrderFindings, in_each_mode};
 
 use crate::algebra::{nearest_null_space, null_space_as_scaled};
 use crate::branching::bifurcation::singularity::null_vectors::{NullVectors, SINGULAR};
-use crate::branching::directions::candidate::{Alternative, Candidate};
-use crate::branching::directions::choice::{Choice, potential_rate, sign_of};
+use crate::branching::directions::candidate::{Alternative, CandidateDirection};
+use crate::branching::directions::choice::{DirectionChoice, potential_rate, sign_of};
 use crate::branching::directions::trial_step::confirm_by;
 use crate::mechanics::contact::vector::{add, dot};
 use crate::mechanics::contact::{Mode, Reaction};
@@ -47,7 +47,8 @@ use crate::mechanics::multi_contact::contact_status::Standing;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cached_factorisation::AtHand;
-use lyapunov_schmidt::Reduced;
+use crate::step::corrector::newton;
+use lyapunov_schmidt::LyapunovSchmidtEquations;
 use nalgebra::{DMatrix, DVector};
 use null_derivatives::{Derivative, Null};
 
@@ -56,7 +57,7 @@ pub use other_modes::{are_singular_in_all_modes, in_other_modes};
 /// Branches at a point.
 pub struct Branches {
     /// The path's own direction first.
-    pub options: Vec<Choice>,
+    pub options: Vec<DirectionChoice>,
     /// Some branch may be missing, or they are a continuum.
     pub degenerate: bool,
     /// Modes that were not examined.
@@ -65,7 +66,7 @@ pub struct Branches {
 
 /// A point and what is true there.
 #[derive(Clone, Copy)]
-pub struct Here<'a> {
+pub struct SingularPoint<'a> {
     pub loading: Loading<'a>,
     pub state: &'a State,
     pub standings: &'a [Standing],
@@ -89,8 +90,8 @@ const MOST_ISOLATED: usize = 8;
 /// Modes that are examined besides the path's own.
 const MOST_MODES: u64 = 64;
 
-struct Point<'a> {
-    here: Here<'a>,
+struct BranchingPoint<'a> {
+    here: SingularPoint<'a>,
     modes: &'a [Mode],
     system: ModeSystem<'a>,
     /// Eigenvalues that are zero, where known.
@@ -102,14 +103,14 @@ struct Point<'a> {
 /// Lists the directions in the current mode, in which so many eigenvalues are zero; `tangent` is the path's own, and `nulls`
 /// are the null vectors, where they are at hand.
 pub fn branches(
-    here: Here<'_>,
+    here: SingularPoint<'_>,
     modes: &[Mode],
     tangent: &Rate,
     eigenvalues: usize,
     nulls: Option<&NullVectors>,
 ) -> Branches {
     let system = ModeSystem::new(here.loading, modes, here.state);
-    let point = Point { here, modes, system, eigenvalues: Some(eigenvalues), nulls };
+    let point = BranchingPoint { here, modes, system, eigenvalues: Some(eigenvalues), nulls };
     let mut back = tangent.clone();
     back.scale(-1.0);
     let mut found = Branches { options: Vec::new(), degenerate: false, unexplored: 0 };
@@ -130,9 +131,9 @@ pub fn branches(
     found
 }
 
-impl Point<'_> {
-    fn choice(&self, rate: Rate, modes: Vec<Mode>, later: Option<f64>, retrace: bool) -> Choice {
-        let Here { loading, state, .. } = self.here;
+impl BranchingPoint<'_> {
+    fn choice(&self, rate: Rate, modes: Vec<Mode>, later: Option<f64>, retrace: bool) -> DirectionChoice {
+        let SingularPoint { loading, state, .. } = self.here;
         let first = sign_of(rate.load);
         let load_sign = if first == 0.0 { later.map_or(0.0, sign_of) } else { first };
         let slides = |(contact, mode): (usize, &Mode)| match mode {
@@ -145,7 +146,7 @@ impl Point<'_> {
         };
         let dissipation = modes.iter().enumerate().map(slides).sum();
         let potential_rate = potential_rate(loading, state, &rate, dissipation);
-        Choice {
+        DirectionChoice {
             rate,
             modes,
             dissipation,
@@ -163,10 +164,10 @@ impl Point<'_> {
     /// Adds a direction that is not known yet, if its inequalities hold and a small step stays on a branch that leaves
     /// this way.
     fn add_if_tried(&self, direction: Rate, found: &mut Branches) {
-        let Here { loading, state, force_scale, .. } = self.here;
+        let SingularPoint { loading, state, force_scale, .. } = self.here;
         let Some(alternatives) = self.alternatives(&direction) else { return };
         let forces = direction.largest_reaction().max(f64::MIN_POSITIVE);
-        let same = |known: &Choice| {
+        let same = |known: &DirectionChoice| {
             let pairs = known.rate.reactions.iter().zip(&direction.reactions);
             let reactions =
                 |(one, other): (&Reaction, &Reaction)| one.difference(other) <= 1e-4 * forces.max(force_scale);
@@ -178,7 +179,7 @@ impl Point<'_> {
         let modes = self.modes.to_vec();
         // Only rays of the rate problem are told apart by their forces.
         let forces = Vec::new();
-        let candidate = Candidate {
+        let candidate = CandidateDirection {
             rate: direction,
             forces,
             modes,
@@ -196,7 +197,7 @@ impl Point<'_> {
 
     /// What each contact that can change may do along a direction; `None` where some can do nothing.
     fn alternatives(&self, rate: &Rate) -> Option<Vec<Vec<Alternative>>> {
-        let Here { loading, state, standings, force_scale } = self.here;
+        let SingularPoint { loading, state, standings, force_scale } = self.here;
         let forces = DOUBT * rate.largest_reaction().max(force_scale);
         let mut all = Vec::new();
         for (contact, standing) in standings.iter().enumerate() {
@@ -407,7 +408,7 @@ impl Point<'_> {
 
     /// Branches by the equations that are left in the null vectors.
     fn solved_for(&self, nulls: &NullVectors, own: &Null, others: &[Null], curved: bool) -> Option<Vec<Rate>> {
-        let reduced = Reduced::new(&self.system, self.here.state, nulls, own, others, curved)?;
+        let reduced = LyapunovSchmidtEquations::new(&self.system, self.here.state, nulls, own, others, curved)?;
         let mut all = vec![own.clone()];
         all.extend_from_slice(others);
         let mut found: Vec<Rate> = Vec::new();
@@ -475,10 +476,10 @@ impl Point<'_> {
         let mut ahead = direction.clone();
         let size = ahead.size();
         ahead.scale(1.0 / size);
-        let Here { state, force_scale, .. } = self.here;
+        let SingularPoint { state, force_scale, .. } = self.here;
         let guess = state.advanced(&ahead, radius);
         let closing = ArcLengthEquation { from: state, step: radius };
-        let corrected = self.system.correct(guess, &closing, force_scale).ok()?;
+        let corrected = newton::correct(&self.system, guess, &closing, force_scale).ok()?;
         let mut chord = state.chord(&corrected.state);
         let size = chord.size();
         chord.scale(1.0 / size);

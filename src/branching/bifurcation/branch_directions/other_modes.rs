@@ -1,6 +1,6 @@
 //! Directions at a bifurcation point in other modes of the contacts that can change there.
 
-use crate::branching::bifurcation::branch_directions::{Branches, DOUBT, Here, MOST_MODES, Point};
+use crate::branching::bifurcation::branch_directions::{Branches, BranchingPoint, DOUBT, MOST_MODES, SingularPoint};
 use crate::branching::bifurcation::singularity::bordering::{Bordering, orthonormal};
 use crate::branching::bifurcation::singularity::null_vectors::{NullVectors, SINGULAR};
 use crate::complementarity::rates::combinations::{combinations, count};
@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector};
 ///
 /// For points at which the structure with these contacts held is singular, so that the rate problem cannot be condensed
 /// on them: every combination is taken by itself. `nulls` are the null vectors in the modes `modes`, where they are at hand.
-pub fn in_other_modes(here: Here<'_>, modes: &[Mode], nulls: Option<&NullVectors>, found: &mut Branches) {
+pub fn in_other_modes(here: SingularPoint<'_>, modes: &[Mode], nulls: Option<&NullVectors>, found: &mut Branches) {
     let options: Vec<Vec<Mode>> = here
         .standings
         .iter()
@@ -40,7 +40,7 @@ pub fn in_other_modes(here: Here<'_>, modes: &[Mode], nulls: Option<&NullVectors
         }
         let system = ModeSystem::new(here.loading, &chosen, here.state);
         let nulls = nulls.and_then(|nulls| in_mode(&system, here, modes, nulls));
-        let point = Point { here, modes: &chosen, system, eigenvalues: None, nulls: nulls.as_ref() };
+        let point = BranchingPoint { here, modes: &chosen, system, eigenvalues: None, nulls: nulls.as_ref() };
         match point.all_directions(&mut found.degenerate) {
             Some(directions) => directions.into_iter().for_each(|direction| point.add_if_tried(direction, found)),
             None => found.degenerate = true,
@@ -49,7 +49,12 @@ pub fn in_other_modes(here: Here<'_>, modes: &[Mode], nulls: Option<&NullVectors
 }
 
 /// The null vectors of a mode by those of another.
-fn in_mode(system: &ModeSystem<'_>, here: Here<'_>, modes: &[Mode], nulls: &NullVectors) -> Option<NullVectors> {
+fn in_mode(
+    system: &ModeSystem<'_>,
+    here: SingularPoint<'_>,
+    modes: &[Mode],
+    nulls: &NullVectors,
+) -> Option<NullVectors> {
     let other = ModeSystem::new(here.loading, modes, here.state);
     let rows = orthonormal(nulls.right.iter().map(|values| other.rate_from(here.state, values)))?;
     let unknowns = here.loading.structure.unknowns();
@@ -60,7 +65,7 @@ fn in_mode(system: &ModeSystem<'_>, here: Here<'_>, modes: &[Mode], nulls: &Null
 
 /// Whether motions without load among the null vectors leave alone all contacts that can change: then these equations are
 /// singular in every mode of these contacts.
-pub fn are_singular_in_all_modes(here: Here<'_>, modes: &[Mode], nulls: &NullVectors) -> bool {
+pub fn are_singular_in_all_modes(here: SingularPoint<'_>, modes: &[Mode], nulls: &NullVectors) -> bool {
     let system = ModeSystem::new(here.loading, modes, here.state);
     let can_change = |contact: &usize| !matches!(here.standings[*contact], Standing::Settled(_));
     let told: Vec<DVector<f64>> = nulls

@@ -16,10 +16,13 @@
 //!
 //! Asked for where the path would end: it takes a few factorisations for every combination of modes.
 
+use crate::branching::bifurcation::branch_directions::fold;
 use crate::branching::bifurcation::branch_directions::fold::{Fold, Plane};
-use crate::branching::bifurcation::branch_directions::{AtHand, Here, MOST_MODES, Null, Point, RADII, SAME};
-use crate::branching::directions::candidate::{Candidate, is_mechanism};
-use crate::branching::directions::choice::Choice;
+use crate::branching::bifurcation::branch_directions::{
+    AtHand, BranchingPoint, MOST_MODES, Null, RADII, SAME, SingularPoint,
+};
+use crate::branching::directions::candidate::{CandidateDirection, is_mechanism};
+use crate::branching::directions::choice::DirectionChoice;
 use crate::branching::directions::trial_step::confirm_by;
 use crate::complementarity::rates::combinations::{combinations, count};
 use crate::mechanics::contact::Mode;
@@ -31,8 +34,8 @@ use crate::mechanics::problem::state::{Rate, State};
 use crate::step::event_functions::{self, Watch};
 
 /// What is left of the directions at a point when each is told at second order.
-pub struct Told {
-    pub options: Vec<Choice>,
+pub struct SecondOrderFindings {
+    pub options: Vec<DirectionChoice>,
     /// Some mode has a continuum of directions at second order, too, or of some neither second order nor a step tells.
     pub unclear: bool,
 }
@@ -50,18 +53,18 @@ const NO_CHANGE: f64 = 1e-6;
 const SHARP: f64 = 1e-5;
 
 /// A direction of a mode.
-struct Way {
+struct ModeDirection {
     null: Null,
     /// `q₂`, where the direction is the only one of its mode.
     bend: Option<Rate>,
     /// The equations of the mode have more than one null vector, or as good as that.
     is_singular: bool,
-    /// See [`Choice`].
+    /// See [`DirectionChoice`].
     beside: Option<Rate>,
 }
 
 /// What is to be said of a direction.
-enum Verdict {
+enum DirectionVerdict {
     Holds,
     Fails,
     Unclear,
@@ -69,30 +72,30 @@ enum Verdict {
 
 /// Every direction of every mode of the contacts that can change; `None` where these are too many or not of a kind for
 /// which second order is known (slip in a plane, corners, and motions that no element resists).
-pub fn in_each_mode(here: Here<'_>) -> Option<Told> {
+pub fn in_each_mode(here: SingularPoint<'_>) -> Option<SecondOrderFindings> {
     let options = modes_of_each(here)?;
     if count(&options) > MOST_MODES || !here.loading.structure.allows_dense() {
         return None;
     }
-    let mut told = Told { options: Vec::new(), unclear: false };
+    let mut told = SecondOrderFindings { options: Vec::new(), unclear: false };
     for modes in combinations(&options, MOST_MODES) {
         let system = ModeSystem::new(here.loading, &modes, here.state);
         if system.has_tracks() {
             return None;
         }
-        let point = Point { here, modes: &modes, system, eigenvalues: None, nulls: None };
-        for way in point.ways(&mut told.unclear)? {
+        let point = BranchingPoint { here, modes: &modes, system, eigenvalues: None, nulls: None };
+        for way in ways(&point, &mut told.unclear)? {
             if is_mechanism(here.loading, here.state, &way.null.rate) {
                 return None;
             }
-            point.tell(way, &mut told);
+            tell(&point, way, &mut told);
         }
     }
     Some(told)
 }
 
 /// What each contact may do.
-fn modes_of_each(here: Here<'_>) -> Option<Vec<Vec<Mode>>> {
+fn modes_of_each(here: SingularPoint<'_>) -> Option<Vec<Vec<Mode>>> {
     let of_contact = |(contact, standing): (usize, &Standing)| {
         let tangents = here.loading.contacts[contact].tangents();
         match standing {
@@ -110,151 +113,149 @@ fn modes_of_each(here: Here<'_>) -> Option<Vec<Vec<Mode>>> {
     here.standings.iter().enumerate().map(of_contact).collect()
 }
 
-impl Point<'_> {
-    /// The directions of the mode, each in both senses; `None` where nothing moves along one, and where they are three and
-    /// more that are not those of parts that nothing joins.
-    fn ways(&self, unclear: &mut bool) -> Option<Vec<Way>> {
-        let nulls = self.orthonormal_nulls()?;
-        match &nulls[..] {
-            [only] => {
-                let bend = self.bend(only);
-                let is_sharp = bend.as_ref().is_some_and(|bend| bend.size() > 1.0 / SHARP);
-                let both = self.both(only, bend, false);
-                match if is_sharp { self.plane()? } else { Plane::Continuum } {
-                    Plane::Fold(fold) => Some(self.past_bend(&fold, both)),
-                    Plane::Continuum | Plane::Roots(_) => Some(both.into()),
-                }
-            }
-            [_, _] => Some(match self.plane()? {
-                Plane::Continuum => {
-                    *unclear = true;
-                    Vec::new()
-                }
-                Plane::Roots(roots) => roots.iter().flat_map(|root| self.both(root, None, true)).collect(),
-                Plane::Fold(fold) => self.leaving(&fold),
-            }),
-            [] => None,
-            several => self.fold_of_parts(several.len()).map(|fold| self.leaving(&fold)),
-        }
-    }
-
-    /// The directions that leave a fold.
-    fn leaving(&self, fold: &Fold) -> Vec<Way> {
-        if fold.is_straight() {
-            return self.both(&fold.flat, self.bend_at_fold(&fold.flat), true).into();
-        }
-        let Some(ahead) = fold.ahead(self) else { return Vec::new() };
-        fold.arms().into_iter().map(|arm| Self::along_arm(&ahead, arm)).collect()
-    }
-
-    fn both(&self, null: &Null, bend: Option<Rate>, is_singular: bool) -> [Way; 2] {
-        // The bend is the same in both senses.
-        [1.0, -1.0].map(|sense| Way {
-            null: self.combined(std::slice::from_ref(null), &[sense]),
-            bend: bend.clone(),
-            is_singular,
-            beside: None,
-        })
-    }
-
-    fn along_arm(ahead: &Null, beside: Rate) -> Way {
-        Way { null: ahead.clone(), bend: None, is_singular: true, beside: Some(beside) }
-    }
-
-    /// Of directions that bend at once, those that hold there, as they go on after it.
-    fn past_bend(&self, fold: &Fold, ways: [Way; 2]) -> Vec<Way> {
-        if fold.is_straight() {
-            return self.leaving(fold);
-        }
-        let holding = ways.into_iter().filter(|way| !matches!(self.verdict(way), Verdict::Fails));
-        let past = |way: Way| Some(Self::along_arm(&fold.ahead(self)?, fold.beside(&way.null.rate)?));
-        holding.filter_map(past).collect()
-    }
-
-    /// `q₂`
-    fn bend(&self, null: &Null) -> Option<Rate> {
-        self.bend_by(&self.system, null)
-    }
-
-    /// The same of the line along a fold, where what is at its fold stays there and the rest of the structure bends the path.
-    fn bend_at_fold(&self, flat: &Null) -> Option<Rate> {
-        let Here { loading, state, .. } = self.here;
-        let mut system = ModeSystem::new(loading, self.modes, state);
-        let bend = if system.hold_still(state, &flat.rate) { self.bend_by(&system, flat) } else { None };
-        bend.filter(|bend| bend.size() > NO_CHANGE)
-    }
-
-    fn bend_by(&self, system: &ModeSystem<'_>, null: &Null) -> Option<Rate> {
-        let factorisation = system.bordered(&system.iterate(self.here.state.clone()), &null.rate)?;
-        let curved = self.second_derivative(&null.rate).times(&null.values);
-        let mut values = -curved.insert_row(system.size() - 1, 0.0);
-        factorisation.solve(&mut values).then(|| system.rate_from(self.here.state, &values))
-    }
-
-    /// Adds a direction, if it holds and is not known.
-    fn tell(&self, way: Way, told: &mut Told) {
-        let Here { loading, state, force_scale, .. } = self.here;
-        let rate = &way.null.rate;
-        let forces = rate.largest_reaction().max(f64::MIN_POSITIVE);
-        let is_known = |known: &Choice| {
-            let mut pairs = known.rate.reactions.iter().zip(&rate.reactions);
-            known.rate.product(rate) > SAME
-                && known.beside == way.beside
-                && pairs.all(|(one, other)| one.difference(other) <= IN_DOUBT * forces)
-        };
-        let later = way.bend.as_ref().map_or(0.0, |bend| bend.load / bend.size().max(f64::MIN_POSITIVE));
-        let confirmed = match self.verdict(&way) {
-            Verdict::Fails => return,
-            _ if told.options.iter().any(is_known) => return,
-            Verdict::Holds => Some((self.modes.to_vec(), later)),
-            Verdict::Unclear => {
-                let candidate = Candidate {
-                    rate: rate.clone(),
-                    forces: Vec::new(),
-                    modes: self.modes.to_vec(),
-                    alternatives: Vec::new(),
-                    weak: true,
-                    dissipation: 0.0,
-                    at_hand: AtHand::default(),
-                };
-                let tried = |radius: &f64| confirm_by(loading, state, &candidate, force_scale, &[*radius]);
-                RADII.iter().find_map(tried)
-            }
-        };
-        let Some((modes, later)) = confirmed else {
-            told.unclear = true;
-            return;
-        };
-        let choice = self.choice(way.null.rate, modes, Some(later), false);
-        told.options.push(Choice { is_singular: way.is_singular, beside: way.beside, ..choice });
-    }
-
-    /// Whether the inequalities of the mode hold along a direction.
-    fn verdict(&self, way: &Way) -> Verdict {
-        let Here { loading, state, force_scale, .. } = self.here;
-        let rate = &way.null.rate;
-        let bent = way.bend.as_ref().map(|bend| Bent::new(self, rate, bend));
-        let mut verdict = Verdict::Holds;
-        for watch in event_functions::of_mode(loading, self.modes, state, rate) {
-            let value = watch.value(loading, self.modes, state, rate);
-            let slope = watch.slope(loading, self.modes, state, rate);
-            if slope.is_some() && watch.is_above_zero(loading, state, value, ZERO, force_scale) {
-                continue;
-            }
-            let size = if watch.is_of_forces() { rate.largest_reaction().max(f64::MIN_POSITIVE) } else { 1.0 };
-            let first = slope.unwrap_or(value) / size;
-            let second = bent.as_ref().map(|bent| bent.change(self, watch) / size);
-            let doubt = IN_DOUBT + second.map_or(0.0, |second| LOCATED * second.abs());
-            let rising = if first.abs() > doubt { first } else { second.unwrap_or(0.0) };
-            if rising < 0.0 {
-                return Verdict::Fails;
-            }
-            if rising == 0.0 {
-                verdict = Verdict::Unclear;
+/// The directions of the mode, each in both senses; `None` where nothing moves along one, and where they are three and
+/// more that are not those of parts that nothing joins.
+fn ways(point: &BranchingPoint<'_>, unclear: &mut bool) -> Option<Vec<ModeDirection>> {
+    let nulls = fold::orthonormal_nulls(point)?;
+    match &nulls[..] {
+        [only] => {
+            let bend = bend(point, only);
+            let is_sharp = bend.as_ref().is_some_and(|bend| bend.size() > 1.0 / SHARP);
+            let both = both(point, only, bend, false);
+            match if is_sharp { fold::plane(point)? } else { Plane::Continuum } {
+                Plane::Fold(fold) => Some(past_bend(point, &fold, both)),
+                Plane::Continuum | Plane::Roots(_) => Some(both.into()),
             }
         }
-        verdict
+        [_, _] => Some(match fold::plane(point)? {
+            Plane::Continuum => {
+                *unclear = true;
+                Vec::new()
+            }
+            Plane::Roots(roots) => roots.iter().flat_map(|root| both(point, root, None, true)).collect(),
+            Plane::Fold(fold) => leaving(point, &fold),
+        }),
+        [] => None,
+        several => fold::fold_of_parts(point, several.len()).map(|fold| leaving(point, &fold)),
     }
+}
+
+/// The directions that leave a fold.
+fn leaving(point: &BranchingPoint<'_>, fold: &Fold) -> Vec<ModeDirection> {
+    if fold.is_straight() {
+        return both(point, &fold.flat, bend_at_fold(point, &fold.flat), true).into();
+    }
+    let Some(ahead) = fold.ahead(point) else { return Vec::new() };
+    fold.arms().into_iter().map(|arm| along_arm(&ahead, arm)).collect()
+}
+
+fn both(point: &BranchingPoint<'_>, null: &Null, bend: Option<Rate>, is_singular: bool) -> [ModeDirection; 2] {
+    // The bend is the same in both senses.
+    [1.0, -1.0].map(|sense| ModeDirection {
+        null: point.combined(std::slice::from_ref(null), &[sense]),
+        bend: bend.clone(),
+        is_singular,
+        beside: None,
+    })
+}
+
+fn along_arm(ahead: &Null, beside: Rate) -> ModeDirection {
+    ModeDirection { null: ahead.clone(), bend: None, is_singular: true, beside: Some(beside) }
+}
+
+/// Of directions that bend at once, those that hold there, as they go on after it.
+fn past_bend(point: &BranchingPoint<'_>, fold: &Fold, ways: [ModeDirection; 2]) -> Vec<ModeDirection> {
+    if fold.is_straight() {
+        return leaving(point, fold);
+    }
+    let holding = ways.into_iter().filter(|way| !matches!(verdict(point, way), DirectionVerdict::Fails));
+    let past = |way: ModeDirection| Some(along_arm(&fold.ahead(point)?, fold.beside(&way.null.rate)?));
+    holding.filter_map(past).collect()
+}
+
+/// `q₂`
+fn bend(point: &BranchingPoint<'_>, null: &Null) -> Option<Rate> {
+    bend_by(point, &point.system, null)
+}
+
+/// The same of the line along a fold, where what is at its fold stays there and the rest of the structure bends the path.
+fn bend_at_fold(point: &BranchingPoint<'_>, flat: &Null) -> Option<Rate> {
+    let SingularPoint { loading, state, .. } = point.here;
+    let mut system = ModeSystem::new(loading, point.modes, state);
+    let bend = if system.hold_still(state, &flat.rate) { bend_by(point, &system, flat) } else { None };
+    bend.filter(|bend| bend.size() > NO_CHANGE)
+}
+
+fn bend_by(point: &BranchingPoint<'_>, system: &ModeSystem<'_>, null: &Null) -> Option<Rate> {
+    let factorisation = system.bordered(&system.iterate(point.here.state.clone()), &null.rate)?;
+    let curved = point.second_derivative(&null.rate).times(&null.values);
+    let mut values = -curved.insert_row(system.size() - 1, 0.0);
+    factorisation.solve(&mut values).then(|| system.rate_from(point.here.state, &values))
+}
+
+/// Adds a direction, if it holds and is not known.
+fn tell(point: &BranchingPoint<'_>, way: ModeDirection, told: &mut SecondOrderFindings) {
+    let SingularPoint { loading, state, force_scale, .. } = point.here;
+    let rate = &way.null.rate;
+    let forces = rate.largest_reaction().max(f64::MIN_POSITIVE);
+    let is_known = |known: &DirectionChoice| {
+        let mut pairs = known.rate.reactions.iter().zip(&rate.reactions);
+        known.rate.product(rate) > SAME
+            && known.beside == way.beside
+            && pairs.all(|(one, other)| one.difference(other) <= IN_DOUBT * forces)
+    };
+    let later = way.bend.as_ref().map_or(0.0, |bend| bend.load / bend.size().max(f64::MIN_POSITIVE));
+    let confirmed = match verdict(point, &way) {
+        DirectionVerdict::Fails => return,
+        _ if told.options.iter().any(is_known) => return,
+        DirectionVerdict::Holds => Some((point.modes.to_vec(), later)),
+        DirectionVerdict::Unclear => {
+            let candidate = CandidateDirection {
+                rate: rate.clone(),
+                forces: Vec::new(),
+                modes: point.modes.to_vec(),
+                alternatives: Vec::new(),
+                weak: true,
+                dissipation: 0.0,
+                at_hand: AtHand::default(),
+            };
+            let tried = |radius: &f64| confirm_by(loading, state, &candidate, force_scale, &[*radius]);
+            RADII.iter().find_map(tried)
+        }
+    };
+    let Some((modes, later)) = confirmed else {
+        told.unclear = true;
+        return;
+    };
+    let choice = point.choice(way.null.rate, modes, Some(later), false);
+    told.options.push(DirectionChoice { is_singular: way.is_singular, beside: way.beside, ..choice });
+}
+
+/// Whether the inequalities of the mode hold along a direction.
+fn verdict(point: &BranchingPoint<'_>, way: &ModeDirection) -> DirectionVerdict {
+    let SingularPoint { loading, state, force_scale, .. } = point.here;
+    let rate = &way.null.rate;
+    let bent = way.bend.as_ref().map(|bend| Bent::new(point, rate, bend));
+    let mut verdict = DirectionVerdict::Holds;
+    for watch in event_functions::of_mode(loading, point.modes, state, rate) {
+        let value = watch.value(loading, point.modes, state, rate);
+        let slope = watch.slope(loading, point.modes, state, rate);
+        if slope.is_some() && watch.is_above_zero(loading, state, value, ZERO, force_scale) {
+            continue;
+        }
+        let size = if watch.is_of_forces() { rate.largest_reaction().max(f64::MIN_POSITIVE) } else { 1.0 };
+        let first = slope.unwrap_or(value) / size;
+        let second = bent.as_ref().map(|bent| bent.change(point, watch) / size);
+        let doubt = IN_DOUBT + second.map_or(0.0, |second| LOCATED * second.abs());
+        let rising = if first.abs() > doubt { first } else { second.unwrap_or(0.0) };
+        if rising < 0.0 {
+            return DirectionVerdict::Fails;
+        }
+        if rising == 0.0 {
+            verdict = DirectionVerdict::Unclear;
+        }
+    }
+    verdict
 }
 
 /// The path a little way along a direction, to second order.
@@ -272,7 +273,7 @@ impl Bent {
     /// How far along the path what is of second order is looked at, over the radius of its bend.
     const WAY: f64 = 1e-4;
 
-    fn new(point: &Point<'_>, rate: &Rate, bend: &Rate) -> Self {
+    fn new(point: &BranchingPoint<'_>, rate: &Rate, bend: &Rate) -> Self {
         let way = Self::WAY / bend.size().max(1.0);
         let mut ahead = rate.clone();
         ahead.add(bend, way);
@@ -289,8 +290,8 @@ impl Bent {
     }
 
     /// The change of a quantity that is a rate, or of the rate of another, by arc length; 0 where it is rounding.
-    fn change(&self, point: &Point<'_>, watch: Watch) -> f64 {
-        let Here { loading, state, .. } = point.here;
+    fn change(&self, point: &BranchingPoint<'_>, watch: Watch) -> f64 {
+        let SingularPoint { loading, state, .. } = point.here;
         let at = |state, rate| {
             let slope = watch.slope(loading, point.modes, state, rate);
             slope.unwrap_or_else(|| watch.value(loading, point.modes, state, rate))

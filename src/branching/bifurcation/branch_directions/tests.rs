@@ -50,7 +50,7 @@ fn followed(scene: &Scene) -> Vec<Vec<Increment>> {
         let state = &path.trace.at.here.state;
         let standings = path.trace.standings(state);
         let (loading, force_scale) = (path.trace.loading(), path.trace.rules().force_scale);
-        let here = crate::branching::bifurcation::branch_directions::Here {
+        let here = crate::branching::bifurcation::branch_directions::SingularPoint {
             loading,
             state,
             standings: &standings,

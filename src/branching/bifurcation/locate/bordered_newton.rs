@@ -16,14 +16,14 @@ use crate::algebra::SystemFactorisation;
 use crate::branching::bifurcation::locate::{AT_START, Crossing, Located};
 use crate::branching::bifurcation::singularity::bordering::{Bordering, orthonormal};
 use crate::branching::bifurcation::singularity::null_vectors::NullVectors;
-use crate::branching::bifurcation::singularity::test_functions::{Change, Signature};
+use crate::branching::bifurcation::singularity::test_functions::{Signature, SignatureChange};
 use crate::mechanics::equations::{Kind, ModeSystem};
 use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::budget;
 use crate::step::corrector::cost_counters::Work;
-use crate::step::corrector::newton::ACCEPTED_RESIDUAL;
-use crate::step::interpolation::{Placed, between, placed, unit};
-use crate::step::segment::{Reached, Start};
+use crate::step::corrector::newton::{self, ACCEPTED_RESIDUAL};
+use crate::step::interpolation::{PlacedPoint, between, placed, unit};
+use crate::step::segment::{Reached, StepStart};
 use nalgebra::{Complex, DMatrix, DVector};
 use std::sync::Arc;
 
@@ -78,16 +78,21 @@ struct Singular<'a> {
 }
 
 /// The first crossing of a step, as [`crate::branching::bifurcation::locate::locate`] has it; `None` where it is not made out so.
-pub(super) fn locate(start: &Start<'_>, before: Signature, change: Change, reached: &Reached) -> Option<Located> {
+pub(super) fn locate(
+    start: &StepStart<'_>,
+    before: Signature,
+    change: SignatureChange,
+    reached: &Reached,
+) -> Option<Located> {
     let system = ModeSystem::new(start.loading, start.modes, start.state);
-    let origin = Placed { place: 0.0, state: start.state.clone(), rate: start.rate.clone() };
-    let mut search = Search { start, system: &system, left: origin, right: placed(start, reached) };
+    let origin = PlacedPoint { place: 0.0, state: start.state.clone(), rate: start.rate.clone() };
+    let mut search = BorderedNewton { start, system: &system, left: origin, right: placed(start, reached) };
     for _ in 0..MOST_BRACKETS {
         let located = search.within(before, change)?;
         let is_first = match change {
-            Change::Count { net, .. } if located.crossing.eigenvalues >= net.unsigned_abs() => true,
-            Change::Count { .. } => search.is_first_counted(&located, before),
-            Change::None | Change::Odd => search.is_first_by_sign(&located, before),
+            SignatureChange::Count { net, .. } if located.crossing.eigenvalues >= net.unsigned_abs() => true,
+            SignatureChange::Count { .. } => search.is_first_counted(&located, before),
+            SignatureChange::None | SignatureChange::Odd => search.is_first_by_sign(&located, before),
         };
         if is_first {
             return Some(located);
@@ -97,19 +102,19 @@ pub(super) fn locate(start: &Start<'_>, before: Signature, change: Change, reach
     None
 }
 
-struct Search<'s, 'a> {
-    start: &'s Start<'a>,
+struct BorderedNewton<'s, 'a> {
+    start: &'s StepStart<'a>,
     system: &'s ModeSystem<'a>,
-    left: Placed,
-    right: Placed,
+    left: PlacedPoint,
+    right: PlacedPoint,
 }
 
-impl Search<'_, '_> {
+impl BorderedNewton<'_, '_> {
     /// A crossing between the ends.
-    fn within(&mut self, before: Signature, change: Change) -> Option<Located> {
+    fn within(&mut self, before: Signature, change: SignatureChange) -> Option<Located> {
         let count = match change {
-            Change::Count { net, .. } => net.unsigned_abs(),
-            Change::None | Change::Odd => 1,
+            SignatureChange::Count { net, .. } => net.unsigned_abs(),
+            SignatureChange::None | SignatureChange::Odd => 1,
         };
         let width = self.right.place - self.left.place;
         FROM.iter().find_map(|part| {
@@ -198,7 +203,7 @@ impl Search<'_, '_> {
     }
 
     /// The crossing at which motions become free, alone or together.
-    fn crossing(&mut self, expected: &[Expected], before: Signature, change: Change) -> Option<Located> {
+    fn crossing(&mut self, expected: &[Expected], before: Signature, change: SignatureChange) -> Option<Located> {
         let first = expected.first()?;
         let motions: Vec<Rate> = expected.iter().flat_map(|expected| expected.motions.iter().cloned()).collect();
         let (state, rate) = between(&self.left, &self.right, first.place);
@@ -279,8 +284,8 @@ impl Search<'_, '_> {
     }
 
     /// What was found as the end of a step, where it continues the path.
-    fn located(&self, singular: &Singular<'_>, before: Signature, change: Change) -> Option<Located> {
-        let Search { start, system, .. } = self;
+    fn located(&self, singular: &Singular<'_>, before: Signature, change: SignatureChange) -> Option<Located> {
+        let BorderedNewton { start, system, .. } = self;
         let place = singular.state.distance(start.state);
         if place <= AT_START || place > self.right.place {
             return None;
@@ -290,19 +295,19 @@ impl Search<'_, '_> {
             return None;
         }
         let rate = singular.continued(&unit(&rate))?;
-        let corrected = system.judged(singular.state.clone(), start.force_scale);
+        let corrected = newton::judged(system, singular.state.clone(), start.force_scale);
         if corrected.residual > ACCEPTED_RESIDUAL {
             return None;
         }
         let corank = singular.bordering.left.len();
         let eigenvalues = match change {
-            Change::Count { net, .. } => corank.min(net.unsigned_abs()),
-            Change::None | Change::Odd => corank,
+            SignatureChange::Count { net, .. } => corank.min(net.unsigned_abs()),
+            SignatureChange::None | SignatureChange::Odd => corank,
         };
         let (right, left) = (singular.bordering.right.clone(), singular.bordering.left.clone());
         let nulls = (eigenvalues == corank).then(|| Arc::new(NullVectors { right, left }));
         let mut after = before.past(change, eigenvalues)?;
-        if change == Change::Odd && before.negative.is_some() {
+        if change == SignatureChange::Odd && before.negative.is_some() {
             // Whether these motions are counted is not known: those that move slipping contacts are not.
             after.negative = self.counted(&corrected.state, &rate, 1.0, after);
         }
@@ -330,7 +335,7 @@ impl Search<'_, '_> {
     /// Negative eigenvalues just past a point, or, the other way, just before it.
     fn counted(&self, point: &State, rate: &Rate, way: f64, signature: Signature) -> Option<usize> {
         let state = point.advanced(rate, way * BESIDE_POINT * self.right.place);
-        let Start { loading, modes, state: start, .. } = *self.start;
+        let StepStart { loading, modes, state: start, .. } = *self.start;
         let mut work = Work::default();
         Signature::with_determinant(loading, modes, start, &state, signature.determinant, &mut work)?.negative
     }

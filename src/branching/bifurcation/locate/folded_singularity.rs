@@ -15,9 +15,9 @@
 
 use crate::algebra::{Factorisation, nearest_null_space, null_space_as_scaled};
 use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role};
-use crate::step::corrector::newton::ACCEPTED_RESIDUAL;
+use crate::step::corrector::newton::{self, ACCEPTED_RESIDUAL};
 use crate::step::event_functions::{self, Watch};
-use crate::step::segment::{Reached, Start};
+use crate::step::segment::{Reached, StepStart};
 use nalgebra::{DMatrix, DVector};
 
 /// Difference step (dimensionless) for the test functions' derivatives.
@@ -34,7 +34,7 @@ const SINGULAR: f64 = 1e-8;
 const VIOLATED: f64 = 1e-10;
 
 /// The point near a step at which the direction is not determined, if there is one.
-pub fn locate(start: &Start<'_>, reached: &Reached) -> Option<Box<Reached>> {
+pub fn locate(start: &StepStart<'_>, reached: &Reached) -> Option<Box<Reached>> {
     let system = ModeSystem::new(start.loading, start.modes, start.state);
     let tracks: Vec<usize> = system
         .roles
@@ -43,9 +43,9 @@ pub fn locate(start: &Start<'_>, reached: &Reached) -> Option<Box<Reached>> {
         .filter(|(_, role)| matches!(role, Role::Plane { .. }))
         .map(|(contact, _)| system.row_of(contact) + 1)
         .collect();
-    let search = Search { system, tracks };
+    let search = FoldedSingularitySearch { system, tracks };
     let iterate = search.found(search.system.iterate_of(&reached.corrected), NEAR * reached.step)?;
-    let corrected = search.system.judged_as_state(iterate, &search.tracks, start.force_scale);
+    let corrected = newton::judged_as_state(&search.system, iterate, &search.tracks, start.force_scale);
     let step = corrected.state.distance(start.state);
     if corrected.residual > ACCEPTED_RESIDUAL || step > NEAR * reached.step || step <= 0.0 {
         return None;
@@ -60,17 +60,17 @@ pub fn locate(start: &Start<'_>, reached: &Reached) -> Option<Box<Reached>> {
     if !event_functions::of_mode(start.loading, start.modes, start.state, start.rate).iter().all(holds) {
         return None;
     }
-    let error_estimate = search.system.off_track(&corrected, &search.tracks);
+    let error_estimate = newton::off_track(&corrected, &search.tracks);
     Some(Reached::new(corrected, rate, step, error_estimate))
 }
 
-struct Search<'a> {
+struct FoldedSingularitySearch<'a> {
     system: ModeSystem<'a>,
     /// Rows of the tracks' equations.
     tracks: Vec<usize>,
 }
 
-impl Search<'_> {
+impl FoldedSingularitySearch<'_> {
     fn found(&self, guess: Iterate, reach: f64) -> Option<Iterate> {
         let origin = guess.state.clone();
         let mut iterate = self.projected(guess)?;

@@ -11,19 +11,19 @@
 pub(crate) mod bordered_newton;
 pub(crate) mod folded_singularity;
 
-use crate::algebra::null_space_as_scaled;
 use crate::algebra::scalar_root::find_root;
+use crate::algebra::{Determinant, null_space_as_scaled};
 use crate::branching::bifurcation::singularity::null_vectors::{NullVectors, SINGULAR};
 use crate::branching::bifurcation::singularity::test_functions::{
-    Change, Signature, bordered_determinant, counted_tangent,
+    Signature, SignatureChange, bordered_determinant, counted_tangent,
 };
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::scaled_rows::scaled_rows;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cost_counters::Work;
-use crate::step::corrector::newton::ACCEPTED_RESIDUAL;
-use crate::step::interpolation::{Placed, between, placed, unit};
-use crate::step::segment::{Reached, Start};
+use crate::step::corrector::newton::{self, ACCEPTED_RESIDUAL};
+use crate::step::interpolation::{PlacedPoint, between, placed, unit};
+use crate::step::segment::{Reached, StepStart};
 use std::sync::Arc;
 
 /// A smooth bifurcation point at the end of a step.
@@ -54,18 +54,18 @@ const TOGETHER: f64 = 1e-10;
 const AT_START: f64 = 2e-9;
 
 /// What a step ends at: a point, whether it is a smooth bifurcation, and the signs just past it where they are known.
-pub(crate) type Ended = (Box<Reached>, Option<Crossing>, Option<Signature>);
+pub(crate) type LocatedEnd = (Box<Reached>, Option<Crossing>, Option<Signature>);
 
 /// A crossing with the regular points between which it was found, where it was found so.
 pub(crate) struct Located {
     pub point: Box<Reached>,
     pub crossing: Crossing,
-    pub between: Option<[Placed; 2]>,
+    pub between: Option<[PlacedPoint; 2]>,
 }
 
 impl Located {
     /// Regular points on both sides of it, the step being so long.
-    pub fn between(&self, start: &Start<'_>, length: f64, work: &mut Work) -> Option<[Placed; 2]> {
+    pub fn between(&self, start: &StepStart<'_>, length: f64, work: &mut Work) -> Option<[PlacedPoint; 2]> {
         if let Some(between) = &self.between {
             return Some(between.clone());
         }
@@ -73,7 +73,7 @@ impl Located {
         let width = WIDTHS[1] * length;
         let mut at = |ahead: f64| {
             if step + ahead <= 0.0 {
-                return Some(Placed { place: 0.0, state: start.state.clone(), rate: start.rate.clone() });
+                return Some(PlacedPoint { place: 0.0, state: start.state.clone(), rate: start.rate.clone() });
             }
             let guess = corrected.state.advanced(rate, ahead);
             start.reach_near(guess, step + ahead, work).map(|near| placed(start, &near)).ok()
@@ -84,16 +84,22 @@ impl Located {
 
 /// Finds the first crossing of a step, whose start has the signature `before`. `None` where none can be made out.
 pub fn locate(
-    start: &Start<'_>,
+    start: &StepStart<'_>,
     before: Signature,
-    change: Change,
+    change: SignatureChange,
     reached: &Reached,
     work: &mut Work,
 ) -> Option<Located> {
     work.at_bifurcation(|work| find(start, before, change, reached, work))
 }
 
-fn find(start: &Start<'_>, before: Signature, change: Change, reached: &Reached, work: &mut Work) -> Option<Located> {
+fn find(
+    start: &StepStart<'_>,
+    before: Signature,
+    change: SignatureChange,
+    reached: &Reached,
+    work: &mut Work,
+) -> Option<Located> {
     let system = ModeSystem::new(start.loading, start.modes, start.state);
     if system.has_tracks()
         && let Some(point) = folded_singularity::locate(start, reached)
@@ -107,23 +113,10 @@ fn find(start: &Start<'_>, before: Signature, change: Change, reached: &Reached,
             return located;
         }
     }
-    let origin = Placed { place: 0.0, state: start.state.clone(), rate: start.rate.clone() };
+    let origin = PlacedPoint { place: 0.0, state: start.state.clone(), rate: start.rate.clone() };
     let end = placed(start, reached);
     let reference = bordered_determinant(&system, start.loading, &end.state, &unit(&end.rate))?;
-    let value = |state: &State, rate: &Rate| -> Option<f64> {
-        match change {
-            Change::None => None,
-            Change::Count { before, net } => {
-                let values = eigenvalues(start, state)?;
-                if net > 0 { values.get(before).copied() } else { values.get(before.checked_sub(1)?).map(|v| -v) }
-            }
-            Change::Odd => {
-                // Negative on the far side, of the size of the determinant there.
-                let here = bordered_determinant(&system, start.loading, state, rate)?;
-                Some(-here.sign * reference.sign * (here.logarithm - reference.logarithm).min(300.0).exp())
-            }
-        }
-    };
+    let value = |state: &State, rate: &Rate| crossing_value(start, &system, change, &reference, state, rate);
     let (mut left, mut right) = (origin.clone(), end.clone());
     let mut root = root_between(&left, &right, &value)?;
     let mut best: Option<(f64, Located)> = None;
@@ -143,7 +136,7 @@ fn find(start: &Start<'_>, before: Signature, change: Change, reached: &Reached,
         (left, right, root) = (nearer, farther, place);
         let (state, rate) = between(&left, &right, root);
         let rate = unit(&rate);
-        let corrected = system.judged(state, start.force_scale);
+        let corrected = newton::judged(&system, state, start.force_scale);
         let residual = corrected.residual;
         if let Some(previous) = &previous {
             // Each round's points are at least four times closer.
@@ -156,10 +149,10 @@ fn find(start: &Start<'_>, before: Signature, change: Change, reached: &Reached,
             continue;
         }
         let eigenvalues = match change {
-            Change::Count { net, .. } => {
+            SignatureChange::Count { net, .. } => {
                 together(&eigenvalues(start, &corrected.state)?, change)?.min(net.unsigned_abs())
             }
-            Change::None | Change::Odd => null.ncols() - 1,
+            SignatureChange::None | SignatureChange::Odd => null.ncols() - 1,
         };
         let after = before.past(change, eigenvalues)?;
         let crossing = Crossing { eigenvalues, grazing: false, after, nulls: None };
@@ -177,8 +170,31 @@ fn find(start: &Start<'_>, before: Signature, change: Change, reached: &Reached,
     (residual <= ACCEPTED_RESIDUAL && !is_start).then_some(located)
 }
 
+/// A quantity that falls through zero at the crossing; `reference` is the determinant at the end of the step.
+fn crossing_value(
+    start: &StepStart<'_>,
+    system: &ModeSystem<'_>,
+    change: SignatureChange,
+    reference: &Determinant,
+    state: &State,
+    rate: &Rate,
+) -> Option<f64> {
+    match change {
+        SignatureChange::None => None,
+        SignatureChange::Count { before, net } => {
+            let values = eigenvalues(start, state)?;
+            if net > 0 { values.get(before).copied() } else { values.get(before.checked_sub(1)?).map(|v| -v) }
+        }
+        SignatureChange::Odd => {
+            // Negative on the far side, of the size of the determinant there.
+            let here = bordered_determinant(system, start.loading, state, rate)?;
+            Some(-here.sign * reference.sign * (here.logarithm - reference.logarithm).min(300.0).exp())
+        }
+    }
+}
+
 /// Eigenvalues of the reduced tangent, the smallest first.
-fn eigenvalues(start: &Start<'_>, state: &State) -> Option<Vec<f64>> {
+fn eigenvalues(start: &StepStart<'_>, state: &State) -> Option<Vec<f64>> {
     let tangent = counted_tangent(start.loading, start.modes, start.state, state)?;
     let mut values: Vec<f64> = tangent.symmetric_eigenvalues().iter().copied().collect();
     values.sort_by(f64::total_cmp);
@@ -186,8 +202,8 @@ fn eigenvalues(start: &Start<'_>, state: &State) -> Option<Vec<f64>> {
 }
 
 /// How many of the eigenvalues that cross, in the order in which they do, are zero with the first.
-fn together(values: &[f64], change: Change) -> Option<usize> {
-    let Change::Count { before, net } = change else { return None };
+fn together(values: &[f64], change: SignatureChange) -> Option<usize> {
+    let SignatureChange::Count { before, net } = change else { return None };
     let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let crossing: Vec<f64> =
         if net > 0 { values.get(before..)?.to_vec() } else { values.get(..before)?.iter().rev().copied().collect() };
@@ -195,7 +211,7 @@ fn together(values: &[f64], change: Change) -> Option<usize> {
     Some(crossing.iter().take_while(|value| (*value - first).abs() <= TOGETHER * largest).count())
 }
 
-fn root_between(left: &Placed, right: &Placed, value: &impl Fn(&State, &Rate) -> Option<f64>) -> Option<f64> {
+fn root_between(left: &PlacedPoint, right: &PlacedPoint, value: &impl Fn(&State, &Rate) -> Option<f64>) -> Option<f64> {
     let evaluate = |place: f64| {
         let (state, rate) = between(left, right, place);
         value(&state, &unit(&rate))

@@ -30,8 +30,9 @@ use crate::mechanics::problem::natural_residual::ZERO;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::determinant_sign::UNCERTAIN;
+use crate::step::corrector::tangent;
 use crate::step::event_functions::Watch;
-use crate::step::segment::{Reached, Start};
+use crate::step::segment::{Reached, StepStart};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
@@ -46,7 +47,7 @@ pub struct Signature {
 
 /// How the signature changed over a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Change {
+pub enum SignatureChange {
     None,
     /// So many more eigenvalues are negative (fewer, if below 0).
     Count {
@@ -172,7 +173,7 @@ fn reduced_tangent(system: &ModeSystem<'_>, loading: Loading<'_>, state: &State)
 
 /// The modes of a step with every contact free that touches without reaction at both of its ends; `None` where there is
 /// none. Free or closed, such a contact lets the path go the same way, but a branch may leave it.
-pub fn loosened(start: &Start<'_>, reached: &Reached) -> Option<Vec<Mode>> {
+pub fn loosened(start: &StepStart<'_>, reached: &Reached) -> Option<Vec<Mode>> {
     let touches = |state: &State, contact: usize| {
         let force_scale = start.force_scale.max(reached.corrected.force_scale);
         let reaction = state.reactions[contact].size();
@@ -212,10 +213,10 @@ impl Signature {
     }
 
     /// Just past a point where so many eigenvalues cross, from the signature before it.
-    pub fn past(self, change: Change, eigenvalues: usize) -> Option<Self> {
+    pub fn past(self, change: SignatureChange, eigenvalues: usize) -> Option<Self> {
         let turns = if eigenvalues % 2 == 1 { -1.0 } else { 1.0 };
         let negative = match (change, self.negative) {
-            (Change::Count { net, .. }, Some(negative)) => {
+            (SignatureChange::Count { net, .. }, Some(negative)) => {
                 let by = isize::try_from(eigenvalues).ok()?;
                 Some(negative.checked_add_signed(if net > 0 { by } else { -by })?)
             }
@@ -227,7 +228,7 @@ impl Signature {
     /// At the start of a step; where the equations are singular there, a little further on. `serving` becomes the
     /// factorisation at the start.
     pub fn past_start(
-        start: &Start<'_>,
+        start: &StepStart<'_>,
         step: f64,
         serving: &mut Option<SystemFactorisation>,
         work: &mut Work,
@@ -268,7 +269,7 @@ impl Signature {
                 return None;
             }
             let sign = bordered.determinant_sign();
-            *serving = system.may_serve(bordered);
+            *serving = tangent::may_serve(&system, bordered);
             return Self::with_determinant(loading, modes, state, state, sign, work);
         }
         let determinant = bordered_determinant(&system, loading, state, rate)?;
@@ -295,7 +296,7 @@ pub fn bordered_determinant(
 /// Sign of the bordered determinant at the end of a step, where it is certain. Next to stiff elements the pivots of a
 /// factorisation that adds them up leave it open; rows over their own sizes tell it as at a start. Else each step would begin
 /// with signs and end without, as if it passed a singular point, and be taken shorter than the one before.
-pub fn sign_at_end(start: &Start<'_>, reached: &Reached, work: &mut Work) -> Option<f64> {
+pub fn sign_at_end(start: &StepStart<'_>, reached: &Reached, work: &mut Work) -> Option<f64> {
     reached.determinant.or_else(|| {
         let (loading, state) = (start.loading, &reached.corrected.state);
         if loading.structure.layout().is_some() {
@@ -310,30 +311,30 @@ pub fn sign_at_end(start: &Start<'_>, reached: &Reached, work: &mut Work) -> Opt
 
 /// The signature at the end of a step, and how it changed.
 pub fn compare(
-    start: &Start<'_>,
+    start: &StepStart<'_>,
     before: Signature,
     reached: &Reached,
     work: &mut Work,
-) -> (Option<Signature>, Change) {
-    let Some(sign) = sign_at_end(start, reached, work) else { return (None, Change::None) };
+) -> (Option<Signature>, SignatureChange) {
+    let Some(sign) = sign_at_end(start, reached, work) else { return (None, SignatureChange::None) };
     let state = &reached.corrected.state;
     let Some(mut after) = Signature::with_determinant(start.loading, start.modes, start.state, state, sign, work)
     else {
-        return (None, Change::None);
+        return (None, SignatureChange::None);
     };
     let odd = sign != before.determinant;
     let (Some(first), Some(last)) = (before.negative, after.negative) else {
-        return (Some(after), if odd { Change::Odd } else { Change::None });
+        return (Some(after), if odd { SignatureChange::Odd } else { SignatureChange::None });
     };
     let mut net = last as isize - first as isize;
     if slips(start.loading, start.modes) {
         // The count is of the structure with these contacts held. It tells of two at once; where an odd number crosses,
         // the determinant knows where.
         let change = match (odd, net) {
-            (true, _) => Change::Odd,
-            (false, 0) => Change::None,
-            (false, _) if net % 2 == 0 => Change::Count { before: first, net },
-            (false, _) => Change::None,
+            (true, _) => SignatureChange::Odd,
+            (false, 0) => SignatureChange::None,
+            (false, _) if net % 2 == 0 => SignatureChange::Count { before: first, net },
+            (false, _) => SignatureChange::None,
         };
         return (Some(after), change);
     }
@@ -358,11 +359,11 @@ pub fn compare(
         after.negative = first.checked_add_signed(net + own);
     }
     let change = match (net, (net % 2 != 0) == odd) {
-        (0, true) => Change::None,
-        (_, true) => Change::Count { before: first, net },
+        (0, true) => SignatureChange::None,
+        (_, true) => SignatureChange::Count { before: first, net },
         // A count at the edge of a limit point; the determinant is regular there.
-        (_, false) if odd => Change::Odd,
-        (_, false) => Change::None,
+        (_, false) if odd => SignatureChange::Odd,
+        (_, false) => SignatureChange::None,
     };
     (Some(after), change)
 }

@@ -2,102 +2,123 @@
 
 use crate::algebra::dense::assembly::Sink;
 use crate::algebra::sparse::{Bordered, Holdings, SparseFactorisation};
-use crate::branching::uniqueness::all_slipping::{DEFINITE, MARGIN, RESTING, Reduced};
+use crate::branching::uniqueness::all_slipping::{DEFINITE, MARGIN, RESTING, ReducedUnknowns};
 use crate::mechanics::problem::state::Rate;
 use nalgebra::DVector;
 
-impl Reduced<'_> {
-    /// The same with sparse matrices: where the whole is definite, or is so across the load (see `sparse_uniqueness`).
-    pub(super) fn stuck_among_many(&self, incoming: &Rate) -> Option<Rate> {
-        let structure = self.loading.structure;
-        let layout = structure.layout()?;
-        let pattern = &layout.pattern;
-        let size = pattern.size();
-        let place_of: Vec<usize> =
-            self.unknowns.iter().map(|unknown| structure.unknown_of[unknown.freedom]).collect::<Option<_>>()?;
-        // The equations of the other unknowns alone.
-        let mut held = Bordered::new(pattern.clone(), 0);
-        let (mut symmetric, mut load) = (Bordered::new(pattern.clone(), 1), DVector::zeros(size));
-        let mut is_outside = false;
-        self.each_entry(&mut |row, column, value| match column {
-            Some(column) => {
-                let (own, transposed) = (place_of[row], place_of[column]);
-                match (pattern.place(own, transposed), pattern.place(transposed, own)) {
-                    (Some(place), Some(mirror)) => {
-                        symmetric.add_at(place, 0.5 * value);
-                        symmetric.add_at(mirror, 0.5 * value);
-                        if !self.unknowns[row].is_slip && !self.unknowns[column].is_slip {
-                            held.add_at(place, value);
-                        }
+/// The equations of the unknowns in the places that they have in the structure.
+struct EquationsOfMany {
+    place_of: Vec<usize>,
+    is_slip: Vec<bool>,
+    /// The symmetric part, with room for a border.
+    symmetric: Bordered,
+    /// Those of the other unknowns alone.
+    held: Bordered,
+    load: DVector<f64>,
+}
+
+/// The same with sparse matrices: where the whole is definite, or is so across the load (see `sparse_uniqueness`).
+pub(super) fn stuck_among_many(reduced: &ReducedUnknowns<'_>, incoming: &Rate) -> Option<Rate> {
+    let EquationsOfMany { place_of, is_slip, symmetric, held, load } = equations_of_many(reduced)?;
+    let size = load.len();
+    let by_power = is_by_power(symmetric, &load, incoming)?;
+    let others = reduced.unknowns_where(false);
+    let mut values = DVector::from_fn(size, |unknown, _| if is_slip[unknown] { 0.0 } else { load[unknown] });
+    if !others.is_empty() && !SparseFactorisation::new(held, &Holdings::default())?.solve(&mut values) {
+        return None;
+    }
+    let response = DVector::from_iterator(others.len(), others.iter().map(|other| values[place_of[*other]]));
+    if !by_power {
+        return reduced.stuck_rate(&others, &response).filter(|stuck| stuck.load * incoming.load < 0.0);
+    }
+    // One direction for each sign of the power; the load alone changes where no other motion has any.
+    let power = |motion: &dyn Fn(usize) -> f64, slips: bool| -> f64 {
+        let unknowns = (0..reduced.unknowns.len()).filter(|unknown| slips || !reduced.unknowns[*unknown].is_slip);
+        unknowns.map(|unknown| load[place_of[unknown]] * motion(unknown)).sum()
+    };
+    let mut columns = vec![0.0; reduced.unknowns.len()];
+    for (freedom, velocity) in incoming.displacement.iter().enumerate() {
+        reduced.motions().of(freedom).0.iter().for_each(|part| columns[part.unknown] += part.motion * velocity);
+    }
+    let largest = load.amax();
+    let own = power(&|unknown| columns[unknown], true);
+    if own.abs() <= MARGIN * largest {
+        return None;
+    }
+    if others.iter().all(|other| load[place_of[*other]] == 0.0) {
+        return reduced.stuck_rate(&others, &response);
+    }
+    let of_stuck = power(&|unknown| values[place_of[unknown]], false);
+    if of_stuck.abs() <= MARGIN * largest * response.norm() {
+        return None;
+    }
+    reduced.stuck_rate(&others, &response).filter(|stuck| stuck.load * own * of_stuck < 0.0)
+}
+
+/// The equations, where the structure's pattern has room for them.
+fn equations_of_many(reduced: &ReducedUnknowns<'_>) -> Option<EquationsOfMany> {
+    let structure = reduced.loading.structure;
+    let layout = structure.layout()?;
+    let pattern = &layout.pattern;
+    let size = pattern.size();
+    let place_of: Vec<usize> =
+        reduced.unknowns.iter().map(|unknown| structure.unknown_of[unknown.freedom]).collect::<Option<_>>()?;
+    let mut held = Bordered::new(pattern.clone(), 0);
+    let (mut symmetric, mut load) = (Bordered::new(pattern.clone(), 1), DVector::zeros(size));
+    let mut is_outside = false;
+    reduced.each_entry(&mut |row, column, value| match column {
+        Some(column) => {
+            let (own, transposed) = (place_of[row], place_of[column]);
+            match (pattern.place(own, transposed), pattern.place(transposed, own)) {
+                (Some(place), Some(mirror)) => {
+                    symmetric.add_at(place, 0.5 * value);
+                    symmetric.add_at(mirror, 0.5 * value);
+                    if !reduced.unknowns[row].is_slip && !reduced.unknowns[column].is_slip {
+                        held.add_at(place, value);
                     }
-                    _ => is_outside = true,
                 }
-            }
-            None => load[place_of[row]] -= value,
-        });
-        let (mut is_used, mut is_slip) = (vec![false; size], vec![false; size]);
-        for (place, unknown) in place_of.iter().zip(&self.unknowns) {
-            (is_used[*place], is_slip[*place]) = (true, unknown.is_slip);
-        }
-        for unknown in 0..size {
-            let place = pattern.place(unknown, unknown)?;
-            if !is_used[unknown] {
-                symmetric.add_at(place, 1.0);
-            }
-            if !is_used[unknown] || is_slip[unknown] {
-                held.add_at(place, 1.0);
+                _ => is_outside = true,
             }
         }
-        if is_outside {
-            return None;
+        None => load[place_of[row]] -= value,
+    });
+    let (mut is_used, mut is_slip) = (vec![false; size], vec![false; size]);
+    for (place, unknown) in place_of.iter().zip(&reduced.unknowns) {
+        (is_used[*place], is_slip[*place]) = (true, unknown.is_slip);
+    }
+    for unknown in 0..size {
+        let place = pattern.place(unknown, unknown)?;
+        if !is_used[unknown] {
+            symmetric.add_at(place, 1.0);
         }
-        let inertia = symmetric.inertia(DEFINITE)?;
-        let by_power = match (inertia.negative, inertia.zero) {
-            (0, 0) if incoming.load.abs() > RESTING => false,
-            (1, 0) => {
-                for (unknown, load) in load.iter().enumerate() {
-                    symmetric.add(unknown, size, *load);
-                    symmetric.add(size, unknown, *load);
-                }
-                // One negative eigenvalue of the whole, not two.
-                let bordered = SparseFactorisation::new(symmetric, &Holdings::default())?;
-                if bordered.determinant_sign() > 0.0 || bordered.pivot_ratio() <= DEFINITE {
-                    return None;
-                }
-                true
+        if !is_used[unknown] || is_slip[unknown] {
+            held.add_at(place, 1.0);
+        }
+    }
+    if is_outside {
+        return None;
+    }
+    Some(EquationsOfMany { place_of, is_slip, symmetric, held, load })
+}
+
+/// Whether the direction is one for each sign of the power, and not of the load; `None` where it need be neither.
+fn is_by_power(mut symmetric: Bordered, load: &DVector<f64>, incoming: &Rate) -> Option<bool> {
+    let size = load.len();
+    let inertia = symmetric.inertia(DEFINITE)?;
+    match (inertia.negative, inertia.zero) {
+        (0, 0) if incoming.load.abs() > RESTING => Some(false),
+        (1, 0) => {
+            for (unknown, load) in load.iter().enumerate() {
+                symmetric.add(unknown, size, *load);
+                symmetric.add(size, unknown, *load);
             }
-            _ => return None,
-        };
-        let others = self.unknowns_where(false);
-        let mut values = DVector::from_fn(size, |unknown, _| if is_slip[unknown] { 0.0 } else { load[unknown] });
-        if !others.is_empty() && !SparseFactorisation::new(held, &Holdings::default())?.solve(&mut values) {
-            return None;
+            // One negative eigenvalue of the whole, not two.
+            let bordered = SparseFactorisation::new(symmetric, &Holdings::default())?;
+            if bordered.determinant_sign() > 0.0 || bordered.pivot_ratio() <= DEFINITE {
+                return None;
+            }
+            Some(true)
         }
-        let response = DVector::from_iterator(others.len(), others.iter().map(|other| values[place_of[*other]]));
-        if !by_power {
-            return self.stuck_rate(&others, &response).filter(|stuck| stuck.load * incoming.load < 0.0);
-        }
-        // One direction for each sign of the power; the load alone changes where no other motion has any.
-        let power = |motion: &dyn Fn(usize) -> f64, slips: bool| -> f64 {
-            let unknowns = (0..self.unknowns.len()).filter(|unknown| slips || !self.unknowns[*unknown].is_slip);
-            unknowns.map(|unknown| load[place_of[unknown]] * motion(unknown)).sum()
-        };
-        let mut columns = vec![0.0; self.unknowns.len()];
-        for (freedom, velocity) in incoming.displacement.iter().enumerate() {
-            self.motions().of(freedom).0.iter().for_each(|part| columns[part.unknown] += part.motion * velocity);
-        }
-        let largest = load.amax();
-        let own = power(&|unknown| columns[unknown], true);
-        if own.abs() <= MARGIN * largest {
-            return None;
-        }
-        if others.iter().all(|other| load[place_of[*other]] == 0.0) {
-            return self.stuck_rate(&others, &response);
-        }
-        let of_stuck = power(&|unknown| values[place_of[unknown]], false);
-        if of_stuck.abs() <= MARGIN * largest * response.norm() {
-            return None;
-        }
-        self.stuck_rate(&others, &response).filter(|stuck| stuck.load * own * of_stuck < 0.0)
+        _ => None,
     }
 }

@@ -24,7 +24,7 @@ pub(crate) mod static_condensation;
 mod tests;
 
 use crate::branching::directions::candidate::is_mechanism;
-use crate::branching::directions::choice::{Choice, Rules, mark_retrace, potential_rate, sign_of};
+use crate::branching::directions::choice::{DirectionChoice, Rules, mark_retrace, potential_rate, sign_of};
 use crate::complementarity::rates::p_matrix::is_definite;
 use crate::complementarity::rates::parametric_lcp::slip_or_stick;
 use crate::mechanics::contact::vector::{Vector, add, dot};
@@ -35,7 +35,7 @@ use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cached_factorisation::AtHand;
 use nalgebra::{DMatrix, DVector};
 use smallvec::{SmallVec, smallvec};
-use static_condensation::Response;
+use static_condensation::CondensedResponse;
 
 /// What is not zero by this much (rates of unit arc length; forces against the largest of them) leaves no doubt.
 const MARGIN: f64 = 1e-7;
@@ -48,14 +48,14 @@ const RESTING: f64 = 1e-8;
 
 /// A motion of a degree of freedom with one of the unknowns, and the weight of its equation in that of the unknown.
 #[derive(Clone, Copy)]
-struct Part {
+struct MotionTerm {
     unknown: usize,
     motion: f64,
     test: f64,
 }
 
 /// How a degree of freedom moves.
-struct Place {
+struct FreedomMotion {
     /// Its first part and their number.
     first: usize,
     count: usize,
@@ -76,12 +76,12 @@ struct Slip {
 }
 
 /// The unknowns `(x, b)`, in the order of the nodes; of few nodes they need no memory of their own.
-struct Reduced<'a> {
+struct ReducedUnknowns<'a> {
     loading: Loading<'a>,
     state: &'a State,
     /// Of each degree of freedom.
-    places: SmallVec<[Place; 6]>,
-    parts: SmallVec<[Part; 4]>,
+    places: SmallVec<[FreedomMotion; 6]>,
+    parts: SmallVec<[MotionTerm; 4]>,
     slips: SmallVec<[Slip; 1]>,
     unknowns: SmallVec<[Unknown; 4]>,
     /// Entries on the diagonal blocks by which reactions turn with the place.
@@ -93,14 +93,14 @@ struct Reduced<'a> {
 /// How the degrees of freedom move.
 #[derive(Clone, Copy)]
 struct Motions<'a> {
-    places: &'a [Place],
-    parts: &'a [Part],
+    places: &'a [FreedomMotion],
+    parts: &'a [MotionTerm],
 }
 
 impl<'a> Motions<'a> {
     /// The parts of a degree of freedom, and its velocity per load rate.
-    fn of(self, freedom: usize) -> (&'a [Part], f64) {
-        let Place { first, count, driven } = self.places[freedom];
+    fn of(self, freedom: usize) -> (&'a [MotionTerm], f64) {
+        let FreedomMotion { first, count, driven } = self.places[freedom];
         (&self.parts[first..first + count], driven)
     }
 }
@@ -113,11 +113,11 @@ pub fn directions_going_on(
     modes: &[Mode],
     incoming: &Rate,
     rules: Rules<'_>,
-) -> Option<Vec<Choice>> {
+) -> Option<Vec<DirectionChoice>> {
     if !rules.effort.certify {
         return None;
     }
-    let reduced = Reduced::new(loading, state, standings, modes)?;
+    let reduced = ReducedUnknowns::new(loading, state, standings, modes)?;
     let goes_on = |slip: &Slip| dot(&slip.direction, &loading.relative_rate(slip.contact, state, incoming)) > MARGIN;
     if reduced.slips.is_empty() || !reduced.slips.iter().all(goes_on) {
         return None;
@@ -134,7 +134,7 @@ pub fn directions_going_on(
             -dot(&state.reactions[slip.contact].tangential, &loading.relative_rate(slip.contact, state, incoming))
         })
         .sum();
-    let choice = |rate: Rate, modes: Vec<Mode>, dissipation: f64| Choice {
+    let choice = |rate: Rate, modes: Vec<Mode>, dissipation: f64| DirectionChoice {
         at_hand: AtHand::default(),
         dissipation,
         potential_rate: potential_rate(loading, state, &rate, dissipation),
@@ -159,7 +159,7 @@ pub fn directions_going_on(
     Some(options)
 }
 
-impl<'a> Reduced<'a> {
+impl<'a> ReducedUnknowns<'a> {
     /// `None` where some contact can do more than slip or stick, where several close on one node, and where supports guide
     /// a closed node.
     fn new(loading: Loading<'a>, state: &'a State, standings: &[Standing], modes: &[Mode]) -> Option<Self> {
@@ -204,9 +204,9 @@ impl<'a> Reduced<'a> {
     fn add_free(&mut self, freedom: usize) {
         let is_free = self.loading.structure.unknown_of[freedom].is_some();
         let (first, driven) = (self.parts.len(), self.loading.support_rate(freedom));
-        self.places.push(Place { first, count: usize::from(is_free), driven });
+        self.places.push(FreedomMotion { first, count: usize::from(is_free), driven });
         if is_free {
-            self.parts.push(Part { unknown: self.unknowns.len(), motion: 1.0, test: 1.0 });
+            self.parts.push(MotionTerm { unknown: self.unknowns.len(), motion: 1.0, test: 1.0 });
             self.unknowns.push(Unknown { is_slip: false, freedom });
         }
     }
@@ -240,9 +240,9 @@ impl<'a> Reduced<'a> {
         self.unknowns.extend((0..count).map(|k| Unknown { is_slip, freedom: freedom + k }));
         for component in 0..dimension {
             let driven = self.loading.pattern.shifts[contact][component];
-            self.places.push(Place { first: self.parts.len(), count, driven });
+            self.places.push(FreedomMotion { first: self.parts.len(), count, driven });
             for (k, (motion, test)) in along.iter().enumerate().take(count) {
-                self.parts.push(Part { unknown: first + k, motion: motion[component], test: test[component] });
+                self.parts.push(MotionTerm { unknown: first + k, motion: motion[component], test: test[component] });
             }
         }
     }
@@ -280,13 +280,13 @@ impl<'a> Reduced<'a> {
     /// The direction along which all contacts on the cone stick, if that and the way on are all there are.
     fn stuck(&self, incoming: &Rate) -> Option<Rate> {
         if self.unknowns.len() > MOST_DENSE {
-            return self.stuck_among_many(incoming);
+            return many::stuck_among_many(self, incoming);
         }
         let others = self.unknowns_where(false);
         let is_sole = self.slips.len() == 1;
         let (mut matrix, mut load) =
             if is_sole && others.is_empty() { (DMatrix::zeros(0, 0), DVector::zeros(0)) } else { self.equations() };
-        let response = Response::new(&matrix, &load, &others)?;
+        let response = CondensedResponse::new(&matrix, &load, &others)?;
         if is_sole {
             // With the others condensed there are two solutions of `0 <= m b + q ṡ ⊥ b >= 0` where `q` is not zero, which
             // the stuck rate shows, whatever `m`: the slip that goes on, its load rate `-m b / q`, and `b = 0` with `q ṡ > 0`.

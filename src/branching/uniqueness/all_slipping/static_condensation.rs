@@ -4,12 +4,12 @@ use crate::algebra::Factorisation;
 use nalgebra::{DMatrix, DVector};
 
 /// How the other unknowns follow the load rate with all slips held.
-pub(super) struct Response {
+pub(super) struct CondensedResponse {
     factorisation: Option<Factorisation>,
     pub(super) load: DVector<f64>,
 }
 
-impl Response {
+impl CondensedResponse {
     pub(super) fn new(matrix: &DMatrix<f64>, load: &DVector<f64>, others: &[usize]) -> Option<Self> {
         if others.is_empty() {
             return Some(Self { factorisation: None, load: DVector::zeros(0) });

@@ -1,5 +1,5 @@
 use crate::branching::directions::arrival_tangent::Incoming;
-use crate::branching::directions::choice::Before;
+use crate::branching::directions::choice::PriorMotion;
 use crate::branching::selection::decision;
 use crate::branching::uniqueness::all_slipping::*;
 use crate::check::scenes;
@@ -27,7 +27,7 @@ fn what_is_found_at_once_is_what_is_found_everywhere() {
                 else {
                     continue;
                 };
-                let before = Before::Incoming(Incoming::along(incoming));
+                let before = PriorMotion::Incoming(Incoming::along(incoming));
                 let (everywhere, rest) = decision::list(loading, &here.state, &standings, before, rules);
                 let place = format!("{} {}", built_in.name, increment.index);
                 assert_eq!((rest.unexplored, rest.degenerate), (0, false), "{place}");

@@ -9,7 +9,7 @@ use crate::mechanics::problem::state::{Rate, State};
 use smallvec::SmallVec;
 
 /// A contact that can change.
-pub(super) struct Changing {
+pub(super) struct ChangingContact {
     pub contact: usize,
     /// The slip that it would begin with; `None` where it touches without reaction.
     pub direction: Option<Vector>,
@@ -21,7 +21,7 @@ pub(super) struct Changing {
 
 /// What a degree of freedom has in a column of `A`, and in the row.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Part {
+pub(super) struct FreedomCoupling {
     pub column: usize,
     pub motion: f64,
     pub test: f64,
@@ -36,9 +36,9 @@ pub(super) struct Equations<'a> {
     pub state: &'a State,
     /// Modes of those that cannot change; of the others that they stick.
     pub held: Vec<Mode>,
-    pub changing: Vec<Changing>,
+    pub changing: Vec<ChangingContact>,
     /// Of each degree of freedom.
-    pub parts: Vec<SmallVec<[Part; 2]>>,
+    pub parts: Vec<SmallVec<[FreedomCoupling; 2]>>,
     /// Columns of `A`.
     pub size: usize,
     /// How reactions turn with the place: diagonal entries of `A`.
@@ -85,7 +85,7 @@ impl<'a> Equations<'a> {
         }
         for freedom in &structure.freedom_of {
             if !is_closed[*freedom] {
-                equations.parts[*freedom].push(Part { column: equations.size, motion: 1.0, test: 1.0 });
+                equations.parts[*freedom].push(FreedomCoupling { column: equations.size, motion: 1.0, test: 1.0 });
                 equations.size += 1;
             }
         }
@@ -99,7 +99,8 @@ impl<'a> Equations<'a> {
         let column = self.size;
         let mut add_column = |motion: &Vector, test: &Vector| {
             let column = self.size;
-            (0..2).for_each(|k| self.parts[first + k].push(Part { column, motion: motion[k], test: test[k] }));
+            (0..2)
+                .for_each(|k| self.parts[first + k].push(FreedomCoupling { column, motion: motion[k], test: test[k] }));
             self.size += 1;
         };
         let along = match standing {
@@ -109,7 +110,7 @@ impl<'a> Equations<'a> {
             Standing::Touching => {
                 add_column(&frame.tangents[0], &frame.tangents[0]);
                 add_column(&frame.normal, &frame.normal);
-                self.changing.push(Changing { contact, direction: None, frame, column });
+                self.changing.push(ChangingContact { contact, direction: None, frame, column });
                 return Some(());
             }
             Standing::Cornered { .. } => return None,
@@ -120,7 +121,7 @@ impl<'a> Equations<'a> {
             self.turning.push((column, turning * (1.0 + data.friction * data.friction)));
         }
         if matches!(standing, Standing::OnCone { .. }) {
-            self.changing.push(Changing { contact, direction: Some(along), frame, column });
+            self.changing.push(ChangingContact { contact, direction: Some(along), frame, column });
         }
         Some(())
     }
@@ -153,7 +154,8 @@ impl<'a> Equations<'a> {
 
     /// Velocities of all degrees of freedom from those of the columns.
     pub fn velocities(&self, columns: &[f64]) -> Vec<f64> {
-        let velocity = |parts: &SmallVec<[Part; 2]>| parts.iter().map(|part| part.motion * columns[part.column]).sum();
+        let velocity =
+            |parts: &SmallVec<[FreedomCoupling; 2]>| parts.iter().map(|part| part.motion * columns[part.column]).sum();
         self.parts.iter().map(velocity).collect()
     }
 
@@ -186,7 +188,7 @@ impl<'a> Equations<'a> {
     }
 
     /// The mode in which a contact that touches, or is on its cone, goes at some velocity without any force.
-    pub fn mode_of_motion(&self, one: &Changing, columns: &[f64], still: f64) -> Mode {
+    pub fn mode_of_motion(&self, one: &ChangingContact, columns: &[f64], still: f64) -> Mode {
         let along = columns[one.column];
         match one.direction {
             Some(direction) => Mode::Slip { direction },

@@ -22,13 +22,13 @@ pub(crate) mod proof;
 mod tests;
 
 use crate::branching::directions::arrival_tangent::Incoming;
-use crate::branching::directions::candidate::Found;
+use crate::branching::directions::candidate::FoundDirections;
 use crate::complementarity::rate_search::branch_and_bound::Effort;
 use crate::mechanics::multi_contact::contact_status::Standing;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::State;
 use equations::Equations;
-use proof::Control;
+use proof::DistinguishingQuantity;
 
 /// Contacts that can change up to which the search of every combination is as quick: where all are on their cones, and
 /// where some touch, each of which has four ways to go on.
@@ -51,7 +51,7 @@ pub(crate) fn directions(
     standings: &[Standing],
     incoming: Option<Incoming<'_>>,
     effort: Effort<'_>,
-    found: &mut Found,
+    found: &mut FoundDirections,
 ) -> bool {
     if !effort.certify {
         return false;
@@ -61,34 +61,35 @@ pub(crate) fn directions(
     let is_huge = columns * (loading.structure.freedoms() + 4 * loading.contacts.len()) > MOST_CONDENSED;
     // The members of a family that no element resists are searched for where contacts are few.
     let is_few = equations.changing.len() <= FEW;
-    let proof =
-        equations.proof(incoming.map(|incoming| incoming.rate)).filter(|proof| !is_few || proof.free_motions() <= 1);
+    let proof = proof::proof(&equations, incoming.map(|incoming| incoming.rate))
+        .filter(|proof| !is_few || proof.free_motions() <= 1);
     if proof.is_none() && !is_huge {
         return false;
     }
     let mut candidates = Vec::new();
     let mut complete = proof.is_some();
     for sign in [1.0, -1.0] {
-        if proof.as_ref().is_some_and(|proof| equations.has_none(sign, proof)) {
+        if proof.as_ref().is_some_and(|proof| proof::has_none(&equations, sign, proof)) {
             continue;
         }
-        let control = proof.as_ref().map_or(Control::Load, |proof| proof.control);
-        let candidate = equations.solve(control, sign, incoming);
-        complete &= proof.as_ref().zip(candidate.as_ref()).is_some_and(|(proof, one)| equations.is_only(one, proof));
+        let control = proof.as_ref().map_or(DistinguishingQuantity::Load, |proof| proof.control);
+        let candidate = pivoting::solve(&equations, control, sign, incoming);
+        complete &=
+            proof.as_ref().zip(candidate.as_ref()).is_some_and(|(proof, one)| proof::is_only(&equations, one, proof));
         candidates.extend(candidate);
     }
     if !complete && !is_huge {
         return false;
     }
     if let Some(proof) = proof.filter(|_| complete) {
-        equations.add_free_motions(&proof, found);
-        if proof.control == Control::Power {
-            candidates.extend(equations.at_rest());
+        proof::add_free_motions(&equations, &proof, found);
+        if proof.control == DistinguishingQuantity::Power {
+            candidates.extend(pivoting::at_rest(&equations));
         }
     }
     found.candidates.extend(candidates);
     found.is_proven = complete;
-    found.candidates.sort_by_cached_key(|candidate| equations.order(candidate));
+    found.candidates.sort_by_cached_key(|candidate| pivoting::order(&equations, candidate));
     if !complete {
         let modes = |ways: u64, count: usize| ways.saturating_pow(u32::try_from(count).unwrap_or(u32::MAX));
         let touching = equations.changing.iter().filter(|one| one.direction.is_none()).count();

@@ -3,9 +3,9 @@
 use crate::algebra::SystemFactorisation;
 use crate::algebra::dense::assembly::Sink;
 use crate::branching::directions::arrival_tangent::Incoming;
-use crate::branching::directions::candidate::{Alternative, Candidate, WEAK};
-use crate::branching::uniqueness::sparse_uniqueness::equations::{Changing, Equations};
-use crate::branching::uniqueness::sparse_uniqueness::proof::Control;
+use crate::branching::directions::candidate::{Alternative, CandidateDirection, WEAK};
+use crate::branching::uniqueness::sparse_uniqueness::equations::{ChangingContact, Equations};
+use crate::branching::uniqueness::sparse_uniqueness::proof::DistinguishingQuantity;
 use crate::complementarity::rates::ray::IN_DOUBT;
 use crate::mechanics::contact::vector::{Vector, dot, scaled};
 use crate::mechanics::contact::{Mode, Reaction, all_continue};
@@ -28,216 +28,229 @@ pub(super) struct Doubt {
     weak: bool,
 }
 
-impl Equations<'_> {
-    /// A direction with this sign of what controls it, by block pivoting.
-    pub fn solve(&self, control: Control, sign: f64, incoming: Option<Incoming<'_>>) -> Option<Candidate> {
-        let mut modes = self.held.clone();
-        if incoming.is_some_and(|incoming| self.value_of(control, incoming.rate) * sign > 0.0) {
-            for one in &self.changing {
-                modes[one.contact] = one.direction.map_or(modes[one.contact], |direction| Mode::Slip { direction });
-            }
-        }
-        for round in 0..ROUNDS + ROUNDS_ONE_BY_ONE {
-            let (mut rate, by) = match (control, incoming) {
-                (Control::Load, _) if modes == self.held && self.may_rest() => self.rest(sign).map(|rate| (rate, None)),
-                (_, Some(incoming)) if incoming.modes.is_some_and(|of| all_continue(of, &modes)) => {
-                    Some((incoming.rate.clone(), None))
-                }
-                (Control::Power, Some(incoming)) => self.line(&modes, Some(incoming.rate)),
-                _ => None,
-            }
-            .or_else(|| self.line(&modes, None))?;
-            let value = self.value_of(control, &rate);
-            if value.abs() <= WEAK * self.largest_load() * rate.size() && control == Control::Power {
-                return None;
-            }
-            rate.scale(sign * value.signum());
-            let (next, doubts) = self.violations(&modes, &rate);
-            match next {
-                None => {
-                    let at_hand = by.map(|by| AtHand::of(self.loading, by)).unwrap_or_default();
-                    let candidate = self.candidate(rate, modes, doubts);
-                    // What is in doubt has other modes than those that were solved in.
-                    return Some(if candidate.weak { candidate } else { Candidate { at_hand, ..candidate } });
-                }
-                Some(next) if round < ROUNDS => modes = next,
-                Some(next) => {
-                    let last = (0..modes.len()).rev().find(|contact| next[*contact] != modes[*contact])?;
-                    modes[last] = next[last];
-                }
-            }
-        }
-        None
-    }
-
-    /// The load on each column, and whether that is of a contact on its cone.
-    fn loads(&self) -> impl Iterator<Item = (f64, bool)> {
-        let mut is_cone = vec![false; self.size];
-        self.changing.iter().filter(|one| one.direction.is_some()).for_each(|one| is_cone[one.column] = true);
-        self.load().into_iter().zip(is_cone)
-    }
-
-    /// Whether nothing moves where all contacts stick that can.
-    fn may_rest(&self) -> bool {
-        self.loads().all(|(load, is_cone)| load == 0.0 || is_cone)
-    }
-
-    /// The directions along which nothing moves and the load alone changes.
-    pub fn at_rest(&self) -> Vec<Candidate> {
-        let zero = WEAK * self.largest_load();
-        let rests = |sign: f64| {
-            if !self.loads().all(|(load, is_cone)| load.abs() <= zero || (is_cone && load * sign < 0.0)) {
-                return None;
-            }
-            let rate = self.rest(sign)?;
-            match self.violations(&self.held, &rate) {
-                (None, doubts) => Some(self.candidate(rate, self.held.clone(), doubts)),
-                (Some(_), _) => None,
-            }
-        };
-        [1.0, -1.0].into_iter().filter_map(rests).collect()
-    }
-
-    /// Nothing moves, and what each closed contact bears of the load grows with it; solved for where supports bear some.
-    fn rest(&self, sign: f64) -> Option<Rate> {
-        let (loading, structure) = (self.loading, self.loading.structure);
-        // The contacts of these equations have each a node of its own.
-        let freedoms = |contact: usize| {
-            loading.contacts[contact].kinematics.node().map_or(0..0, |node| structure.translations_of(node))
-        };
-        let mut closed = (0..self.held.len()).filter(|contact| self.held[*contact] != Mode::Free);
-        let shares = closed.any(|contact| freedoms(contact).any(|freedom| structure.unknown_of[freedom].is_none()));
-        if shares || loading.pattern.moves_boundary() {
-            let (mut rate, _) = self.line(&self.held, None)?;
-            rate.scale(sign * rate.load.signum());
-            return Some(rate);
-        }
-        let reaction = |(contact, mode): (usize, &Mode)| {
-            if *mode == Mode::Free {
-                return Reaction::default();
-            }
-            let mut force = [0.0; 3];
-            let loads = &loading.pattern.forces[freedoms(contact)];
-            force.iter_mut().zip(loads).for_each(|(force, load)| *force = -sign * load);
-            loading.taken_by(contact, self.state, &force)
-        };
-        let reactions = self.held.iter().enumerate().map(reaction).collect();
-        Some(Rate { displacement: vec![0.0; loading.structure.freedoms()], load: sign, reactions })
-    }
-
-    /// The order in which a search lists candidates: held where they can be, the first contact counting fastest.
-    pub fn order(&self, candidate: &Candidate) -> Vec<u8> {
-        let rank = |one: &Changing| match (candidate.modes[one.contact], one.direction) {
-            (Mode::Stick, _) => 0,
-            (Mode::Slip { direction }, None) if dot(&direction, &one.frame.tangents[0]) < 0.0 => 2,
-            (Mode::Slip { .. }, _) => 1,
-            (Mode::Free, _) => 3,
-        };
-        self.changing.iter().rev().map(rank).collect()
-    }
-
-    fn value_of(&self, control: Control, rate: &Rate) -> f64 {
-        match control {
-            Control::Load => rate.load,
-            Control::Power => self.power(&self.columns_of(rate)),
+/// A direction with this sign of what controls it, by block pivoting.
+pub(super) fn solve(
+    equations: &Equations<'_>,
+    control: DistinguishingQuantity,
+    sign: f64,
+    incoming: Option<Incoming<'_>>,
+) -> Option<CandidateDirection> {
+    let mut modes = equations.held.clone();
+    if incoming.is_some_and(|incoming| value_of(equations, control, incoming.rate) * sign > 0.0) {
+        for one in &equations.changing {
+            modes[one.contact] = one.direction.map_or(modes[one.contact], |direction| Mode::Slip { direction });
         }
     }
-
-    /// The direction, of either sign, that a mode leaves, the equations bordered by another or by the load rate; with their
-    /// factorisation.
-    fn line(&self, modes: &[Mode], border: Option<&Rate>) -> Option<(Rate, Option<SystemFactorisation>)> {
-        let system = ModeSystem::new(self.loading, modes, self.state);
-        let iterate = system.iterate(self.state.clone());
-        let by_load = |matrix: &mut dyn Sink| matrix.add(system.size() - 1, self.loading.structure.unknowns(), 1.0);
-        let factorisation = match border {
-            Some(border) => system.bordered(&iterate, border)?,
-            None => system.factorise(&iterate, Kind::Rates, by_load)?,
-        };
-        let rate = system.tangent_by(&factorisation, &iterate)?;
-        Some((rate, Some(factorisation)))
-    }
-
-    /// The modes to try next, if something is negative that must not be; the contacts at which it is zero, or nearly so.
-    fn violations(&self, modes: &[Mode], rate: &Rate) -> (Option<Vec<Mode>>, Vec<Doubt>) {
-        let force = WEAK * rate.largest_reaction().max(f64::MIN_POSITIVE);
-        let (mut next, mut doubts) = (None, Vec::new());
-        for one in &self.changing {
-            let (margin, tolerance, other) = self.margin(one, modes[one.contact], rate, force);
-            if margin < -tolerance {
-                next.get_or_insert_with(|| modes.to_vec())[one.contact] = other;
-            } else if margin <= IN_DOUBT / WEAK * tolerance {
-                doubts.push(Doubt { contact: one.contact, direction: one.direction, weak: margin <= tolerance });
+    for round in 0..ROUNDS + ROUNDS_ONE_BY_ONE {
+        let (mut rate, by) = match (control, incoming) {
+            (DistinguishingQuantity::Load, _) if modes == equations.held && may_rest(equations) => {
+                rest(equations, sign).map(|rate| (rate, None))
+            }
+            (_, Some(incoming)) if incoming.modes.is_some_and(|of| all_continue(of, &modes)) => {
+                Some((incoming.rate.clone(), None))
+            }
+            (DistinguishingQuantity::Power, Some(incoming)) => line(equations, &modes, Some(incoming.rate)),
+            _ => None,
+        }
+        .or_else(|| line(equations, &modes, None))?;
+        let value = value_of(equations, control, &rate);
+        if value.abs() <= WEAK * equations.largest_load() * rate.size() && control == DistinguishingQuantity::Power {
+            return None;
+        }
+        rate.scale(sign * value.signum());
+        let (next, doubts) = violations(equations, &modes, &rate);
+        match next {
+            None => {
+                let at_hand = by.map(|by| AtHand::of(equations.loading, by)).unwrap_or_default();
+                let candidate = candidate(equations, rate, modes, doubts);
+                // What is in doubt has other modes than those that were solved in.
+                return Some(if candidate.weak { candidate } else { CandidateDirection { at_hand, ..candidate } });
+            }
+            Some(next) if round < ROUNDS => modes = next,
+            Some(next) => {
+                let last = (0..modes.len()).rev().find(|contact| next[*contact] != modes[*contact])?;
+                modes[last] = next[last];
             }
         }
-        (next, doubts)
     }
+    None
+}
 
-    fn speed(&self, one: &Changing, direction: &Vector, rate: &Rate) -> f64 {
-        dot(direction, &self.loading.relative_rate(one.contact, self.state, rate))
-    }
+/// The load on each column, and whether that is of a contact on its cone.
+fn loads(equations: &Equations<'_>) -> impl Iterator<Item = (f64, bool)> {
+    let mut is_cone = vec![false; equations.size];
+    equations.changing.iter().filter(|one| one.direction.is_some()).for_each(|one| is_cone[one.column] = true);
+    equations.load().into_iter().zip(is_cone)
+}
 
-    /// Of each contact that can change, whether what must not be negative in its mode is positive beyond round-off.
-    pub fn strict(&self, candidate: &Candidate) -> Vec<bool> {
-        let rate = &candidate.rate;
-        let force = WEAK * rate.largest_reaction().max(f64::MIN_POSITIVE);
-        let is_strict = |one: &Changing| {
-            let (margin, tolerance, _) = self.margin(one, candidate.modes[one.contact], rate, force);
-            margin > tolerance
-        };
-        self.changing.iter().map(is_strict).collect()
-    }
+/// Whether nothing moves where all contacts stick that can.
+fn may_rest(equations: &Equations<'_>) -> bool {
+    loads(equations).all(|(load, is_cone)| load == 0.0 || is_cone)
+}
 
-    /// The least of what must not be negative in a mode, what of it is round-off (`force` of a force), and the mode to try
-    /// where it is negative.
-    fn margin(&self, one: &Changing, mode: Mode, rate: &Rate, force: f64) -> (f64, f64, Mode) {
-        let (reaction, data) = (&rate.reactions[one.contact], &self.loading.contacts[one.contact]);
-        let tolerance = if matches!(mode, Mode::Stick) || data.tangents() == 0 { force } else { WEAK };
-        let (margin, other) = match (mode, one.direction) {
-            (Mode::Stick, Some(direction)) => {
-                let left = data.friction * reaction.normal + dot(&direction, &reaction.tangential);
-                (left, Mode::Slip { direction })
-            }
-            (Mode::Slip { .. }, Some(direction)) => (self.speed(one, &direction, rate), Mode::Stick),
-            (Mode::Stick, None) => {
-                let traction = dot(&reaction.tangential, &one.frame.tangents[0]);
-                let against = scaled(&one.frame.tangents[0], if traction > 0.0 { -1.0 } else { 1.0 });
-                let other = if reaction.normal < 0.0 { Mode::Free } else { Mode::Slip { direction: against } };
-                (data.friction * reaction.normal - traction.abs(), other)
-            }
-            (Mode::Slip { .. }, None) if data.tangents() == 0 => (reaction.normal, Mode::Free),
-            (Mode::Slip { direction }, None) => {
-                let speed = self.speed(one, &direction, rate);
-                let other = if reaction.normal < 0.0 { Mode::Free } else { Mode::Stick };
-                (speed.min(reaction.normal), other)
-            }
-            (Mode::Free, _) => {
-                let closed = if data.tangents() > 0 { Mode::Stick } else { Mode::Slip { direction: [0.0; 3] } };
-                (self.speed(one, &one.frame.normal, rate), closed)
-            }
-        };
-        (margin, tolerance, other)
-    }
-
-    /// With the contacts that might as well be in the other mode, at first order or nearly so; where they can stick they
-    /// do.
-    pub fn candidate(&self, rate: Rate, mut modes: Vec<Mode>, doubts: Vec<Doubt>) -> Candidate {
-        let weak = doubts.iter().any(|doubt| doubt.weak);
-        let mut alternatives: Vec<Vec<Alternative>> = Vec::with_capacity(doubts.len());
-        for doubt in &doubts {
-            let Some(direction) = doubt.direction else { continue };
-            if doubt.weak {
-                modes[doubt.contact] = Mode::Stick;
-            }
-            alternatives
-                .push(vec![vec![(doubt.contact, Mode::Stick)], vec![(doubt.contact, Mode::Slip { direction })]]);
+/// The directions along which nothing moves and the load alone changes.
+pub(super) fn at_rest(equations: &Equations<'_>) -> Vec<CandidateDirection> {
+    let zero = WEAK * equations.largest_load();
+    let rests = |sign: f64| {
+        if !loads(equations).all(|(load, is_cone)| load.abs() <= zero || (is_cone && load * sign < 0.0)) {
+            return None;
         }
-        let dissipation = self.changing.iter().map(|one| {
-            let slips = matches!(modes[one.contact], Mode::Slip { .. });
-            let traction = &self.state.reactions[one.contact].tangential;
-            if slips { -dot(traction, &self.loading.relative_rate(one.contact, self.state, &rate)) } else { 0.0 }
-        });
-        let dissipation = dissipation.sum();
-        let forces = whole_rates(self.loading, self.state, &rate);
-        Candidate { rate, forces, modes, alternatives, weak, dissipation, at_hand: AtHand::default() }
+        let rate = rest(equations, sign)?;
+        match violations(equations, &equations.held, &rate) {
+            (None, doubts) => Some(candidate(equations, rate, equations.held.clone(), doubts)),
+            (Some(_), _) => None,
+        }
+    };
+    [1.0, -1.0].into_iter().filter_map(rests).collect()
+}
+
+/// Nothing moves, and what each closed contact bears of the load grows with it; solved for where supports bear some.
+fn rest(equations: &Equations<'_>, sign: f64) -> Option<Rate> {
+    let (loading, structure) = (equations.loading, equations.loading.structure);
+    // The contacts of these equations have each a node of its own.
+    let freedoms = |contact: usize| {
+        loading.contacts[contact].kinematics.node().map_or(0..0, |node| structure.translations_of(node))
+    };
+    let mut closed = (0..equations.held.len()).filter(|contact| equations.held[*contact] != Mode::Free);
+    let shares = closed.any(|contact| freedoms(contact).any(|freedom| structure.unknown_of[freedom].is_none()));
+    if shares || loading.pattern.moves_boundary() {
+        let (mut rate, _) = line(equations, &equations.held, None)?;
+        rate.scale(sign * rate.load.signum());
+        return Some(rate);
     }
+    let reaction = |(contact, mode): (usize, &Mode)| {
+        if *mode == Mode::Free {
+            return Reaction::default();
+        }
+        let mut force = [0.0; 3];
+        let loads = &loading.pattern.forces[freedoms(contact)];
+        force.iter_mut().zip(loads).for_each(|(force, load)| *force = -sign * load);
+        loading.taken_by(contact, equations.state, &force)
+    };
+    let reactions = equations.held.iter().enumerate().map(reaction).collect();
+    Some(Rate { displacement: vec![0.0; loading.structure.freedoms()], load: sign, reactions })
+}
+
+/// The order in which a search lists candidates: held where they can be, the first contact counting fastest.
+pub(super) fn order(equations: &Equations<'_>, candidate: &CandidateDirection) -> Vec<u8> {
+    let rank = |one: &ChangingContact| match (candidate.modes[one.contact], one.direction) {
+        (Mode::Stick, _) => 0,
+        (Mode::Slip { direction }, None) if dot(&direction, &one.frame.tangents[0]) < 0.0 => 2,
+        (Mode::Slip { .. }, _) => 1,
+        (Mode::Free, _) => 3,
+    };
+    equations.changing.iter().rev().map(rank).collect()
+}
+
+fn value_of(equations: &Equations<'_>, control: DistinguishingQuantity, rate: &Rate) -> f64 {
+    match control {
+        DistinguishingQuantity::Load => rate.load,
+        DistinguishingQuantity::Power => equations.power(&equations.columns_of(rate)),
+    }
+}
+
+/// The direction, of either sign, that a mode leaves, the equations bordered by another or by the load rate; with their
+/// factorisation.
+fn line(
+    equations: &Equations<'_>,
+    modes: &[Mode],
+    border: Option<&Rate>,
+) -> Option<(Rate, Option<SystemFactorisation>)> {
+    let system = ModeSystem::new(equations.loading, modes, equations.state);
+    let iterate = system.iterate(equations.state.clone());
+    let by_load = |matrix: &mut dyn Sink| matrix.add(system.size() - 1, equations.loading.structure.unknowns(), 1.0);
+    let factorisation = match border {
+        Some(border) => system.bordered(&iterate, border)?,
+        None => system.factorise(&iterate, Kind::Rates, by_load)?,
+    };
+    let rate = system.tangent_by(&factorisation, &iterate)?;
+    Some((rate, Some(factorisation)))
+}
+
+/// The modes to try next, if something is negative that must not be; the contacts at which it is zero, or nearly so.
+fn violations(equations: &Equations<'_>, modes: &[Mode], rate: &Rate) -> (Option<Vec<Mode>>, Vec<Doubt>) {
+    let force = WEAK * rate.largest_reaction().max(f64::MIN_POSITIVE);
+    let (mut next, mut doubts) = (None, Vec::new());
+    for one in &equations.changing {
+        let (margin, tolerance, other) = margin(equations, one, modes[one.contact], rate, force);
+        if margin < -tolerance {
+            next.get_or_insert_with(|| modes.to_vec())[one.contact] = other;
+        } else if margin <= IN_DOUBT / WEAK * tolerance {
+            doubts.push(Doubt { contact: one.contact, direction: one.direction, weak: margin <= tolerance });
+        }
+    }
+    (next, doubts)
+}
+
+fn speed(equations: &Equations<'_>, one: &ChangingContact, direction: &Vector, rate: &Rate) -> f64 {
+    dot(direction, &equations.loading.relative_rate(one.contact, equations.state, rate))
+}
+
+/// Of each contact that can change, whether what must not be negative in its mode is positive beyond round-off.
+pub(super) fn strict(equations: &Equations<'_>, candidate: &CandidateDirection) -> Vec<bool> {
+    let rate = &candidate.rate;
+    let force = WEAK * rate.largest_reaction().max(f64::MIN_POSITIVE);
+    let is_strict = |one: &ChangingContact| {
+        let (margin, tolerance, _) = margin(equations, one, candidate.modes[one.contact], rate, force);
+        margin > tolerance
+    };
+    equations.changing.iter().map(is_strict).collect()
+}
+
+/// The least of what must not be negative in a mode, what of it is round-off (`force` of a force), and the mode to try
+/// where it is negative.
+fn margin(equations: &Equations<'_>, one: &ChangingContact, mode: Mode, rate: &Rate, force: f64) -> (f64, f64, Mode) {
+    let (reaction, data) = (&rate.reactions[one.contact], &equations.loading.contacts[one.contact]);
+    let tolerance = if matches!(mode, Mode::Stick) || data.tangents() == 0 { force } else { WEAK };
+    let (margin, other) = match (mode, one.direction) {
+        (Mode::Stick, Some(direction)) => {
+            let left = data.friction * reaction.normal + dot(&direction, &reaction.tangential);
+            (left, Mode::Slip { direction })
+        }
+        (Mode::Slip { .. }, Some(direction)) => (speed(equations, one, &direction, rate), Mode::Stick),
+        (Mode::Stick, None) => {
+            let traction = dot(&reaction.tangential, &one.frame.tangents[0]);
+            let against = scaled(&one.frame.tangents[0], if traction > 0.0 { -1.0 } else { 1.0 });
+            let other = if reaction.normal < 0.0 { Mode::Free } else { Mode::Slip { direction: against } };
+            (data.friction * reaction.normal - traction.abs(), other)
+        }
+        (Mode::Slip { .. }, None) if data.tangents() == 0 => (reaction.normal, Mode::Free),
+        (Mode::Slip { direction }, None) => {
+            let speed = speed(equations, one, &direction, rate);
+            let other = if reaction.normal < 0.0 { Mode::Free } else { Mode::Stick };
+            (speed.min(reaction.normal), other)
+        }
+        (Mode::Free, _) => {
+            let closed = if data.tangents() > 0 { Mode::Stick } else { Mode::Slip { direction: [0.0; 3] } };
+            (speed(equations, one, &one.frame.normal, rate), closed)
+        }
+    };
+    (margin, tolerance, other)
+}
+
+/// With the contacts that might as well be in the other mode, at first order or nearly so; where they can stick they
+/// do.
+pub(super) fn candidate(
+    equations: &Equations<'_>,
+    rate: Rate,
+    mut modes: Vec<Mode>,
+    doubts: Vec<Doubt>,
+) -> CandidateDirection {
+    let weak = doubts.iter().any(|doubt| doubt.weak);
+    let mut alternatives: Vec<Vec<Alternative>> = Vec::with_capacity(doubts.len());
+    for doubt in &doubts {
+        let Some(direction) = doubt.direction else { continue };
+        if doubt.weak {
+            modes[doubt.contact] = Mode::Stick;
+        }
+        alternatives.push(vec![vec![(doubt.contact, Mode::Stick)], vec![(doubt.contact, Mode::Slip { direction })]]);
+    }
+    let dissipation = equations.changing.iter().map(|one| {
+        let slips = matches!(modes[one.contact], Mode::Slip { .. });
+        let traction = &equations.state.reactions[one.contact].tangential;
+        if slips { -dot(traction, &equations.loading.relative_rate(one.contact, equations.state, &rate)) } else { 0.0 }
+    });
+    let dissipation = dissipation.sum();
+    let forces = whole_rates(equations.loading, equations.state, &rate);
+    CandidateDirection { rate, forces, modes, alternatives, weak, dissipation, at_hand: AtHand::default() }
 }

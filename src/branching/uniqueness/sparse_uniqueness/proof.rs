@@ -27,8 +27,9 @@
 //! complement on `f` and the border `q` then has a negative determinant.
 
 use crate::algebra::sparse::factors::cholesky::{Definite, Triangle};
-use crate::branching::directions::candidate::{Candidate, Found, WEAK, is_mechanism};
-use crate::branching::uniqueness::sparse_uniqueness::equations::{Changing, Equations};
+use crate::branching::directions::candidate::{CandidateDirection, FoundDirections, WEAK, is_mechanism};
+use crate::branching::uniqueness::sparse_uniqueness::equations::{ChangingContact, Equations};
+use crate::branching::uniqueness::sparse_uniqueness::pivoting;
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::problem::state::Rate;
 
@@ -41,7 +42,7 @@ const MOST_WEIGHT: f64 = 0.999;
 
 /// What tells one solution from another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Control {
+pub(super) enum DistinguishingQuantity {
     /// The sign of the load rate.
     Load,
     /// The sign of the load's power.
@@ -51,7 +52,7 @@ pub(super) enum Control {
 /// Each sign of the control has one solution at the most, but for motions, one entry a column of `A`, that nothing
 /// resists.
 pub(super) struct Proof {
-    pub control: Control,
+    pub control: DistinguishingQuantity,
     /// Of largest entry about 1.
     null: Option<Vec<f64>>,
     /// Columns that nothing acts on.
@@ -76,252 +77,258 @@ impl Proof {
     }
 }
 
-impl Equations<'_> {
-    /// `incoming` names the motion that the structure may resist least.
-    pub fn proof(&self, incoming: Option<&Rate>) -> Option<Proof> {
-        let mut lower = self.symmetric_part();
-        let mut is_loose = vec![true; self.size];
-        for (row, column, value) in &lower {
-            if *value != 0.0 {
-                (is_loose[*row], is_loose[*column]) = (false, false);
+/// `incoming` names the motion that the structure may resist least.
+pub(super) fn proof(equations: &Equations<'_>, incoming: Option<&Rate>) -> Option<Proof> {
+    let mut lower = equations.symmetric_part();
+    let mut is_loose = vec![true; equations.size];
+    for (row, column, value) in &lower {
+        if *value != 0.0 {
+            (is_loose[*row], is_loose[*column]) = (false, false);
+        }
+    }
+    let loose: Vec<usize> = (0..equations.size).filter(|column| is_loose[*column]).collect();
+    lower.extend(loose.iter().map(|column| (*column, *column, 1.0)));
+    let (inverse, null) = match Definite::new(equations.size, &lower, -MARGIN) {
+        Some(definite) => (definite, None),
+        None => {
+            let shifted = Definite::new(equations.size, &lower, MARGIN);
+            match shifted.and_then(|shifted| null(equations, &shifted).map(|null| (shifted, Some(null)))) {
+                Some(found) => found,
+                None if loose.is_empty() => return proof_by_power(equations, lower, incoming?),
+                None => return None,
             }
         }
-        let loose: Vec<usize> = (0..self.size).filter(|column| is_loose[*column]).collect();
-        lower.extend(loose.iter().map(|column| (*column, *column, 1.0)));
-        let (inverse, null) = match Definite::new(self.size, &lower, -MARGIN) {
-            Some(definite) => (definite, None),
+    };
+    let is_rough =
+        |one: &ChangingContact| one.direction.is_none() && equations.loading.contacts[one.contact].friction > 0.0;
+    if equations.changing.iter().any(is_rough) {
+        take_touching(equations, &inverse, null.as_deref(), &mut lower)?;
+    } else if null.is_none() {
+        return Some(Proof { control: DistinguishingQuantity::Load, null, loose });
+    }
+    if let Some(null) = &null {
+        // Definite across the motion: held where it is fastest.
+        hold(&mut lower, fastest(null)?);
+    }
+    Definite::new(equations.size, &lower, -MARGIN).map(|_| Proof { control: DistinguishingQuantity::Load, null, loose })
+}
+
+/// That the symmetric part is definite across the load.
+fn proof_by_power(equations: &Equations<'_>, lower: Triangle, incoming: &Rate) -> Option<Proof> {
+    let is_smooth =
+        |one: &ChangingContact| one.direction.is_some() || equations.loading.contacts[one.contact].friction == 0.0;
+    if equations.loading.pattern.moves_boundary() || !equations.changing.iter().all(is_smooth) {
+        return None;
+    }
+    let fast = fastest(&equations.columns_of(incoming))?;
+    let (mut own, mut column) = (0.0, vec![0.0; equations.size]);
+    for (row, other, value) in &lower {
+        match (*row == fast, *other == fast) {
+            (true, true) => own += value,
+            (true, false) => column[*other] += value,
+            (false, true) => column[*row] += value,
+            (false, false) => {}
+        }
+    }
+    let mut rest = lower;
+    hold(&mut rest, fast);
+    let rest = Definite::new(equations.size, &rest, -MARGIN)?;
+    let mut load = equations.load();
+    let at_fast = std::mem::replace(&mut load[fast], 0.0);
+    let (mut by_column, mut by_load) = (column.clone(), load.clone());
+    rest.solve(&mut by_column);
+    rest.solve(&mut by_load);
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let stiffness = [own, product(&column, &by_column)];
+    let softness = product(&load, &by_load);
+    let coupling = [at_fast, product(&column, &by_load)];
+    // -det, and the sizes of its terms.
+    let value = (coupling[0] - coupling[1]).powi(2) + (stiffness[0] - stiffness[1]) * softness;
+    let size = (coupling[0].abs() + coupling[1].abs()).powi(2) + (own.abs() + stiffness[1].abs()) * softness;
+    (value > CLEAR * size).then_some(Proof { control: DistinguishingQuantity::Power, null: None, loose: Vec::new() })
+}
+
+/// The motion that nothing resists.
+fn null(equations: &Equations<'_>, shifted: &Definite) -> Option<Vec<f64>> {
+    let mut motion = shifted.softest();
+    let largest = motion.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    motion.iter_mut().for_each(|value| *value /= largest);
+    let (mut images, mut sizes) =
+        ([vec![0.0; equations.size], vec![0.0; equations.size]], vec![0.0_f64; equations.size]);
+    equations.each_entry(&mut |row, column, value| {
+        images[0][row] += value * motion[column];
+        images[1][column] += value * motion[row];
+        sizes[row] = sizes[row].max(value.abs());
+        sizes[column] = sizes[column].max(value.abs());
+    });
+    let vanishes = |image: &Vec<f64>| image.iter().zip(&sizes).all(|(image, size)| image.abs() <= WEAK * size);
+    (images.iter().all(vanishes) && is_mechanism(equations.loading, equations.state, &free_rate(equations, &motion)))
+        .then_some(motion)
+}
+
+fn free_rate(equations: &Equations<'_>, motion: &[f64]) -> Rate {
+    let reactions = vec![Reaction::default(); equations.loading.contacts.len()];
+    let mut rate = Rate { displacement: equations.velocities(motion), load: 0.0, reactions };
+    let size = rate.size();
+    if size > 0.0 {
+        rate.scale(1.0 / size);
+    }
+    rate
+}
+
+/// Takes off what friction at contacts that touch may have on its side.
+fn take_touching(
+    equations: &Equations<'_>,
+    inverse: &Definite,
+    null: Option<&[f64]>,
+    lower: &mut Triangle,
+) -> Option<()> {
+    let mut of_normal = vec![usize::MAX; equations.size];
+    for (index, one) in equations.changing.iter().enumerate().filter(|(_, one)| one.direction.is_none()) {
+        of_normal[one.column + 1] = index;
+    }
+    let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new(); equations.changing.len()];
+    equations.each_entry(&mut |row, column, value| {
+        if let Some(entries) = rows.get_mut(of_normal[row]) {
+            match entries.iter_mut().find(|(known, _)| *known == column) {
+                Some((_, sum)) => *sum += value,
+                None => entries.push((column, value)),
+            }
+        }
+    });
+    let mut values = vec![0.0; equations.size];
+    let mut resisted = |entries: &[(usize, f64)]| -> [f64; 2] {
+        values.fill(0.0);
+        entries.iter().for_each(|(column, value)| values[*column] = *value);
+        inverse.solve(&mut values);
+        [entries[0].0, entries[1].0].map(|column| values[column])
+    };
+    for (one, row) in equations.changing.iter().zip(&rows) {
+        let friction = equations.loading.contacts[one.contact].friction;
+        if one.direction.is_some() || friction == 0.0 || row.iter().all(|(_, value)| *value == 0.0) {
+            continue;
+        }
+        let (tangent, normal) = (one.column, one.column + 1);
+        let moves = null.filter(|null| null[tangent].abs().max(null[normal].abs()) > WEAK);
+        let weight = match moves {
+            Some(null) if null[normal].abs() > WEAK => friction * null[tangent] / null[normal],
+            Some(_) => return None,
             None => {
-                let shifted = Definite::new(self.size, &lower, MARGIN);
-                match shifted.and_then(|shifted| self.null(&shifted).map(|null| (shifted, Some(null)))) {
-                    Some(found) => found,
-                    None if loose.is_empty() => return self.proof_by_power(lower, incoming?),
-                    None => return None,
-                }
+                let [along, own] = resisted(&[(tangent, 0.0), (normal, 1.0)]);
+                (friction * along / own).clamp(-MOST_WEIGHT, MOST_WEIGHT)
             }
         };
-        let is_rough = |one: &Changing| one.direction.is_none() && self.loading.contacts[one.contact].friction > 0.0;
-        if self.changing.iter().any(is_rough) {
-            self.take_touching(&inverse, null.as_deref(), &mut lower)?;
-        } else if null.is_none() {
-            return Some(Proof { control: Control::Load, null, loose });
-        }
-        if let Some(null) = &null {
-            // Definite across the motion: held where it is fastest.
-            hold(&mut lower, fastest(null)?);
-        }
-        Definite::new(self.size, &lower, -MARGIN).map(|_| Proof { control: Control::Load, null, loose })
-    }
-
-    /// That the symmetric part is definite across the load.
-    fn proof_by_power(&self, lower: Triangle, incoming: &Rate) -> Option<Proof> {
-        let is_smooth = |one: &Changing| one.direction.is_some() || self.loading.contacts[one.contact].friction == 0.0;
-        if self.loading.pattern.moves_boundary() || !self.changing.iter().all(is_smooth) {
+        if weight.abs() > MOST_WEIGHT {
             return None;
         }
-        let fast = fastest(&self.columns_of(incoming))?;
-        let (mut own, mut column) = (0.0, vec![0.0; self.size]);
-        for (row, other, value) in &lower {
-            match (*row == fast, *other == fast) {
-                (true, true) => own += value,
-                (true, false) => column[*other] += value,
-                (false, true) => column[*row] += value,
-                (false, false) => {}
-            }
+        let form = [(tangent, -friction), (normal, weight)];
+        let [along, own] = resisted(&form);
+        let softness = weight * own - friction * along;
+        let stiffness = row.iter().find(|(column, _)| *column == normal).map_or(0.0, |(_, value)| *value);
+        let balance = (softness / stiffness).sqrt();
+        if !(balance.is_finite() && balance > 0.0) {
+            return None;
         }
-        let mut rest = lower;
-        hold(&mut rest, fast);
-        let rest = Definite::new(self.size, &rest, -MARGIN)?;
-        let mut load = self.load();
-        let at_fast = std::mem::replace(&mut load[fast], 0.0);
-        let (mut by_column, mut by_load) = (column.clone(), load.clone());
-        rest.solve(&mut by_column);
-        rest.solve(&mut by_load);
-        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let stiffness = [own, product(&column, &by_column)];
-        let softness = product(&load, &by_load);
-        let coupling = [at_fast, product(&column, &by_load)];
-        // -det, and the sizes of its terms.
-        let value = (coupling[0] - coupling[1]).powi(2) + (stiffness[0] - stiffness[1]) * softness;
-        let size = (coupling[0].abs() + coupling[1].abs()).powi(2) + (own.abs() + stiffness[1].abs()) * softness;
-        (value > CLEAR * size).then_some(Proof { control: Control::Power, null: None, loose: Vec::new() })
-    }
-
-    /// The motion that nothing resists.
-    fn null(&self, shifted: &Definite) -> Option<Vec<f64>> {
-        let mut motion = shifted.softest();
-        let largest = motion.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-        motion.iter_mut().for_each(|value| *value /= largest);
-        let (mut images, mut sizes) = ([vec![0.0; self.size], vec![0.0; self.size]], vec![0.0_f64; self.size]);
-        self.each_entry(&mut |row, column, value| {
-            images[0][row] += value * motion[column];
-            images[1][column] += value * motion[row];
-            sizes[row] = sizes[row].max(value.abs());
-            sizes[column] = sizes[column].max(value.abs());
-        });
-        let vanishes = |image: &Vec<f64>| image.iter().zip(&sizes).all(|(image, size)| image.abs() <= WEAK * size);
-        (images.iter().all(vanishes) && is_mechanism(self.loading, self.state, &self.free_rate(&motion)))
-            .then_some(motion)
-    }
-
-    fn free_rate(&self, motion: &[f64]) -> Rate {
-        let reactions = vec![Reaction::default(); self.loading.contacts.len()];
-        let mut rate = Rate { displacement: self.velocities(motion), load: 0.0, reactions };
-        let size = rate.size();
-        if size > 0.0 {
-            rate.scale(1.0 / size);
-        }
-        rate
-    }
-
-    /// Takes off what friction at contacts that touch may have on its side.
-    fn take_touching(&self, inverse: &Definite, null: Option<&[f64]>, lower: &mut Triangle) -> Option<()> {
-        let mut of_normal = vec![usize::MAX; self.size];
-        for (index, one) in self.changing.iter().enumerate().filter(|(_, one)| one.direction.is_none()) {
-            of_normal[one.column + 1] = index;
-        }
-        let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new(); self.changing.len()];
-        self.each_entry(&mut |row, column, value| {
-            if let Some(entries) = rows.get_mut(of_normal[row]) {
-                match entries.iter_mut().find(|(known, _)| *known == column) {
-                    Some((_, sum)) => *sum += value,
-                    None => entries.push((column, value)),
+        for (entries, factor) in [(&row[..], 0.5 * balance), (&form[..], 0.5 / balance)] {
+            for (place, (row, value)) in entries.iter().enumerate() {
+                for (column, other) in &entries[..=place] {
+                    lower.push((*row.max(column), *row.min(column), -factor * value * other));
                 }
             }
-        });
-        let mut values = vec![0.0; self.size];
-        let mut resisted = |entries: &[(usize, f64)]| -> [f64; 2] {
-            values.fill(0.0);
-            entries.iter().for_each(|(column, value)| values[*column] = *value);
-            inverse.solve(&mut values);
-            [entries[0].0, entries[1].0].map(|column| values[column])
-        };
-        for (one, row) in self.changing.iter().zip(&rows) {
-            let friction = self.loading.contacts[one.contact].friction;
-            if one.direction.is_some() || friction == 0.0 || row.iter().all(|(_, value)| *value == 0.0) {
-                continue;
+        }
+    }
+    Some(())
+}
+
+/// Whether a solution is the only one with its sign of the load rate, and says all that first order can tell.
+pub(super) fn is_only(equations: &Equations<'_>, candidate: &CandidateDirection, proof: &Proof) -> bool {
+    let strict = pivoting::strict(equations, candidate);
+    let is_told = |(one, strict): (&ChangingContact, &bool)| *strict || one.direction.is_some();
+    if !equations.changing.iter().zip(&strict).all(is_told) {
+        return false;
+    }
+    let holds = |(one, strict): (&ChangingContact, &bool), speed: &dyn Fn(usize) -> f64| {
+        let moves = |column: usize| speed(column).abs() > WEAK;
+        let normal = one.column + 1;
+        *strict
+            && match (candidate.modes[one.contact], one.direction) {
+                (Mode::Stick, Some(_)) => moves(one.column),
+                (Mode::Stick, None) => moves(one.column) || moves(normal),
+                (Mode::Slip { .. }, None) => moves(normal),
+                (Mode::Slip { .. }, Some(_)) | (Mode::Free, _) => false,
             }
-            let (tangent, normal) = (one.column, one.column + 1);
-            let moves = null.filter(|null| null[tangent].abs().max(null[normal].abs()) > WEAK);
-            let weight = match moves {
-                Some(null) if null[normal].abs() > WEAK => friction * null[tangent] / null[normal],
-                Some(_) => return None,
+    };
+    let is_held =
+        |null: &Vec<f64>| equations.changing.iter().zip(&strict).any(|pair| holds(pair, &|column| null[column]));
+    let mut owner = vec![usize::MAX; equations.size];
+    for (index, one) in equations.changing.iter().enumerate() {
+        owner[one.column] = index;
+        if one.direction.is_none() {
+            owner[one.column + 1] = index;
+        }
+    }
+    let is_fast = |loose: &usize| {
+        let pair = equations.changing.get(owner[*loose]).zip(strict.get(owner[*loose]));
+        pair.is_some_and(|pair| holds(pair, &|column| f64::from(u8::from(column == *loose))))
+    };
+    proof.null.iter().all(is_held) && proof.loose.iter().all(is_fast)
+}
+
+/// Whether no solution has this sign of the control.
+pub(super) fn has_none(equations: &Equations<'_>, sign: f64, proof: &Proof) -> bool {
+    if proof.control == DistinguishingQuantity::Power {
+        let mut one_sided = vec![false; equations.size];
+        for one in &equations.changing {
+            one_sided[if one.direction.is_some() { one.column } else { one.column + 1 }] = true;
+        }
+        let zero = WEAK * equations.largest_load();
+        let has_power =
+            |(load, one_sided): (&f64, &bool)| if *one_sided { load * sign > zero } else { load.abs() > zero };
+        return !equations.load().iter().zip(&one_sided).any(has_power);
+    }
+    if equations.loading.pattern.moves_boundary() {
+        return false;
+    }
+    let force = equations.largest_load();
+    let load = equations.load();
+    let lifts = equations.changing.iter().filter(|one| one.direction.is_none()).map(|one| one.column + 1);
+    let mut is_pulled = lifts
+        .filter(|column| proof.loose.binary_search(column).is_ok())
+        .any(|column| load[column] * sign > WEAK * force);
+    for sense in [1.0, -1.0] {
+        is_pulled |= proof.null.as_ref().is_some_and(|null| {
+            let opens = |one: &ChangingContact| match one.direction {
+                Some(_) => sense * null[one.column] >= -WEAK,
                 None => {
-                    let [along, own] = resisted(&[(tangent, 0.0), (normal, 1.0)]);
-                    (friction * along / own).clamp(-MOST_WEIGHT, MOST_WEIGHT)
+                    let friction = equations.loading.contacts[one.contact].friction;
+                    sense * null[one.column + 1] >= friction * null[one.column].abs() - WEAK
                 }
             };
-            if weight.abs() > MOST_WEIGHT {
-                return None;
-            }
-            let form = [(tangent, -friction), (normal, weight)];
-            let [along, own] = resisted(&form);
-            let softness = weight * own - friction * along;
-            let stiffness = row.iter().find(|(column, _)| *column == normal).map_or(0.0, |(_, value)| *value);
-            let balance = (softness / stiffness).sqrt();
-            if !(balance.is_finite() && balance > 0.0) {
-                return None;
-            }
-            for (entries, factor) in [(&row[..], 0.5 * balance), (&form[..], 0.5 / balance)] {
-                for (place, (row, value)) in entries.iter().enumerate() {
-                    for (column, other) in &entries[..=place] {
-                        lower.push((*row.max(column), *row.min(column), -factor * value * other));
-                    }
-                }
-            }
-        }
-        Some(())
+            equations.changing.iter().all(opens) && sense * sign * equations.power(null) > WEAK * force
+        });
     }
+    is_pulled
+}
 
-    /// Whether a solution is the only one with its sign of the load rate, and says all that first order can tell.
-    pub fn is_only(&self, candidate: &Candidate, proof: &Proof) -> bool {
-        let strict = self.strict(candidate);
-        let is_told = |(one, strict): (&Changing, &bool)| *strict || one.direction.is_some();
-        if !self.changing.iter().zip(&strict).all(is_told) {
-            return false;
-        }
-        let holds = |(one, strict): (&Changing, &bool), speed: &dyn Fn(usize) -> f64| {
-            let moves = |column: usize| speed(column).abs() > WEAK;
-            let normal = one.column + 1;
-            *strict
-                && match (candidate.modes[one.contact], one.direction) {
-                    (Mode::Stick, Some(_)) => moves(one.column),
-                    (Mode::Stick, None) => moves(one.column) || moves(normal),
-                    (Mode::Slip { .. }, None) => moves(normal),
-                    (Mode::Slip { .. }, Some(_)) | (Mode::Free, _) => false,
-                }
-        };
-        let is_held =
-            |null: &Vec<f64>| self.changing.iter().zip(&strict).any(|pair| holds(pair, &|column| null[column]));
-        let mut owner = vec![usize::MAX; self.size];
-        for (index, one) in self.changing.iter().enumerate() {
-            owner[one.column] = index;
-            if one.direction.is_none() {
-                owner[one.column + 1] = index;
-            }
-        }
-        let is_fast = |loose: &usize| {
-            let pair = self.changing.get(owner[*loose]).zip(strict.get(owner[*loose]));
-            pair.is_some_and(|pair| holds(pair, &|column| f64::from(u8::from(column == *loose))))
-        };
-        proof.null.iter().all(is_held) && proof.loose.iter().all(is_fast)
+/// Adds the motions that nothing resists and no contact hinders. Of a family all that are loose is one.
+pub(super) fn add_free_motions(equations: &Equations<'_>, proof: &Proof, found: &mut FoundDirections) {
+    if proof.free_motions() > 1 {
+        (found.degenerate, found.mechanism) = (true, true);
     }
-
-    /// Whether no solution has this sign of the control.
-    pub fn has_none(&self, sign: f64, proof: &Proof) -> bool {
-        if proof.control == Control::Power {
-            let mut one_sided = vec![false; self.size];
-            for one in &self.changing {
-                one_sided[if one.direction.is_some() { one.column } else { one.column + 1 }] = true;
-            }
-            let zero = WEAK * self.largest_load();
-            let has_power =
-                |(load, one_sided): (&f64, &bool)| if *one_sided { load * sign > zero } else { load.abs() > zero };
-            return !self.load().iter().zip(&one_sided).any(has_power);
-        }
-        if self.loading.pattern.moves_boundary() {
-            return false;
-        }
-        let force = self.largest_load();
-        let load = self.load();
-        let lifts = self.changing.iter().filter(|one| one.direction.is_none()).map(|one| one.column + 1);
-        let mut is_pulled = lifts
-            .filter(|column| proof.loose.binary_search(column).is_ok())
-            .any(|column| load[column] * sign > WEAK * force);
-        for sense in [1.0, -1.0] {
-            is_pulled |= proof.null.as_ref().is_some_and(|null| {
-                let opens = |one: &Changing| match one.direction {
-                    Some(_) => sense * null[one.column] >= -WEAK,
-                    None => {
-                        let friction = self.loading.contacts[one.contact].friction;
-                        sense * null[one.column + 1] >= friction * null[one.column].abs() - WEAK
-                    }
-                };
-                self.changing.iter().all(opens) && sense * sign * self.power(null) > WEAK * force
-            });
-        }
-        is_pulled
+    let mut motions = proof.null.clone().into_iter().collect::<Vec<Vec<f64>>>();
+    if !proof.loose.is_empty() {
+        let mut together = vec![0.0; equations.size];
+        proof.loose.iter().for_each(|column| together[*column] = 1.0);
+        motions.push(together);
     }
-
-    /// Adds the motions that nothing resists and no contact hinders. Of a family all that are loose is one.
-    pub fn add_free_motions(&self, proof: &Proof, found: &mut Found) {
-        if proof.free_motions() > 1 {
-            (found.degenerate, found.mechanism) = (true, true);
-        }
-        let mut motions = proof.null.clone().into_iter().collect::<Vec<Vec<f64>>>();
-        if !proof.loose.is_empty() {
-            let mut together = vec![0.0; self.size];
-            proof.loose.iter().for_each(|column| together[*column] = 1.0);
-            motions.push(together);
-        }
-        let back = |motion: &Vec<f64>| motion.iter().map(|value| -value).collect();
-        for motion in motions.iter().flat_map(|motion| [motion.clone(), back(motion)]) {
-            let is_open =
-                |one: &Changing| motion[if one.direction.is_some() { one.column } else { one.column + 1 }] >= -WEAK;
-            if self.changing.iter().all(is_open) {
-                let mut modes = self.held.clone();
-                self.changing.iter().for_each(|one| modes[one.contact] = self.mode_of_motion(one, &motion, WEAK));
-                found.candidates.push(self.candidate(self.free_rate(&motion), modes, Vec::new()));
-            }
+    let back = |motion: &Vec<f64>| motion.iter().map(|value| -value).collect();
+    for motion in motions.iter().flat_map(|motion| [motion.clone(), back(motion)]) {
+        let is_open =
+            |one: &ChangingContact| motion[if one.direction.is_some() { one.column } else { one.column + 1 }] >= -WEAK;
+        if equations.changing.iter().all(is_open) {
+            let mut modes = equations.held.clone();
+            equations.changing.iter().for_each(|one| modes[one.contact] = equations.mode_of_motion(one, &motion, WEAK));
+            found.candidates.push(pivoting::candidate(equations, free_rate(equations, &motion), modes, Vec::new()));
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What the sparse certificate lists against the condensed equations.
 
 use crate::branching::directions::arrival_tangent::Incoming;
-use crate::branching::directions::candidate::{Candidate, Found};
+use crate::branching::directions::candidate::{CandidateDirection, FoundDirections};
 use crate::branching::directions::condensed_rate_problem::Condensed;
 use crate::branching::uniqueness::sparse_uniqueness::directions;
 use crate::complementarity::rate_search::tests::Random;
@@ -44,10 +44,10 @@ fn chain(blocks: usize, coupling: f64) -> Scene {
 }
 
 /// What the proof lists at a point and what the condensed equations do; `None` where there is no proof.
-fn both(path: &Path<'_>, incoming: Option<&Rate>) -> Option<(Found, Found)> {
+fn both(path: &Path<'_>, incoming: Option<&Rate>) -> Option<(FoundDirections, FoundDirections)> {
     let (loading, state) = (path.trace.loading(), &path.trace.at.here.state);
     let (standings, effort) = (path.trace.standings(state), path.trace.rules().effort);
-    let (mut own, mut others) = (Found::default(), Found::default());
+    let (mut own, mut others) = (FoundDirections::default(), FoundDirections::default());
     if !directions(loading, state, &standings, incoming.map(Incoming::along), effort, &mut own) {
         return None;
     }
@@ -67,14 +67,15 @@ fn both(path: &Path<'_>, incoming: Option<&Rate>) -> Option<(Found, Found)> {
     Some((own, others))
 }
 
-fn assert_alike(own: &Found, others: &Found, place: &str) {
+fn assert_alike(own: &FoundDirections, others: &FoundDirections, place: &str) {
     assert_eq!((own.candidates.len(), own.unexplored), (others.candidates.len(), others.unexplored), "{place}");
     for one in &own.candidates {
-        let alike = |other: &&Candidate| other.rate.product(&one.rate) > 1.0 - 1e-12;
+        let alike = |other: &&CandidateDirection| other.rate.product(&one.rate) > 1.0 - 1e-12;
         let other = others.candidates.iter().find(alike).unwrap_or_else(|| panic!("the same direction: {place}"));
         assert!((one.dissipation - other.dissipation).abs() < 1e-12, "{place}");
         assert_eq!((&one.modes, one.weak), (&other.modes, other.weak), "{place}");
-        let in_doubt = |of: &Candidate| of.alternatives.iter().filter(|all| all.len() > 1).cloned().collect::<Vec<_>>();
+        let in_doubt =
+            |of: &CandidateDirection| of.alternatives.iter().filter(|all| all.len() > 1).cloned().collect::<Vec<_>>();
         assert_eq!(in_doubt(one), in_doubt(other), "{place}");
     }
 }

@@ -8,7 +8,7 @@
 
 use crate::check::scenes::exact::curve::{Piece, Place, Reach, Stage};
 use crate::check::scenes::exact::pattern;
-use crate::check::scenes::exact::solution::Solution;
+use crate::check::scenes::exact::solution::ExactSolution;
 use crate::check::scenes::exact::zeros::zero;
 use crate::model::Model;
 use crate::model::request::{Obstacle, Side};
@@ -59,7 +59,7 @@ impl Bowl {
     }
 }
 
-impl Solution for Bowl {
+impl ExactSolution for Bowl {
     fn name(&self) -> &'static str {
         "node in a bowl"
     }

@@ -24,7 +24,7 @@ pub struct Reach {
 
 /// Negative before the bound, 0 at it.
 type Bound = Box<dyn Fn(&Place) -> f64>;
-type At = Box<dyn Fn(f64) -> Place + Send + Sync>;
+type CurveFunction = Box<dyn Fn(f64) -> Place + Send + Sync>;
 
 /// A smooth stretch of a path.
 pub struct Piece {
@@ -32,7 +32,7 @@ pub struct Piece {
     pub from: f64,
     /// The parameter where it ends; on this side of `from` where the parameter falls.
     pub to: f64,
-    at: At,
+    at: CurveFunction,
     /// What the path does where the piece ends, if that is an event.
     pub ends_with: Option<PointKind>,
 }

@@ -9,7 +9,7 @@
 
 use crate::check::scenes::exact::curve::{Place, Reach, Stage};
 use crate::check::scenes::exact::pattern;
-use crate::check::scenes::exact::solution::Solution;
+use crate::check::scenes::exact::solution::ExactSolution;
 use crate::model::Model;
 use crate::model::request::{Obstacle, Side, Strain};
 use crate::result::increment::PointKind;
@@ -102,7 +102,7 @@ impl OverHump {
     }
 }
 
-impl Solution for OverHump {
+impl ExactSolution for OverHump {
     fn name(&self) -> &'static str {
         "one-bar truss over a hump"
     }

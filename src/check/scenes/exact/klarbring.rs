@@ -6,13 +6,13 @@
 
 use crate::check::scenes::exact::curve::{Piece, Place, Reach, Stage};
 use crate::check::scenes::exact::pattern;
-use crate::check::scenes::exact::solution::Solution;
+use crate::check::scenes::exact::solution::ExactSolution;
 use crate::model::Model;
 use crate::result::increment::PointKind;
 
 /// The node and its two stages.
 #[derive(Debug, Clone)]
-pub struct Klarbring {
+pub struct KlarbringScene {
     /// `a`, `b`, `c`.
     pub stiffness: [f64; 3],
     pub friction: f64,
@@ -24,7 +24,7 @@ pub struct Klarbring {
     stages: [String; 2],
 }
 
-impl Klarbring {
+impl KlarbringScene {
     pub fn recognise(model: &Model) -> Option<Self> {
         let (node, stiffness) = pattern::one_spring(model).filter(|_| model.dimension == 2)?;
         let (contact, obstacle) = pattern::one_contact(model, node)?;
@@ -49,7 +49,7 @@ impl Klarbring {
     }
 }
 
-impl Solution for Klarbring {
+impl ExactSolution for KlarbringScene {
     fn name(&self) -> &'static str {
         "Klarbring's node"
     }

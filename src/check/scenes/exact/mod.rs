@@ -32,7 +32,7 @@ pub mod turning_drag;
 pub mod von_mises;
 pub(crate) mod zeros;
 
-use crate::check::scenes::exact::solution::Solution;
+use crate::check::scenes::exact::solution::ExactSolution;
 pub use curve::{Piece, Place, Reach, Stage};
 
 use crate::model::request::Selection;
@@ -40,7 +40,7 @@ use crate::model::{JobRequest, Model};
 
 /// The exact path of a request, if it is of a family with one.
 pub struct Exact {
-    solution: Box<dyn Solution>,
+    solution: Box<dyn ExactSolution>,
     model: Model,
 }
 
@@ -64,7 +64,7 @@ impl Exact {
     }
 }
 
-type Recognise = fn(&Model) -> Option<Box<dyn Solution>>;
+type Recognise = fn(&Model) -> Option<Box<dyn ExactSolution>>;
 
 /// Whether the request's path is known in closed form: by its model, and by its selecting the direction of largest
 /// dissipation where there are several, as the formulas do.
@@ -74,14 +74,14 @@ pub fn recognise(request: &JobRequest) -> Option<Exact> {
     }
     let model = &request.model;
     let families: [Recognise; 8] = [
-        |model| Some(Box::new(one_bar::OneBar::recognise(model)?)),
-        |model| Some(Box::new(klarbring::Klarbring::recognise(model)?)),
+        |model| Some(Box::new(one_bar::OneBarScene::recognise(model)?)),
+        |model| Some(Box::new(klarbring::KlarbringScene::recognise(model)?)),
         |model| Some(Box::new(slider_chain::SliderChain::recognise(model)?)),
         |model| Some(Box::new(tractrix::CurvingSlip::recognise(model)?)),
         |model| Some(Box::new(hump::OverHump::recognise(model)?)),
         |model| Some(Box::new(bowl::Bowl::recognise(model)?)),
         |model| Some(Box::new(turning_drag::TurningDrag::recognise(model)?)),
-        |model| Some(Box::new(von_mises::VonMises::recognise(model)?)),
+        |model| Some(Box::new(von_mises::VonMisesScene::recognise(model)?)),
     ];
     let solution = families.iter().find_map(|recognise| recognise(model))?;
     Some(Exact { solution, model: model.clone() })

@@ -11,14 +11,14 @@
 
 use crate::check::scenes::exact::curve::{Place, Reach, Stage};
 use crate::check::scenes::exact::pattern;
-use crate::check::scenes::exact::solution::Solution;
+use crate::check::scenes::exact::solution::ExactSolution;
 use crate::model::Model;
 use crate::model::request::Strain;
 use crate::result::increment::PointKind;
 
 /// The truss, mirrored if need be so that it goes to +x.
 #[derive(Debug, Clone)]
-pub struct OneBar {
+pub struct OneBarScene {
     pub axial_stiffness: f64,
     pub height: f64,
     /// From the tip to the pin's foot at the start.
@@ -33,7 +33,7 @@ pub struct OneBar {
     tip: usize,
 }
 
-impl OneBar {
+impl OneBarScene {
     pub fn recognise(model: &Model) -> Option<Self> {
         let bar = pattern::one_bar(model).filter(|bar| model.dimension == 2 && bar.strain == Strain::Engineering)?;
         let (contact, obstacle) = pattern::one_contact(model, bar.free)?;
@@ -81,7 +81,7 @@ impl OneBar {
     }
 }
 
-impl Solution for OneBar {
+impl ExactSolution for OneBarScene {
     fn name(&self) -> &'static str {
         "one-bar truss"
     }

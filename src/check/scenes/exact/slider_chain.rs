@@ -5,7 +5,7 @@
 
 use crate::check::scenes::exact::curve::{Piece, Place, Reach, Stage};
 use crate::check::scenes::exact::pattern;
-use crate::check::scenes::exact::solution::Solution;
+use crate::check::scenes::exact::solution::ExactSolution;
 use crate::model::Model;
 use crate::model::request::Element;
 use crate::result::increment::PointKind;
@@ -81,7 +81,7 @@ impl SliderChain {
     }
 }
 
-impl Solution for SliderChain {
+impl ExactSolution for SliderChain {
     fn name(&self) -> &'static str {
         "slider chain"
     }

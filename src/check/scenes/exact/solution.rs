@@ -3,7 +3,7 @@
 use crate::check::scenes::exact::curve::{Reach, Stage};
 
 /// A scene's path in closed form.
-pub trait Solution: Send + Sync {
+pub trait ExactSolution: Send + Sync {
     /// The family's name.
     fn name(&self) -> &'static str;
 

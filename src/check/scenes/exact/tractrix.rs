@@ -10,7 +10,7 @@
 
 use crate::check::scenes::exact::curve::{Place, Reach, Stage};
 use crate::check::scenes::exact::pattern;
-use crate::check::scenes::exact::solution::Solution;
+use crate::check::scenes::exact::solution::ExactSolution;
 use crate::model::Model;
 use crate::model::request::Strain;
 use crate::result::increment::PointKind;
@@ -124,7 +124,7 @@ impl CurvingSlip {
     }
 }
 
-impl Solution for CurvingSlip {
+impl ExactSolution for CurvingSlip {
     fn name(&self) -> &'static str {
         "tractrix"
     }

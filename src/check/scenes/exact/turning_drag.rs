@@ -6,7 +6,7 @@
 
 use crate::check::scenes::exact::curve::{Piece, Place, Reach, Stage};
 use crate::check::scenes::exact::pattern;
-use crate::check::scenes::exact::solution::Solution;
+use crate::check::scenes::exact::solution::ExactSolution;
 use crate::model::Model;
 use crate::result::increment::PointKind;
 
@@ -61,7 +61,7 @@ impl TurningDrag {
     }
 }
 
-impl Solution for TurningDrag {
+impl ExactSolution for TurningDrag {
     fn name(&self) -> &'static str {
         "turning drag"
     }

@@ -4,13 +4,13 @@
 
 use crate::check::scenes::exact::curve::{Place, Reach, Stage};
 use crate::check::scenes::exact::pattern;
-use crate::check::scenes::exact::solution::Solution;
+use crate::check::scenes::exact::solution::ExactSolution;
 use crate::model::Model;
 use crate::model::request::{Element, Strain};
 
 /// The truss.
 #[derive(Debug, Clone)]
-pub struct VonMises {
+pub struct VonMisesScene {
     pub axial_stiffness: f64,
     pub half_span: f64,
     pub height: f64,
@@ -22,7 +22,7 @@ pub struct VonMises {
     apex: usize,
 }
 
-impl VonMises {
+impl VonMisesScene {
     pub fn recognise(model: &Model) -> Option<Self> {
         let [first, second] = &model.elements[..] else { return None };
         let bar = |element: &Element| match element {
@@ -99,7 +99,7 @@ impl VonMises {
     }
 }
 
-impl Solution for VonMises {
+impl ExactSolution for VonMisesScene {
     fn name(&self) -> &'static str {
         "von Mises truss"
     }

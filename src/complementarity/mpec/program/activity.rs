@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 use crate::complementarity::mpec::program::cone::ConeActivity;
-use crate::complementarity::mpec::program::evaluation::{Evaluation, Quantity};
+use crate::complementarity::mpec::program::evaluation::{ProgramEvaluation, Quantity};
 use crate::complementarity::mpec::program::problem::Problem;
 
 /// Which member of a pair is zero.
@@ -45,12 +45,12 @@ impl Activities {
     /// # Errors
     /// The quantity that is not finite.
     pub fn at<P: Problem + ?Sized>(problem: &P, x: &DVector<f64>, tolerance: f64) -> Result<Self, Quantity> {
-        let mut at = Evaluation::new(problem);
+        let mut at = ProgramEvaluation::new(problem);
         at.update_values(problem, x)?;
         Ok(Self::of(&at, tolerance, tolerance))
     }
 
-    pub(crate) fn of(at: &Evaluation, tolerance: f64, cone_tolerance: f64) -> Self {
+    pub(crate) fn of(at: &ProgramEvaluation, tolerance: f64, cone_tolerance: f64) -> Self {
         let pairs = at.first.iter().zip(at.second.iter());
         Self {
             pairs: pairs.map(|(&a, &b)| PairActivity::of(a, b, tolerance)).collect(),

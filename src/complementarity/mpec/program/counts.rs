@@ -4,7 +4,7 @@ use nalgebra::DVector;
 
 /// Work done.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Counts {
+pub struct SolverCounts {
     /// Quadratic programs, however solved; the elastic version of one does not count again.
     pub qp_solves: usize,
     /// Calls of the interior-point method.
@@ -23,7 +23,7 @@ pub struct Counts {
 
 /// A point on the way.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Iterate {
+pub struct SolverIterate {
     /// The bound on the products; `None` in a branch, which has none.
     pub relaxation: Option<f64>,
     pub x: DVector<f64>,

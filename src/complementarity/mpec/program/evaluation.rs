@@ -27,7 +27,7 @@ pub enum Quantity {
 
 /// Everything a [`Problem`] says at one point.
 #[derive(Debug, Clone)]
-pub struct Evaluation {
+pub struct ProgramEvaluation {
     pub objective: f64,
     pub gradient: DVector<f64>,
     pub equality: DVector<f64>,
@@ -96,7 +96,7 @@ impl ConeMembers {
     }
 }
 
-impl Evaluation {
+impl ProgramEvaluation {
     pub fn new<P: Problem + ?Sized>(problem: &P) -> Self {
         let n = problem.variables();
         let (equalities, inequalities, pairs) = (problem.equalities(), problem.inequalities(), problem.pairs());

@@ -9,18 +9,18 @@ use std::ops::{Index, IndexMut, Mul};
 #[derive(Debug, Clone, PartialEq)]
 pub struct SparseRows {
     columns: usize,
-    rows: Vec<Row>,
+    rows: Vec<SparseRow>,
 }
 
 /// Most rows have few entries: they need no memory of their own.
-type Row = SmallVec<[(usize, f64); 6]>;
+type SparseRow = SmallVec<[(usize, f64); 6]>;
 
 static ZERO: f64 = 0.0;
 
 impl SparseRows {
     /// No entries.
     pub fn zeros(rows: usize, columns: usize) -> Self {
-        Self { columns, rows: vec![Row::new(); rows] }
+        Self { columns, rows: vec![SparseRow::new(); rows] }
     }
 
     /// One on the diagonal.
@@ -40,7 +40,7 @@ impl SparseRows {
 
     /// Takes every entry out.
     pub fn clear(&mut self) {
-        self.rows.iter_mut().for_each(Row::clear);
+        self.rows.iter_mut().for_each(SparseRow::clear);
     }
 
     /// Entries of a row, `(column, value)`, in the order in which they were first written.
@@ -111,7 +111,7 @@ impl SparseRows {
 impl From<&DMatrix<f64>> for SparseRows {
     fn from(matrix: &DMatrix<f64>) -> Self {
         let entries = |i: usize| {
-            (0..matrix.ncols()).map(|j| (j, matrix[(i, j)])).filter(|(_, value)| *value != 0.0).collect::<Row>()
+            (0..matrix.ncols()).map(|j| (j, matrix[(i, j)])).filter(|(_, value)| *value != 0.0).collect::<SparseRow>()
         };
         Self { columns: matrix.ncols(), rows: (0..matrix.nrows()).map(entries).collect() }
     }

@@ -17,7 +17,7 @@ use nalgebra::DVector;
 
 use crate::complementarity::mpec::quadratic_program::active_cones::{CORRECTIONS, ConeState, Expansions};
 use crate::complementarity::mpec::quadratic_program::interior_point::{QuadraticProgram, QuadraticSolution};
-use crate::complementarity::mpec::quadratic_program::linear_solve::{Factors, product};
+use crate::complementarity::mpec::quadratic_program::linear_solve::{SquareMatrixFactors, product};
 
 /// Relative slack in "holds", "nonnegative" and "solves the system".
 const ROUND_OFF: f64 = 1e-11;
@@ -178,9 +178,9 @@ fn solve_refined(
     refinements: usize,
 ) -> Option<DVector<f64>> {
     let factors = if added.is_empty() {
-        Factors::new(right.len(), matrix, None)?
+        SquareMatrixFactors::new(right.len(), matrix, None)?
     } else {
-        Factors::new(right.len(), &[matrix, added].concat(), None)?
+        SquareMatrixFactors::new(right.len(), &[matrix, added].concat(), None)?
     };
     let mut unknowns = factors.solve(right)?;
     for _ in 0..refinements {

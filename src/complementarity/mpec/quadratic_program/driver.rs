@@ -15,13 +15,13 @@
 
 use nalgebra::DVector;
 
-use crate::complementarity::mpec::program::counts::{Counts, Iterate};
+use crate::complementarity::mpec::program::counts::{SolverCounts, SolverIterate};
 use crate::complementarity::mpec::program::sparse_rows::SparseRows;
 use crate::complementarity::mpec::quadratic_program::active_set::{self, WorkingSet};
 use crate::complementarity::mpec::quadratic_program::interior_point::{
     ConeRows, InteriorSolver, QuadraticFailure, QuadraticProgram, QuadraticSolution,
 };
-use crate::complementarity::mpec::quadratic_program::one_dimensional::{Binding, LineSolver, Outcome};
+use crate::complementarity::mpec::quadratic_program::one_dimensional::{Binding, LineSolver, OneDimensionalOutcome};
 use crate::resources::cancel::CancelFlag;
 
 /// Changes of the working set before the interior-point method is asked.
@@ -34,7 +34,7 @@ const REST_MARGIN: f64 = 1e-7;
 
 /// A step and what it leaves violated.
 #[derive(Debug, Clone)]
-pub struct Step {
+pub struct QuadraticStep {
     pub solution: QuadraticSolution,
     /// Sum of the linearised violations that no step removes; zero unless elastic.
     pub remaining_violation: f64,
@@ -44,18 +44,18 @@ pub struct Step {
 
 /// Solves the programs of one sequence, keeping the working set from one to the next.
 pub struct StepSolver {
-    ended_with: Option<Ended>,
+    ended_with: Option<BindingBound>,
     line: LineSolver,
     interior: InteriorSolver,
     /// Whether rows that contradict each other on a line are relaxed.
     pub is_elastic: bool,
     /// Whether the interior-point method is asked for every program.
     pub interior_only: bool,
-    pub counts: Counts,
+    pub counts: SolverCounts,
     /// The last bound on products of a sequence.
     pub relaxation: Option<f64>,
     /// Where they are kept.
-    pub iterates: Option<Vec<Iterate>>,
+    pub iterates: Option<Vec<SolverIterate>>,
 }
 
 impl Default for StepSolver {
@@ -66,7 +66,7 @@ impl Default for StepSolver {
             interior: InteriorSolver::default(),
             is_elastic: true,
             interior_only: false,
-            counts: Counts::default(),
+            counts: SolverCounts::default(),
             relaxation: None,
             iterates: None,
         }
@@ -75,7 +75,7 @@ impl Default for StepSolver {
 
 /// What bound the last program's solution.
 #[derive(Debug, Clone, PartialEq)]
-enum Ended {
+enum BindingBound {
     OnLine(Option<Binding>),
     With(WorkingSet),
 }
@@ -89,8 +89,8 @@ impl StepSolver {
     /// Whether anything but equalities bound the last solution.
     pub fn is_bound(&self) -> bool {
         match &self.ended_with {
-            Some(Ended::OnLine(binding)) => binding.is_some(),
-            Some(Ended::With(set)) => !set.is_empty(),
+            Some(BindingBound::OnLine(binding)) => binding.is_some(),
+            Some(BindingBound::With(set)) => !set.is_empty(),
             None => true,
         }
     }
@@ -105,7 +105,11 @@ impl StepSolver {
     /// # Errors
     /// [`QuadraticFailure::NotFinite`], [`QuadraticFailure::Cancelled`], or the elastic program's own failure;
     /// [`QuadraticFailure::SuspectedInfeasible`] on a line where that is not asked.
-    pub fn solve(&mut self, program: &QuadraticProgram, cancel: &CancelFlag) -> Result<Step, QuadraticFailure> {
+    pub fn solve(
+        &mut self,
+        program: &QuadraticProgram,
+        cancel: &CancelFlag,
+    ) -> Result<QuadraticStep, QuadraticFailure> {
         if cancel.is_cancelled() {
             return Err(QuadraticFailure::Cancelled);
         }
@@ -114,21 +118,23 @@ impl StepSolver {
         }
         self.counts.qp_solves += 1;
         let before = self.ended_with.take();
-        let on_line = if self.interior_only { Outcome::Declined } else { self.line.solve(program) };
+        let on_line = if self.interior_only { OneDimensionalOutcome::Declined } else { self.line.solve(program) };
         match on_line {
-            Outcome::Solved(solution, binding) => {
-                let ended = Ended::OnLine(binding);
+            OneDimensionalOutcome::Solved(solution, binding) => {
+                let ended = BindingBound::OnLine(binding);
                 // Before the first program nothing is taken to bind.
-                let same_working_set = *before.as_ref().unwrap_or(&Ended::OnLine(None)) == ended;
+                let same_working_set = *before.as_ref().unwrap_or(&BindingBound::OnLine(None)) == ended;
                 self.ended_with = Some(ended);
-                return Ok(Step { solution, remaining_violation: 0.0, same_working_set });
+                return Ok(QuadraticStep { solution, remaining_violation: 0.0, same_working_set });
             }
-            Outcome::Contradictory if !self.is_elastic => return Err(QuadraticFailure::SuspectedInfeasible),
-            Outcome::Contradictory | Outcome::Declined => {}
+            OneDimensionalOutcome::Contradictory if !self.is_elastic => {
+                return Err(QuadraticFailure::SuspectedInfeasible);
+            }
+            OneDimensionalOutcome::Contradictory | OneDimensionalOutcome::Declined => {}
         }
         let mut set = match &before {
-            Some(Ended::With(set)) => set.clone(),
-            Some(Ended::OnLine(_)) | None => WorkingSet::at_rest(program, REST_MARGIN),
+            Some(BindingBound::With(set)) => set.clone(),
+            Some(BindingBound::OnLine(_)) | None => WorkingSet::at_rest(program, REST_MARGIN),
         };
         let mut solution =
             if self.interior_only { None } else { active_set::solve(program, &mut set, WORKING_SET_CHANGES) };
@@ -148,15 +154,19 @@ impl StepSolver {
             }
         }
         let Some(solution) = solution else { return self.solve_elastic(program, cancel) };
-        let ended = Ended::With(set);
+        let ended = BindingBound::With(set);
         let same_working_set = before.as_ref() == Some(&ended);
         self.ended_with = Some(ended);
-        Ok(Step { solution, remaining_violation: 0.0, same_working_set })
+        Ok(QuadraticStep { solution, remaining_violation: 0.0, same_working_set })
     }
 
-    fn solve_elastic(&mut self, program: &QuadraticProgram, cancel: &CancelFlag) -> Result<Step, QuadraticFailure> {
+    fn solve_elastic(
+        &mut self,
+        program: &QuadraticProgram,
+        cancel: &CancelFlag,
+    ) -> Result<QuadraticStep, QuadraticFailure> {
         let mut weight = 10.0 * program.gradient.amax().max(1.0);
-        let mut best: Option<Step> = None;
+        let mut best: Option<QuadraticStep> = None;
         for raise in 0..=WEIGHT_RAISES {
             self.counts.elastic_solves += 1;
             self.counts.interior_point_solves += 1;
@@ -174,7 +184,11 @@ impl StepSolver {
                     .max(in_cones);
             let settled = remaining_violation <= 1e-8 * scale
                 || best.as_ref().is_some_and(|step| remaining_violation > 0.99 * step.remaining_violation);
-            best = Some(Step { solution: first_variables(solution, n), remaining_violation, same_working_set: false });
+            best = Some(QuadraticStep {
+                solution: first_variables(solution, n),
+                remaining_violation,
+                same_working_set: false,
+            });
             if settled && raise > 0 || remaining_violation <= 1e-8 * scale {
                 break;
             }

@@ -144,21 +144,21 @@ pub fn solve_interior(program: &QuadraticProgram, cancel: &CancelFlag) -> Result
 /// pattern: their data are replaced in place.
 #[derive(Default)]
 pub struct InteriorSolver {
-    held: Option<Held>,
+    held: Option<ReusableSolver>,
     /// Programs whose data were put in place of another's.
     #[cfg(test)]
     pub updates: usize,
 }
 
 /// A solver and the shape of the data it was made for.
-struct Held {
+struct ReusableSolver {
     solver: DefaultSolver<f64>,
-    shape: Shape,
+    shape: ProgramShape,
 }
 
 /// What has to agree for data to be replaced: the rows' kinds and the patterns of both matrices.
 #[derive(PartialEq)]
-struct Shape {
+struct ProgramShape {
     cones: Vec<SupportedConeT<f64>>,
     hessian: (Vec<usize>, Vec<usize>),
     rows: (Vec<usize>, Vec<usize>),
@@ -180,7 +180,7 @@ impl InteriorSolver {
         budget::spend(program.gradient.len() * (1 + program.cones.len()));
         let data = Data::new(program);
         let gradient = program.gradient.as_slice().to_vec();
-        let shape = Shape {
+        let shape = ProgramShape {
             cones: data.cones.clone(),
             hessian: (data.hessian.colptr.clone(), data.hessian.rowval.clone()),
             rows: (data.rows.colptr.clone(), data.rows.rowval.clone()),
@@ -201,7 +201,7 @@ impl InteriorSolver {
             let mut solver = made.map_err(|_| QuadraticFailure::Inaccurate)?;
             let flag = cancel.clone();
             solver.set_termination_callback(move |_| flag.is_cancelled());
-            self.held = Some(Held { solver, shape });
+            self.held = Some(ReusableSolver { solver, shape });
         }
         let Some(held) = &mut self.held else { return Err(QuadraticFailure::Inaccurate) };
         held.solver.solve();

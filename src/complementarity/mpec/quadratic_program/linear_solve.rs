@@ -8,12 +8,12 @@ use nalgebra::{DMatrix, DVector, Dyn, LU};
 const MOST_DENSE: usize = 40;
 
 /// A factorised square matrix.
-pub enum Factors {
+pub enum SquareMatrixFactors {
     Dense(Box<LU<f64, Dyn, Dyn>>),
     Sparse(Box<GeneralLu>),
 }
 
-impl Factors {
+impl SquareMatrixFactors {
     /// Factorises; entries at the same place add up. What depends on the pattern alone is taken over from `before` where
     /// that has the same. `None` where it fails; a singular matrix may pass, and shows in the residual.
     pub fn new(size: usize, entries: &[(usize, usize, f64)], before: Option<&Self>) -> Option<Self> {

@@ -16,7 +16,7 @@ use nalgebra::DVector;
 use crate::complementarity::mpec::program::cone;
 use crate::complementarity::mpec::program::sparse_rows::SparseRows;
 use crate::complementarity::mpec::quadratic_program::interior_point::{QuadraticProgram, QuadraticSolution};
-use crate::complementarity::mpec::quadratic_program::linear_solve::Factors;
+use crate::complementarity::mpec::quadratic_program::linear_solve::SquareMatrixFactors;
 
 /// Relative slack in "holds" and "solves the system".
 const ROUND_OFF: f64 = 1e-11;
@@ -34,7 +34,7 @@ pub enum Binding {
 }
 
 /// What became of a program.
-pub enum Outcome {
+pub enum OneDimensionalOutcome {
     Solved(QuadraticSolution, Option<Binding>),
     /// No point of the line meets every row.
     Contradictory,
@@ -46,7 +46,7 @@ pub enum Outcome {
 #[derive(Default)]
 pub struct LineSolver {
     parameter: usize,
-    factors: Option<Factors>,
+    factors: Option<SquareMatrixFactors>,
 }
 
 /// A constraint along the line: `value + slope t >= -margin`.
@@ -64,12 +64,12 @@ impl LineSolver {
         self.parameter = most_moved(hessian, x);
     }
 
-    pub fn solve(&mut self, program: &QuadraticProgram) -> Outcome {
+    pub fn solve(&mut self, program: &QuadraticProgram) -> OneDimensionalOutcome {
         let variables = program.gradient.len();
         if program.equality.nrows() + 1 != variables || self.parameter >= variables {
-            return Outcome::Declined;
+            return OneDimensionalOutcome::Declined;
         }
-        let Some((factors, start, direction)) = self.line(program) else { return Outcome::Declined };
+        let Some((factors, start, direction)) = self.line(program) else { return OneDimensionalOutcome::Declined };
         let outcome = minimise(program, &factors, self.parameter, &start, &direction);
         self.factors = Some(factors);
         let bends = most_moved(&program.hessian, &direction);
@@ -80,7 +80,7 @@ impl LineSolver {
     }
 
     /// The factors of `E` without the parameter's column, `d₀` and `z`.
-    fn line(&self, program: &QuadraticProgram) -> Option<(Factors, DVector<f64>, DVector<f64>)> {
+    fn line(&self, program: &QuadraticProgram) -> Option<(SquareMatrixFactors, DVector<f64>, DVector<f64>)> {
         let parameter = self.parameter;
         let size = program.equality.nrows();
         let mut along = DVector::zeros(size);
@@ -92,7 +92,7 @@ impl LineSolver {
                 entries.push((row, column - usize::from(column > parameter), value));
             }
         }
-        let factors = Factors::new(size, &entries, self.factors.as_ref())?;
+        let factors = SquareMatrixFactors::new(size, &entries, self.factors.as_ref())?;
         let solve = |right: &DVector<f64>, at: f64| {
             let mut vector = factors.solve(right)?.insert_row(parameter, at);
             let residual = |vector: &DVector<f64>| {
@@ -115,22 +115,22 @@ impl LineSolver {
 /// The least point of the line that meets every row.
 fn minimise(
     program: &QuadraticProgram,
-    factors: &Factors,
+    factors: &SquareMatrixFactors,
     parameter: usize,
     start: &DVector<f64>,
     direction: &DVector<f64>,
-) -> Outcome {
+) -> OneDimensionalOutcome {
     let curvature = direction.dot(&(&program.hessian * direction));
     let slope = direction.dot(&(&program.gradient + &program.hessian * start));
     let minimum = -slope / curvature;
     if !minimum.is_finite() || curvature <= 0.0 {
-        return Outcome::Declined;
+        return OneDimensionalOutcome::Declined;
     }
     let constraints = constraints(program, start, direction, minimum);
     let (mut from, mut to) = ((f64::NEG_INFINITY, None), (f64::INFINITY, None));
     for constraint in constraints.iter().filter(|constraint| constraint.is_violated(minimum)) {
         if constraint.slope.abs() <= NO_SLOPE {
-            return Outcome::Contradictory;
+            return OneDimensionalOutcome::Contradictory;
         }
         let place = -constraint.value / constraint.slope;
         if constraint.slope > 0.0 && place > from.0 {
@@ -140,18 +140,18 @@ fn minimise(
         }
     }
     let (place, binding) = match (from.1, to.1) {
-        (Some(_), Some(_)) => return Outcome::Contradictory,
+        (Some(_), Some(_)) => return OneDimensionalOutcome::Contradictory,
         (Some(constraint), None) => (from.0, Some(constraint)),
         (None, Some(constraint)) => (to.0, Some(constraint)),
         (None, None) => (minimum, None),
     };
     if binding.is_some() && constraints.iter().any(|constraint| constraint.is_violated(place)) {
-        return Outcome::Contradictory;
+        return OneDimensionalOutcome::Contradictory;
     }
     let step = start + direction * place;
     let length = ROUND_OFF * (1.0 + largest(&step));
     if program.cones.iter().any(|cone| cone::slack(cone.at(&step).as_slice()) < -length) {
-        return Outcome::Declined;
+        return OneDimensionalOutcome::Declined;
     }
     let mut solution = QuadraticSolution {
         equality_multipliers: DVector::zeros(0),
@@ -179,9 +179,11 @@ fn minimise(
             }
         }
     }
-    let Some(multipliers) = factors.solve_transposed(&force.remove_row(parameter)) else { return Outcome::Declined };
+    let Some(multipliers) = factors.solve_transposed(&force.remove_row(parameter)) else {
+        return OneDimensionalOutcome::Declined;
+    };
     solution.equality_multipliers = multipliers;
-    Outcome::Solved(solution, binding.map(|constraint| constraint.binding))
+    OneDimensionalOutcome::Solved(solution, binding.map(|constraint| constraint.binding))
 }
 
 impl Constraint {
@@ -274,7 +276,7 @@ mod tests {
             for free in [2.0, 0.05, 0.02] {
                 let program = program(variables, free);
                 let mut solver = LineSolver::default();
-                let Outcome::Solved(solution, binding) = solver.solve(&program) else { continue };
+                let OneDimensionalOutcome::Solved(solution, binding) = solver.solve(&program) else { continue };
                 bound += usize::from(binding.is_some());
                 let expected = solve_interior(&program, &CancelFlag::default()).expect("a convex program");
                 assert!((&solution.step - &expected.step).amax() < 1e-7, "{variables} {free}");
@@ -296,9 +298,9 @@ mod tests {
         let mut program = program(5, 2.0);
         program.lower = DVector::repeat(5, 3.0);
         program.upper = DVector::repeat(5, 4.0);
-        assert!(matches!(LineSolver::default().solve(&program), Outcome::Contradictory));
+        assert!(matches!(LineSolver::default().solve(&program), OneDimensionalOutcome::Contradictory));
         program.equality = SparseRows::zeros(2, 5);
         program.equality_values = DVector::zeros(2);
-        assert!(matches!(LineSolver::default().solve(&program), Outcome::Declined));
+        assert!(matches!(LineSolver::default().solve(&program), OneDimensionalOutcome::Declined));
     }
 }

@@ -34,7 +34,7 @@ pub enum ConeTreatment {
 
 /// One of a cone pair's members.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Member {
+pub enum ConeMember {
     First,
     Second,
 }
@@ -43,13 +43,13 @@ pub enum Member {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ConeRow {
     /// A component of a member vanishes.
-    Vanishes(Member, usize),
+    Vanishes(ConeMember, usize),
     /// The member that leads lies on the boundary.
-    Boundary(Member),
+    Boundary(ConeMember),
     /// A tangential component of the other member is opposed to it.
-    Opposed(Member, usize),
+    Opposed(ConeMember, usize),
     /// The other member's first component is nonnegative.
-    Sign(Member),
+    Sign(ConeMember),
     /// `ε - a·b`
     Product,
 }
@@ -90,10 +90,10 @@ impl ConeTreatment {
             |lead| std::iter::once(ConeRow::Boundary(lead)).chain((1..size).map(move |c| ConeRow::Opposed(lead, c)));
         match self {
             Self::Product(_) => Vec::new(),
-            Self::FirstZero => (0..size).map(|c| ConeRow::Vanishes(Member::First, c)).collect(),
-            Self::SecondZero => (0..size).map(|c| ConeRow::Vanishes(Member::Second, c)).collect(),
-            Self::AlongFirst => along(Member::First).collect(),
-            Self::AlongSecond => along(Member::Second).collect(),
+            Self::FirstZero => (0..size).map(|c| ConeRow::Vanishes(ConeMember::First, c)).collect(),
+            Self::SecondZero => (0..size).map(|c| ConeRow::Vanishes(ConeMember::Second, c)).collect(),
+            Self::AlongFirst => along(ConeMember::First).collect(),
+            Self::AlongSecond => along(ConeMember::Second).collect(),
         }
     }
 
@@ -102,17 +102,17 @@ impl ConeTreatment {
         match self {
             Self::Product(_) => Some(ConeRow::Product),
             Self::FirstZero | Self::SecondZero => None,
-            Self::AlongFirst => Some(ConeRow::Sign(Member::First)),
-            Self::AlongSecond => Some(ConeRow::Sign(Member::Second)),
+            Self::AlongFirst => Some(ConeRow::Sign(ConeMember::First)),
+            Self::AlongSecond => Some(ConeRow::Sign(ConeMember::Second)),
         }
     }
 
     /// Members that have to lie in the cone.
-    pub fn in_cone(self) -> &'static [Member] {
+    pub fn in_cone(self) -> &'static [ConeMember] {
         match self {
-            Self::Product(_) => &[Member::First, Member::Second],
-            Self::FirstZero => &[Member::Second],
-            Self::SecondZero => &[Member::First],
+            Self::Product(_) => &[ConeMember::First, ConeMember::Second],
+            Self::FirstZero => &[ConeMember::Second],
+            Self::SecondZero => &[ConeMember::First],
             Self::AlongFirst | Self::AlongSecond => &[],
         }
     }
@@ -120,8 +120,8 @@ impl ConeTreatment {
     /// Value of a row.
     pub fn value(self, at: &ConeMembers, pair: usize, row: ConeRow) -> f64 {
         let member = |member| match member {
-            Member::First => at.first_of(pair),
-            Member::Second => at.second_of(pair),
+            ConeMember::First => at.first_of(pair),
+            ConeMember::Second => at.second_of(pair),
         };
         match row {
             ConeRow::Vanishes(which, c) => member(which)[c],
@@ -148,11 +148,11 @@ impl ConeTreatment {
             ConeRow::Product => return (-DVector::from_column_slice(b), -DVector::from_column_slice(a)),
             ConeRow::Vanishes(which, c) => (which, unit(c), DVector::zeros(size)),
             ConeRow::Boundary(lead) => {
-                let leading = if lead == Member::First { a } else { b };
+                let leading = if lead == ConeMember::First { a } else { b };
                 (lead, unit(0) - cone::direction(leading), DVector::zeros(size))
             }
             ConeRow::Opposed(lead, c) => {
-                let (leading, other) = if lead == Member::First { (a, b) } else { (b, a) };
+                let (leading, other) = if lead == ConeMember::First { (a, b) } else { (b, a) };
                 let (e, length) = (cone::direction(leading), cone::tangential_size(leading));
                 let turning = if length >= f64::MIN_POSITIVE {
                     let mut across = unit(c) - &e * e[c];
@@ -165,11 +165,11 @@ impl ConeTreatment {
             }
             ConeRow::Sign(lead) => (lead, DVector::zeros(size), unit(0)),
         };
-        if lead == Member::First { (by_lead, by_other) } else { (by_other, by_lead) }
+        if lead == ConeMember::First { (by_lead, by_other) } else { (by_other, by_lead) }
     }
 }
 
-impl Member {
+impl ConeMember {
     fn other(self) -> Self {
         match self {
             Self::First => Self::Second,
@@ -181,7 +181,7 @@ impl Member {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::complementarity::mpec::program::evaluation::Evaluation;
+    use crate::complementarity::mpec::program::evaluation::ProgramEvaluation;
     use crate::complementarity::mpec::program::problem::Problem;
     use crate::complementarity::mpec::program::sparse_rows::SparseRows;
 
@@ -223,7 +223,7 @@ mod tests {
     fn derivatives_of_the_rows_are_those_of_differences() {
         let x = DVector::from_column_slice(&[0.7, 0.4, -0.3, 0.9, -0.2, 0.6]);
         let at = |x: &DVector<f64>| {
-            let mut at = Evaluation::new(&Members);
+            let mut at = ProgramEvaluation::new(&Members);
             at.update_values(&Members, x).expect("finite");
             at.cones
         };

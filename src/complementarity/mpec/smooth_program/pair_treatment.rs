@@ -26,12 +26,12 @@ impl PairTreatment {
 
 /// How every pair is treated.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Pattern {
+pub struct TreatmentPattern {
     pub pairs: Vec<PairTreatment>,
     pub cones: Vec<ConeTreatment>,
 }
 
-impl Pattern {
+impl TreatmentPattern {
     /// All products at most `relaxation`.
     pub fn relaxed(pairs: usize, cones: usize, relaxation: f64) -> Self {
         Self {

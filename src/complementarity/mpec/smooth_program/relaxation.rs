@@ -21,15 +21,15 @@
 use nalgebra::DVector;
 
 use crate::complementarity::mpec::program::cone;
-use crate::complementarity::mpec::program::evaluation::{ConeMembers, Evaluation};
+use crate::complementarity::mpec::program::evaluation::{ConeMembers, ProgramEvaluation};
 use crate::complementarity::mpec::program::sparse_rows::SparseRows;
 use crate::complementarity::mpec::quadratic_program::interior_point::{ConeRows, QuadraticProgram, QuadraticSolution};
-use crate::complementarity::mpec::smooth_program::cone_rows::{ConeRow, ConeTreatment, Member};
-use crate::complementarity::mpec::smooth_program::pair_treatment::{PairTreatment, Pattern};
+use crate::complementarity::mpec::smooth_program::cone_rows::{ConeMember, ConeRow, ConeTreatment};
+use crate::complementarity::mpec::smooth_program::pair_treatment::{PairTreatment, TreatmentPattern};
 
 /// What a row of the smooth program belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Row {
+pub enum SmoothProgramRow {
     Equality(usize),
     Inequality(usize),
     First(usize),
@@ -62,29 +62,29 @@ pub struct Multipliers {
 
 /// The rows of the smooth program for one choice of treatments.
 #[derive(Debug, Clone)]
-pub struct Rows {
-    pattern: Pattern,
-    equality: Vec<Row>,
-    inequality: Vec<Row>,
+pub struct SmoothProgramRows {
+    pattern: TreatmentPattern,
+    equality: Vec<SmoothProgramRow>,
+    inequality: Vec<SmoothProgramRow>,
     /// Members of cone pairs that have to lie in the cone.
-    in_cone: Vec<(usize, Member)>,
+    in_cone: Vec<(usize, ConeMember)>,
 }
 
-impl Rows {
-    pub fn new(equalities: usize, inequalities: usize, cone_sizes: &[usize], pattern: Pattern) -> Self {
-        let mut equality: Vec<Row> = (0..equalities).map(Row::Equality).collect();
-        let mut inequality: Vec<Row> = (0..inequalities).map(Row::Inequality).collect();
+impl SmoothProgramRows {
+    pub fn new(equalities: usize, inequalities: usize, cone_sizes: &[usize], pattern: TreatmentPattern) -> Self {
+        let mut equality: Vec<SmoothProgramRow> = (0..equalities).map(SmoothProgramRow::Equality).collect();
+        let mut inequality: Vec<SmoothProgramRow> = (0..inequalities).map(SmoothProgramRow::Inequality).collect();
         for (i, treatment) in pattern.pairs.iter().enumerate() {
-            if treatment.first_is_zero() { &mut equality } else { &mut inequality }.push(Row::First(i));
-            if treatment.second_is_zero() { &mut equality } else { &mut inequality }.push(Row::Second(i));
+            if treatment.first_is_zero() { &mut equality } else { &mut inequality }.push(SmoothProgramRow::First(i));
+            if treatment.second_is_zero() { &mut equality } else { &mut inequality }.push(SmoothProgramRow::Second(i));
             if matches!(treatment, PairTreatment::Product(_)) {
-                inequality.push(Row::Product(i));
+                inequality.push(SmoothProgramRow::Product(i));
             }
         }
         let mut in_cone = Vec::new();
         for (i, (treatment, &size)) in pattern.cones.iter().zip(cone_sizes).enumerate() {
-            equality.extend(treatment.equalities(size).into_iter().map(|row| Row::Cone(i, row)));
-            inequality.extend(treatment.inequality().map(|row| Row::Cone(i, row)));
+            equality.extend(treatment.equalities(size).into_iter().map(|row| SmoothProgramRow::Cone(i, row)));
+            inequality.extend(treatment.inequality().map(|row| SmoothProgramRow::Cone(i, row)));
             in_cone.extend(treatment.in_cone().iter().map(|&member| (i, member)));
         }
         Self { pattern, equality, inequality, in_cone }
@@ -95,28 +95,28 @@ impl Rows {
         self.pattern.relaxation()
     }
 
-    fn value(&self, at: &Evaluation, row: Row) -> f64 {
+    fn value(&self, at: &ProgramEvaluation, row: SmoothProgramRow) -> f64 {
         match row {
-            Row::Equality(i) => at.equality[i],
-            Row::Inequality(i) => at.inequality[i],
-            Row::First(i) => at.first[i],
-            Row::Second(i) => at.second[i],
-            Row::Product(i) => match self.pattern.pairs[i] {
+            SmoothProgramRow::Equality(i) => at.equality[i],
+            SmoothProgramRow::Inequality(i) => at.inequality[i],
+            SmoothProgramRow::First(i) => at.first[i],
+            SmoothProgramRow::Second(i) => at.second[i],
+            SmoothProgramRow::Product(i) => match self.pattern.pairs[i] {
                 PairTreatment::Product(relaxation) => relaxation - at.first[i] * at.second[i],
                 PairTreatment::FirstZero
                 | PairTreatment::SecondZero
                 | PairTreatment::BothFree
                 | PairTreatment::BothZero => 0.0,
             },
-            Row::Cone(i, row) => self.pattern.cones[i].value(&at.cones, i, row),
+            SmoothProgramRow::Cone(i, row) => self.pattern.cones[i].value(&at.cones, i, row),
         }
     }
 
     /// Sum of the absolute violations of all rows.
-    pub fn violation(&self, at: &Evaluation) -> f64 {
+    pub fn violation(&self, at: &ProgramEvaluation) -> f64 {
         let equalities: f64 = self.equality.iter().map(|&row| self.value(at, row).abs()).sum();
         let inequalities: f64 = self.inequality.iter().map(|&row| (-self.value(at, row)).max(0.0)).sum();
-        let outside = |&(i, member): &(usize, Member)| (-cone::slack(member_of(&at.cones, i, member))).max(0.0);
+        let outside = |&(i, member): &(usize, ConeMember)| (-cone::slack(member_of(&at.cones, i, member))).max(0.0);
         let cones: f64 = self.in_cone.iter().map(outside).sum();
         equalities + inequalities + cones
     }
@@ -124,7 +124,7 @@ impl Rows {
     /// The quadratic program at `x`; its Hessian is left to the caller.
     pub fn linearise(
         &self,
-        at: &Evaluation,
+        at: &ProgramEvaluation,
         x: &DVector<f64>,
         bounds: &(DVector<f64>, DVector<f64>),
         hessian: SparseRows,
@@ -153,8 +153,8 @@ impl Rows {
         program
     }
 
-    fn put_gradient(&self, at: &Evaluation, row: Row, into: &mut SparseRows, place: usize) {
-        if let Row::Cone(i, row) = row {
+    fn put_gradient(&self, at: &ProgramEvaluation, row: SmoothProgramRow, into: &mut SparseRows, place: usize) {
+        if let SmoothProgramRow::Cone(i, row) = row {
             let (by_first, by_second) = ConeTreatment::derivatives(&at.cones, i, row);
             let range = at.cones.range(i);
             let gradient = at.cones.first_jacobian.rows(range.start, range.len()).tr_mul(&by_first)
@@ -163,15 +163,15 @@ impl Rows {
             return;
         }
         match row {
-            Row::Equality(i) => into.set_row(place, at.equality_jacobian.row(i).iter().copied()),
-            Row::Inequality(i) => into.set_row(place, at.inequality_jacobian.row(i).iter().copied()),
-            Row::First(i) => into.set_row(place, at.first_jacobian.row(i).iter().copied()),
-            Row::Second(i) => into.set_row(place, at.second_jacobian.row(i).iter().copied()),
-            Row::Product(i) => {
+            SmoothProgramRow::Equality(i) => into.set_row(place, at.equality_jacobian.row(i).iter().copied()),
+            SmoothProgramRow::Inequality(i) => into.set_row(place, at.inequality_jacobian.row(i).iter().copied()),
+            SmoothProgramRow::First(i) => into.set_row(place, at.first_jacobian.row(i).iter().copied()),
+            SmoothProgramRow::Second(i) => into.set_row(place, at.second_jacobian.row(i).iter().copied()),
+            SmoothProgramRow::Product(i) => {
                 into.add_to_row(place, -at.second[i], at.first_jacobian.row(i));
                 into.add_to_row(place, -at.first[i], at.second_jacobian.row(i));
             }
-            Row::Cone(..) => {}
+            SmoothProgramRow::Cone(..) => {}
         }
     }
 
@@ -179,7 +179,9 @@ impl Rows {
     /// says it twice has no unique multipliers. The bound goes.
     fn drop_implied_bounds(&self, program: &mut QuadraticProgram) {
         for (place, row) in self.equality.iter().enumerate() {
-            if let (Row::First(_) | Row::Second(_), Some((j, slope))) = (row, only_entry(&program.equality, place)) {
+            if let (SmoothProgramRow::First(_) | SmoothProgramRow::Second(_), Some((j, slope))) =
+                (row, only_entry(&program.equality, place))
+            {
                 let target = -program.equality_values[place] / slope;
                 let margin = 1e-12 * (1.0 + target.abs());
                 if program.lower[j] <= target + margin && target - margin <= program.upper[j] {
@@ -189,7 +191,9 @@ impl Rows {
             }
         }
         for (place, row) in self.inequality.iter().enumerate() {
-            if let (Row::First(_) | Row::Second(_), Some((j, slope))) = (row, only_entry(&program.inequality, place)) {
+            if let (SmoothProgramRow::First(_) | SmoothProgramRow::Second(_), Some((j, slope))) =
+                (row, only_entry(&program.inequality, place))
+            {
                 let target = -program.inequality_values[place] / slope;
                 let margin = 1e-12 * (1.0 + target.abs());
                 if slope > 0.0 && program.lower[j] <= target + margin {
@@ -203,7 +207,7 @@ impl Rows {
 
     /// The row values of `program` replaced by those of a second-order correction: the functions at the trial point
     /// less their linear part.
-    pub fn correct(&self, program: &mut QuadraticProgram, trial: &Evaluation, step: &DVector<f64>) {
+    pub fn correct(&self, program: &mut QuadraticProgram, trial: &ProgramEvaluation, step: &DVector<f64>) {
         for (place, &row) in self.equality.iter().enumerate() {
             program.equality_values[place] = self.value(trial, row);
         }
@@ -219,7 +223,7 @@ impl Rows {
     }
 
     /// The multipliers of a quadratic program's rows, sorted back to what they belong to.
-    pub fn multipliers(&self, at: &Evaluation, solution: &QuadraticSolution) -> Multipliers {
+    pub fn multipliers(&self, at: &ProgramEvaluation, solution: &QuadraticSolution) -> Multipliers {
         let pairs = self.pattern.pairs.len();
         let mut multipliers = Multipliers {
             equality: DVector::zeros(at.equality.len()),
@@ -235,15 +239,15 @@ impl Rows {
         let inequalities = self.inequality.iter().zip(solution.inequality_multipliers.iter());
         for (&row, &value) in equalities.chain(inequalities) {
             match row {
-                Row::Equality(i) => multipliers.equality[i] += value,
-                Row::Inequality(i) => multipliers.inequality[i] += value,
-                Row::First(i) => multipliers.first[i] += value,
-                Row::Second(i) => multipliers.second[i] += value,
-                Row::Product(i) => {
+                SmoothProgramRow::Equality(i) => multipliers.equality[i] += value,
+                SmoothProgramRow::Inequality(i) => multipliers.inequality[i] += value,
+                SmoothProgramRow::First(i) => multipliers.first[i] += value,
+                SmoothProgramRow::Second(i) => multipliers.second[i] += value,
+                SmoothProgramRow::Product(i) => {
                     multipliers.first[i] -= value * at.second[i];
                     multipliers.second[i] -= value * at.first[i];
                 }
-                Row::Cone(i, row) => {
+                SmoothProgramRow::Cone(i, row) => {
                     let (by_first, by_second) = ConeTreatment::derivatives(&at.cones, i, row);
                     let range = at.cones.range(i);
                     multipliers.cone_first.rows_mut(range.start, range.len()).axpy(value, &by_first, 1.0);
@@ -254,8 +258,8 @@ impl Rows {
         for (&(i, member), value) in self.in_cone.iter().zip(&solution.cone_multipliers) {
             let range = at.cones.range(i);
             let target = match member {
-                Member::First => &mut multipliers.cone_first,
-                Member::Second => &mut multipliers.cone_second,
+                ConeMember::First => &mut multipliers.cone_first,
+                ConeMember::Second => &mut multipliers.cone_second,
             };
             let mut target = target.rows_mut(range.start, range.len());
             target += value;
@@ -264,19 +268,19 @@ impl Rows {
     }
 }
 
-fn member_of(cones: &ConeMembers, pair: usize, member: Member) -> &[f64] {
+fn member_of(cones: &ConeMembers, pair: usize, member: ConeMember) -> &[f64] {
     match member {
-        Member::First => cones.first_of(pair),
-        Member::Second => cones.second_of(pair),
+        ConeMember::First => cones.first_of(pair),
+        ConeMember::Second => cones.second_of(pair),
     }
 }
 
 /// A member that has to lie in the cone, linearised.
-fn cone_rows(cones: &ConeMembers, pair: usize, member: Member) -> ConeRows {
+fn cone_rows(cones: &ConeMembers, pair: usize, member: ConeMember) -> ConeRows {
     let range = cones.range(pair);
     let jacobian = match member {
-        Member::First => &cones.first_jacobian,
-        Member::Second => &cones.second_jacobian,
+        ConeMember::First => &cones.first_jacobian,
+        ConeMember::Second => &cones.second_jacobian,
     };
     ConeRows {
         rows: jacobian.rows(range.start, range.len()).into_owned(),

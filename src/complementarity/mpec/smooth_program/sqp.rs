@@ -17,14 +17,14 @@
 
 use nalgebra::DVector;
 
-use crate::complementarity::mpec::program::counts::Iterate;
-use crate::complementarity::mpec::program::evaluation::{Evaluation, Quantity};
+use crate::complementarity::mpec::program::counts::SolverIterate;
+use crate::complementarity::mpec::program::evaluation::{ProgramEvaluation, Quantity};
 use crate::complementarity::mpec::program::problem::Problem;
 use crate::complementarity::mpec::program::sparse_rows::SparseRows;
-use crate::complementarity::mpec::quadratic_program::driver::{Step, StepSolver};
+use crate::complementarity::mpec::quadratic_program::driver::{QuadraticStep, StepSolver};
 use crate::complementarity::mpec::quadratic_program::interior_point::{QuadraticFailure, QuadraticProgram};
 use crate::complementarity::mpec::smooth_program::damped_bfgs::Secant;
-use crate::complementarity::mpec::smooth_program::relaxation::{Multipliers, Rows};
+use crate::complementarity::mpec::smooth_program::relaxation::{Multipliers, SmoothProgramRows};
 use crate::resources::cancel::CancelFlag;
 
 /// Part of the predicted decrease that a step has to reach.
@@ -71,34 +71,34 @@ pub struct SqpOutcome {
     pub end: SqpEnd,
     pub x: DVector<f64>,
     /// Values at `x`; derivatives at `x` or at the point before it.
-    pub at: Evaluation,
+    pub at: ProgramEvaluation,
     pub multipliers: Multipliers,
 }
 
 /// A sequence under way.
 struct Sequence<'a, P: Problem + ?Sized> {
     problem: &'a P,
-    rows: &'a Rows,
+    rows: &'a SmoothProgramRows,
     bounds: &'a (DVector<f64>, DVector<f64>),
     cancel: &'a CancelFlag,
     x: DVector<f64>,
-    at: Evaluation,
+    at: ProgramEvaluation,
     trial_x: DVector<f64>,
-    trial: Evaluation,
+    trial: ProgramEvaluation,
     penalty: f64,
 }
 
 /// Runs one sequence from `start`, which is first moved into the bounds.
 pub fn solve<P: Problem + ?Sized>(
     problem: &P,
-    rows: &Rows,
+    rows: &SmoothProgramRows,
     bounds: &(DVector<f64>, DVector<f64>),
     start: &DVector<f64>,
     settings: SqpSettings,
     steps: &mut StepSolver,
     cancel: &CancelFlag,
 ) -> SqpOutcome {
-    let evaluation = Evaluation::new(problem);
+    let evaluation = ProgramEvaluation::new(problem);
     let mut sequence = Sequence {
         problem,
         rows,
@@ -168,11 +168,7 @@ impl<P: Problem + ?Sized> Sequence<'_, P> {
             };
             std::mem::swap(&mut self.x, &mut self.trial_x);
             std::mem::swap(&mut self.at, &mut self.trial);
-            if let Some(iterates) = &mut steps.iterates {
-                let violation = self.rows.violation(&self.at);
-                let (x, objective) = (self.x.clone(), self.at.objective);
-                iterates.push(Iterate { relaxation: self.rows.relaxation(), x, objective, violation });
-            }
+            self.keep_iterate(steps);
             if self.at.objective < UNBOUNDED_OBJECTIVE || self.x.amax() > UNBOUNDED_VARIABLE {
                 return SqpEnd::Unbounded;
             }
@@ -185,20 +181,41 @@ impl<P: Problem + ?Sized> Sequence<'_, P> {
                 Ok(program) => program,
                 Err(quantity) => return SqpEnd::NotFinite(quantity),
             };
-            if !secant.is_idle() {
-                let change = &self.x - &self.trial_x;
-                let lagrangian = |program: &QuadraticProgram| {
-                    &program.gradient
-                        - program.equality.tr_mul(&step.solution.equality_multipliers)
-                        - program.inequality.tr_mul(&step.solution.inequality_multipliers)
-                        - program.cone_force(&step.solution)
-                };
-                secant.update(&change, &(lagrangian(&next) - lagrangian(&program)));
-            }
+            self.update_secant(&mut secant, &step, &program, &next);
             program = next;
             secant.put_into(&mut program.hessian);
         }
         SqpEnd::IterationLimit
+    }
+
+    /// Keeps `x` where iterates are asked for.
+    fn keep_iterate(&self, steps: &mut StepSolver) {
+        if let Some(iterates) = &mut steps.iterates {
+            let violation = self.rows.violation(&self.at);
+            let (x, objective) = (self.x.clone(), self.at.objective);
+            iterates.push(SolverIterate { relaxation: self.rows.relaxation(), x, objective, violation });
+        }
+    }
+
+    /// The change of the Lagrangian's gradient over the step that was taken, from one program to the next.
+    fn update_secant(
+        &self,
+        secant: &mut Secant,
+        step: &QuadraticStep,
+        program: &QuadraticProgram,
+        next: &QuadraticProgram,
+    ) {
+        if secant.is_idle() {
+            return;
+        }
+        let change = &self.x - &self.trial_x;
+        let lagrangian = |program: &QuadraticProgram| {
+            &program.gradient
+                - program.equality.tr_mul(&step.solution.equality_multipliers)
+                - program.inequality.tr_mul(&step.solution.inequality_multipliers)
+                - program.cone_force(&step.solution)
+        };
+        secant.update(&change, &(lagrangian(next) - lagrangian(program)));
     }
 
     /// The quadratic program at `x`. A model from the problem makes the secant matrix idle.
@@ -224,7 +241,7 @@ impl<P: Problem + ?Sized> Sequence<'_, P> {
     fn search(
         &mut self,
         program: &QuadraticProgram,
-        step: &Step,
+        step: &QuadraticStep,
         violation: f64,
         steps: &mut StepSolver,
     ) -> Option<f64> {
@@ -243,7 +260,7 @@ impl<P: Problem + ?Sized> Sequence<'_, P> {
         if predicted >= 0.0 && direction.amax() <= 1e-14 * (1.0 + self.x.amax()) {
             return None;
         }
-        let accepts = |trial: &Evaluation, rows: &Rows, penalty: f64, length: f64| {
+        let accepts = |trial: &ProgramEvaluation, rows: &SmoothProgramRows, penalty: f64, length: f64| {
             trial.objective + penalty * rows.violation(trial)
                 <= merit + SUFFICIENT_DECREASE * length * predicted.min(0.0) + round_off
         };
@@ -291,7 +308,7 @@ impl<P: Problem + ?Sized> Sequence<'_, P> {
 }
 
 /// With the program's multipliers the Lagrangian's gradient at `x` is `-H d` and the rows' slacks are `-C d`.
-fn is_stationary(program: &QuadraticProgram, step: &Step, tolerance: f64, x: &DVector<f64>) -> bool {
+fn is_stationary(program: &QuadraticProgram, step: &QuadraticStep, tolerance: f64, x: &DVector<f64>) -> bool {
     let direction = &step.solution.step;
     if x.is_empty() {
         return true;

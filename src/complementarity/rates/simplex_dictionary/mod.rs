@@ -33,7 +33,7 @@ enum Variable {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Place {
+enum VariablePosition {
     Row(usize),
     Column(usize),
     Zero,
@@ -56,7 +56,7 @@ pub struct Dictionary {
     rows: Vec<usize>,
     /// `rows x width`, row by row; the leading `columns + 1` entries of a row are in use.
     table: Vec<f64>,
-    place: Vec<Place>,
+    place: Vec<VariablePosition>,
     /// Forms are stored with this sign.
     sign: Vec<f64>,
     nonnegative: Vec<bool>,
@@ -101,7 +101,7 @@ impl Dictionary {
             columns: vec![Variable::Weight; weights + 1],
             rows: (0..count).collect(),
             table,
-            place: (0..count).map(Place::Row).collect(),
+            place: (0..count).map(VariablePosition::Row).collect(),
             sign: vec![1.0; count],
             nonnegative: vec![false; count],
             lines_only: false,
@@ -156,17 +156,17 @@ impl Dictionary {
         if self.sign[form] != signed.sign {
             self.sign[form] = signed.sign;
             match self.place[form] {
-                Place::Row(row) => {
+                VariablePosition::Row(row) => {
                     let start = row * self.width;
                     self.table[start..start + self.columns.len()].iter_mut().for_each(|value| *value = -*value);
                 }
-                Place::Column(column) => {
+                VariablePosition::Column(column) => {
                     for row in 0..self.rows.len() {
                         let value = &mut self.table[row * self.width + column];
                         *value = -*value;
                     }
                 }
-                Place::Zero => {}
+                VariablePosition::Zero => {}
             }
         }
         self.nonnegative[form] = true;
@@ -205,11 +205,11 @@ impl Dictionary {
     fn pivot(&mut self, row: usize, column: usize) {
         self.exchange(row, column);
         let form = self.rows[row];
-        self.place[form] = Place::Column(column);
+        self.place[form] = VariablePosition::Column(column);
         match std::mem::replace(&mut self.columns[column], Variable::Form(form)) {
             Variable::Form(other) => {
                 self.rows[row] = other;
-                self.place[other] = Place::Row(row);
+                self.place[other] = VariablePosition::Row(row);
             }
             Variable::Weight => self.drop_row(row),
         }
@@ -220,7 +220,7 @@ impl Dictionary {
         if row != last {
             self.table.copy_within(last * self.width..(last + 1) * self.width, row * self.width);
             self.rows[row] = self.rows[last];
-            self.place[self.rows[row]] = Place::Row(row);
+            self.place[self.rows[row]] = VariablePosition::Row(row);
         }
         self.rows.pop();
         self.table.truncate(last * self.width);
@@ -234,7 +234,7 @@ impl Dictionary {
             }
             self.columns[column] = self.columns[last];
             if let Variable::Form(form) = self.columns[column] {
-                self.place[form] = Place::Column(column);
+                self.place[form] = VariablePosition::Column(column);
             }
         }
         self.columns.pop();
@@ -276,7 +276,7 @@ impl Dictionary {
                     self.table[row * self.width] = self.entry(row, column);
                 }
                 self.drop_column(column);
-                self.place[form] = Place::Row(self.rows.len());
+                self.place[form] = VariablePosition::Row(self.rows.len());
                 self.rows.push(form);
                 let start = self.table.len();
                 self.table.resize(start + self.width, 0.0);
@@ -319,9 +319,9 @@ impl Dictionary {
     /// Makes a form zero; `false` where that leaves nothing but zero.
     pub fn make_zero(&mut self, form: usize) -> bool {
         let column = match self.place[form] {
-            Place::Zero => return true,
-            Place::Column(column) => column,
-            Place::Row(row) => {
+            VariablePosition::Zero => return true,
+            VariablePosition::Column(column) => column,
+            VariablePosition::Row(row) => {
                 // A free weight goes first: the forms that are not negative stay coordinates.
                 let best = (1..self.columns.len())
                     .map(|column| {
@@ -339,14 +339,14 @@ impl Dictionary {
                     // Zero already, or too close to tell: left out, which makes the cone larger, never smaller.
                     _ => {
                         self.drop_row(row);
-                        self.place[form] = Place::Zero;
+                        self.place[form] = VariablePosition::Zero;
                         return true;
                     }
                 }
             }
         };
         self.drop_column(column);
-        self.place[form] = Place::Zero;
+        self.place[form] = VariablePosition::Zero;
         !(self.lines_only && self.columns.len() == 1)
     }
 
@@ -363,7 +363,7 @@ impl Dictionary {
             match self.columns[column] {
                 Variable::Form(form) => {
                     self.drop_column(column);
-                    self.place[form] = Place::Zero;
+                    self.place[form] = VariablePosition::Zero;
                 }
                 Variable::Weight => column += 1,
             }
@@ -376,17 +376,17 @@ impl Dictionary {
     /// The form's value at the dictionary's point.
     pub fn value(&self, signed: Signed) -> f64 {
         match self.place[signed.form] {
-            Place::Row(row) => signed.sign * self.sign[signed.form] * self.entry(row, 0),
-            Place::Column(_) | Place::Zero => 0.0,
+            VariablePosition::Row(row) => signed.sign * self.sign[signed.form] * self.entry(row, 0),
+            VariablePosition::Column(_) | VariablePosition::Zero => 0.0,
         }
     }
 
     /// Whether the form is zero on everything that is left.
     pub fn vanishes(&self, form: usize) -> bool {
         match self.place[form] {
-            Place::Zero => true,
-            Place::Column(_) => false,
-            Place::Row(row) => {
+            VariablePosition::Zero => true,
+            VariablePosition::Column(_) => false,
+            VariablePosition::Row(row) => {
                 self.entry(row, 0).abs() <= INFEASIBLE
                     && (1..self.columns.len()).all(|column| self.entry(row, column).abs() <= INFEASIBLE)
             }
@@ -398,9 +398,9 @@ impl Dictionary {
         let form = form.unwrap_or(self.place.len() - 1);
         let mut coefficients = vec![0.0; self.columns.len()];
         match self.place[form] {
-            Place::Zero => {}
-            Place::Column(column) => coefficients[column] = 1.0,
-            Place::Row(row) => {
+            VariablePosition::Zero => {}
+            VariablePosition::Column(column) => coefficients[column] = 1.0,
+            VariablePosition::Row(row) => {
                 coefficients.copy_from_slice(&self.table[row * self.width..row * self.width + self.columns.len()]);
             }
         }

@@ -50,7 +50,7 @@ const MOST_CLOSINGS: usize = 2;
 pub(super) fn resisting(structure: &Structure, contacts: &[Contact], pattern: &LoadPattern) -> Option<f64> {
     let held = contacts.iter().map(|contact| contact.gap(&[0.0; 3]) <= CLOSED).collect();
     let still = vec![0.0; structure.freedoms()];
-    let mut response = Response {
+    let mut response = StiffnessEstimate {
         structure,
         contacts,
         pattern,
@@ -112,7 +112,7 @@ struct Motion {
     load: f64,
 }
 
-struct Response<'a> {
+struct StiffnessEstimate<'a> {
     structure: &'a Structure,
     contacts: &'a [Contact],
     pattern: &'a LoadPattern,
@@ -142,7 +142,7 @@ impl Tie {
     }
 }
 
-impl Response<'_> {
+impl StiffnessEstimate<'_> {
     /// Holds the contacts that a motion passes through; whether there are any.
     fn close(&mut self, motion: &Motion) -> bool {
         let mut closes = false;
@@ -193,7 +193,7 @@ impl Response<'_> {
     /// The motion `K u = s p`, `p·u = 1`; `None` where the load moves nothing, or where it is not determined.
     fn at_first_order(&self, still: &[f64]) -> Option<Motion> {
         let ties = self.all_ties(still);
-        let pushed = self.pushed(still, &ties);
+        let pushed = equations::pushed(self, still, &ties);
         let size = pushed.iter().map(|value| value * value).sum::<f64>().sqrt();
         if size <= 0.0 || !size.is_finite() {
             return None;
@@ -201,7 +201,7 @@ impl Response<'_> {
         let row: Vec<f64> = pushed.iter().map(|value| value / size).collect();
         let mut values = DVector::zeros(row.len() + 1);
         values[row.len()] = 1.0;
-        if !self.factorise(still, &ties, &row)?.solve(&mut values) {
+        if !equations::factorise(self, still, &ties, &row)?.solve(&mut values) {
             return None;
         }
         let mut motion = self.motion(values.as_slice());
@@ -262,10 +262,12 @@ impl Response<'_> {
             }
             for tie in &ties {
                 let pull = tie.stretching.stiffness * tie.stretch(&motion);
-                self.unknowns_of(&tie.stretching).iter().for_each(|(row, value)| left_over[*row] += pull * value);
+                equations::unknowns_of(self, &tie.stretching)
+                    .iter()
+                    .for_each(|(row, value)| left_over[*row] += pull * value);
             }
             left_over[unknowns] = row.iter().zip(&values).map(|(entry, value)| entry * value).sum::<f64>() - size;
-            if !self.factorise(&motion.displacement, &ties, row)?.solve(&mut left_over) {
+            if !equations::factorise(self, &motion.displacement, &ties, row)?.solve(&mut left_over) {
                 return None;
             }
             values.iter_mut().zip(left_over.iter()).for_each(|(value, change)| *value -= change);
