@@ -1,6 +1,6 @@
 //! `arcslip backup`: a copy of the database, while the service runs or not.
 
-use crate::command::outcome::{Failure, Outcome, say};
+use crate::command::output::outcome::{Failure, Outcome, say};
 use crate::service::store::{self, Location};
 use std::path::PathBuf;
 use std::process::ExitCode;

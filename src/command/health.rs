@@ -1,6 +1,6 @@
 //! `arcslip health`: asks a running service, for containers that have no other client.
 
-use crate::command::outcome::{Failure, Outcome, say};
+use crate::command::output::outcome::{Failure, Outcome, say};
 use std::io::{Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::process::ExitCode;
@@ -22,7 +22,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     say(format_args!("{status}\n"))?;
     match status.split(' ').nth(1) {
         Some("200") => Ok(ExitCode::SUCCESS),
-        _ => Ok(ExitCode::from(crate::command::outcome::FAILED)),
+        _ => Ok(ExitCode::from(crate::command::output::outcome::FAILED)),
     }
 }
 

@@ -1,7 +1,7 @@
 //! `arcslip scenes`: what is built in.
 
 use crate::check::scenes;
-use crate::command::outcome::{Failure, Outcome, say};
+use crate::command::output::outcome::{Failure, Outcome, say};
 use crate::model::input::names::suggestion_of_all;
 use std::process::ExitCode;
 

@@ -1,11 +1,12 @@
 //! `arcslip serve`: the HTTP service and its workers.
 
-use crate::command::outcome::{Failure, Outcome, say};
-use crate::command::settings::Setting;
-use crate::command::{access, service};
+use crate::command::options::settings::Setting;
+use crate::command::options::{access, service};
+use crate::command::output::outcome::{Failure, Outcome, say};
 use crate::service::http::access::Access;
 use crate::service::http::server::{Front, Server};
-use crate::service::jobs::{PathSolver, Settings, demonstration};
+use crate::service::jobs::queue::demonstration;
+use crate::service::jobs::{PathSolver, Settings};
 use std::net::SocketAddr;
 use std::process::ExitCode;
 use std::sync::Arc;

@@ -1,9 +1,9 @@
 //! `arcslip solve`: a model's path, one line an increment, as it converges.
 
 use crate::check::judged::JudgedIncrement;
-use crate::command::outcome::{Failure, Outcome};
-use crate::command::written::{is_standard_output, one_on_standard_output, write};
-use crate::command::{bounds, input};
+use crate::command::options::{bounds, input};
+use crate::command::output::outcome::{Failure, Outcome};
+use crate::command::output::written::{is_standard_output, one_on_standard_output, write};
 use crate::model::{JobRequest, Model};
 use crate::output::{Table, json_line};
 use crate::resources::cancel::CancelFlag;
@@ -95,7 +95,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     Ok(match report.report.stop_reason.outcome() {
         stop_reason::Outcome::Completed => ExitCode::SUCCESS,
         stop_reason::Outcome::Stopped | stop_reason::Outcome::Cancelled => {
-            ExitCode::from(crate::command::outcome::FAILED)
+            ExitCode::from(crate::command::output::outcome::FAILED)
         }
     })
 }

@@ -1,7 +1,8 @@
 //! `arcslip study`: a scene over a ladder of settings and over methods, error against run time.
 
-use crate::command::outcome::{Failure, Outcome};
-use crate::command::{bounds, findings, input};
+use crate::command::options::{bounds, input};
+use crate::command::output::findings;
+use crate::command::output::outcome::{Failure, Outcome};
 use crate::model::request::Method;
 use crate::model::{StudyRequest, decode};
 use crate::resources::cancel::CancelFlag;

@@ -1,8 +1,9 @@
 //! `arcslip sweep`: one model with other values in its places, on all cores.
 
 use crate::check::judged::JudgedIncrement;
-use crate::command::outcome::{Failure, Outcome};
-use crate::command::{bounds, findings, input};
+use crate::command::options::{bounds, input};
+use crate::command::output::findings;
+use crate::command::output::outcome::{Failure, Outcome};
 use crate::model::{Sweep, decode};
 use crate::output::json_line;
 use crate::studies::sweeps::{self, Found, Row};
@@ -83,7 +84,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let any_failed = rows.iter().any(|row| row.error.is_some());
     let found = Found { name: sweep.name, variation: sweep.variation, rows };
     arguments.written.write(&found)?;
-    Ok(if any_failed { ExitCode::from(crate::command::outcome::FAILED) } else { ExitCode::SUCCESS })
+    Ok(if any_failed { ExitCode::from(crate::command::output::outcome::FAILED) } else { ExitCode::SUCCESS })
 }
 
 impl Arguments {

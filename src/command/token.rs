@@ -1,6 +1,6 @@
 //! `arcslip token`: a new token and the line that makes a service take it.
 
-use crate::command::outcome::{Failure, Outcome, say};
+use crate::command::output::outcome::{Failure, Outcome, say};
 use crate::service::http::access::tokens::{self, Scopes};
 use std::io::Write;
 use std::process::ExitCode;

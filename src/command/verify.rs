@@ -2,9 +2,9 @@
 
 use crate::check::cases::cases;
 use crate::check::verify::case::{Case, Row};
-use crate::command::outcome::{Failure, Outcome, say};
+use crate::command::output::outcome::{Failure, Outcome, say};
+use crate::command::output::written::{is_standard_output, one_on_standard_output, write};
 use crate::command::verify_picture;
-use crate::command::written::{is_standard_output, one_on_standard_output, write};
 use crate::model::input::names::suggestion_of_all;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -55,7 +55,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if let Some(file) = &arguments.plot {
         write(file, &verify_picture::svg(&rows).map_err(Failure::other)?)?;
     }
-    Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::from(crate::command::outcome::FAILED) })
+    Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::from(crate::command::output::outcome::FAILED) })
 }
 
 /// The cases asked for.

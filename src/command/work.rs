@@ -1,9 +1,9 @@
 //! `arcslip work`: workers alone, for a database that others serve.
 
-use crate::command::outcome::{Outcome, say};
-use crate::command::service;
-use crate::command::settings::Setting;
-use crate::service::jobs::crew::wound_up;
+use crate::command::options::service;
+use crate::command::options::settings::Setting;
+use crate::command::output::outcome::{Outcome, say};
+use crate::service::jobs::workers::crew::wound_up;
 use crate::service::jobs::{Crew, Jobs, PathSolver};
 use std::process::ExitCode;
 use std::sync::Arc;

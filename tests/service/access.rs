@@ -74,7 +74,7 @@ async fn problem(answer: Response, status: u16, kind: &str) -> Value {
 /// Every call that the service describes.
 fn calls() -> Vec<(Method, String)> {
     let document: Value =
-        serde_json::from_str(&arcslip::service::http::openapi_json().expect("a document")).expect("JSON");
+        serde_json::from_str(&arcslip::service::http::router::openapi_json().expect("a document")).expect("JSON");
     let paths = document["paths"].as_object().expect("paths");
     let calls = paths.iter().flat_map(|(path, item)| {
         let path = path.replace("{id}", "01890000-0000-7000-8000-000000000000").replace("{name}", "klarbring");

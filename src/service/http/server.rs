@@ -4,13 +4,13 @@
 //! solves stop and their jobs go back to the queue, then the database is closed; all of it within a bound.
 
 use crate::service::http::access::Access;
-use crate::service::http::aside::Aside;
-use crate::service::http::bodies::Bodies;
 use crate::service::http::listen::{Connections, bind, listen};
-use crate::service::http::router;
-use crate::service::http::service::Service;
-use crate::service::http::stream::READING_AT_ONCE;
-use crate::service::jobs::crew::wound_up;
+use crate::service::http::router::router;
+use crate::service::http::state::aside::Aside;
+use crate::service::http::state::bodies::Bodies;
+use crate::service::http::state::service::Service;
+use crate::service::http::tasks::stream::READING_AT_ONCE;
+use crate::service::jobs::workers::crew::wound_up;
 use crate::service::jobs::{Crew, Jobs, Settings, Solver};
 use crate::service::store::contract::interface::Store;
 use std::net::SocketAddr;

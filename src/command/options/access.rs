@@ -1,0 +1,114 @@
+//! Who may call a service, as arguments of `serve`.
+
+use crate::command::output::outcome::Failure;
+use crate::service::http::access::origins::Origins;
+use crate::service::http::access::rates::Rates;
+use crate::service::http::access::tokens::Tokens;
+use crate::service::http::access::{Access, Door};
+use crate::service::http::listen::Connections;
+use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
+use std::net::SocketAddr;
+use std::num::NonZeroU32;
+use std::path::PathBuf;
+
+/// Files besides connections: the database's, the log, what a backup or a sort takes.
+const OTHER_FILES: u64 = 64;
+/// Requests a second of one address, and of one token, where others than this machine reach the service.
+const RATE: u32 = 100;
+
+#[derive(Debug, Clone, clap::Args)]
+#[command(next_help_heading = "Access")]
+#[group(skip)]
+pub struct Arguments {
+    /// Tokens that callers have to show: a line each, as `arcslip token` prints it; read again at SIGHUP.
+    #[arg(long, value_name = "FILE", env = "ARCSLIP_TOKENS_FILE")]
+    pub tokens_file: Option<PathBuf>,
+    /// Take everyone without a token, from other machines too.
+    #[arg(long, env = "ARCSLIP_OPEN")]
+    open: bool,
+    /// Requests a second of one address, 0 for as many as come. Default: 100, or 0 where only this machine reaches the service.
+    #[arg(long, value_name = "N", env = "ARCSLIP_ADDRESS_RATE")]
+    address_rate: Option<u32>,
+    /// Requests a second with one token, 0 for as many as come. Default: as for an address.
+    #[arg(long, value_name = "N", env = "ARCSLIP_TOKEN_RATE")]
+    token_rate: Option<u32>,
+    /// Pages of browsers that may call from elsewhere, such as `https://plots.example.org`; several with commas. Default: none.
+    #[arg(long, value_name = "ORIGIN", env = "ARCSLIP_ALLOW_ORIGIN", value_delimiter = ',')]
+    allow_origin: Vec<String>,
+    /// Connections served at a time; those past that wait. Each takes a file descriptor (`ulimit -n`).
+    #[arg(long, value_name = "N", default_value_t = 800, env = "ARCSLIP_MAX_CONNECTIONS",
+        value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    max_connections: u32,
+    /// Connections of one address, 0 for as many as come; those past that are closed. This machine's own addresses, which a
+    /// proxy has, may have any number.
+    #[arg(long, value_name = "N", default_value_t = 100, env = "ARCSLIP_ADDRESS_CONNECTIONS")]
+    address_connections: u32,
+}
+
+impl Arguments {
+    /// # Errors
+    /// An address that others reach without a word about who may call, or a file of tokens that is none.
+    pub fn access(&self, listen: SocketAddr) -> Result<Access, Failure> {
+        let loopback = listen.ip().is_loopback();
+        let door = match (&self.tokens_file, self.open) {
+            (Some(_), true) => {
+                return Err(bad("--tokens-file asks for tokens and --open for none: give one of them".to_owned()));
+            }
+            (Some(_), false) => Door::with(self.tokens()?),
+            (None, true) => Door::Open,
+            (None, false) if loopback => Door::Loopback,
+            (None, false) => {
+                return Err(bad(format!(
+                    "--listen {listen}: other machines reach that; say who may call: --tokens-file FILE \
+                     (ARCSLIP_TOKENS_FILE), or --open for everyone"
+                )));
+            }
+        };
+        let usual = if loopback { 0 } else { RATE };
+        let rate = |given: Option<u32>| NonZeroU32::new(given.unwrap_or(usual));
+        let told = |given: Option<u32>| rate(given).map_or(0, NonZeroU32::get);
+        tracing::info!(
+            of_an_address = told(self.address_rate),
+            of_a_token = told(self.token_rate),
+            "requests a second"
+        );
+        let origins = Origins::read(self.allow_origin.iter().map(String::as_str))
+            .map_err(|detail| bad(format!("--allow-origin: {detail}")))?;
+        Ok(Access::new(door, Rates::new(rate(self.address_rate), rate(self.token_rate)), origins))
+    }
+
+    /// As many as are asked for, or as the process may open files for.
+    pub fn connections(&self) -> Connections {
+        let files = open_files();
+        let room = files.saturating_sub(OTHER_FILES).max(1);
+        let asked = u64::from(self.max_connections);
+        if asked > room {
+            tracing::warn!(asked, served = room, files, "fewer connections are served: each takes a file (ulimit -n)");
+        }
+        let all = usize::try_from(asked.min(room)).unwrap_or(usize::MAX);
+        // Fewer files are no reason to let fewer wait.
+        let waiting = usize::try_from(asked).unwrap_or(usize::MAX);
+        Connections { all, waiting, an_address: NonZeroU32::new(self.address_connections) }
+    }
+
+    /// The tokens as the file has them now.
+    ///
+    /// # Errors
+    /// No file is named, or it is none of tokens.
+    pub fn tokens(&self) -> Result<Tokens, Failure> {
+        let file = self.tokens_file.as_deref().ok_or_else(|| bad("no file of tokens is named".to_owned()))?;
+        Tokens::of_file(file).map_err(|error| bad(format!("--tokens-file: {error}")))
+    }
+}
+
+/// How many files the process may open, after asking for as many as it may have.
+fn open_files() -> u64 {
+    let limit = getrlimit(Resource::Nofile);
+    let raised = Rlimit { current: limit.maximum, maximum: limit.maximum };
+    let current = if setrlimit(Resource::Nofile, raised).is_ok() { limit.maximum } else { limit.current };
+    current.unwrap_or(u64::MAX)
+}
+
+fn bad(text: String) -> Failure {
+    Failure::Input(vec![text])
+}

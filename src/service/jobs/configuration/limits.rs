@@ -1,0 +1,135 @@
+//! What one service takes, and how much of it one job may use. The limits of the [model](crate::model::input::limits) hold
+//! besides: a service may take less, never more.
+
+use crate::model::input::limits::{MAX_CONTACTS, MAX_ELEMENTS, MAX_INCREMENTS, MAX_NODES, MAX_TEXT_BYTES};
+use crate::model::{InputError, InputErrors, Model};
+use crate::resources::budget::Bounds;
+use std::fmt;
+use std::time::Duration;
+
+/// Bytes of the requests of a sweep's runs in all: each is stored with its job.
+pub const MOST_SWEEP_BYTES: usize = 256 << 20;
+
+/// Every limit that whoever starts the service can set. A request past one is refused and names it; a job past one ends
+/// `stopped`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Limits {
+    /// Jobs and studies that wait at a time; what explorations queue counts, but is not refused.
+    pub queued: u64,
+    /// Bytes of a request's body.
+    pub body_bytes: usize,
+    pub nodes: usize,
+    pub elements: usize,
+    pub contacts: usize,
+    /// `max_increments` of a job.
+    pub increments: u64,
+    /// Time that checking a request may take, its waits for others not counted.
+    pub check_time: Duration,
+    /// Time that a job or study may run in all, its waits in the queue not counted.
+    pub wall_time: Duration,
+    /// Bytes that may be stored of a job or study: increments, and points from which directions can be followed.
+    pub stored_bytes: u64,
+    /// What one solve, or check, may take.
+    pub bounds: Bounds,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            queued: 20_000,
+            body_bytes: MAX_TEXT_BYTES,
+            nodes: MAX_NODES,
+            elements: MAX_ELEMENTS,
+            contacts: MAX_CONTACTS,
+            increments: MAX_INCREMENTS,
+            check_time: Duration::from_secs(120),
+            wall_time: Duration::from_secs(24 * 3600),
+            stored_bytes: 8 << 30,
+            bounds: Bounds::default(),
+        }
+    }
+}
+
+impl Limits {
+    /// # Errors
+    /// Every size that is past its limit.
+    pub fn check(&self, model: &Model, max_increments: u64) -> Result<(), InputErrors> {
+        let sizes = [
+            ("/model/nodes", "nodes", model.nodes.len(), self.nodes),
+            ("/model/elements", "elements", model.elements.len(), self.elements),
+            ("/model/contacts", "contacts", model.contacts.len(), self.contacts),
+        ];
+        let past = sizes.into_iter().filter(|(_, _, found, most)| found > most);
+        let past = past.map(|(pointer, what, found, most)| {
+            InputError::new(pointer, format!("found {found} {what}; this service takes at most {most}"))
+        });
+        let errors: Vec<InputError> =
+            past.chain(self.past_increments("/analysis/max_increments", max_increments)).collect();
+        if errors.is_empty() { Ok(()) } else { Err(InputErrors(errors)) }
+    }
+
+    pub fn past_increments(&self, pointer: &str, found: u64) -> Option<InputError> {
+        (found > self.increments)
+            .then(|| InputError::new(pointer, format!("found {found}; this service takes at most {}", self.increments)))
+    }
+
+    /// Why a job was ended.
+    pub fn sentence(&self, reached: Reached) -> String {
+        match reached {
+            Reached::Time => {
+                format!(
+                    "it has run for {:.3} s, the most that this service lets a job run",
+                    self.wall_time.as_secs_f64()
+                )
+            }
+            Reached::Storage => {
+                format!(
+                    "more than {} bytes would be stored of it, the most that this service stores",
+                    self.stored_bytes
+                )
+            }
+        }
+    }
+}
+
+/// A limit at which a running job is stopped; what is stored of it stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reached {
+    Time,
+    Storage,
+}
+
+impl Reached {
+    /// The stop reason.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Time => "time_limit",
+            Self::Storage => "storage_limit",
+        }
+    }
+}
+
+/// As the interface's description tells them.
+impl fmt::Display for Limits {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "| limit | value | past it |\n|---|---|---|")?;
+        let refused = "refused, 422";
+        let Bounds { memory, factor_entries, factor_work } = self.bounds;
+        let rows = [
+            ("bytes of a body", self.body_bytes.to_string(), "refused, 413"),
+            ("nodes", self.nodes.to_string(), refused),
+            ("elements", self.elements.to_string(), refused),
+            ("contacts", self.contacts.to_string(), refused),
+            ("`max_increments`", self.increments.to_string(), refused),
+            ("bytes of the requests of a sweep's runs", MOST_SWEEP_BYTES.to_string(), refused),
+            ("jobs and studies that wait", self.queued.to_string(), "refused, 429 with `Retry-After`"),
+            ("seconds that a request is checked for", self.check_time.as_secs_f64().to_string(), refused),
+            ("entries of a factor of the stiffness", factor_entries.to_string(), refused),
+            ("multiplications of its factorisation", factor_work.to_string(), refused),
+            ("bytes that a solve holds at a time", memory.to_string(), "`stopped`, `memory_limit`"),
+            ("seconds that a job runs", self.wall_time.as_secs_f64().to_string(), "`stopped`, `time_limit`"),
+            ("bytes stored of a job", self.stored_bytes.to_string(), "`stopped`, `storage_limit`"),
+        ];
+        rows.into_iter().try_for_each(|(limit, value, past)| writeln!(f, "| {limit} | {value} | {past} |"))
+    }
+}
