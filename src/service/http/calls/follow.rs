@@ -17,15 +17,10 @@ use axum::response::Response;
 /// `Idempotency-Key` works as with `POST /v1/jobs`.
 #[utoipa::path(
     post, path = "/v1/jobs/{id}/follow", tag = document::JOBS, operation_id = "follow_direction",
-    params(
-        ("id" = Uuid, Path, description = "The job whose direction is followed."),
-        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[ -~]+$",
-         description = "Sent again with the same body, it answers the job of the first time; with another body it is refused.")
-    ),
+    params(("id" = Uuid, Path, description = "The job whose direction is followed.")),
     request_body = FollowRequest,
     responses(
-        (status = 202, description = "Queued, or queued before under the same idempotency key.", body = Job,
-         headers(("Location" = String, description = "The job's address."))),
+        (status = 202, description = "Queued, or queued before under the same idempotency key.", body = Job),
     )
 )]
 pub async fn follow(target: Target<Job>, JsonText(request): JsonText) -> Result<Response, Problem> {

@@ -42,15 +42,10 @@ impl Resource for Job {
 /// Queue a job, or only check it.
 #[utoipa::path(
     post, path = "/v1/jobs", tag = document::JOBS, operation_id = "submit_job",
-    params(
-        SubmitParameters,
-        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[ -~]+$",
-         description = "Sent again with the same body, it answers the job of the first time; with another body it is refused.")
-    ),
+    params(SubmitParameters),
     request_body = JobRequest,
     responses(
-        (status = 202, description = "Queued, or queued before under the same idempotency key.", body = Job,
-         headers(("Location" = String, description = "The job's address."))),
+        (status = 202, description = "Queued, or queued before under the same idempotency key.", body = Job),
         (status = 200, description = "With `validate=true`: what would be done.", body = Plan),
     )
 )]
@@ -101,7 +96,6 @@ pub async fn list(
 /// One job: status, plan, progress, stop reason, report.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}", tag = document::JOBS, operation_id = "get_job",
-    params(("id" = Uuid, Path, description = "The job's id.")),
     responses((status = 200, description = "The job.", body = Job))
 )]
 pub async fn get(target: Target<Job>) -> Result<Response, Problem> {
@@ -120,7 +114,6 @@ pub async fn get(target: Target<Job>) -> Result<Response, Problem> {
 /// Stop a job within one iteration; what is stored is kept. An ended job stays as it is.
 #[utoipa::path(
     post, path = "/v1/jobs/{id}/cancel", tag = document::JOBS, operation_id = "cancel_job",
-    params(("id" = Uuid, Path, description = "The job's id.")),
     responses((status = 202, description = "The job; a running one ends shortly.", body = Job))
 )]
 pub async fn cancel(target: Target<Job>) -> Result<Response, Problem> {
@@ -133,9 +126,7 @@ pub async fn cancel(target: Target<Job>) -> Result<Response, Problem> {
 /// queued again.
 #[utoipa::path(
     post, path = "/v1/jobs/{id}/retry", tag = document::JOBS, operation_id = "retry_job",
-    params(("id" = Uuid, Path, description = "The job's id.")),
-    responses((status = 202, description = "The job, which waits.", body = Job,
-        headers(("Location" = String, description = "The job's address."))))
+    responses((status = 202, description = "The job, which waits.", body = Job))
 )]
 pub async fn retry(target: Target<Job>) -> Result<Response, Problem> {
     let Target { service, caller, id, .. } = target;
@@ -145,7 +136,6 @@ pub async fn retry(target: Target<Job>) -> Result<Response, Problem> {
 /// Stop a job and drop what is stored.
 #[utoipa::path(
     delete, path = "/v1/jobs/{id}", tag = document::JOBS, operation_id = "delete_job",
-    params(("id" = Uuid, Path, description = "The job's id.")),
     responses((status = 204, description = "The job is gone."))
 )]
 pub async fn delete(target: Target<Job>) -> Result<StatusCode, Problem> {

@@ -12,7 +12,6 @@ use axum::response::Response;
 /// The job's request: model and analysis, ready to post again.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/request", tag = document::JOBS, operation_id = "get_request",
-    params(("id" = Uuid, Path, description = "The job's id.")),
     responses((status = 200, description = "The request; of a job that follows another, that job's.", body = JobRequest))
 )]
 pub async fn request(target: Target<Job>) -> Result<Response, Problem> {

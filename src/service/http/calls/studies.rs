@@ -69,15 +69,10 @@ impl Finding for Study {
 /// too, with the defaults.
 #[utoipa::path(
     post, path = "/v1/studies", tag = document::STUDIES, operation_id = "submit_study",
-    params(
-        SubmitParameters,
-        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[ -~]+$",
-         description = "Sent again with the same body, it answers the study of the first time; with another body it is refused.")
-    ),
+    params(SubmitParameters),
     request_body = StudyRequest,
     responses(
-        (status = 202, description = "Queued, or queued before under the same idempotency key.", body = Study,
-         headers(("Location" = String, description = "The study's address."))),
+        (status = 202, description = "Queued, or queued before under the same idempotency key.", body = Study),
         (status = 200, description = "With `validate=true`: what would be done.", body = Plan),
     )
 )]
@@ -101,7 +96,6 @@ pub async fn list(
 /// One study: status, plan, progress, and what it has found so far.
 #[utoipa::path(
     get, path = "/v1/studies/{id}", tag = document::STUDIES, operation_id = "get_study",
-    params(("id" = Uuid, Path, description = "The study's id.")),
     responses((status = 200, description = "The study.", body = StudyWithReport))
 )]
 pub async fn get(target: Target<Study>) -> Result<Response, Problem> {
@@ -129,10 +123,7 @@ pub async fn get(target: Target<Study>) -> Result<Response, Problem> {
 /// `status` and no `index`.
 #[utoipa::path(
     get, path = "/v1/studies/{id}/stream", tag = document::STUDIES, operation_id = "stream_study",
-    params(
-        ("id" = Uuid, Path, description = "The study's id."),
-        ("Last-Event-ID" = Option<u64>, Header, description = "Index of the last row received.")
-    ),
+    params(("Last-Event-ID" = Option<u64>, Header, description = "Index of the last row received.")),
     responses((status = 200, description = "Paths in order of their index.", content(
         (ServerEvent = "text/event-stream"),
         (Run = "application/x-ndjson")
@@ -145,7 +136,6 @@ pub async fn stream(target: Target<Study>) -> Result<Response, Problem> {
 /// Stop a study within one iteration; what it has found is kept. An ended study stays as it is.
 #[utoipa::path(
     post, path = "/v1/studies/{id}/cancel", tag = document::STUDIES, operation_id = "cancel_study",
-    params(("id" = Uuid, Path, description = "The study's id.")),
     responses((status = 202, description = "The study; a running one ends shortly.", body = Study))
 )]
 pub async fn cancel(target: Target<Study>) -> Result<Response, Problem> {
@@ -155,7 +145,6 @@ pub async fn cancel(target: Target<Study>) -> Result<Response, Problem> {
 /// Stop a study and drop what is stored.
 #[utoipa::path(
     delete, path = "/v1/studies/{id}", tag = document::STUDIES, operation_id = "delete_study",
-    params(("id" = Uuid, Path, description = "The study's id.")),
     responses((status = 204, description = "The study is gone."))
 )]
 pub async fn delete(target: Target<Study>) -> Result<StatusCode, Problem> {
@@ -165,7 +154,6 @@ pub async fn delete(target: Target<Study>) -> Result<StatusCode, Problem> {
 /// The rows found so far, as CSV.
 #[utoipa::path(
     get, path = "/v1/studies/{id}/table.csv", tag = document::STUDIES, operation_id = "get_study_table_csv",
-    params(("id" = Uuid, Path, description = "The study's id.")),
     responses((status = 200, description = "The table; one line a row.", body = String, content_type = "text/csv"))
 )]
 pub async fn table_csv(target: Target<Study>) -> Result<Response, Problem> {
@@ -175,7 +163,6 @@ pub async fn table_csv(target: Target<Study>) -> Result<Response, Problem> {
 /// The rows found so far, as columns of text.
 #[utoipa::path(
     get, path = "/v1/studies/{id}/table.txt", tag = document::STUDIES, operation_id = "get_study_table_txt",
-    params(("id" = Uuid, Path, description = "The study's id.")),
     responses((status = 200, description = "The table, for a reader.", body = String, content_type = "text/plain"))
 )]
 pub async fn table_txt(target: Target<Study>) -> Result<Response, Problem> {
@@ -187,7 +174,6 @@ pub async fn table_txt(target: Target<Study>) -> Result<Response, Problem> {
 /// Until every row has been timed, and where `repeats` is 0, what is varied stands in the place of the time.
 #[utoipa::path(
     get, path = "/v1/studies/{id}/picture.svg", tag = document::STUDIES, operation_id = "get_study_picture",
-    params(("id" = Uuid, Path, description = "The study's id.")),
     responses((status = 200, description = "The picture.", body = String, content_type = "image/svg+xml"))
 )]
 pub async fn picture(target: Target<Study>) -> Result<Response, Problem> {

@@ -75,15 +75,10 @@ impl Finding for Sweep {
 /// are like any others; what is found of each is the load at the first limit point of its path.
 #[utoipa::path(
     post, path = "/v1/sweeps", tag = document::SWEEPS, operation_id = "submit_sweep",
-    params(
-        SubmitParameters,
-        ("Idempotency-Key" = Option<String>, Header, min_length = 1, max_length = 255, pattern = "^[ -~]+$",
-         description = "Sent again with the same body, it answers the sweep of the first time; with another body it is refused.")
-    ),
+    params(SubmitParameters),
     request_body = SweepRequest,
     responses(
-        (status = 202, description = "Queued, or queued before under the same idempotency key.", body = Sweep,
-         headers(("Location" = String, description = "The sweep's address."))),
+        (status = 202, description = "Queued, or queued before under the same idempotency key.", body = Sweep),
         (status = 200, description = "With `validate=true`: what would be done.", body = SweepPlan),
     )
 )]
@@ -107,7 +102,6 @@ pub async fn list(
 /// One sweep: status, progress, and what it varies.
 #[utoipa::path(
     get, path = "/v1/sweeps/{id}", tag = document::SWEEPS, operation_id = "get_sweep",
-    params(("id" = Uuid, Path, description = "The sweep's id.")),
     responses((status = 200, description = "The sweep.", body = Sweep))
 )]
 pub async fn get(target: Target<Sweep>) -> Result<Response, Problem> {
@@ -134,7 +128,7 @@ impl Taken for RowParameters {
 /// Runs that have ended so far, in the order in which they did.
 #[utoipa::path(
     get, path = "/v1/sweeps/{id}/rows", tag = document::SWEEPS, operation_id = "list_sweep_rows",
-    params(("id" = Uuid, Path, description = "The sweep's id."), RowParameters),
+    params(RowParameters),
     responses((status = 200, description = "A page of rows, empty when there are no more for now.", body = SweepRows))
 )]
 pub async fn rows(
@@ -154,10 +148,7 @@ pub async fn rows(
 /// With `Accept: application/x-ndjson`: one run a line, and a last line with the sweep, which has no `run`.
 #[utoipa::path(
     get, path = "/v1/sweeps/{id}/stream", tag = document::SWEEPS, operation_id = "stream_sweep",
-    params(
-        ("id" = Uuid, Path, description = "The sweep's id."),
-        ("Last-Event-ID" = Option<u64>, Header, description = "Id of the last row received.")
-    ),
+    params(("Last-Event-ID" = Option<u64>, Header, description = "Id of the last row received.")),
     responses((status = 200, description = "Runs in the order in which they end.", content(
         (ServerEvent = "text/event-stream"),
         (Row = "application/x-ndjson")
@@ -170,7 +161,6 @@ pub async fn stream(target: Target<Sweep>) -> Result<Response, Problem> {
 /// Cancel the runs of a sweep that have not ended; what was found is kept. An ended sweep stays as it is.
 #[utoipa::path(
     post, path = "/v1/sweeps/{id}/cancel", tag = document::SWEEPS, operation_id = "cancel_sweep",
-    params(("id" = Uuid, Path, description = "The sweep's id.")),
     responses((status = 202, description = "The sweep; runs at work end shortly.", body = Sweep))
 )]
 pub async fn cancel(target: Target<Sweep>) -> Result<Response, Problem> {
@@ -180,7 +170,6 @@ pub async fn cancel(target: Target<Sweep>) -> Result<Response, Problem> {
 /// Stop a sweep, and drop it and its jobs.
 #[utoipa::path(
     delete, path = "/v1/sweeps/{id}", tag = document::SWEEPS, operation_id = "delete_sweep",
-    params(("id" = Uuid, Path, description = "The sweep's id.")),
     responses((status = 204, description = "The sweep is gone."))
 )]
 pub async fn delete(target: Target<Sweep>) -> Result<StatusCode, Problem> {
@@ -190,7 +179,6 @@ pub async fn delete(target: Target<Sweep>) -> Result<StatusCode, Problem> {
 /// The runs that have ended, as CSV.
 #[utoipa::path(
     get, path = "/v1/sweeps/{id}/table.csv", tag = document::SWEEPS, operation_id = "get_sweep_table_csv",
-    params(("id" = Uuid, Path, description = "The sweep's id.")),
     responses((status = 200, description = "The table; one line a run.", body = String, content_type = "text/csv"))
 )]
 pub async fn table_csv(target: Target<Sweep>) -> Result<Response, Problem> {
@@ -200,7 +188,6 @@ pub async fn table_csv(target: Target<Sweep>) -> Result<Response, Problem> {
 /// The runs that have ended, as columns of text.
 #[utoipa::path(
     get, path = "/v1/sweeps/{id}/table.txt", tag = document::SWEEPS, operation_id = "get_sweep_table_txt",
-    params(("id" = Uuid, Path, description = "The sweep's id.")),
     responses((status = 200, description = "The table, for a reader.", body = String, content_type = "text/plain"))
 )]
 pub async fn table_txt(target: Target<Sweep>) -> Result<Response, Problem> {
@@ -210,7 +197,6 @@ pub async fn table_txt(target: Target<Sweep>) -> Result<Response, Problem> {
 /// The first limit load against the first parameter, one line for each set of values of the others.
 #[utoipa::path(
     get, path = "/v1/sweeps/{id}/picture.svg", tag = document::SWEEPS, operation_id = "get_sweep_picture",
-    params(("id" = Uuid, Path, description = "The sweep's id.")),
     responses((status = 200, description = "The picture.", body = String, content_type = "image/svg+xml"))
 )]
 pub async fn picture(target: Target<Sweep>) -> Result<Response, Problem> {

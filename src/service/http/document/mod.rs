@@ -77,7 +77,7 @@ pub fn finish(
     document.info.description = Some(description);
     for (path, item) in &mut document.paths.paths {
         for operation in [&mut item.get, &mut item.post, &mut item.delete].into_iter().flatten() {
-            operations::complete(operation)?;
+            operations::complete(path, operation)?;
             if admission::is_public(path) {
                 operation.security = Some(Vec::new());
             }

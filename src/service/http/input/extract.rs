@@ -13,7 +13,8 @@ use serde::de::DeserializeOwned;
 use std::net::SocketAddr;
 use uuid::Uuid;
 
-const LONGEST_KEY: usize = 255;
+/// Characters of an idempotency key.
+pub const LONGEST_KEY: usize = 255;
 /// Of an increment or row: the largest that can be stored.
 const LARGEST_INDEX: u64 = i64::MAX as u64;
 

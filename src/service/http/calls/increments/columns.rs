@@ -1,4 +1,4 @@
-//! ListQuery numbers of a path's increments as arrays: what a plot needs of a long path, without all the rest.
+//! Chosen numbers of a path's increments as arrays: what a plot needs of a long path, without all the rest.
 
 use crate::result::increment::Point;
 use crate::service::http::answer::problem::Problem;
@@ -76,10 +76,10 @@ pub struct PointAt {
     pub point: Box<RawValue>,
 }
 
-/// ListQuery members of the stored increments, as arrays.
+/// Chosen members of the stored increments, as arrays.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/columns", tag = document::INCREMENTS, operation_id = "get_columns",
-    params(("id" = Uuid, Path, description = "The job's id."), ColumnParameters),
+    params(ColumnParameters),
     responses((status = 200, description = "The arrays, empty when there are no more increments for now.", body = Columns))
 )]
 pub async fn columns(

@@ -31,7 +31,6 @@ const PAGE: Page = Page { rows: 500, bytes: 1 << 20 };
 /// with `=`, `+`, `-` or `@`, have an apostrophe before them; numbers have none.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/path.csv", tag = document::INCREMENTS, operation_id = "get_path_csv",
-    params(("id" = Uuid, Path, description = "The job's id.")),
     responses((status = 200, description = "The table.", body = String, content_type = "text/csv"))
 )]
 pub async fn path_csv(target: Target<Job>) -> Result<Response, Problem> {

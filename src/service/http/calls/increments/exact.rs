@@ -58,7 +58,7 @@ pub struct ExactStage {
 /// The job's path in closed form, if it is of a family with one.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/exact", tag = document::INCREMENTS, operation_id = "get_exact_path",
-    params(("id" = Uuid, Path, description = "The job's id."), ExactParameters),
+    params(ExactParameters),
     responses((status = 200, description = "The path; without stages where none is known.", body = ExactPath))
 )]
 pub async fn exact(

@@ -30,7 +30,7 @@ impl Taken for PageParameters {
 /// Increments stored so far, in order.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/increments", tag = document::INCREMENTS, operation_id = "list_increments",
-    params(("id" = Uuid, Path, description = "The job's id."), PageParameters),
+    params(PageParameters),
     responses((status = 200, description = "A page of increments, empty when there are no more for now.", body = IncrementPage))
 )]
 pub async fn page(

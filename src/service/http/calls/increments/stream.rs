@@ -19,10 +19,7 @@ use axum::response::Response;
 /// ended, and breaks off (without the last chunk) otherwise.
 #[utoipa::path(
     get, path = "/v1/jobs/{id}/stream", tag = document::INCREMENTS, operation_id = "stream_increments",
-    params(
-        ("id" = Uuid, Path, description = "The job's id."),
-        ("Last-Event-ID" = Option<u64>, Header, description = "Index of the last increment received.")
-    ),
+    params(("Last-Event-ID" = Option<u64>, Header, description = "Index of the last increment received.")),
     responses((status = 200, description = "Increments in order of their index.", content(
         (ServerEvent = "text/event-stream"),
         (JudgedIncrement = "application/x-ndjson")
