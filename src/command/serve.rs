@@ -4,7 +4,7 @@ use crate::command::options::settings::Setting;
 use crate::command::options::{access, service};
 use crate::command::output::outcome::{Failure, Outcome, say};
 use crate::service::http::access::Access;
-use crate::service::http::server::{Front, Server};
+use crate::service::http::server::{ListenOptions, Server};
 use crate::service::jobs::queue::demonstration;
 use crate::service::jobs::{PathSolver, Settings};
 use std::net::SocketAddr;
@@ -48,7 +48,7 @@ async fn serve(arguments: &Arguments, access: Access) -> Outcome {
     let mut hang_up = signal(SignalKind::hangup()).map_err(Failure::other)?;
     let store = service.open().await?;
     let connections = arguments.access.connections();
-    let front = Front { listen: arguments.listen, connections, access: access.clone() };
+    let front = ListenOptions { listen: arguments.listen, connections, access: access.clone() };
     let settings = Settings { max_attempts: arguments.max_attempts, ..service.settings(arguments.workers) };
     let workers = settings.workers;
     let server = Server::start(front, store, Arc::new(PathSolver), settings).await.map_err(Failure::other)?;

@@ -3,8 +3,8 @@
 use crate::command::options::service;
 use crate::command::options::settings::Setting;
 use crate::command::output::outcome::{Outcome, say};
-use crate::service::jobs::workers::crew::wound_up;
-use crate::service::jobs::{Crew, Jobs, PathSolver};
+use crate::service::jobs::workers::worker_pool::finish_shutdown;
+use crate::service::jobs::{Jobs, PathSolver, WorkerPool};
 use std::process::ExitCode;
 use std::sync::Arc;
 use tokio_util::sync::CancellationToken;
@@ -33,14 +33,14 @@ async fn work(arguments: &Arguments) -> Outcome {
     let store = service.open().await?;
     let jobs = Jobs::new(store, Arc::new(PathSolver), service.settings(arguments.workers));
     let shutdown = CancellationToken::new();
-    let crew = Crew::start(&jobs, &shutdown);
-    let workers = crew.attendance().expected();
+    let pool = WorkerPool::start(&jobs, &shutdown);
+    let workers = pool.worker_count().expected();
     // Where standard output is closed, the log says the same.
     let _ = say(format_args!("arcslip works on {}\n", service.database));
     tracing::info!(database = %service.database, workers, "working");
     ends.asked().await;
     shutdown.cancel();
-    if !wound_up(crew.stopped(), jobs.store()).await {
+    if !finish_shutdown(pool.stopped(), jobs.store()).await {
         tracing::warn!("went down before everything had ended");
     }
     Ok(ExitCode::SUCCESS)

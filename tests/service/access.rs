@@ -6,7 +6,7 @@ use crate::common::solver::MadeUp;
 use arcslip::service::http::access::origins::Origins;
 use arcslip::service::http::access::rates::Rates;
 use arcslip::service::http::access::tokens::{self, Tokens};
-use arcslip::service::http::access::{Access, Door};
+use arcslip::service::http::access::{Access, AccessPolicy};
 use arcslip::service::store;
 use reqwest::{Method, Response};
 use serde_json::{Value, json};
@@ -40,7 +40,7 @@ impl People {
     }
 
     fn access(&self) -> Access {
-        Access::new(Door::with(self.tokens()), Rates::default(), Origins::default())
+        Access::new(AccessPolicy::with(self.tokens()), Rates::default(), Origins::default())
     }
 }
 
@@ -226,7 +226,7 @@ async fn too_many_requests_of_one_address_or_token_are_told_when_to_come_back() 
     let folder = tempfile::tempdir().expect("a folder");
     let people = People::new();
     let (few, many) = (NonZeroU32::new(5), NonZeroU32::new(40));
-    let access = Access::new(Door::with(people.tokens()), Rates::new(many, few), Origins::default());
+    let access = Access::new(AccessPolicy::with(people.tokens()), Rates::new(many, few), Origins::default());
     let server = start(folder.path(), access).await;
     let answers = async |token: &str, count: usize| {
         let mut answers = Vec::new();
@@ -277,7 +277,7 @@ async fn listed_pages_may_call_also_before_they_show_a_token() {
     let folder = tempfile::tempdir().expect("a folder");
     let people = People::new();
     let origins = Origins::read(["https://plots.example"]).expect("an origin");
-    let access = Access::new(Door::with(people.tokens()), Rates::default(), origins);
+    let access = Access::new(AccessPolicy::with(people.tokens()), Rates::default(), origins);
     let server = start(folder.path(), access).await;
     let asked = async |origin: &str| {
         let ask = server.ask(Method::OPTIONS, "/v1/jobs").header("origin", origin);

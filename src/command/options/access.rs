@@ -4,7 +4,7 @@ use crate::command::output::outcome::Failure;
 use crate::service::http::access::origins::Origins;
 use crate::service::http::access::rates::Rates;
 use crate::service::http::access::tokens::Tokens;
-use crate::service::http::access::{Access, Door};
+use crate::service::http::access::{Access, AccessPolicy};
 use crate::service::http::listen::Connections;
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use std::net::SocketAddr;
@@ -50,13 +50,13 @@ impl Arguments {
     /// An address that others reach without a word about who may call, or a file of tokens that is none.
     pub fn access(&self, listen: SocketAddr) -> Result<Access, Failure> {
         let loopback = listen.ip().is_loopback();
-        let door = match (&self.tokens_file, self.open) {
+        let policy = match (&self.tokens_file, self.open) {
             (Some(_), true) => {
                 return Err(bad("--tokens-file asks for tokens and --open for none: give one of them".to_owned()));
             }
-            (Some(_), false) => Door::with(self.tokens()?),
-            (None, true) => Door::Open,
-            (None, false) if loopback => Door::Loopback,
+            (Some(_), false) => AccessPolicy::with(self.tokens()?),
+            (None, true) => AccessPolicy::Open,
+            (None, false) if loopback => AccessPolicy::Loopback,
             (None, false) => {
                 return Err(bad(format!(
                     "--listen {listen}: other machines reach that; say who may call: --tokens-file FILE \
@@ -74,7 +74,7 @@ impl Arguments {
         );
         let origins = Origins::read(self.allow_origin.iter().map(String::as_str))
             .map_err(|detail| bad(format!("--allow-origin: {detail}")))?;
-        Ok(Access::new(door, Rates::new(rate(self.address_rate), rate(self.token_rate)), origins))
+        Ok(Access::new(policy, Rates::new(rate(self.address_rate), rate(self.token_rate)), origins))
     }
 
     /// As many as are asked for, or as the process may open files for.

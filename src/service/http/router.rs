@@ -4,7 +4,7 @@ use crate::service::http::access::{admission, headers};
 use crate::service::http::calls::{
     follow, increments, jobs, metrics, openapi, probes, request, scenes, studies, sweeps,
 };
-use crate::service::http::input::parameters::{self, Without};
+use crate::service::http::input::parameters::{self, CallsWithoutParameters};
 use crate::service::http::state::service::Service;
 use crate::service::http::{answer, dashboard, document, request_id};
 use crate::service::jobs::Limits;
@@ -51,17 +51,17 @@ fn api() -> OpenApiRouter<Service> {
         .routes(routes!(metrics::metrics))
 }
 
-/// The OpenAPI document as it is committed, and served where the limits are the defaults.
+/// The OpenAPI document with the default limits, as it is committed.
 pub fn openapi_json() -> serde_json::Result<String> {
     document::finish(api().into_openapi(), &Limits::default(), false)
 }
 
-/// Every route, with what applies to all of them.
+/// Every route, and the layers that apply to all of them.
 pub fn router(service: Service) -> serde_json::Result<Router> {
     let (routes, description) = api().split_for_parts();
     let limits = service.jobs.settings.limits;
     let (access, jobs) = (service.access.clone(), service.jobs.clone());
-    let without = Without::of(&description);
+    let without = CallsWithoutParameters::of(&description);
     dashboard::prepare();
     let description: Arc<str> = document::finish(description, &limits, access.asks_tokens())?.into();
     let routes = routes
@@ -74,7 +74,7 @@ pub fn router(service: Service) -> serde_json::Result<Router> {
         .layer(from_fn_with_state(access.clone(), admission::admit))
         .layer(CatchPanicLayer::custom(answer::problem::from_panic))
         .layer(from_fn(answer::problem::every_error));
-    // Outside of what refuses: a page that may call may also read why it was refused.
+    // Outside of the layers that refuse requests: an allowed page may also read why a request was refused.
     let routes = match access.origins().layer() {
         Some(layer) => routes.layer(layer),
         None => routes,

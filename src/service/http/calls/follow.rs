@@ -1,4 +1,4 @@
-//! A new job along a direction of another.
+//! Queues a job that follows a direction of another job.
 
 use crate::model::FollowRequest;
 use crate::service::http::answer::problem::Problem;

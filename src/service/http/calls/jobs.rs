@@ -5,7 +5,7 @@ use crate::result::plan::Plan;
 use crate::service::http::answer::problem::Problem;
 use crate::service::http::answer::tag;
 use crate::service::http::document;
-use crate::service::http::input::extract::{Parameters, Taken};
+use crate::service::http::input::extract::{Parameters, QueryParameters};
 use crate::service::http::state::service::Service;
 use crate::service::http::tasks::requester::{ListQuery, Requester};
 use crate::service::http::tasks::resource::Resource;
@@ -69,8 +69,8 @@ pub struct ListParameters {
     limit: Option<u32>,
 }
 
-impl Taken for ListParameters {
-    const TAKEN: &'static [(&'static str, &'static str)] = &[
+impl QueryParameters for ListParameters {
+    const EXPECTED: &'static [(&'static str, &'static str)] = &[
         ("status", "`queued`, `running`, `completed`, `stopped`, `cancelled` or `failed`"),
         ("sweep", "the id of a sweep, a UUID,"),
         ("parent", "the id of a job, a UUID,"),
@@ -108,7 +108,7 @@ pub async fn get(target: Target<Job>) -> Result<Response, Problem> {
         job.progress.locating_bifurcation = locating_bifurcation && !is_finished;
         tag::json(&headers, is_finished, &job)
     };
-    service.aside.make(bytes, shown).await
+    service.offload.run(bytes, shown).await
 }
 
 /// Stop a job within one iteration; what is stored is kept. An ended job stays as it is.

@@ -1,4 +1,4 @@
-//! What is measured: of every call as it is answered, and all of it for whoever asks.
+//! Metrics: every call is counted and timed, and all metrics of the service can be read.
 
 use crate::service::http::answer::problem::{Kind, Problem};
 use crate::service::http::document;
@@ -12,7 +12,7 @@ use axum::response::{IntoResponse, Response};
 use std::time::{Duration, Instant};
 use tokio::time::timeout;
 
-/// Where the store does not answer in time, all else is told without the jobs.
+/// If the store does not answer within this time, the metrics are answered without the jobs.
 const PATIENCE: Duration = Duration::from_secs(3);
 
 /// What the service counts and times, for Prometheus.
@@ -28,15 +28,15 @@ pub async fn metrics(State(service): State<Service>) -> Result<Response, Problem
     let jobs = match timeout(PATIENCE, service.jobs.store().tally()).await {
         Ok(Ok(tally)) => tally.into_iter().map(|(status, count)| (status.name(), count)).collect(),
         Ok(Err(error)) => {
-            tracing::warn!(%error, "jobs could not be told by status");
+            tracing::warn!(%error, "jobs could not be counted by status");
             Vec::new()
         }
         Err(_) => {
-            tracing::warn!("jobs could not be told by status: the database does not answer");
+            tracing::warn!("jobs could not be counted by status: the database does not answer");
             Vec::new()
         }
     };
-    let (workers_alive, workers_expected) = (service.attendance.alive(), service.attendance.expected());
+    let (workers_alive, workers_expected) = (service.worker_count.alive(), service.worker_count.expected());
     let text = service.jobs.metrics().text(&Reading { jobs, workers_alive, workers_expected }).map_err(|error| {
         tracing::error!(%error, "the metrics cannot be written");
         Problem::new(Kind::Internal, "the metrics cannot be written")

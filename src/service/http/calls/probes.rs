@@ -1,4 +1,4 @@
-//! Whether the service is alive, and whether it can do its work.
+//! Probes: whether the service is alive, and whether it is ready to work.
 
 use crate::service::http::answer::problem::{Kind, Problem};
 use crate::service::http::document;
@@ -10,7 +10,7 @@ use axum::extract::State;
 use std::time::Duration;
 use tokio::time::timeout;
 
-/// A probe that has to wait longer for the database counts as failed.
+/// A probe fails if the database does not answer within this time.
 const PATIENCE: Duration = Duration::from_secs(3);
 
 /// The process answers.
@@ -31,11 +31,11 @@ pub async fn ready(State(service): State<Service>) -> Result<Json<Readiness>, Pr
     if service.shutdown.is_cancelled() {
         return Err(Problem::new(Kind::Unavailable, "the service is going down"));
     }
-    if !service.attendance.is_complete() {
+    if !service.worker_count.is_complete() {
         return Err(Problem::new(Kind::Unavailable, "a worker has ended"));
     }
     match timeout(PATIENCE, service.jobs.store().probe()).await {
-        Ok(Ok(())) => Ok(Json(Readiness { status: "ready", workers: service.attendance.alive() })),
+        Ok(Ok(())) => Ok(Json(Readiness { status: "ready", workers: service.worker_count.alive() })),
         Ok(Err(error @ StoreError::Damaged(_))) => {
             tracing::error!(%error, "the database is damaged");
             Err(Problem::new(Kind::Unavailable, "the database is damaged; a copy of it has to be restored"))

@@ -1,4 +1,4 @@
-//! What a job was asked to do.
+//! The stored request of a job.
 
 use crate::model::JobRequest;
 use crate::service::http::answer::problem::Problem;
@@ -18,8 +18,8 @@ pub async fn request(target: Target<Job>) -> Result<Response, Problem> {
     target.standing().await?;
     let Target { service, id, headers, .. } = target;
     let text = service.jobs.store().request(id).await?.ok_or_else(|| Problem::not_found(format_args!("such job")))?;
-    // It never changes, whatever becomes of the job.
+    // The request never changes, so that its tag holds before the job has ended.
     let bytes = text.len();
     let make = move || tag::bytes(&headers, true, [(header::CONTENT_TYPE, "application/json")], text);
-    service.aside.make(bytes, make).await
+    service.offload.run(bytes, make).await
 }

@@ -6,7 +6,7 @@ use crate::service::http::answer::tag;
 use crate::service::http::document;
 use crate::service::http::input::extract::Parameters;
 use crate::service::http::state::service::Service;
-use crate::service::http::tasks::findings::{Finding, Material, SoFar};
+use crate::service::http::tasks::findings::{FindingsSoFar, StoredFindings, WithFindings};
 use crate::service::http::tasks::requester::{ListByStatus, Requester};
 use crate::service::http::tasks::resource::Resource;
 use crate::service::http::tasks::stream::stream_lines;
@@ -42,11 +42,11 @@ impl Resource for Study {
     }
 }
 
-impl Finding for Study {
+impl WithFindings for Study {
     type Findings = Report;
 
-    /// A problem before its first path.
-    async fn material(target: &Target<Self>) -> Result<Material<Report>, Problem> {
+    /// A problem before the first path has been traced.
+    async fn stored_findings(target: &Target<Self>) -> Result<StoredFindings<Report>, Problem> {
         let (id, study) = (target.id, target.find().await?);
         let lines =
             if study.report.is_some() { Vec::new() } else { target.service.jobs.lines_of_study(&study).await? };
@@ -58,7 +58,7 @@ impl Finding for Study {
                 Problem::not_found(format_args!("table of study {id}: no path of it has been traced yet"))
             }),
         };
-        Ok(Material { bytes, is_finished, read: Box::new(read) })
+        Ok(StoredFindings { bytes, is_finished, read: Box::new(read) })
     }
 }
 
@@ -110,7 +110,7 @@ pub async fn get(target: Target<Study>) -> Result<Response, Problem> {
         let report = studies::found(&study, &lines)?;
         tag::json(&headers, study.status.is_ended(), &StudyWithReport::so_far(study, report.as_ref())?)
     };
-    service.aside.make(bytes, make).await
+    service.offload.run(bytes, make).await
 }
 
 /// Follow a study: its rows as paths are traced, then its end.
@@ -157,7 +157,7 @@ pub async fn delete(target: Target<Study>) -> Result<StatusCode, Problem> {
     responses((status = 200, description = "The table; one line a row.", body = String, content_type = "text/csv"))
 )]
 pub async fn table_csv(target: Target<Study>) -> Result<Response, Problem> {
-    target.found(SoFar::csv).await
+    target.found(FindingsSoFar::csv).await
 }
 
 /// The rows found so far, as columns of text.
@@ -166,7 +166,7 @@ pub async fn table_csv(target: Target<Study>) -> Result<Response, Problem> {
     responses((status = 200, description = "The table, for a reader.", body = String, content_type = "text/plain"))
 )]
 pub async fn table_txt(target: Target<Study>) -> Result<Response, Problem> {
-    target.found(SoFar::text).await
+    target.found(FindingsSoFar::text).await
 }
 
 /// Error against time so far, on logarithmic scales, one line a method.
@@ -177,5 +177,5 @@ pub async fn table_txt(target: Target<Study>) -> Result<Response, Problem> {
     responses((status = 200, description = "The picture.", body = String, content_type = "image/svg+xml"))
 )]
 pub async fn picture(target: Target<Study>) -> Result<Response, Problem> {
-    target.found(SoFar::picture).await
+    target.found(FindingsSoFar::picture).await
 }

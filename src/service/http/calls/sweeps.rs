@@ -3,9 +3,9 @@
 use crate::model::SweepRequest;
 use crate::service::http::answer::problem::{Kind, Problem};
 use crate::service::http::document;
-use crate::service::http::input::extract::{Parameters, Taken, bounded, index};
+use crate::service::http::input::extract::{Parameters, QueryParameters, bounded, index};
 use crate::service::http::state::service::Service;
-use crate::service::http::tasks::findings::{Finding, Material, SoFar};
+use crate::service::http::tasks::findings::{FindingsSoFar, StoredFindings, WithFindings};
 use crate::service::http::tasks::requester::{ListByStatus, Requester};
 use crate::service::http::tasks::resource::Resource;
 use crate::service::http::tasks::stream::stream_lines;
@@ -24,7 +24,7 @@ use serde::Deserialize;
 use uuid::Uuid;
 
 const ROWS: u32 = 1_000;
-/// Bytes of what a table or a picture is made of: it is held in memory.
+/// Bytes of the rows of a table or picture, which are held in memory.
 const MOST_OF_A_TABLE: usize = 64 << 20;
 
 impl Resource for Sweep {
@@ -39,7 +39,7 @@ impl Resource for Sweep {
             let variation = serde_json::from_str(&variation)?;
             Ok::<_, Problem>(Json(SweepPlan { runs, variation }).into_response())
         };
-        service.aside.make(bytes, make).await
+        service.offload.run(bytes, make).await
     }
 
     async fn submitted(
@@ -52,10 +52,10 @@ impl Resource for Sweep {
     }
 }
 
-impl Finding for Sweep {
+impl WithFindings for Sweep {
     type Findings = Found;
 
-    async fn material(target: &Target<Self>) -> Result<Material<Found>, Problem> {
+    async fn stored_findings(target: &Target<Self>) -> Result<StoredFindings<Found>, Problem> {
         let (id, sweep) = (target.id, target.find().await?);
         let lines = target.service.jobs.lines(id, None, MOST_OF_A_TABLE).await?;
         let bytes = sweep.bytes() + lines.iter().map(|line| line.body.len()).sum::<usize>();
@@ -65,7 +65,7 @@ impl Finding for Sweep {
             return Err(Problem::new(Kind::AnswerTooLarge, detail));
         }
         let is_finished = sweep.status.is_ended();
-        Ok(Material { bytes, is_finished, read: Box::new(move || Ok(sweeps::found(sweep, &lines)?)) })
+        Ok(StoredFindings { bytes, is_finished, read: Box::new(move || Ok(sweeps::found(sweep, &lines)?)) })
     }
 }
 
@@ -120,8 +120,8 @@ pub struct RowParameters {
     limit: Option<u32>,
 }
 
-impl Taken for RowParameters {
-    const TAKEN: &'static [(&'static str, &'static str)] =
+impl QueryParameters for RowParameters {
+    const EXPECTED: &'static [(&'static str, &'static str)] =
         &[("after", "the place of a row, 0 or more,"), ("limit", "a whole number from 1 to 1000")];
 }
 
@@ -182,7 +182,7 @@ pub async fn delete(target: Target<Sweep>) -> Result<StatusCode, Problem> {
     responses((status = 200, description = "The table; one line a run.", body = String, content_type = "text/csv"))
 )]
 pub async fn table_csv(target: Target<Sweep>) -> Result<Response, Problem> {
-    target.found(SoFar::csv).await
+    target.found(FindingsSoFar::csv).await
 }
 
 /// The runs that have ended, as columns of text.
@@ -191,7 +191,7 @@ pub async fn table_csv(target: Target<Sweep>) -> Result<Response, Problem> {
     responses((status = 200, description = "The table, for a reader.", body = String, content_type = "text/plain"))
 )]
 pub async fn table_txt(target: Target<Sweep>) -> Result<Response, Problem> {
-    target.found(SoFar::text).await
+    target.found(FindingsSoFar::text).await
 }
 
 /// The first limit load against the first parameter, one line for each set of values of the others.
@@ -200,5 +200,5 @@ pub async fn table_txt(target: Target<Sweep>) -> Result<Response, Problem> {
     responses((status = 200, description = "The picture.", body = String, content_type = "image/svg+xml"))
 )]
 pub async fn picture(target: Target<Sweep>) -> Result<Response, Problem> {
-    target.found(SoFar::picture).await
+    target.found(FindingsSoFar::picture).await
 }

@@ -130,7 +130,7 @@ fn scene() -> serde_json::Result<Value> {
     serde_json::from_str(scenes::find(EXAMPLE).map_or("{}", |scene| scene.request))
 }
 
-/// A parameter that is left out is not there: `null` is no value of it.
+/// Removes `null` from the values of a parameter: an optional parameter is left out instead.
 fn never_null(parameter: &mut Parameter) {
     match &mut parameter.schema {
         Some(RefOr::T(Schema::Object(object))) => {

@@ -1,4 +1,4 @@
-//! Which of the media types on offer a client prefers: the `Accept` header (RFC 9110, section 12.5.1).
+//! Content negotiation: which of the offered media types a client prefers (`Accept`, RFC 9110, section 12.5.1).
 
 use axum::http::{HeaderMap, header};
 use std::cmp::Reverse;
@@ -7,13 +7,12 @@ use std::cmp::Reverse;
 struct Range<'a> {
     kind: &'a str,
     subtype: &'a str,
-    /// In thousandths; 0 is a refusal.
+    /// In thousandths; 0 refuses the range.
     weight: u16,
 }
 
-/// The number of the media type that the client prefers: that of the largest weight, then that which is named most
-/// exactly, then that which is named first, then the first on offer. The first where there is no header; none where the
-/// client takes none of them.
+/// The index of the media type that the client prefers. The largest weight decides, then the most specific range, then the
+/// order of the ranges, then the order of the offers. `Some(0)` without the header; `None` if the client accepts no offer.
 pub fn preferred(headers: &HeaderMap, offered: &[&str]) -> Option<usize> {
     let values: Vec<&str> =
         headers.get_all(header::ACCEPT).iter().map(|value| value.to_str().unwrap_or_default()).collect();
@@ -27,14 +26,14 @@ pub fn preferred(headers: &HeaderMap, offered: &[&str]) -> Option<usize> {
             .iter()
             .enumerate()
             .filter_map(|(place, range)| Some((exactness(range, kind, subtype)?, Reverse(place), range.weight)));
-        // The most exact range decides, even where it refuses what a wider one takes.
+        // The most specific range decides, even if it refuses what a wider range accepts.
         let (exactness, place, weight) = named.max()?;
         (weight > 0).then_some((weight, exactness, place, Reverse(number)))
     });
     standings.max().map(|(_, _, _, Reverse(number))| number)
 }
 
-/// None where it is malformed.
+/// Parses a media range; `None` if it is malformed.
 fn range(text: &str) -> Option<Range<'_>> {
     let mut parts = text.split(';').map(str::trim);
     let (kind, subtype) = parts.next()?.split_once('/')?;

@@ -1,4 +1,4 @@
-//! What calls read from requests; every refusal is a problem.
+//! Extractors of bodies, parameters and headers; every rejection is a problem.
 
 use crate::model::input::names::{quoted, suggestion};
 use crate::service::http::access::rates::subscriber;
@@ -13,12 +13,12 @@ use serde::de::DeserializeOwned;
 use std::net::SocketAddr;
 use uuid::Uuid;
 
-/// Characters of an idempotency key.
+/// Characters of the longest idempotency key.
 pub const LONGEST_KEY: usize = 255;
-/// Of an increment or row: the largest that can be stored.
+/// The largest index of an increment or row that can be stored.
 const LARGEST_INDEX: u64 = i64::MAX as u64;
 
-/// A JSON body as it came, with its room among those that are held; who reads it says what is wrong with it.
+/// The unparsed text of a JSON body, and the room that it takes among all bodies held.
 pub struct JsonText(pub Posted);
 
 impl FromRequest<Service> for JsonText {
@@ -38,7 +38,7 @@ impl FromRequest<Service> for JsonText {
     }
 }
 
-/// Whose turn a request takes: its owner's, or where nobody has to say who they are its address's.
+/// The client for whom a request is checked: its owner, or its address where the service asks for no tokens.
 fn client(request: &Request) -> Client {
     if let Some(Caller::Named { owner, .. }) = request.extensions().get::<Caller>() {
         return Client(owner.clone());
@@ -53,7 +53,7 @@ fn is_json(headers: &HeaderMap) -> bool {
     essence.trim().eq_ignore_ascii_case("application/json")
 }
 
-/// The id in the address, of a job or a study.
+/// The id of a job, study or sweep in the address.
 pub struct JobId(pub Uuid);
 
 impl<S: Send + Sync> FromRequestParts<S> for JobId {
@@ -67,16 +67,16 @@ impl<S: Send + Sync> FromRequestParts<S> for JobId {
     }
 }
 
-/// Parameters of a query, every one of which may be left out.
-pub trait Taken: DeserializeOwned {
-    /// Their names, each with what it takes.
-    const TAKEN: &'static [(&'static str, &'static str)];
+/// The parameters of a query, all of them optional.
+pub trait QueryParameters: DeserializeOwned {
+    /// The names of the parameters, each with the values that are expected.
+    const EXPECTED: &'static [(&'static str, &'static str)];
 }
 
-/// The query's parameters.
+/// Extracts the parameters of the query.
 pub struct Parameters<T>(pub T);
 
-impl<S: Send + Sync, T: Taken> FromRequestParts<S> for Parameters<T> {
+impl<S: Send + Sync, T: QueryParameters> FromRequestParts<S> for Parameters<T> {
     type Rejection = Problem;
 
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
@@ -87,15 +87,15 @@ impl<S: Send + Sync, T: Taken> FromRequestParts<S> for Parameters<T> {
     }
 }
 
-/// Says which parameter is wrong: each is read by itself, and the first that cannot be is named.
-fn refused_query<T: Taken>(query: &str) -> Problem {
+/// Names the first wrong parameter: each is parsed by itself.
+fn refused_query<T: QueryParameters>(query: &str) -> Problem {
     let mut seen = Vec::new();
     for part in query.split('&') {
         let Ok(alone) = Uri::builder().path_and_query(format!("/?{part}")).build() else { continue };
         let pairs = Query::<Vec<(String, String)>>::try_from_uri(&alone).map(|Query(pairs)| pairs);
         let Some((name, value)) = pairs.unwrap_or_default().into_iter().next() else { continue };
-        let Some((_, takes)) = T::TAKEN.iter().find(|(known, _)| *known == name) else {
-            let known = suggestion(&name, T::TAKEN.iter().map(|(known, _)| *known));
+        let Some((_, takes)) = T::EXPECTED.iter().find(|(known, _)| *known == name) else {
+            let known = suggestion(&name, T::EXPECTED.iter().map(|(known, _)| *known));
             return Problem::new(Kind::InvalidParameter, format!("there is no parameter {}{known}", quoted(&name)));
         };
         if Query::<T>::try_from_uri(&alone).is_err() {
@@ -109,7 +109,7 @@ fn refused_query<T: Taken>(query: &str) -> Problem {
     Problem::new(Kind::InvalidParameter, "the query cannot be read; `name=value` joined by `&` is expected")
 }
 
-/// A header that says one thing.
+/// A header that may occur only once.
 fn only<'a>(name: &str, headers: &'a HeaderMap) -> Result<Option<&'a HeaderValue>, Problem> {
     let mut all = headers.get_all(name).iter();
     match (all.next(), all.next()) {
@@ -140,7 +140,7 @@ pub fn last_event_id(event: &str, headers: &HeaderMap) -> Result<Option<u64>, Pr
     text.parse().ok().filter(|index| *index <= LARGEST_INDEX).map(Some).ok_or_else(refuse)
 }
 
-/// An index within what one can be.
+/// An index that is not larger than the largest one.
 pub fn index(name: &str, given: Option<u64>) -> Result<Option<u64>, Problem> {
     match given {
         Some(found) if found > LARGEST_INDEX => {
@@ -150,7 +150,7 @@ pub fn index(name: &str, given: Option<u64>) -> Result<Option<u64>, Problem> {
     }
 }
 
-/// A number within its bounds, or the default.
+/// A number from 1 to `largest`, or the default.
 pub fn bounded(name: &str, given: Option<u32>, default: u32, largest: u32) -> Result<u32, Problem> {
     match given {
         None => Ok(default),

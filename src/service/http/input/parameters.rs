@@ -1,5 +1,5 @@
-//! Parameters of a call that has none are refused: what somebody meant by them would not be done. Calls that have some read
-//! them by [`extract`](crate::service::http::input::extract), which refuses others.
+//! Refuses queries of calls that have no query parameters, as their parameters would be ignored. Calls that have some read
+//! them with [`extract`](crate::service::http::input::extract), which refuses others.
 
 use crate::model::input::names::quoted;
 use crate::service::http::answer::problem::{Kind, Problem};
@@ -12,11 +12,11 @@ use std::sync::Arc;
 use utoipa::openapi::path::{Operation, ParameterIn};
 use utoipa::openapi::{OpenApi, RefOr};
 
-/// Every described call whose query has no parameters.
+/// The calls without query parameters, by method and route.
 #[derive(Debug, Clone)]
-pub struct Without(Arc<HashSet<(Method, String)>>);
+pub struct CallsWithoutParameters(Arc<HashSet<(Method, String)>>);
 
-impl Without {
+impl CallsWithoutParameters {
     pub fn of(description: &OpenApi) -> Self {
         let mut without = HashSet::new();
         for (path, item) in &description.paths.paths {
@@ -39,17 +39,17 @@ fn has_parameters(operation: &Operation) -> bool {
 }
 
 /// Refuses a query of a call that has no parameters.
-pub async fn refuse_unknown(State(without): State<Without>, request: Request, next: Next) -> Response {
+pub async fn refuse_unknown(State(without): State<CallsWithoutParameters>, request: Request, next: Next) -> Response {
     match unknown(&without, &request) {
         Some(problem) => problem.into_response(),
         None => next.run(request).await,
     }
 }
 
-fn unknown(without: &Without, request: &Request) -> Option<Problem> {
+fn unknown(without: &CallsWithoutParameters, request: &Request) -> Option<Problem> {
     request.uri().query().filter(|query| !query.is_empty())?;
     let path = request.extensions().get::<MatchedPath>()?.as_str().to_owned();
-    // What answers GET answers HEAD.
+    // HEAD is answered by the calls for GET.
     let method = if request.method() == Method::HEAD { Method::GET } else { request.method().clone() };
     if !without.0.contains(&(method, path)) {
         return None;

@@ -1,4 +1,5 @@
-//! Bodies as they are read: each takes room for the bytes that have come, and none for those that it announces.
+//! Reads bodies within a bound on the memory of all bodies: each reserves room for the bytes received, not for the announced
+//! length.
 
 use crate::service::http::answer::problem::{Kind, Problem};
 use axum::body::{Body, HttpBody};
@@ -8,31 +9,31 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::{Instant, timeout_at};
 use tokio_stream::StreamExt;
 
-/// A body has to come within so long.
+/// A body has to be received within this time.
 const WHOLE: Duration = Duration::from_secs(60);
-/// Room is counted in so many bytes ...
+/// Bytes of a unit of room.
 const UNIT: usize = 4096;
-/// ... and there is so much of it: 256 MiB for all that are held.
+/// Units of room for all bodies: 256 MiB.
 const UNITS: usize = 65_536;
 
-/// Room for all bodies of a service.
+/// The room for all bodies of a service.
 #[derive(Debug, Clone)]
 pub struct Bodies {
     room: Arc<Semaphore>,
-    /// One body may go on past the room, so that those which together hold all of it do not wait for each other.
+    /// One body may exceed the room, so that bodies which together hold all of it do not wait for each other.
     past: Arc<Semaphore>,
 }
 
-/// A body and its room, which is given back when this is dropped.
+/// A body and its room, which is released on drop.
 #[derive(Debug, Default)]
 pub struct Read {
     pub text: Vec<u8>,
-    pub taken: Taken,
+    pub taken: HeldRoom,
 }
 
-/// Room that is taken.
+/// Reserved room.
 #[derive(Debug, Default)]
-pub struct Taken {
+pub struct HeldRoom {
     room: Option<OwnedSemaphorePermit>,
     past: Option<OwnedSemaphorePermit>,
 }
@@ -44,14 +45,14 @@ impl Default for Bodies {
 }
 
 impl Bodies {
-    /// Reads a body of at most so many bytes.
+    /// Reads a body of at most `most` bytes.
     ///
     /// # Errors
-    /// It is larger, breaks off, or does not come in time; waiting for room counts, so that who is slow takes it from nobody
-    /// for longer than that.
+    /// The body is larger, is incomplete, or is not received in time. Waiting for room counts, so that a slow client does not
+    /// hold room for longer than that.
     pub async fn read(&self, body: Body, most: usize) -> Result<Read, Problem> {
         let too_large = || Problem::new(Kind::BodyTooLarge, format!("at most {most} bytes are taken"));
-        // What is announced as too large need not be sent.
+        // A body that is announced as too large is refused before it is sent.
         if body.size_hint().lower() > most as u64 {
             return Err(too_large());
         }
@@ -70,8 +71,8 @@ impl Bodies {
         }
     }
 
-    /// Takes room until there is enough for so many bytes.
-    async fn make_room(&self, taken: &mut Taken, bytes: usize) -> Result<(), Problem> {
+    /// Reserves room until there is enough for `bytes`.
+    async fn make_room(&self, taken: &mut HeldRoom, bytes: usize) -> Result<(), Problem> {
         let held = taken.room.as_ref().map_or(0, OwnedSemaphorePermit::num_permits);
         let lacking = bytes.div_ceil(UNIT).saturating_sub(held);
         if lacking == 0 || taken.past.is_some() {

@@ -1,4 +1,4 @@
-//! What studies and sweeps have found, as tables and as a picture.
+//! The findings of studies and sweeps, as tables and as a picture.
 
 use crate::service::http::answer::problem::{Kind, Problem};
 use crate::service::http::answer::tag;
@@ -11,49 +11,51 @@ use axum::http::{HeaderMap, header};
 use axum::response::Response;
 use uuid::Uuid;
 
-/// What finds something that is read as tables and drawn.
-pub trait Finding: Resource {
+/// A resource whose findings are answered as tables and as a picture.
+pub trait WithFindings: Resource {
     type Findings: Findings + 'static;
 
-    /// What its findings so far are read from.
-    fn material(target: &Target<Self>) -> impl Future<Output = Result<Material<Self::Findings>, Problem>> + Send;
+    /// The stored form of the findings so far.
+    fn stored_findings(
+        target: &Target<Self>,
+    ) -> impl Future<Output = Result<StoredFindings<Self::Findings>, Problem>> + Send;
 }
 
-/// Findings that have still to be read from what is stored of them.
-pub struct Material<F> {
-    /// Of what is stored.
+/// Stored findings that have not been parsed yet.
+pub struct StoredFindings<F> {
+    /// Bytes of the stored text.
     pub bytes: usize,
-    /// Nothing is added any more.
+    /// The findings are complete.
     pub is_finished: bool,
     pub read: Box<dyn FnOnce() -> Result<F, Problem> + Send>,
 }
 
-impl<T: Finding> Target<T> {
-    /// An answer of what has been found so far.
+impl<T: WithFindings> Target<T> {
+    /// Answers the findings so far.
     ///
     /// # Errors
-    /// As for [`find`](Self::find); what is stored is none of its findings; those of the answer.
+    /// As for [`find`](Self::find); stored findings that cannot be parsed; the errors of `answer`.
     pub(crate) async fn found(
         self,
-        answer: fn(&SoFar<T::Findings>, &HeaderMap) -> Result<Response, Problem>,
+        answer: fn(&FindingsSoFar<T::Findings>, &HeaderMap) -> Result<Response, Problem>,
     ) -> Result<Response, Problem> {
-        let Material { bytes, is_finished, read } = T::material(&self).await?;
+        let StoredFindings { bytes, is_finished, read } = T::stored_findings(&self).await?;
         let Self { service, id, headers, .. } = self;
-        let make = move || answer(&SoFar { task: T::TASK, id, findings: read()?, is_finished }, &headers);
-        service.aside.make(bytes, make).await
+        let make = move || answer(&FindingsSoFar { task: T::TASK, id, findings: read()?, is_finished }, &headers);
+        service.offload.run(bytes, make).await
     }
 }
 
-/// What has been found by a study or a sweep so far.
-pub(crate) struct SoFar<F> {
+/// The findings of a study or sweep so far.
+pub(crate) struct FindingsSoFar<F> {
     pub task: Task,
     pub id: Uuid,
     pub findings: F,
-    /// Nothing is added any more.
+    /// The findings are complete.
     pub is_finished: bool,
 }
 
-impl<F: Findings> SoFar<F> {
+impl<F: Findings> FindingsSoFar<F> {
     /// The table as a file of comma-separated values.
     ///
     /// # Errors

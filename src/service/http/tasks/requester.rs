@@ -1,7 +1,7 @@
 //! Who makes a request, and the lists of resources that they see.
 
 use crate::service::http::answer::problem::{Kind, Problem};
-use crate::service::http::input::extract::{Taken, bounded};
+use crate::service::http::input::extract::{QueryParameters, bounded};
 use crate::service::http::state::service::Service;
 use crate::service::http::tasks::resource::Resource;
 use crate::service::jobs::Caller;
@@ -29,8 +29,8 @@ pub struct ListByStatus {
     limit: Option<u32>,
 }
 
-impl Taken for ListByStatus {
-    const TAKEN: &'static [(&'static str, &'static str)] = &[
+impl QueryParameters for ListByStatus {
+    const EXPECTED: &'static [(&'static str, &'static str)] = &[
         ("status", "`queued`, `running`, `completed`, `stopped`, `cancelled` or `failed`"),
         ("cursor", "the `next_cursor` of the page before, a UUID,"),
         ("limit", "a whole number from 1 to 200"),
@@ -85,7 +85,7 @@ impl Requester {
         let next_cursor = jobs.last().map(|record| record.id).filter(|_| more);
         let bytes = jobs.iter().map(JobRecord::bytes).sum();
         let made =
-            service.aside.make(bytes, move || jobs.into_iter().map(T::Listed::try_from).collect::<Result<_, _>>());
+            service.offload.run(bytes, move || jobs.into_iter().map(T::Listed::try_from).collect::<Result<_, _>>());
         Ok((made.await?, next_cursor))
     }
 }

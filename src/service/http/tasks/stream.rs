@@ -1,8 +1,8 @@
 //! Streams of increments or rows: server-sent events, or lines of JSON.
 //!
-//! A stream subscribes first and reads the store then, again and again: whatever is stored after a reading wakes it, so
-//! there is no gap, and only what is stored is sent, so that a client which resumes sees every index once. Nothing is
-//! queued for a slow reader; it is served from the store at its own pace.
+//! A stream subscribes to changes before it reads the store, so that no line is missed. Only stored lines are sent, so that a
+//! client that resumes receives every index once. Nothing is queued for a slow reader, who is served from the store at its
+//! own pace.
 
 use crate::service::http::answer::problem::{Kind, Problem};
 use crate::service::http::input::accept::preferred;
@@ -29,12 +29,12 @@ use uuid::Uuid;
 const NDJSON: &str = "application/x-ndjson";
 const EVENT_STREAM: &str = "text/event-stream";
 const PAGE: Page = Page { rows: 200, bytes: 1 << 20 };
-/// Jobs solved by another process give no signal here; their streams look so often.
+/// Jobs solved by another process may give no signal here; their streams read the store at this interval.
 const LOOK_AGAIN: Duration = Duration::from_secs(1);
 const KEEP_ALIVE: Duration = Duration::from_secs(15);
-/// Streams read the store so many at a time, however many are open: half of its readers are left for the other calls.
+/// The number of streams that may read the store at a time: half of the store's readers are left for the other calls.
 pub const READING_AT_ONCE: usize = 2;
-/// When a client should come back after the service went down.
+/// After which time a client should reconnect when the service has shut down.
 const RETRY: Duration = Duration::from_secs(2);
 
 /// Streams the stored lines of a job, study or sweep as they come: its increments or its rows.
@@ -42,10 +42,10 @@ pub async fn stream_lines<T: Resource>(target: Target<T>) -> Result<Response, Pr
     let (task, format) = (T::TASK, Format::accepted(&target.headers)?);
     let after = last_event_id(event_name(task), &target.headers)?;
     let access = &target.service.access;
-    let until = Until { shutdown: target.service.shutdown.clone(), exchange: access.next_exchange() };
+    let until = StreamEnd { shutdown: target.service.shutdown.clone(), exchange: access.next_exchange() };
     target.standing().await?;
     let Target { service, id, .. } = target;
-    let followed = Followed { service, until, task, id, after };
+    let followed = Subscription { service, until, task, id, after };
     Ok(match format {
         Format::Events => {
             let as_they_come = [(header::CONTENT_TYPE, EVENT_STREAM), (header::CACHE_CONTROL, "no-cache")];
@@ -55,24 +55,24 @@ pub async fn stream_lines<T: Resource>(target: Target<T>) -> Result<Response, Pr
     })
 }
 
-/// What a stream is of.
-struct Followed {
+/// The job, study or sweep that a stream is about.
+struct Subscription {
     service: Service,
-    until: Until,
+    until: StreamEnd,
     task: Task,
     id: Uuid,
-    /// The last line that the client has.
+    /// The index of the last line that the client has received.
     after: Option<u64>,
 }
 
-/// When a stream ends before its job: the service goes down, or the tokens are exchanged, after which whoever comes back
-/// shows one that holds.
-struct Until {
+/// The signals that end a stream before its job: the service shuts down, or the tokens are replaced, after which a client has
+/// to reconnect with a valid token.
+struct StreamEnd {
     shutdown: CancellationToken,
     exchange: CancellationToken,
 }
 
-impl Until {
+impl StreamEnd {
     fn is_over(&self) -> bool {
         self.shutdown.is_cancelled() || self.exchange.is_cancelled()
     }
@@ -100,24 +100,24 @@ impl Format {
     }
 }
 
-/// What happens on a stream, in order; the last four end it.
-enum Happening {
-    /// Lines that were read together.
+/// The events of a stream, in order; the last four end it.
+enum StreamEvent {
+    /// Lines that were read at once.
     Lines(Vec<Line>),
-    /// With what has ended, as it is answered.
+    /// The job, study or sweep has ended; with its JSON.
     Ended(serde_json::Result<String>),
     Deleted,
     Interrupted,
     Failed(StoreError),
 }
 
-fn follow(followed: Followed) -> impl Stream<Item = Happening> {
-    let Followed { service, until, task, id, mut after } = followed;
+fn follow(followed: Subscription) -> impl Stream<Item = StreamEvent> {
+    let Subscription { service, until, task, id, mut after } = followed;
     stream! {
         let store = service.jobs.store();
         let streams = &service.jobs.metrics().streams;
         let _open = streams.open();
-        // When what has still to be read was stored, if that is known.
+        // The time at which the lines that have still to be read were stored, if known.
         let mut stored: Option<Instant> = None;
         let mut changes = store.job_changes(id);
         loop {
@@ -125,13 +125,13 @@ fn follow(followed: Followed) -> impl Stream<Item = Happening> {
             // The job before its increments: once it has ended, all of them are there to be read.
             let standing = match in_turn(&service, store.standing(id)).await {
                 Ok(Some(standing)) => standing,
-                Ok(None) => { yield Happening::Deleted; return; }
-                Err(error) => { yield Happening::Failed(error); return; }
+                Ok(None) => { yield StreamEvent::Deleted; return; }
+                Err(error) => { yield StreamEvent::Failed(error); return; }
             };
             while after < standing.last_index && !until.is_over() {
                 let page = match in_turn(&service, store.increments(id, after, PAGE)).await {
                     Ok(page) => page,
-                    Err(error) => { yield Happening::Failed(error); return; }
+                    Err(error) => { yield StreamEvent::Failed(error); return; }
                 };
                 // Deleted meanwhile.
                 let Some(last) = page.last() else { break };
@@ -139,21 +139,21 @@ fn follow(followed: Followed) -> impl Stream<Item = Happening> {
                 if let Some(at) = stored.take() {
                     streams.sent_after(at.elapsed());
                 }
-                yield Happening::Lines(page);
+                yield StreamEvent::Lines(page);
             }
             if until.is_over() {
-                yield Happening::Interrupted;
+                yield StreamEvent::Interrupted;
                 return;
             }
             if standing.status.is_ended() {
                 yield match store.job(id).await {
-                    Ok(Some(job)) => Happening::Ended(service.aside.make(job.bytes(), move || end(task, job)).await),
-                    Ok(None) => Happening::Deleted,
-                    Err(error) => Happening::Failed(error),
+                    Ok(Some(job)) => StreamEvent::Ended(service.offload.run(job.bytes(), move || end(task, job)).await),
+                    Ok(None) => StreamEvent::Deleted,
+                    Err(error) => StreamEvent::Failed(error),
                 };
                 return;
             }
-            // What a signal brings goes out as it is; what it does not bring is read.
+            // Lines that come with the signal are sent at once; other lines are read from the store.
             loop {
                 stored = None;
                 tokio::select! {
@@ -170,7 +170,7 @@ fn follow(followed: Followed) -> impl Stream<Item = Happening> {
                     if let Some(at) = stored.take() {
                         streams.sent_after(at.elapsed());
                     }
-                    yield Happening::Lines(lines.to_vec());
+                    yield StreamEvent::Lines(lines.to_vec());
                 }
                 if change.ended {
                     break;
@@ -181,13 +181,13 @@ fn follow(followed: Followed) -> impl Stream<Item = Happening> {
 }
 
 async fn in_turn<T>(service: &Service, reading: impl Future<Output = T>) -> T {
-    // Nobody closes it.
+    // The semaphore is never closed.
     let _turn = service.stream_turns.acquire().await;
     reading.await
 }
 
-fn events(followed: Followed) -> impl Stream<Item = io::Result<String>> {
-    // The request's span ends with its answer's head; what a stream has to say later still belongs to it.
+fn events(followed: Subscription) -> impl Stream<Item = io::Result<String>> {
+    // The span of a request ends with the head of its answer; later log messages of the stream belong to the span, too.
     let span = tracing::Span::current();
     let (task, id) = (followed.task, followed.id);
     stream! {
@@ -199,17 +199,17 @@ fn events(followed: Followed) -> impl Stream<Item = io::Result<String>> {
                 Err(_) => { yield Ok(": waiting\n\n".to_owned()); continue; }
             };
             yield Ok(span.in_scope(|| match happening {
-                // In one piece: each is sent for itself.
-                Happening::Lines(lines) => {
+                // One chunk for all lines, as each chunk is sent separately.
+                StreamEvent::Lines(lines) => {
                     let name = event_name(task);
                     let event = |line: &Line| format!("event: {name}\nid: {}\ndata: {}\n\n", line.index, line.body);
                     lines.iter().map(event).collect()
                 }
-                Happening::Ended(written) => last_event(id, written),
-                Happening::Deleted => format!("event: deleted\ndata: {{\"id\":\"{id}\"}}\n\n"),
-                Happening::Interrupted => come_back("the service goes down or its tokens have changed; come back"),
-                Happening::Failed(error) => {
-                    tracing::error!(%error, job = %id, "a stream broke off");
+                StreamEvent::Ended(written) => last_event(id, written),
+                StreamEvent::Deleted => format!("event: deleted\ndata: {{\"id\":\"{id}\"}}\n\n"),
+                StreamEvent::Interrupted => come_back("the service goes down or its tokens have changed; come back"),
+                StreamEvent::Failed(error) => {
+                    tracing::error!(%error, job = %id, "a stream failed");
                     come_back("the store is not available; come back")
                 }
             }));
@@ -246,7 +246,7 @@ fn end(task: Task, job: JobRecord) -> serde_json::Result<String> {
     }
 }
 
-/// What follows the last line of a path, which says itself that it is the end, or of a study or sweep, which does not.
+/// The line after the last row of a study or sweep; a path has none, as its last increment shows that it is the last.
 fn closing_line(task: Task, written: serde_json::Result<String>) -> Option<io::Result<String>> {
     match task {
         Task::Path => None,
@@ -257,21 +257,21 @@ fn closing_line(task: Task, written: serde_json::Result<String>) -> Option<io::R
     }
 }
 
-fn lines(followed: Followed) -> impl Stream<Item = io::Result<String>> {
-    // An error breaks the body off, so that a client can tell a whole path from a part of one.
+fn lines(followed: Subscription) -> impl Stream<Item = io::Result<String>> {
+    // An error truncates the body, so that a client can tell a complete path from a part of one.
     let broken = |why: &str| Some(Err(io::Error::other(why.to_owned())));
     let span = tracing::Span::current();
     let (task, id) = (followed.task, followed.id);
     follow(followed).filter_map(move |happening| {
         let _entered = span.enter();
         match happening {
-            // In one piece: each is sent for itself.
-            Happening::Lines(lines) => Some(Ok(lines.into_iter().map(|line| line.body + "\n").collect())),
-            Happening::Ended(written) => closing_line(task, written),
-            Happening::Deleted => broken("the job was deleted"),
-            Happening::Interrupted => broken("the service goes down or its tokens have changed"),
-            Happening::Failed(error) => {
-                tracing::error!(%error, job = %id, "a stream broke off");
+            // One chunk for all lines, as each chunk is sent separately.
+            StreamEvent::Lines(lines) => Some(Ok(lines.into_iter().map(|line| line.body + "\n").collect())),
+            StreamEvent::Ended(written) => closing_line(task, written),
+            StreamEvent::Deleted => broken("the job was deleted"),
+            StreamEvent::Interrupted => broken("the service goes down or its tokens have changed"),
+            StreamEvent::Failed(error) => {
+                tracing::error!(%error, job = %id, "a stream failed");
                 broken("the store is not available")
             }
         }

@@ -1,7 +1,7 @@
 //! Requests that are submitted: checked only, or queued.
 
 use crate::service::http::answer::problem::Problem;
-use crate::service::http::input::extract::{JsonText, Parameters, Taken, idempotency_key};
+use crate::service::http::input::extract::{JsonText, Parameters, QueryParameters, idempotency_key};
 use crate::service::http::state::service::Service;
 use crate::service::http::tasks::requester::Requester;
 use crate::service::http::tasks::resource::Resource;
@@ -23,8 +23,8 @@ pub struct SubmitParameters {
     validate: bool,
 }
 
-impl Taken for SubmitParameters {
-    const TAKEN: &'static [(&'static str, &'static str)] = &[("validate", "`true` or `false`")];
+impl QueryParameters for SubmitParameters {
+    const EXPECTED: &'static [(&'static str, &'static str)] = &[("validate", "`true` or `false`")];
 }
 
 /// A request that is submitted.
@@ -67,6 +67,7 @@ impl<T: Resource> Submission<T> {
 /// The answer to a queued request: the address of the resource, and the resource.
 pub async fn accepted<T: Resource>(service: &Service, record: JobRecord) -> Result<Response, Problem> {
     let location = (T::ADDRESS)(record.id);
-    let made = service.aside.make(record.bytes(), move || Ok::<_, Problem>(Json(T::try_from(record)?).into_response()));
+    let made =
+        service.offload.run(record.bytes(), move || Ok::<_, Problem>(Json(T::try_from(record)?).into_response()));
     Ok((StatusCode::ACCEPTED, [(header::LOCATION, location)], made.await?).into_response())
 }

@@ -64,7 +64,7 @@ impl<T: Resource> Target<T> {
     pub async fn shown<V: View>(self, record: JobRecord) -> Result<Response, Problem> {
         let Self { service, headers, .. } = self;
         let (bytes, is_finished) = (record.bytes(), record.status.is_ended());
-        service.aside.make(bytes, move || tag::json(&headers, is_finished, &V::try_from(record)?)).await
+        service.offload.run(bytes, move || tag::json(&headers, is_finished, &V::try_from(record)?)).await
     }
 
     /// Answers a page of at most `rows` stored lines past the index `after`, unchanged.
@@ -86,7 +86,7 @@ impl<T: Resource> Target<T> {
             let lines = lines.into_iter().map(|line| RawValue::from_string(line.body)).collect::<Result<_, _>>()?;
             tag::json(&headers, is_finished, &page(lines, next_after))
         };
-        service.aside.make(bytes, make).await
+        service.offload.run(bytes, make).await
     }
 
     /// Cancels the resource where it has not ended, and answers it.
@@ -98,7 +98,7 @@ impl<T: Resource> Target<T> {
         let record = service.jobs.cancel(&caller, T::TASK, id).await?;
         let bytes = record.bytes();
         let made = move || Ok::<_, Problem>(Json(T::try_from(record)?).into_response());
-        Ok((StatusCode::ACCEPTED, service.aside.make(bytes, made).await?).into_response())
+        Ok((StatusCode::ACCEPTED, service.offload.run(bytes, made).await?).into_response())
     }
 
     /// Cancels the resource and deletes what is stored of it.

@@ -1,5 +1,5 @@
-//! What one service takes, and how much of it one job may use. The limits of the [model](crate::model::input::limits) hold
-//! besides: a service may take less, never more.
+//! Limits on the requests that a service accepts and on the resources that a job may use. They can only be stricter than the
+//! limits of the [model](crate::model::input::limits).
 
 use crate::model::input::limits::{MAX_CONTACTS, MAX_ELEMENTS, MAX_INCREMENTS, MAX_NODES, MAX_TEXT_BYTES};
 use crate::model::{InputError, InputErrors, Model};
@@ -7,29 +7,29 @@ use crate::resources::budget::Bounds;
 use std::fmt;
 use std::time::Duration;
 
-/// Bytes of the requests of a sweep's runs in all: each is stored with its job.
+/// Total bytes of the requests of a sweep's runs, each of which is stored with its job.
 pub const MOST_SWEEP_BYTES: usize = 256 << 20;
 
-/// Every limit that whoever starts the service can set. A request past one is refused and names it; a job past one ends
-/// `stopped`.
+/// The limits that can be set when the service is started. A request that exceeds one is refused with its name; a job that
+/// exceeds one ends `stopped`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
-    /// Jobs and studies that wait at a time; what explorations queue counts, but is not refused.
+    /// Jobs and studies in the queue; the jobs of explorations count, but are not refused.
     pub queued: u64,
-    /// Bytes of a request's body.
+    /// Bytes of the body of a request.
     pub body_bytes: usize,
     pub nodes: usize,
     pub elements: usize,
     pub contacts: usize,
     /// `max_increments` of a job.
     pub increments: u64,
-    /// Time that checking a request may take, its waits for others not counted.
+    /// Time for the check of a request, without its waits for other checks.
     pub check_time: Duration,
-    /// Time that a job or study may run in all, its waits in the queue not counted.
+    /// Total running time of a job or study, without its waits in the queue.
     pub wall_time: Duration,
-    /// Bytes that may be stored of a job or study: increments, and points from which directions can be followed.
+    /// Stored bytes of a job or study: increments, and points from which directions can be followed.
     pub stored_bytes: u64,
-    /// What one solve, or check, may take.
+    /// Bounds on the memory and work of a solve or check.
     pub bounds: Bounds,
 }
 
@@ -52,7 +52,7 @@ impl Default for Limits {
 
 impl Limits {
     /// # Errors
-    /// Every size that is past its limit.
+    /// Every size that exceeds its limit.
     pub fn check(&self, model: &Model, max_increments: u64) -> Result<(), InputErrors> {
         let sizes = [
             ("/model/nodes", "nodes", model.nodes.len(), self.nodes),
@@ -73,7 +73,7 @@ impl Limits {
             .then(|| InputError::new(pointer, format!("found {found}; this service takes at most {}", self.increments)))
     }
 
-    /// Why a job was ended.
+    /// The error text of a job that was stopped at a limit.
     pub fn sentence(&self, reached: Reached) -> String {
         match reached {
             Reached::Time => {
@@ -92,7 +92,7 @@ impl Limits {
     }
 }
 
-/// A limit at which a running job is stopped; what is stored of it stands.
+/// A limit at which a running job is stopped; its stored increments are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reached {
     Time,
@@ -109,7 +109,7 @@ impl Reached {
     }
 }
 
-/// As the interface's description tells them.
+/// The table of the OpenAPI description.
 impl fmt::Display for Limits {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "| limit | value | past it |\n|---|---|---|")?;

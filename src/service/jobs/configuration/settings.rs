@@ -1,4 +1,4 @@
-//! How the queue behaves; every number here can be set by whoever starts the service.
+//! The settings of the queue and its workers, all of which can be set when the service is started.
 
 use crate::service::jobs::configuration::limits::Limits;
 use crate::service::store::Keep;
@@ -6,22 +6,22 @@ use std::time::Duration;
 
 #[derive(Debug, Clone)]
 pub struct Settings {
-    /// Solves at a time; 0 answers HTTP only.
+    /// Number of workers, each of which runs one solve at a time; with 0 the process only answers HTTP requests.
     pub workers: usize,
-    /// A job that has lost so many workers in a row, with nothing stored between, fails.
+    /// A job that has lost this many workers in a row without storing anything in between fails.
     pub max_attempts: u32,
-    /// A worker that has not been heard of for so long has lost its job.
+    /// A worker that has not renewed its lease for this time has lost its job.
     pub lease: Duration,
-    /// Increments wait so long at most for others to be stored with, and a path is put down no more often.
+    /// Increments are stored in batches, at least this often; checkpoints are made at most this often.
     pub flush_interval: Duration,
-    /// Increments of one transaction.
+    /// The largest number of increments in a transaction.
     pub flush_rows: usize,
-    /// How often an idle worker looks for jobs that another process queued.
+    /// The interval at which an idle worker looks for jobs that other processes have queued.
     pub poll_interval: Duration,
-    /// How often ended jobs are looked through for those that are not to be kept.
+    /// The interval at which ended jobs that are not to be kept are deleted.
     pub tidy_interval: Duration,
     pub limits: Limits,
-    /// Which ended jobs are kept; all, where this is not said.
+    /// Which ended jobs are kept; `None` keeps all.
     pub keep: Option<Keep>,
 }
 

@@ -1,17 +1,17 @@
-//! On whose behalf a request is carried out: whose jobs it makes, and which it can see.
+//! The caller of a request: who owns the jobs that it creates, and which jobs it sees.
 //!
-//! What somebody cannot see is answered as if it were not there. Made by `http` from a request's token.
+//! A job that a caller does not see is answered as absent. `http` makes the caller from the token of a request.
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Caller {
-    /// Nobody has to say who they are: jobs belong to no one, and everyone sees all.
+    /// An anonymous caller: the service asks for no tokens, jobs have no owner, and everyone sees all jobs.
     Anyone,
-    /// Somebody who has said so; `sees_all`: other owners' jobs, too.
+    /// A caller with a token; `sees_all`: sees the jobs of other owners, too.
     Named { owner: String, sees_all: bool },
 }
 
 impl Caller {
-    /// Whose the jobs are that this caller makes.
+    /// The owner of the jobs that this caller creates.
     pub fn owner(&self) -> Option<&str> {
         match self {
             Self::Anyone => None,
@@ -19,12 +19,12 @@ impl Caller {
         }
     }
 
-    /// Whether jobs of that owner are seen.
+    /// Whether the caller sees jobs of that owner.
     pub fn sees(&self, owner: Option<&str>) -> bool {
         self.seen_owner().is_none_or(|seen| owner == Some(seen))
     }
 
-    /// Whose jobs alone are seen; `None`: everyone's.
+    /// The only owner whose jobs the caller sees; `None`: the caller sees all jobs.
     pub fn seen_owner(&self) -> Option<&str> {
         match self {
             Self::Anyone | Self::Named { sees_all: true, .. } => None,

@@ -1,31 +1,31 @@
-//! How requests are read and checked before anything is queued: on threads of their own, short ones beside long ones, in turn
-//! between clients, within a bound of time, and for no longer than somebody waits for the answer.
+//! Checks of requests before anything is queued: on blocking threads, short checks apart from long ones, with fair turns
+//! between clients, within a time limit, and only while the client waits for the answer.
 
 use crate::model::{InputError, InputErrors};
 use crate::resources::budget::{Breach, Budget};
 use crate::resources::cancel::CancelFlag;
 use crate::service::jobs::configuration::limits::Limits;
 use crate::service::jobs::queue::error::JobsError;
-use crate::service::jobs::queue::lanes::{Client, Lane, Place};
+use crate::service::jobs::queue::fair_semaphore::{Client, FairSemaphore, Permit};
 use crate::service::jobs::solving::solver::Solver;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tokio::time::timeout;
 
-/// A check that has not come to its end in this time is a long one; so is one of a larger body.
+/// A check that takes longer than this is a long one; so is the check of a body with more bytes than this.
 const SHORT_TIME: Duration = Duration::from_millis(200);
 const SHORT_BYTES: usize = 256 << 10;
 
-/// A request as it came, and what is held for as long as it is: the room that it takes.
+/// The text of a request, and the room that it takes in memory.
 pub struct Posted {
     pub text: Vec<u8>,
     pub room: Room,
-    /// Who sent it.
+    /// The client that sent the request.
     pub client: Client,
 }
 
-/// Given back when it is dropped.
+/// Reserved memory, released on drop.
 pub type Room = Option<Box<dyn Send>>;
 
 impl From<Vec<u8>> for Posted {
@@ -34,41 +34,42 @@ impl From<Vec<u8>> for Posted {
     }
 }
 
-/// What is held until what was checked is stored: where that is large, no more of it is made meanwhile than there are places.
+/// The permit and the room of a checked request, held until the request is stored, so that the number of large checked
+/// requests in memory is bounded.
 pub struct Held {
     room: Room,
-    _place: Place,
+    _permit: Permit,
 }
 
 impl Held {
-    /// For what is small: others may be checked while it is stored. The room of what was posted stays.
+    /// Releases the permit, for small requests: others may be checked while this one is stored. The room stays reserved.
     pub fn leave(self) -> Room {
         self.room
     }
 }
 
-/// Places at which requests are checked. Short checks find one however many long ones there are.
+/// Runs checks. Short and long checks have permits of their own, so that long checks do not delay short ones.
 #[derive(Clone)]
 pub struct Checks {
     solver: Arc<dyn Solver>,
     limits: Limits,
-    short: Lane,
-    long: Lane,
+    short: FairSemaphore,
+    long: FairSemaphore,
 }
 
-/// What a check may use.
-pub struct Desk<'a> {
+/// What a check needs and what limits it.
+pub struct CheckContext<'a> {
     pub solver: &'a dyn Solver,
     pub limits: &'a Limits,
-    /// Set when nobody waits for the answer any more.
+    /// Set when the client no longer waits for the answer.
     pub cancel: &'a CancelFlag,
-    /// When a check that can be interrupted is to be.
+    /// When an interruptible check should be interrupted.
     pub until: Option<Instant>,
 }
 
-impl Desk<'_> {
+impl CheckContext<'_> {
     /// # Errors
-    /// Nobody waits for the answer any more.
+    /// The client no longer waits for the answer.
     pub fn go_on(&self) -> Result<(), JobsError> {
         if self.cancel.is_cancelled() { Err(JobsError::Abandoned) } else { Ok(()) }
     }
@@ -78,35 +79,35 @@ impl Desk<'_> {
     }
 }
 
-/// A check that can be interrupted.
+/// A check that can be interrupted and resumed.
 pub trait Check: Send + 'static {
     type Checked: Send + 'static;
 
-    /// `None`: its time was over before its end; the next call goes on.
-    fn go_on(&mut self, desk: &Desk<'_>) -> Result<Option<Self::Checked>, JobsError>;
+    /// Runs the check; `None` if it was interrupted, in which case the next call resumes it.
+    fn go_on(&mut self, context: &CheckContext<'_>) -> Result<Option<Self::Checked>, JobsError>;
 }
 
-/// A check in one piece.
+/// A check that runs in one piece.
 pub struct Whole<F>(Option<F>);
 
 impl<F> Whole<F> {
     pub fn of<T>(check: F) -> Self
     where
-        F: FnOnce(&Desk<'_>) -> Result<T, JobsError>,
+        F: FnOnce(&CheckContext<'_>) -> Result<T, JobsError>,
     {
         Self(Some(check))
     }
 }
 
-impl<T: Send + 'static, F: FnOnce(&Desk<'_>) -> Result<T, JobsError> + Send + 'static> Check for Whole<F> {
+impl<T: Send + 'static, F: FnOnce(&CheckContext<'_>) -> Result<T, JobsError> + Send + 'static> Check for Whole<F> {
     type Checked = T;
 
-    fn go_on(&mut self, desk: &Desk<'_>) -> Result<Option<T>, JobsError> {
-        self.0.take().map(|check| check(desk)).transpose()
+    fn go_on(&mut self, context: &CheckContext<'_>) -> Result<Option<T>, JobsError> {
+        self.0.take().map(|check| check(context)).transpose()
     }
 }
 
-/// Stops what is being checked when the call that asked for it ends, whatever ends it.
+/// Cancels a check when its call ends for any reason.
 struct StopOnDrop(CancelFlag);
 
 impl Drop for StopOnDrop {
@@ -118,14 +119,14 @@ impl Drop for StopOnDrop {
 impl Checks {
     pub fn new(solver: Arc<dyn Solver>, limits: Limits) -> Self {
         let processors = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
-        Self { solver, limits, short: Lane::of(2 * processors), long: Lane::of(processors) }
+        Self { solver, limits, short: FairSemaphore::of(2 * processors), long: FairSemaphore::of(processors) }
     }
 
-    /// Reads and checks what was posted, on a thread that is not the runtime's. A check that is dropped is stopped; its place
-    /// is free when its thread has come to its end.
+    /// Reads and checks a posted request on a blocking thread. A check that is dropped is cancelled; its permit is released
+    /// when its thread has ended.
     ///
     /// # Errors
-    /// Those of the check, and the bound of its time.
+    /// Those of the check, and its time limit.
     pub(crate) async fn run<C: Check>(
         &self,
         posted: Posted,
@@ -139,16 +140,16 @@ impl Checks {
         let mut left = most;
         let mut check = begin(text);
         loop {
-            let lane = if is_short { &self.short } else { &self.long };
-            let place = lane.place(&client).await;
+            let semaphore = if is_short { &self.short } else { &self.long };
+            let permit = semaphore.acquire(&client).await;
             let (solver, limits, cancel) = (Arc::clone(&self.solver), self.limits, cancel.clone());
             let began = Instant::now();
             let part = tokio::task::spawn_blocking(move || {
                 let until = is_short.then(|| Instant::now() + SHORT_TIME);
-                let desk = Desk { solver: solver.as_ref(), limits: &limits, cancel: &cancel, until };
+                let context = CheckContext { solver: solver.as_ref(), limits: &limits, cancel: &cancel, until };
                 let budget = Budget::new(cancel.clone(), limits.bounds);
-                let found = budget.during(|| check.go_on(&desk)).unwrap_or_else(|breach| Err(ended(breach)));
-                (found, check, Held { room, _place: place })
+                let found = budget.during(|| check.go_on(&context)).unwrap_or_else(|breach| Err(ended(breach)));
+                (found, check, Held { room, _permit: permit })
             });
             let late = |_| JobsError::CheckTime(most);
             let (found, rest, held) = timeout(left, part).await.map_err(late)??;
@@ -163,7 +164,7 @@ impl Checks {
     }
 }
 
-/// Why a check was ended from outside, or would have gone past a bound.
+/// The error of a check that was cancelled or would have exceeded a bound.
 fn ended(breach: Breach) -> JobsError {
     match breach {
         Breach::Cancelled => JobsError::Abandoned,
@@ -187,18 +188,18 @@ mod tests {
         Posted { client: Client(client.to_owned()), ..Posted::from(Vec::new()) }
     }
 
-    /// Lasts until it is stopped.
+    /// A check that runs until it is cancelled.
     struct Endless(mpsc::Sender<()>);
 
     impl Check for Endless {
         type Checked = ();
 
-        fn go_on(&mut self, desk: &Desk<'_>) -> Result<Option<()>, JobsError> {
-            while !desk.is_over_time() {
-                if desk.go_on().is_err() {
+        fn go_on(&mut self, context: &CheckContext<'_>) -> Result<Option<()>, JobsError> {
+            while !context.is_over_time() {
+                if context.go_on().is_err() {
                     let _ = self.0.send(());
                 }
-                desk.go_on()?;
+                context.go_on()?;
                 std::thread::sleep(Duration::from_millis(1));
             }
             Ok(None)
@@ -220,13 +221,13 @@ mod tests {
             let (seven, _held) = checks.run(posted(client), |_| Whole::of(|_| Ok(7))).await.expect("checked");
             assert_eq!(seven, 7);
         }
-        // A long one of somebody else finds a place, too.
+        // A long check of another client gets a permit, too.
         let mut parts = 0;
         struct TwoParts(u32);
         impl Check for TwoParts {
             type Checked = u32;
 
-            fn go_on(&mut self, _: &Desk<'_>) -> Result<Option<u32>, JobsError> {
+            fn go_on(&mut self, _: &CheckContext<'_>) -> Result<Option<u32>, JobsError> {
                 self.0 += 1;
                 Ok((self.0 == 2).then_some(self.0))
             }

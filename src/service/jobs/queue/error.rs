@@ -1,4 +1,4 @@
-//! Why a request about jobs was not carried out.
+//! The errors of requests about jobs.
 
 use crate::model::InputErrors;
 use crate::service::store::{JobRecord, StoreError};
@@ -18,7 +18,7 @@ pub enum JobsError {
     QueueFull(u64),
     #[error("checking it takes longer than {0:?}")]
     CheckTime(Duration),
-    /// Nobody waits for the answer.
+    /// The client no longer waits for the answer.
     #[error("the check was stopped")]
     Abandoned,
     #[error("there is nothing to follow")]

@@ -1,8 +1,8 @@
-//! A new job along a direction that is listed at an increment of another.
+//! Jobs that follow a direction listed at an increment of another job.
 
 use crate::model::{InputError, InputErrors, decode};
 use crate::result::increment::Increment;
-use crate::service::jobs::queue::checks::{Desk, Whole};
+use crate::service::jobs::queue::checks::{CheckContext, Whole};
 use crate::service::jobs::queue::submission::{queued, wrong_input};
 use crate::service::jobs::solving::branches;
 use crate::service::jobs::{Caller, Jobs, JobsError, Posted};
@@ -11,7 +11,7 @@ use crate::service::store::{JobRecord, NewFollower, Page, Parent, Submitted, Tas
 use uuid::Uuid;
 
 impl Jobs {
-    /// Queues a job that follows a direction of this one.
+    /// Queues a job that follows a direction of the job `id`.
     pub async fn follow(
         &self,
         caller: &Caller,
@@ -22,7 +22,7 @@ impl Jobs {
         let posted: Posted = posted.into();
         let client = posted.client.clone();
         let read = |text: Vec<u8>| {
-            Whole::of(move |_: &Desk<'_>| {
+            Whole::of(move |_: &CheckContext<'_>| {
                 decode::follow(&text).map_err(|errors| wrong_input(&text, errors, JobsError::Follow))
             })
         };
@@ -41,7 +41,7 @@ impl Jobs {
             most_queued: limits.queued,
         };
         let job = match self.find(caller, Task::Path, id).await {
-            // Nothing can be queued; but a call that was answered before the parent went is answered as then.
+            // The parent has been deleted: nothing can be queued, but a repeated call gets the answer of the first one.
             Err(absent) if idempotency_key.is_some() && self.store.job(id).await?.is_none() => {
                 return match self.store.follow(follower(asked.max_increments)).await? {
                     Some(known @ (Submitted::Repeated(_) | Submitted::KeyReused)) => queued(known),
@@ -63,21 +63,21 @@ impl Jobs {
         let text = self.store.request(id).await?.ok_or(JobsError::NoJob(id))?;
         let posted = Posted { client, ..Posted::from(text.into_bytes()) };
         let check = move |text: Vec<u8>| {
-            Whole::of(move |desk: &Desk<'_>| {
+            Whole::of(move |context: &CheckContext<'_>| {
                 let request = decode::decode(&text).map_err(|errors| {
                     refused("", format!("the job's model is no longer accepted, post it anew: {errors}"))
                 })?;
                 let beginning = branches::beginning(&parent, &origin).map_err(|error| {
                     refused("/increment", format!("what is stored there cannot be read, trace the path anew: {error}"))
                 })?;
-                desk.go_on()?;
-                desk.solver.check_beginning(&request, beginning).map_err(JobsError::Follow)
+                context.go_on()?;
+                context.solver.check_beginning(&request, beginning).map_err(JobsError::Follow)
             })
         };
         let _room = self.checks.run(posted, check).await?.1.leave();
-        // The service may have taken more when the other one was queued.
+        // The service may have had a larger limit when the parent was queued.
         let max_increments = Some(asked.max_increments.unwrap_or(job.max_increments.min(limits.increments)));
-        // Nothing to be found here any more: the parent was deleted just now.
+        // `None`: the parent has been deleted meanwhile.
         let submitted = self.metrics.work.timed(Write::Submit, self.store.follow(follower(max_increments))).await?;
         queued(submitted.ok_or(JobsError::NoJob(id))?)
     }

@@ -35,7 +35,7 @@ impl Jobs {
         Self { store, solver, settings, running: Running::default(), metrics: Arc::default(), checks }
     }
 
-    /// Whether a worker of this process is just now locating a bifurcation point of the job.
+    /// Whether a worker of this process is locating a bifurcation point of the job at the moment.
     pub fn is_locating_bifurcation(&self, id: Uuid) -> bool {
         self.running.is_locating_bifurcation(id)
     }
@@ -75,13 +75,13 @@ impl Jobs {
         submission::queued(self.metrics.work.timed(Write::Submit, self.store.submit(job)).await?)
     }
 
-    /// A job of that task that the caller sees.
+    /// The job of the given task and id, if the caller sees it.
     pub async fn find(&self, caller: &Caller, task: Task, id: Uuid) -> Result<JobRecord, JobsError> {
         let seen = |job: &JobRecord| job.task == task && caller.sees(job.owner.as_deref());
         self.store.job(id).await?.filter(seen).ok_or_else(|| absent(task, id))
     }
 
-    /// How far a job has come that the caller sees; what can be large of it is not read.
+    /// The status and last stored index of a job that the caller sees; its large texts are not read.
     pub async fn standing(&self, caller: &Caller, task: Task, id: Uuid) -> Result<Standing, JobsError> {
         let seen = |job: &Standing| job.task == task && caller.sees(job.owner.as_deref());
         self.store.standing(id).await?.filter(seen).ok_or_else(|| absent(task, id))
@@ -108,12 +108,12 @@ impl Jobs {
             self.store.cancel_sweep(id).await?.into_iter().for_each(|run| self.running.cancel(run));
         }
         let job = self.store.request_cancel(id).await?.ok_or_else(|| absent(task, id))?;
-        // A job that runs elsewhere learns of it when its lease is renewed; one that runs here need not wait.
+        // A job that runs in another process is cancelled at the next renewal of its lease; a job of this process at once.
         self.running.cancel(id);
         Ok(job)
     }
 
-    /// Queues a failed job again: it goes on from what it has stored.
+    /// Queues a failed job again: it resumes from its last checkpoint.
     pub async fn retry(&self, caller: &Caller, id: Uuid) -> Result<JobRecord, JobsError> {
         self.standing(caller, Task::Path, id).await?;
         let most = self.settings.limits.queued;

@@ -1,24 +1,24 @@
-//! What is done with a request before it is queued: read, checked, planned.
+//! Preparation of a request before it is queued: it is read, checked and planned.
 
 use crate::model::request::Explore;
 use crate::model::{InputError, InputErrors, decode};
 use crate::result::plan::Plan;
 use crate::service::jobs::configuration::settings::Settings;
-use crate::service::jobs::queue::checks::{Checks, Desk, Room, Whole};
+use crate::service::jobs::queue::checks::{CheckContext, Checks, Room, Whole};
 use crate::service::jobs::{Caller, JobsError, Posted};
 use crate::service::store::{JobRecord, NewJob, Submitted, Task};
 use serde::Serialize;
 use serde::de::IgnoredAny;
 use std::string::FromUtf8Error;
 
-/// A request that can be queued, with what it is going to do.
+/// A checked request, with its plan.
 #[derive(Debug)]
 pub(super) struct Prepared<P> {
-    /// As posted.
+    /// The text of the request, as posted.
     pub text: String,
     pub name: Option<String>,
     pub plan: P,
-    /// What lists show of the plan where that can be large.
+    /// A short form of a large plan, for lists.
     pub summary: Option<String>,
     pub max_increments: u64,
     pub explore: Option<Explore>,
@@ -28,9 +28,9 @@ pub(super) struct Prepared<P> {
 pub(super) async fn prepared<P: Send + 'static>(
     checks: &Checks,
     request: Posted,
-    prepare: fn(&Desk<'_>, Vec<u8>) -> Result<Prepared<P>, JobsError>,
+    prepare: fn(&CheckContext<'_>, Vec<u8>) -> Result<Prepared<P>, JobsError>,
 ) -> Result<(Prepared<P>, Room), JobsError> {
-    let check = move |text| Whole::of(move |desk: &Desk<'_>| prepare(desk, text));
+    let check = move |text| Whole::of(move |context: &CheckContext<'_>| prepare(context, text));
     let (prepared, held) = checks.run(request, check).await?;
     Ok((prepared, held.leave()))
 }
@@ -62,19 +62,19 @@ impl<P: Serialize> Prepared<P> {
     }
 }
 
-pub(super) fn prepare(desk: &Desk<'_>, request: Vec<u8>) -> Result<Prepared<Plan>, JobsError> {
+pub(super) fn prepare(context: &CheckContext<'_>, request: Vec<u8>) -> Result<Prepared<Plan>, JobsError> {
     let decoded = decode::decode(&request).map_err(|errors| wrong_input(&request, errors, JobsError::Input))?;
-    desk.limits.check(&decoded.model, decoded.analysis.max_increments).map_err(JobsError::Input)?;
-    desk.go_on()?;
-    let plan = desk.solver.plan(&decoded).map_err(JobsError::Input)?;
+    context.limits.check(&decoded.model, decoded.analysis.max_increments).map_err(JobsError::Input)?;
+    context.go_on()?;
+    let plan = context.solver.plan(&decoded).map_err(JobsError::Input)?;
     let text = String::from_utf8(request).map_err(not_text)?;
     let (max_increments, explore) = (decoded.analysis.max_increments, decoded.analysis.explore);
     Ok(Prepared { text, name: decoded.model.name, plan, summary: None, max_increments, explore })
 }
 
-/// Text that is no JSON at all is told apart from JSON that is not what was asked for.
+/// The error of a request that cannot be decoded: text that is no JSON, or JSON with mistakes (`otherwise`).
 pub(super) fn wrong_input(request: &[u8], errors: InputErrors, otherwise: fn(InputErrors) -> JobsError) -> JobsError {
-    // Bytes first: what serde_json skips it does not check for being UTF-8.
+    // The encoding first: serde_json does not check the encoding of ignored parts.
     let is_json = std::str::from_utf8(request).is_ok_and(|text| serde_json::from_str::<IgnoredAny>(text).is_ok());
     if is_json { otherwise(errors) } else { JobsError::NotJson(errors) }
 }

@@ -1,12 +1,12 @@
-//! When a path is put down again.
+//! The intervals between checkpoints.
 
 use std::time::{Duration, Instant};
 
-/// One part of so many of the solver's time goes into putting it down, at most.
+/// At most one part in this many of the solver's time is spent on checkpoints.
 const SHARE: u32 = 20;
 
-/// No sooner than a given time after the one before, and no sooner than [`SHARE`] times what that one took: small paths are
-/// put down about once a batch, large ones spend a small part of their time on it.
+/// Schedules checkpoints: each at least a given time after the previous one, and at least [`SHARE`] times the time that the
+/// previous one took. Small paths make about one per batch; large paths spend a small part of their time on checkpoints.
 #[derive(Debug)]
 pub struct Cadence {
     least: Duration,
@@ -14,12 +14,12 @@ pub struct Cadence {
 }
 
 impl Cadence {
-    /// Due at once.
+    /// The first one is due at once.
     pub fn from_now(least: Duration) -> Self {
         Self { least, due: Some(Instant::now()) }
     }
 
-    /// Due for the first time after `least`.
+    /// The first one is due after `least`.
     pub fn after(least: Duration) -> Self {
         Self { least, due: Instant::now().checked_add(least) }
     }
@@ -28,7 +28,7 @@ impl Cadence {
         self.due.is_some_and(|due| Instant::now() >= due)
     }
 
-    /// It was done, which took from `began` until now.
+    /// A checkpoint has been made, which took from `began` until now.
     pub fn done(&mut self, began: Instant) {
         self.due = Instant::now().checked_add(self.least.max(SHARE * began.elapsed()));
     }

@@ -1,7 +1,7 @@
-//! Where a running job can be taken up again.
+//! Checkpoints, from which a job can be resumed.
 //!
-//! On the solver's thread the path is put down now and then ([`Cadence`]), and what that gives is stored with or after
-//! its increment. What was computed after the last one stored is computed again.
+//! The solver's thread makes a checkpoint from time to time ([`Cadence`]), which is stored with its increment or after it.
+//! What was computed after the last stored checkpoint is computed again.
 
 use crate::check::judged::JudgedCheckpoint;
 use crate::service::jobs::solving::cadence::Cadence;
@@ -11,45 +11,46 @@ use crate::service::store::{Checkpoint, Origin};
 use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};
 
-/// Larger ones (bytes) are not stored: such a job begins anew when its worker is lost. 150,000 unknowns take some 20 MB.
+/// Larger checkpoints (bytes) are not stored: such a job starts again when its worker is lost. 150,000 unknowns take about
+/// 20 MB.
 const LARGEST: usize = 64 << 20;
 
-/// What is stored, but for the trail.
+/// A stored checkpoint without the trail.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct PutDown {
+pub struct StoredCheckpoint {
     pub at: JudgedCheckpoint,
     pub clock: Clock,
 }
 
-/// `elapsed_s` of a job that is taken up goes on from what is stored: what its attempts computed more than once counts each
-/// time.
+/// The `elapsed_s` of a job over all its attempts: a resumed job continues from the stored time, and work that was repeated
+/// counts each time.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Clock {
-    /// Seconds that the path itself does not count.
+    /// Seconds of earlier attempts, which the path itself does not count.
     ahead: f64,
-    /// The last time told.
+    /// The last total that was reported.
     told: f64,
 }
 
 impl Clock {
-    /// So many seconds have been told in all.
+    /// Continues from a total of `told` seconds.
     pub fn go_on_from(&mut self, told: f64) {
         self.ahead += (told - self.told).max(0.0);
         self.told = self.told.max(told);
     }
 
-    /// What a path's own time is in all.
+    /// The total for a time of the path itself.
     pub fn tell(&mut self, elapsed_s: f64) -> f64 {
         self.told = elapsed_s + self.ahead;
         self.told
     }
 }
 
-impl PutDown {
+impl StoredCheckpoint {
     /// # Errors
-    /// What another version has stored.
+    /// A checkpoint that another version has stored.
     pub fn read(stored: &Origin) -> serde_json::Result<Self> {
         let mut read: Self = serde_json::from_str(&stored.body)?;
         trail::put_back(&mut read.at.path, &stored.trail)?;
@@ -57,28 +58,28 @@ impl PutDown {
     }
 }
 
-/// Makes checkpoints of a path, in order.
+/// Makes the checkpoints of a path, in order.
 #[derive(Debug)]
 pub struct Checkpoints {
     written: Written,
-    /// None has been made of this path yet, and what may be stored of its trail is of no use.
+    /// No checkpoint of this path has been made yet, so that a stored trail does not belong to it.
     begins: bool,
     cadence: Cadence,
 }
 
 impl Checkpoints {
-    /// None sooner than `least` after another.
+    /// Checkpoints at intervals of at least `least`.
     pub fn every(least: Duration) -> Self {
         Self { written: Written::default(), begins: true, cadence: Cadence::after(least) }
     }
 
-    /// Of a path that is taken up: what is stored of its trail stands.
+    /// Continues after the checkpoint from which a path was resumed, whose stored trail remains valid.
     pub fn after(&mut self, checkpoint: &JudgedCheckpoint) {
         self.written = Written::up_to(&checkpoint.path);
         self.begins = false;
     }
 
-    /// The checkpoint at a place, if one is due and the path can be put down there.
+    /// The checkpoint at a point of the path, if one is due and the path supports checkpoints there.
     pub fn at(&mut self, place: &dyn Place, clock: Clock) -> serde_json::Result<Option<Checkpoint>> {
         if !self.cadence.is_due() {
             return Ok(None);
@@ -91,13 +92,13 @@ impl Checkpoints {
         let index = at.path.index();
         let mut written = self.written;
         let part = written.part(&mut at.path)?;
-        let body = serde_json::to_string(&PutDown { at, clock })?;
+        let body = serde_json::to_string(&StoredCheckpoint { at, clock })?;
         let bytes = body.len() + part.text.as_ref().map_or(0, String::len);
         if bytes > LARGEST {
             tracing::warn!(
                 bytes,
                 most = LARGEST,
-                "too large to be put down: a lost worker costs what comes from here on"
+                "the checkpoint is too large to be stored: if the worker is lost, the work from here on is repeated"
             );
             self.cadence.never_again();
             return Ok(None);

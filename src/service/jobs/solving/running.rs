@@ -1,4 +1,4 @@
-//! The solves of this process and the flags that stop them.
+//! The solves that run in this process, and the flags that cancel them.
 
 use crate::resources::budget::Budget;
 use crate::resources::cancel::CancelFlag;
@@ -7,19 +7,19 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use uuid::Uuid;
 
-/// By job and attempt: after a stall that cost a lease, two attempts at one job may overlap for a moment.
+/// Solves by job and attempt: after a stall in which a lease was lost, two attempts at a job may overlap for a moment.
 type Flags = HashMap<(Uuid, u32), Solving>;
 
 struct Solving {
     cancel: CancelFlag,
-    /// Of its thread, once that has begun.
+    /// The budget of its thread, once the thread has started.
     budget: Option<Budget>,
 }
 
 #[derive(Clone, Default)]
 pub struct Running(Arc<Mutex<Flags>>);
 
-/// Takes the job off the list when dropped.
+/// Removes the solve from the list on drop.
 pub struct Entry {
     running: Running,
     key: (Uuid, u32),
@@ -36,14 +36,14 @@ impl Running {
         self.flags().iter().filter(|((job, _), _)| *job == id).for_each(|(_, solving)| solving.cancel.cancel());
     }
 
-    /// Takes note of what a solve may use.
+    /// Stores the budget of a solve.
     pub fn begun(&self, lease: &Lease, budget: &Budget) {
         if let Some(solving) = self.flags().get_mut(&(lease.job, lease.attempt)) {
             solving.budget = Some(budget.clone());
         }
     }
 
-    /// Whether a solve of this process is just now locating a bifurcation point of the job.
+    /// Whether a solve of this process is locating a bifurcation point of the job at the moment.
     pub fn is_locating_bifurcation(&self, id: Uuid) -> bool {
         let is_locating = |solving: &Solving| solving.budget.as_ref().is_some_and(Budget::is_locating_bifurcation);
         self.flags().iter().any(|((job, _), solving)| *job == id && is_locating(solving))

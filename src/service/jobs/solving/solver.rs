@@ -1,4 +1,4 @@
-//! The seam between whoever runs a solve and the path tracer, so that tests can put a solver of their own in its place.
+//! The interface between the workers and the path tracer, so that tests can substitute another solver.
 
 use crate::check::judged::{JudgedCheckpoint, JudgedCheckpointError, JudgedIncrement, JudgedPath, JudgedReport, Step};
 use crate::continuation::path::checkpoint::CheckpointError;
@@ -9,30 +9,30 @@ use crate::result::plan::Plan;
 use crate::studies::error_against_time::{self, Run};
 use std::ops::ControlFlow;
 
-/// Where a path begins that follows a direction of another.
+/// The beginning of a path that follows a direction of another path.
 #[derive(Debug, Clone)]
 pub struct Beginning {
-    /// Of the other path, at this increment or before it.
+    /// A checkpoint of the other path at this increment or before it.
     pub checkpoint: JudgedCheckpoint,
     pub increment: u64,
     pub direction: usize,
-    /// The event of its first increment.
+    /// The event of the first increment of the new path.
     pub event: String,
 }
 
 /// A path at the end of a step.
 pub trait Place {
-    /// Of the directions listed here those that appear here first: see [`crate::check::judged::Alternatives`].
+    /// The directions listed here that are listed for the first time: see [`crate::check::judged::Alternatives`].
     fn alternatives(&self) -> &[u64];
 
-    /// What it takes to go on from here; `None` by a method whose paths cannot be put down.
+    /// A checkpoint of the path here; `None` for a method without checkpoints.
     fn checkpoint(&self) -> Option<JudgedCheckpoint>;
 }
 
-/// Takes a step of the path and the place to which it led.
+/// Receives a step of the path and the point to which it led.
 pub type Accept<'a> = &'a mut dyn FnMut(Step, &dyn Place) -> ControlFlow<()>;
 
-/// Why a path was not taken up.
+/// Why a path was not resumed.
 #[derive(Debug, thiserror::Error)]
 pub enum ResumeError {
     #[error(transparent)]
@@ -42,25 +42,25 @@ pub enum ResumeError {
     Checkpoint(#[from] JudgedCheckpointError),
 }
 
-/// The request before, made ready; nothing at first.
+/// The scene of the previous request, if there is one.
 #[derive(Debug, Default)]
 pub struct Before(Option<Scene>);
 
 pub trait Solver: Send + Sync + 'static {
-    /// Checks a request as a whole and says what it needs.
+    /// Checks a request and answers its plan.
     fn plan(&self, request: &JobRequest) -> Result<Plan, InputErrors>;
 
-    /// As [`plan`](Self::plan), of a request that may differ from the one before in numbers alone.
+    /// As [`plan`](Self::plan), for a request that may differ from the previous one in numbers alone.
     fn plan_after(&self, before: &mut Before, request: &JobRequest) -> Result<Plan, InputErrors> {
         let _ = before;
         self.plan(request)
     }
 
-    /// Refuses a beginning from which there is no path; pointers are those of a [`crate::model::FollowRequest`].
+    /// Refuses a beginning from which no path starts; the pointers in the errors are those of a [`crate::model::FollowRequest`].
     fn check_beginning(&self, request: &JobRequest, beginning: Beginning) -> Result<(), InputErrors>;
 
-    /// Traces the path, from its start or from a beginning; every step goes to `accept`, which breaks when nobody wants more.
-    /// `None`: the solver ended without saying why, which is a defect, or `accept` broke.
+    /// Traces the path, from its start or from a beginning; every step is passed to `accept`, which breaks to end the solve.
+    /// `None`: `accept` broke, or the solver ended without a report, which is a defect.
     fn solve(
         &self,
         request: &JobRequest,
@@ -69,7 +69,7 @@ pub trait Solver: Send + Sync + 'static {
         accept: Accept<'_>,
     ) -> Result<Option<JudgedReport>, InputErrors>;
 
-    /// Goes on with a path from its checkpoint; otherwise as [`solve`](Self::solve).
+    /// Resumes a path from a checkpoint; otherwise as [`solve`](Self::solve).
     fn resume(
         &self,
         request: &JobRequest,
@@ -78,12 +78,12 @@ pub trait Solver: Send + Sync + 'static {
         accept: Accept<'_>,
     ) -> Result<Option<JudgedReport>, ResumeError>;
 
-    /// Checks a study and says what it is going to do.
+    /// Checks a study and answers its plan.
     fn plan_study(&self, request: &StudyRequest) -> Result<error_against_time::Plan, InputErrors> {
         error_against_time::plan(request)
     }
 
-    /// Runs a study, `done` being its first runs; see [`error_against_time::run`].
+    /// Runs a study; `done` are its runs so far, see [`error_against_time::run`].
     fn study(
         &self,
         request: &StudyRequest,
@@ -139,7 +139,7 @@ impl Solver for PathSolver {
 fn trace(mut path: JudgedPath<'_>, accept: Accept<'_>) -> Option<JudgedReport> {
     let mut off_measure = false;
     while let Some(step) = path.step() {
-        // The first one only: a path that is off once may be off at every point after. The report counts them.
+        // Only the first one is logged: all points after it may be off, too. The report counts them.
         if let Some(judged) = step.given.as_ref().filter(|_| path.is_off_measure())
             && !std::mem::replace(&mut off_measure, true)
         {
@@ -180,7 +180,7 @@ fn begin<'a>(
     JudgedPath::follow(request, scene, checkpoint, direction, event, cancel).map_err(|error| refused(&error))
 }
 
-/// A path put down at this increment; it is traced on to there from a checkpoint before it.
+/// A checkpoint at this increment, to which the path is traced from an earlier checkpoint.
 fn led_to(
     request: &JobRequest,
     checkpoint: JudgedCheckpoint,
@@ -190,7 +190,7 @@ fn led_to(
     if checkpoint.path.index() == increment {
         return Ok(checkpoint);
     }
-    // Ending there, it gives that increment even where few are recorded.
+    // A path that ends at the increment records it even if not every increment is recorded.
     let mut request = request.clone();
     request.analysis.max_increments = increment;
     let scene = Scene::new(&request)?;

@@ -1,5 +1,5 @@
-//! The states that a path has passed (for telling a cycle) are stored once: each checkpoint with those that are new since
-//! the one before, and reading one gathers them.
+//! The trail of a path: the states that it has passed, by which a cycle is detected. Each state is stored once: a checkpoint is
+//! stored with the states that are new since the previous one, and reading a checkpoint collects them.
 
 use crate::continuation::path::checkpoint::Checkpoint;
 use serde::{Deserialize, Serialize};
@@ -9,26 +9,26 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct Written {
     stage: usize,
-    /// Of the running stage's.
+    /// States of the current stage.
     states: u64,
 }
 
-/// What is new of a trail.
+/// The new part of a trail.
 #[derive(Debug)]
 pub struct Part {
-    /// One line.
+    /// The new states as a line of JSON; `None` if there are none.
     pub text: Option<String>,
-    /// The parts before are of an earlier stage.
+    /// The parts before belong to an earlier stage.
     pub is_first: bool,
 }
 
 impl Written {
-    /// Everything that a checkpoint knows.
+    /// The whole trail of a checkpoint has been written.
     pub fn up_to(checkpoint: &Checkpoint) -> Self {
         Self { stage: checkpoint.stage(), states: checkpoint.trail_length() }
     }
 
-    /// Takes the trail out of a checkpoint and writes what is new of it.
+    /// Removes the trail from a checkpoint and writes its new part.
     pub fn part(&mut self, checkpoint: &mut Checkpoint) -> serde_json::Result<Part> {
         let is_first = checkpoint.stage() != self.stage;
         let from = if is_first { 0 } else { self.states };
@@ -39,7 +39,7 @@ impl Written {
     }
 }
 
-/// Puts a trail back that was written in parts, a line each.
+/// Restores the trail of a checkpoint from its parts, one per line.
 pub fn put_back(checkpoint: &mut Checkpoint, parts: &str) -> serde_json::Result<()> {
     let parts: Vec<_> = parts.lines().map(serde_json::from_str).collect::<Result<_, _>>()?;
     checkpoint.put_trail(parts);

@@ -1,8 +1,8 @@
-//! Increments on their way to the store: gathered for a moment, then appended in one transaction.
+//! Stores the increments of a solve: they are gathered for a short time, then appended in one transaction.
 
 use crate::resources::cancel::CancelFlag;
 use crate::service::jobs::configuration::limits::Reached;
-use crate::service::jobs::solving::sent::Sent;
+use crate::service::jobs::solving::solve_output::SolveOutput;
 use crate::service::jobs::{Jobs, Settings};
 use crate::service::metrics::Write;
 use crate::service::store::{Batch, Change, Claim, Lease, LeaseAnswer, StoreError};
@@ -11,38 +11,38 @@ use tokio::sync::{mpsc, watch};
 use tokio::time::{Instant, MissedTickBehavior, interval_at, sleep_until, timeout_at};
 use tokio_util::sync::CancellationToken;
 
-/// While a batch is gathered its lines are looked for so often: to be woken by every one of them costs more than they do.
+/// The interval at which lines are received while a batch is gathered: waking up for every line would cost more.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(2);
-/// The first lines of a job are taken as they come: most jobs are small, and wait for nothing then.
+/// The first lines of a job are received without this interval, so that small jobs, which are the most, do not wait.
 const TAKEN_AT_ONCE: u64 = 64;
-/// Before a write is repeated; twice as long each time, up to the longest.
+/// The pause before a write is repeated; it is doubled each time, up to the longest.
 const FIRST_PAUSE: Duration = Duration::from_millis(50);
 const LONGEST_PAUSE: Duration = Duration::from_secs(1);
 
 /// Why no more increments are stored.
 #[derive(Debug)]
 pub enum Drained {
-    /// The solver has sent its last one; these have still to be stored, with the job's end.
+    /// The solver has sent its last output; this batch has still to be stored, with the end of the job.
     Complete(Batch),
-    /// The service is going down; what is not stored yet is computed again by the next attempt.
+    /// The service is shutting down; the next attempt repeats what has not been stored.
     ShuttingDown,
-    /// The job is gone or another's, or nothing could be written for as long as the lease was held.
+    /// The job was deleted or taken by another worker, or nothing could be written while the lease was held.
     LeaseLost,
     Failed(StoreError),
-    /// The job has used up what it may use; what is stored is within the limit.
+    /// The job has reached a limit; what is stored is within it.
     Reached(Reached),
 }
 
-/// What a job may still use.
+/// What remains to a job of its limits.
 #[derive(Debug, Clone, Copy)]
 pub struct Allowance {
-    /// None where that is too far off to be told.
+    /// `None` if the time cannot be represented.
     pub until: Option<Instant>,
     pub bytes: u64,
 }
 
 impl Allowance {
-    /// What is left of the service's limits.
+    /// The rest of the limits, given what the job has used.
     pub fn of(settings: &Settings, claim: &Claim) -> Self {
         let limits = &settings.limits;
         Self {
@@ -51,11 +51,11 @@ impl Allowance {
         }
     }
 
-    /// Takes the lines' bytes; cuts off what is too much, and answers whether there was such.
-    fn take(&mut self, gathered: &mut Vec<Sent>) -> bool {
+    /// Deducts the bytes of the lines; removes lines that exceed the limit, and answers whether there were any.
+    fn take(&mut self, gathered: &mut Vec<SolveOutput>) -> bool {
         let fits = gathered.iter().position(|sent| match sent {
-            Sent::Checkpoint(_) => false,
-            Sent::Line(line, _) => match self.bytes.checked_sub(line.bytes()) {
+            SolveOutput::Checkpoint(_) => false,
+            SolveOutput::Line(line, _) => match self.bytes.checked_sub(line.bytes()) {
                 Some(left) => {
                     self.bytes = left;
                     false
@@ -68,12 +68,12 @@ impl Allowance {
     }
 }
 
-/// Stores increments, but for the last, until the solver ends or one of the reasons above stops it; the lease is prolonged on
-/// the way.
+/// Stores the output of a solve, except for its last batch, and renews the lease, until the solve ends or another of the
+/// reasons in [`Drained`] stops it.
 pub async fn drain(
     jobs: &Jobs,
     claim: &Claim,
-    sent: &mut mpsc::Receiver<Sent>,
+    sent: &mut mpsc::Receiver<SolveOutput>,
     cancel: &CancelFlag,
     shutdown: &CancellationToken,
 ) -> Drained {
@@ -97,11 +97,11 @@ pub async fn drain(
             () = shutdown.cancelled() => return Drained::ShuttingDown,
             () = time_is_up => reached = Some(Reached::Time),
             _ = beats.tick() => {}
-            // Another process may have cancelled it.
+            // Another process may have cancelled the job.
             () = changed_by_another(&mut changes) => {}
             received = gather(sent, &mut gathered, settings) => complete = received == Received::Last,
         }
-        // A cancelled gather leaves what it had where it was, so a beat stores it too.
+        // A cancelled `gather` keeps what it has received, which is stored here after a heartbeat, too.
         if allowance.take(&mut gathered) {
             reached = Some(Reached::Storage);
         }
@@ -129,7 +129,7 @@ pub async fn drain(
     }
 }
 
-/// Waits for a change that is none of ours: those bring their lines.
+/// Waits for a change made by another process: changes of this process carry their lines.
 async fn changed_by_another(changes: &mut watch::Receiver<Change>) {
     loop {
         if changes.changed().await.is_err() {
@@ -147,8 +147,12 @@ enum Received {
     Last,
 }
 
-/// Waits for one increment, then a moment for those that follow it closely.
-async fn gather(sent: &mut mpsc::Receiver<Sent>, gathered: &mut Vec<Sent>, settings: &Settings) -> Received {
+/// Waits for output of the solve, then for more until the batch is full or the flush interval is over.
+async fn gather(
+    sent: &mut mpsc::Receiver<SolveOutput>,
+    gathered: &mut Vec<SolveOutput>,
+    settings: &Settings,
+) -> Received {
     if gathered.is_empty() && sent.recv_many(gathered, settings.flush_rows).await == 0 {
         return Received::Last;
     }
@@ -170,15 +174,15 @@ async fn gather(sent: &mut mpsc::Receiver<Sent>, gathered: &mut Vec<Sent>, setti
     Received::Some
 }
 
-fn batch(gathered: &mut Vec<Sent>) -> Batch {
+fn batch(gathered: &mut Vec<SolveOutput>) -> Batch {
     let mut batch = Batch::default();
     for sent in gathered.drain(..) {
         match sent {
-            Sent::Line(line, limit) => {
+            SolveOutput::Line(line, limit) => {
                 batch.lines.push(line);
                 batch.first_limit = batch.first_limit.or(limit);
             }
-            Sent::Checkpoint(checkpoint) => batch.checkpoints.push(checkpoint),
+            SolveOutput::Checkpoint(checkpoint) => batch.checkpoints.push(checkpoint),
         }
     }
     batch
@@ -200,7 +204,7 @@ async fn append(
     Ok(answer)
 }
 
-/// Repeats a call that failed for a passing reason, for so long or until `shutdown`.
+/// Repeats a call that failed for a transient reason, for at most `patience` or until `shutdown`.
 pub async fn retry<T, F>(
     patience: Duration,
     shutdown: &CancellationToken,
@@ -214,7 +218,7 @@ where
     loop {
         match call().await {
             Err(error) if error.is_passing() && began.elapsed() + pause < patience && !shutdown.is_cancelled() => {
-                tracing::warn!(%error, "a call of the database is repeated");
+                tracing::warn!(%error, "a call to the database is repeated");
                 tokio::select! {
                     () = shutdown.cancelled() => {}
                     () = tokio::time::sleep(pause) => {}

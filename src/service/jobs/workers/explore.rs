@@ -1,8 +1,9 @@
-//! Queues the directions that ended paths have not taken; [`Alternatives`](crate::check::judged::Alternatives) says which.
+//! Queues jobs for the directions that ended paths have not taken; [`Alternatives`](crate::check::judged::Alternatives) lists
+//! these directions.
 
 use crate::service::jobs::Jobs;
 
-/// Queues what ended jobs have found; what fails now is found again the next time.
+/// Queues the alternatives of ended jobs; after a failure the next call finds them again.
 pub(crate) async fn queue(jobs: &Jobs) {
     match jobs.store.explore().await {
         Ok(0) => {}

@@ -1,12 +1,12 @@
-//! What is kept of ended jobs, and room given back to the disk.
+//! Deletes ended jobs that are not to be kept, and returns free space to the disk.
 
 use crate::service::jobs::Jobs;
 use std::time::Duration;
 
-/// Between parts of the work, for which the database is not free.
+/// The pause between parts of the work, during which other calls can use the database.
 const PAUSE: Duration = Duration::from_millis(20);
 
-/// Drops what is not to be kept, and gives back the room that it took.
+/// Deletes ended jobs that are not to be kept, and returns their space to the disk.
 pub(crate) async fn tidy(jobs: &Jobs) {
     if let Some(keep) = jobs.settings.keep {
         let mut dropped = 0;
@@ -15,14 +15,14 @@ pub(crate) async fn tidy(jobs: &Jobs) {
                 Ok(0) => break,
                 Ok(count) => dropped += count,
                 Err(error) => {
-                    tracing::warn!(%error, "ended jobs could not be dropped");
+                    tracing::warn!(%error, "ended jobs could not be deleted");
                     break;
                 }
             }
             tokio::time::sleep(PAUSE).await;
         }
         if dropped > 0 {
-            tracing::info!(dropped, "ended jobs that were not to be kept");
+            tracing::info!(dropped, "old jobs were deleted");
         }
     }
     loop {
@@ -30,7 +30,7 @@ pub(crate) async fn tidy(jobs: &Jobs) {
             Ok(true) => tokio::time::sleep(PAUSE).await,
             Ok(false) => return,
             Err(error) => {
-                tracing::warn!(%error, "room could not be given back to the disk");
+                tracing::warn!(%error, "free space could not be returned to the disk");
                 return;
             }
         }

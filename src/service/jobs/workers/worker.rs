@@ -1,4 +1,4 @@
-//! The loop of one worker: take a job, solve it, store what comes, say how it ended.
+//! The loop of a worker: claim a job, solve it, store its increments and its end.
 
 use crate::check::judged::JudgedReport;
 use crate::output::columns::name_of;
@@ -6,8 +6,8 @@ use crate::resources::cancel::CancelFlag;
 use crate::result::stop_reason::Outcome;
 use crate::service::jobs::Jobs;
 use crate::service::jobs::solving::running;
-use crate::service::jobs::solving::sent::SolveEnd;
 use crate::service::jobs::solving::solve::{self, Solve};
+use crate::service::jobs::solving::solve_output::SolveEnd;
 use crate::service::jobs::workers::batch::{self, Drained};
 use crate::service::metrics::Write;
 use crate::service::store::{Batch, Claim, Ending, Lease, LeaseAnswer, Status, StoreError, Task};
@@ -17,17 +17,17 @@ use tokio_util::sync::CancellationToken;
 use tokio_util::task::AbortOnDropHandle;
 use tracing::Instrument;
 
-/// A job is tried to be handed back for so long while the database is not available; then its lease runs out.
+/// How long a worker tries to release its job when the database is not available; after that the lease expires.
 const TO_HAND_BACK: Duration = Duration::from_secs(1);
 
-/// The stop reason of a solve that would hold too much, as a path's.
+/// The stop reason of a solve that would exceed its memory limit, as for a path.
 const MEMORY_LIMIT: &str = "memory_limit";
 
-/// Works until `shutdown`; a job under way then goes back to the queue.
+/// Works until `shutdown`; a running job then returns to the queue.
 pub async fn work(jobs: Jobs, name: String, shutdown: CancellationToken) {
     let mut queue = jobs.store.queue_changes();
     while !shutdown.is_cancelled() {
-        // Marked as seen before looking, so that a job queued in between wakes us at once.
+        // Marked as seen before the claim, so that a job queued in between wakes the worker at once.
         queue.borrow_and_update();
         match jobs.metrics.work.timed(Write::Claim, jobs.store.claim(&name, jobs.settings.lease)).await {
             Ok(Some(claim)) => {
@@ -50,8 +50,8 @@ pub async fn work(jobs: Jobs, name: String, shutdown: CancellationToken) {
     }
 }
 
-/// A panic of the service itself, the solver's being caught on its own thread, fails the job that it happened at and no
-/// other: the worker goes on.
+/// Runs a claimed job in a task of its own: a panic of the service fails this job only, and the worker continues. (A panic of
+/// the solver is caught on the solver's thread.)
 async fn guarded(jobs: &Jobs, claim: Claim, shutdown: &CancellationToken) {
     let lease = claim.lease.clone();
     let task = {
@@ -75,9 +75,9 @@ async fn run(jobs: &Jobs, claim: Claim, shutdown: &CancellationToken) {
                 crate::service::jobs::workers::explore::queue(jobs).await;
             }
         }
-        Ok(Finished::Released) => tracing::info!("back in the queue"),
-        Ok(Finished::Lost) => tracing::info!("deleted, or given to another worker"),
-        // Nothing more can be said in the store now; the lease runs out and the job is tried again.
+        Ok(Finished::Released) => tracing::info!("returned to the queue"),
+        Ok(Finished::Lost) => tracing::info!("deleted, or claimed by another worker"),
+        // The end cannot be stored now: the lease expires and the job is tried again.
         Err(error) => tracing::error!(%error, source = ?std::error::Error::source(&error), "the end was not stored"),
     }
 }
@@ -91,7 +91,7 @@ enum Finished {
 async fn trace(jobs: &Jobs, claim: &Claim, shutdown: &CancellationToken) -> Result<Finished, StoreError> {
     let lease = &claim.lease;
     let (cancel, _entry): (CancelFlag, running::Entry) = jobs.running.enter(lease);
-    // A cancel between the claim and the line above found no flag to set.
+    // A cancellation between the claim and the line above found no flag to set.
     let job = batch::retry(jobs.settings.lease, shutdown, || jobs.store.job(lease.job)).await?;
     if job.is_none_or(|job| job.cancel_requested) {
         cancel.cancel();
@@ -115,9 +115,9 @@ async fn trace(jobs: &Jobs, claim: &Claim, shutdown: &CancellationToken) -> Resu
         }
         Drained::ShuttingDown => {
             cancel.cancel();
-            // Closed before the solver can see the flag's effect: nothing it sends after a stop may be stored.
+            // Closed before the solver sees the flag, as nothing that it sends after the cancellation may be stored.
             solve.sent.close();
-            // Not until the lease runs out: the service wants to go.
+            // Not for the whole lease, as the service is shutting down.
             let going = CancellationToken::new();
             let answer = batch::retry(TO_HAND_BACK, &going, || store.release(lease)).await;
             stop(solve).await;
@@ -128,7 +128,7 @@ async fn trace(jobs: &Jobs, claim: &Claim, shutdown: &CancellationToken) -> Resu
         }
         Drained::Reached(reached) => {
             cancel.cancel();
-            // Nothing that it still sends may be stored; the end is told before the thread has come to its own.
+            // Nothing that the solver still sends may be stored; the end is stored before the thread has ended.
             solve.sent.close();
             let ending = Ending {
                 status: Status::Stopped,
@@ -153,10 +153,10 @@ async fn trace(jobs: &Jobs, claim: &Claim, shutdown: &CancellationToken) -> Resu
     }
 }
 
-/// Waits for the thread; what it still sends is dropped.
+/// Waits for the thread of a solve and drops its remaining output.
 async fn stop(solve: Solve) {
     drop(solve.sent);
-    // Without an answer the thread has ended too.
+    // An error means that the thread has ended, too.
     let _ = solve.end.await;
 }
 
@@ -165,9 +165,9 @@ fn not_stored(error: &StoreError) -> Ending {
     Ending::failed(format!("increments could not be stored: {error}"))
 }
 
-/// Stores how a job ended, and its last increments with that; where those cannot be stored, that they could not. On a full
-/// disk the end waits for room, and otherwise for as long as the lease may be held: if it is not stored until then, the job
-/// is taken up again from its last checkpoint.
+/// Stores the end of a job together with its last increments; if these cannot be stored, the job fails. On a full disk the end
+/// waits for space, otherwise for at most the duration of the lease; if it is not stored by then, the job is resumed from its
+/// last checkpoint.
 async fn end(
     jobs: &Jobs,
     claim: &Claim,
@@ -187,7 +187,7 @@ async fn end(
                 batch = Batch::default();
             }
             Err(error @ StoreError::Full(_)) => {
-                tracing::error!(%error, "how the job ended waits for room to be stored");
+                tracing::error!(%error, "the end of the job waits for space on the disk");
                 tokio::select! {
                     () = shutdown.cancelled() => return Err(error),
                     () = tokio::time::sleep(jobs.settings.poll_interval) => {}

@@ -1,10 +1,10 @@
-//! Chosen numbers of a path's increments as arrays: what a plot needs of a long path, without all the rest.
+//! Selected members of the increments of a path as arrays, for plots of long paths.
 
 use crate::result::increment::Point;
 use crate::service::http::answer::problem::Problem;
 use crate::service::http::answer::tag;
 use crate::service::http::document;
-use crate::service::http::input::extract::{Parameters, Taken, bounded, index};
+use crate::service::http::input::extract::{Parameters, QueryParameters, bounded, index};
 use crate::service::http::tasks::target::Target;
 use crate::service::http::view::job::Job;
 use crate::service::store::Page;
@@ -18,13 +18,13 @@ use std::fmt;
 use std::sync::Arc;
 use utoipa::ToSchema;
 
-/// The member that tells which points are not regular.
+/// The member with the kind of a point.
 const POINT: &str = "point";
 const ROWS: u32 = 10_000;
 const COLUMNS: usize = 32;
-/// Read from the store at a time.
+/// Bytes of the increments that are read from the store at a time.
 const PART: usize = 1 << 20;
-/// An answer ends early when it has so many bytes.
+/// An answer ends early once it has this many bytes.
 const LARGEST: usize = 16 << 20;
 
 #[derive(Debug, Deserialize, utoipa::IntoParams)]
@@ -42,8 +42,8 @@ pub struct ColumnParameters {
     limit: Option<u32>,
 }
 
-impl Taken for ColumnParameters {
-    const TAKEN: &'static [(&'static str, &'static str)] = &[
+impl QueryParameters for ColumnParameters {
+    const EXPECTED: &'static [(&'static str, &'static str)] = &[
         ("of", "names of an increment's members with commas between"),
         ("after", "the index of an increment, 0 or more,"),
         ("limit", "a whole number from 1 to 10000"),
@@ -62,7 +62,7 @@ pub struct Columns {
     pub points: Vec<PointAt>,
     /// Pass it as `after` for the next page: the last index of this one, or what was asked for when it is empty.
     pub next_after: Option<u64>,
-    /// Of what is held for the columns.
+    /// Bytes of the values in the columns.
     #[serde(skip)]
     bytes: usize,
 }
@@ -106,13 +106,13 @@ pub async fn columns(
             }
             Ok::<_, Problem>(found)
         };
-        found = service.aside.make(bytes, taken).await?;
+        found = service.offload.run(bytes, taken).await?;
     }
     found.next_after = after;
-    service.aside.make(found.bytes, move || tag::json(&headers, is_finished, &found)).await
+    service.offload.run(found.bytes, move || tag::json(&headers, is_finished, &found)).await
 }
 
-/// A member of an increment: the steps to it.
+/// A member of an increment, and the keys that lead to it.
 struct Member {
     name: String,
     steps: Vec<String>,
@@ -179,8 +179,8 @@ impl Columns {
     }
 }
 
-/// The members of that name of an object, or the elements in those places of an array, as they are written; `None` where
-/// there are none. What stands after the last of them is not looked at.
+/// The members of an object with the given names, or the elements of an array with the given indices, as they are written;
+/// `None` for absent ones. Reading ends after the last of them.
 fn pick<'de>(text: &'de str, names: &[&str]) -> serde_json::Result<Vec<Option<&'de RawValue>>> {
     let mut found = vec![None; names.len()];
     let picked = Pick { names, found: &mut found }.deserialize(&mut serde_json::Deserializer::from_str(text));
@@ -190,7 +190,7 @@ fn pick<'de>(text: &'de str, names: &[&str]) -> serde_json::Result<Vec<Option<&'
     Ok(found)
 }
 
-/// Puts what is asked for into its place, until all of it is there.
+/// A visitor that collects the selected members until all have been found.
 struct Pick<'a, 'de> {
     names: &'a [&'a str],
     found: &'a mut [Option<&'de RawValue>],
@@ -264,7 +264,7 @@ impl<'de> Visitor<'de> for Pick<'_, 'de> {
     }
 }
 
-/// Where among the names a member's is; compared in place, as there are very many of them.
+/// A visitor that finds the index of a key among the names; keys are compared without a copy, as there are very many.
 struct PlaceOf<'a>(&'a [&'a str]);
 
 impl<'de> DeserializeSeed<'de> for PlaceOf<'_> {

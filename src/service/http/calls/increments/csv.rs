@@ -44,21 +44,21 @@ pub async fn path_csv(target: Target<Job>) -> Result<Response, Problem> {
     if !job.status.is_ended() {
         return make();
     }
-    // Increments are never changed, and an ended job gets no more: who has them all has the table.
+    // Increments never change and an ended job gets no more: their last index determines the table.
     Tag::of(format!("{id} {:?}", job.last_index).as_bytes()).answer(&headers, make)
 }
 
-/// An increment as it is stored.
+/// A stored increment.
 #[derive(Deserialize)]
 struct Stored {
     #[serde(flatten)]
     increment: Increment,
-    /// Absent from what was stored before increments carried it.
+    /// Absent from increments that older versions have stored.
     #[serde(default)]
     measure: Option<Errors>,
 }
 
-/// Reads a page at a time, so that a long path needs no more memory than a short one.
+/// The rows of the table. One page of increments is read at a time, so that memory does not grow with the path.
 fn rows(service: Service, id: Uuid) -> impl Stream<Item = io::Result<String>> {
     try_stream! {
         let mut after = None;
@@ -66,7 +66,7 @@ fn rows(service: Service, id: Uuid) -> impl Stream<Item = io::Result<String>> {
         let request = request.ok_or_else(|| io::Error::other("the job has been deleted"))?;
         let bytes = request.len();
         let read = move || serde_json::from_str(&request).map(|request| Table::of(&request));
-        let table = Arc::new(service.aside.make(bytes, read).await?);
+        let table = Arc::new(service.offload.run(bytes, read).await?);
         loop {
             let page = service.jobs.store().increments(id, after, PAGE).await.map_err(io::Error::other)?;
             let Some(last) = page.last() else { break };
@@ -81,7 +81,7 @@ fn rows(service: Service, id: Uuid) -> impl Stream<Item = io::Result<String>> {
                 }
                 Ok::<_, io::Error>(text)
             };
-            yield service.aside.make(bytes, write).await?;
+            yield service.offload.run(bytes, write).await?;
         }
     }
 }

@@ -1,11 +1,12 @@
-//! The path of a job in closed form, where its model is of a family with one: what a plot lays over the computed path.
+//! The path of a job in closed form, where its model belongs to a family with an exact solution, for plots over the computed
+//! path.
 
 use crate::check::scenes::exact::{self, Place, Reach};
 use crate::model::JobRequest;
 use crate::service::http::answer::problem::Problem;
 use crate::service::http::answer::tag;
 use crate::service::http::document;
-use crate::service::http::input::extract::{Parameters, Taken};
+use crate::service::http::input::extract::{Parameters, QueryParameters};
 use crate::service::http::tasks::target::Target;
 use crate::service::http::view::job::Job;
 use axum::response::Response;
@@ -13,7 +14,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// Points of a smooth piece.
+/// Points on each smooth piece of the path.
 const POINTS: usize = 96;
 
 #[derive(Debug, Deserialize, utoipa::IntoParams)]
@@ -28,8 +29,8 @@ pub struct ExactParameters {
     displacement: Option<f64>,
 }
 
-impl Taken for ExactParameters {
-    const TAKEN: &'static [(&'static str, &'static str)] =
+impl QueryParameters for ExactParameters {
+    const EXPECTED: &'static [(&'static str, &'static str)] =
         &[("load", "a number above 0"), ("displacement", "a number above 0")];
 }
 
@@ -73,13 +74,13 @@ pub async fn exact(
     let Target { service, id, headers, .. } = target;
     let text = service.jobs.store().request(id).await?.ok_or_else(|| Problem::not_found(format_args!("job {id}")))?;
     let bytes = text.len();
-    // One that follows another direction goes elsewhere.
+    // The path of a job that follows a direction of another job is not known in closed form.
     let is_whole = job.parent.is_none();
     let make = move || {
         let request: Option<JobRequest> = if is_whole { Some(serde_json::from_str(&text)?) } else { None };
         tag::json(&headers, true, &path(request.as_ref(), reach))
     };
-    service.aside.make(bytes, make).await
+    service.offload.run(bytes, make).await
 }
 
 fn path(request: Option<&JobRequest>, reach: Reach) -> ExactPath {

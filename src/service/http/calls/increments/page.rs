@@ -1,8 +1,8 @@
-//! Stored increments, a page at a time.
+//! The stored increments of a job, page by page.
 
 use crate::service::http::answer::problem::Problem;
 use crate::service::http::document;
-use crate::service::http::input::extract::{Parameters, Taken, bounded, index};
+use crate::service::http::input::extract::{Parameters, QueryParameters, bounded, index};
 use crate::service::http::tasks::target::Target;
 use crate::service::http::view::job::{IncrementPage, Job};
 use axum::response::Response;
@@ -22,8 +22,8 @@ pub struct PageParameters {
     limit: Option<u32>,
 }
 
-impl Taken for PageParameters {
-    const TAKEN: &'static [(&'static str, &'static str)] =
+impl QueryParameters for PageParameters {
+    const EXPECTED: &'static [(&'static str, &'static str)] =
         &[("after", "the index of an increment, 0 or more,"), ("limit", "a whole number from 1 to 10000")];
 }
 

@@ -1,13 +1,13 @@
-//! What a path gives, made ready for the store: increments that are not stored yet, with what is stored beside them.
+//! Prepares the increments of a path for the store, with the branch points and checkpoints that are stored beside them.
 
 use crate::check::judged::{JudgedIncrement, JudgedReport, Step};
 use crate::output::json_line;
 use crate::result::increment::{Diagnostics, Increment};
 use crate::result::stop_reason::StopReason;
 use crate::service::jobs::solving::branches::Branches;
-use crate::service::jobs::solving::checkpoints::{Checkpoints, Clock, PutDown};
+use crate::service::jobs::solving::checkpoints::{Checkpoints, Clock, StoredCheckpoint};
 use crate::service::jobs::solving::context::SolveContext;
-use crate::service::jobs::solving::sent::{Sent, SolveEnd};
+use crate::service::jobs::solving::solve_output::{SolveEnd, SolveOutput};
 use crate::service::jobs::solving::solver::Place;
 use crate::service::metrics::{Solved, Work};
 use crate::service::store::{Claim, Line};
@@ -16,34 +16,34 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 use tokio::sync::mpsc;
 
-/// An increment that is stored and one that is computed once more are the same where they differ by no more than this,
-/// relative to the path: another version of this program may round otherwise.
+/// Relative tolerance within which a stored increment and its recomputed value are the same: another version of this program
+/// may round differently.
 const SAME: f64 = 1e-6;
 
-/// Takes the increments of one attempt in order.
-pub struct Given<'a> {
+/// Receives the increments of an attempt, in order, and sends the new ones to the store.
+pub struct IncrementRecorder<'a> {
     claim: &'a Claim,
-    sender: &'a mpsc::Sender<Sent>,
+    sender: &'a mpsc::Sender<SolveOutput>,
     work: &'a Work,
-    /// When the solver was given back the path.
+    /// When the solver began its current step.
     since: Instant,
-    /// The path's totals that have been counted; none where they begin with those of another attempt or job.
+    /// The totals of the path that have been counted; `None` if the path begins with the totals of another attempt or job.
     counted: Option<Diagnostics>,
     branches: Branches,
     checkpoints: Checkpoints,
     clock: Clock,
-    /// The last increment that is stored, where it can be read.
+    /// The last stored increment, if it can be read.
     last: Option<JudgedIncrement>,
-    /// The path has come to what is stored, or past it.
+    /// The path has reached the last stored increment.
     has_arrived: bool,
     why_not: Option<SolveEnd>,
 }
 
-impl<'a> Given<'a> {
-    /// From the start of the path.
-    pub fn new(context: &'a SolveContext, claim: &'a Claim, sender: &'a mpsc::Sender<Sent>) -> Self {
+impl<'a> IncrementRecorder<'a> {
+    /// Records a path from its start.
+    pub fn new(context: &'a SolveContext, claim: &'a Claim, sender: &'a mpsc::Sender<SolveOutput>) -> Self {
         let put_down = context.flush_interval;
-        // Nothing is compared with what another version wrote otherwise.
+        // An increment in the format of another version is not compared.
         let last = claim.last.as_ref().and_then(|line| serde_json::from_str::<JudgedIncrement>(&line.body).ok());
         let mut clock = Clock::default();
         clock.go_on_from(last.as_ref().map_or(0.0, elapsed_s));
@@ -62,8 +62,8 @@ impl<'a> Given<'a> {
         }
     }
 
-    /// From a checkpoint.
-    pub fn go_on_from(&mut self, from: &PutDown) {
+    /// Records a path from a checkpoint.
+    pub fn go_on_from(&mut self, from: &StoredCheckpoint) {
         self.checkpoints.after(&from.at);
         self.counted = None;
         self.clock = from.clock;
@@ -71,7 +71,7 @@ impl<'a> Given<'a> {
         self.has_arrived = self.claim.last.as_ref().is_none_or(|last| last.index <= from.at.path.index());
     }
 
-    /// Counts what a step took, and sends its increment on; where that is not recorded, a checkpoint now and then.
+    /// Counts the work of a step, and sends its increment; after a step without a recorded increment, a checkpoint if one is due.
     pub fn take(&mut self, step: Step, place: &dyn Place) -> ControlFlow<()> {
         let (time, totals) = (self.since.elapsed(), step.diagnostics);
         let before = self.counted.replace(totals).unwrap_or(totals);
@@ -92,7 +92,7 @@ impl<'a> Given<'a> {
         flow
     }
 
-    /// Sends an increment that is not stored; breaks where no more are wanted.
+    /// Sends an increment that is not stored yet; breaks if the receiver wants no more.
     fn send(&mut self, mut judged: JudgedIncrement, place: &dyn Place) -> ControlFlow<()> {
         let index = judged.increment.index;
         judged.increment.diagnostics.elapsed_s = self.clock.tell(elapsed_s(&judged));
@@ -105,25 +105,25 @@ impl<'a> Given<'a> {
             return ControlFlow::Continue(());
         }
         match self.line(&judged, place) {
-            Ok((line, limit)) => self.pass(Sent::Line(line, limit))?,
+            Ok((line, limit)) => self.pass(SolveOutput::Line(line, limit))?,
             Err(error) => return self.unwritable(&error),
         }
         self.put_down(place)
     }
 
-    /// Sends a checkpoint where one is due; none where the path has still to come to what is stored.
+    /// Sends a checkpoint if one is due and the path has reached the last stored increment.
     fn put_down(&mut self, place: &dyn Place) -> ControlFlow<()> {
         if !self.has_arrived {
             return ControlFlow::Continue(());
         }
         match self.checkpoints.at(place, self.clock) {
             Ok(None) => ControlFlow::Continue(()),
-            Ok(Some(checkpoint)) => self.pass(Sent::Checkpoint(checkpoint)),
+            Ok(Some(checkpoint)) => self.pass(SolveOutput::Checkpoint(checkpoint)),
             Err(error) => self.unwritable(&error),
         }
     }
 
-    fn pass(&self, sent: Sent) -> ControlFlow<()> {
+    fn pass(&self, sent: SolveOutput) -> ControlFlow<()> {
         match self.sender.blocking_send(sent) {
             Ok(()) => ControlFlow::Continue(()),
             Err(_) => ControlFlow::Break(()),
@@ -135,7 +135,7 @@ impl<'a> Given<'a> {
         ControlFlow::Break(())
     }
 
-    /// Whether the path leads to the last increment that is stored.
+    /// Whether the path leads to the last stored increment.
     fn arrive(&mut self, increment: &Increment) -> bool {
         let claim = self.claim;
         let Some(last) = &claim.last else { return true };
@@ -158,7 +158,7 @@ impl<'a> Given<'a> {
         Ok((Line { index: judged.increment.index, body, branch }, limit))
     }
 
-    /// How the solve ended, with the report that the path has.
+    /// How the solve ended, given the report of the path.
     pub fn end(self, report: Option<JudgedReport>) -> SolveEnd {
         let Self { mut clock, why_not, has_arrived, .. } = self;
         if let Some(why_not) = why_not {
@@ -184,7 +184,7 @@ fn elapsed_s(judged: &JudgedIncrement) -> f64 {
     judged.increment.diagnostics.elapsed_s
 }
 
-/// Whether two increments are the same point of the same path; where nothing moves, the load is in the arc length.
+/// Whether two increments are the same point of a path. Where nothing moves, the arc length shows the change of the load.
 fn are_same(one: &Increment, other: &Increment) -> bool {
     let near = |one: f64, other: f64, size: f64| (one - other).abs() <= SAME * size;
     let size = |increment: &Increment| {

@@ -1,4 +1,4 @@
-//! All workers of a process, and the sweeper that takes back what lost workers held.
+//! The workers of a process, and the tasks that reclaim the jobs of lost workers and delete old jobs.
 
 use crate::service::jobs::Jobs;
 use crate::service::jobs::workers::{retention, worker};
@@ -12,28 +12,28 @@ use tokio_util::sync::CancellationToken;
 use tokio_util::task::AbortOnDropHandle;
 use uuid::Uuid;
 
-/// A task that panics again and again does not take the processor from the others.
+/// The pause before a task that panicked is restarted, so that repeated panics do not use up the processor.
 const AFTER_A_PANIC: Duration = Duration::from_secs(1);
 
-/// Answers and solves under way get so long to end.
+/// Time for answers and solves to end.
 const DRAIN: Duration = Duration::from_secs(8);
-/// Closing the database after that.
+/// Time to close the database after that.
 const CLOSE: Duration = Duration::from_secs(2);
 
-/// The workers under way.
-pub struct Crew {
+/// The running workers.
+pub struct WorkerPool {
     tasks: JoinSet<()>,
-    attendance: Attendance,
+    worker_count: WorkerCount,
 }
 
-/// How many workers there should be and how many there are.
+/// The number of workers that run and that should run.
 #[derive(Debug, Clone)]
-pub struct Attendance {
+pub struct WorkerCount {
     alive: Arc<AtomicUsize>,
     expected: usize,
 }
 
-impl Attendance {
+impl WorkerCount {
     pub fn alive(&self) -> usize {
         self.alive.load(Ordering::Relaxed)
     }
@@ -47,44 +47,44 @@ impl Attendance {
     }
 }
 
-impl Crew {
+impl WorkerPool {
     /// Starts the workers; they stop when `shutdown` is cancelled.
     pub fn start(jobs: &Jobs, shutdown: &CancellationToken) -> Self {
-        let attendance = Attendance { alive: Arc::default(), expected: jobs.settings.workers };
+        let worker_count = WorkerCount { alive: Arc::default(), expected: jobs.settings.workers };
         let mut tasks = JoinSet::new();
-        // Leases name the worker, so no two processes, nor two lives of one, may share a name.
+        // Leases name the worker, so that names are unique over all processes and restarts.
         let process = Uuid::now_v7();
         for number in 0..jobs.settings.workers {
-            let present = Present::new(&attendance.alive);
+            let present = CountedWorker::new(&worker_count.alive);
             let (jobs, name, shutdown) = (jobs.clone(), format!("{process}/{number}"), shutdown.clone());
             tasks.spawn(async move {
                 let _present = present;
-                kept_up(&shutdown, || worker::work(jobs.clone(), name.clone(), shutdown.clone())).await;
+                restart_on_panic(&shutdown, || worker::work(jobs.clone(), name.clone(), shutdown.clone())).await;
             });
         }
         let (sweeping, stop) = (jobs.clone(), shutdown.clone());
-        tasks.spawn(async move { kept_up(&stop, || sweep(sweeping.clone(), stop.clone())).await });
+        tasks.spawn(async move { restart_on_panic(&stop, || sweep(sweeping.clone(), stop.clone())).await });
         let (tidying, stop) = (jobs.clone(), shutdown.clone());
-        tasks.spawn(async move { kept_up(&stop, || tidy(tidying.clone(), stop.clone())).await });
-        Self { tasks, attendance }
+        tasks.spawn(async move { restart_on_panic(&stop, || tidy(tidying.clone(), stop.clone())).await });
+        Self { tasks, worker_count }
     }
 
-    pub fn attendance(&self) -> Attendance {
-        self.attendance.clone()
+    pub fn worker_count(&self) -> WorkerCount {
+        self.worker_count.clone()
     }
 
-    /// Waits until every worker has put its job down.
+    /// Waits until every worker has released its job.
     pub async fn stopped(mut self) {
         while let Some(ended) = self.tasks.join_next().await {
             if let Err(error) = ended {
-                tracing::error!(%error, "a worker ended early");
+                tracing::error!(%error, "a worker failed");
             }
         }
     }
 }
 
-/// Waits for what has been asked to end, and closes the database; answers whether it all ended within the bound.
-pub async fn wound_up<T>(ends: impl Future<Output = T>, store: &dyn Store) -> bool {
+/// Waits for `ends`, which has been asked to end, and closes the database; answers whether both ended within their time limits.
+pub async fn finish_shutdown<T>(ends: impl Future<Output = T>, store: &dyn Store) -> bool {
     let ended = timeout(DRAIN, ends).await;
     if ended.is_err() {
         tracing::warn!(seconds = DRAIN.as_secs(), "not everything ended in time; its jobs run again later");
@@ -93,10 +93,13 @@ pub async fn wound_up<T>(ends: impl Future<Output = T>, store: &dyn Store) -> bo
     ended.is_ok() && closed.is_ok()
 }
 
-/// Begins a task anew when it has panicked, after a moment.
-async fn kept_up<F: Future<Output = ()> + Send + 'static>(shutdown: &CancellationToken, begin: impl Fn() -> F) {
+/// Runs a task, and restarts it after a pause whenever it panics.
+async fn restart_on_panic<F: Future<Output = ()> + Send + 'static>(
+    shutdown: &CancellationToken,
+    begin: impl Fn() -> F,
+) {
     while let Err(error) = AbortOnDropHandle::new(tokio::spawn(begin())).await {
-        tracing::error!(%error, "a task of the service panicked; it begins anew");
+        tracing::error!(%error, "a task of the service panicked; it is restarted");
         tokio::select! {
             () = shutdown.cancelled() => return,
             () = tokio::time::sleep(AFTER_A_PANIC) => {}
@@ -108,10 +111,10 @@ async fn sweep(jobs: Jobs, shutdown: CancellationToken) {
     loop {
         match jobs.store.reclaim_expired().await {
             Ok(0) => {}
-            Ok(count) => tracing::warn!(count, "jobs taken back from workers that were lost"),
-            Err(error) => tracing::warn!(%error, "expired leases could not be looked for"),
+            Ok(count) => tracing::warn!(count, "jobs of lost workers were queued again"),
+            Err(error) => tracing::warn!(%error, "expired leases could not be reclaimed"),
         }
-        // Jobs that ended without their worker: cancelled in the queue, deleted, or stored just before a stop.
+        // Alternatives of jobs that ended without their worker: cancelled in the queue, deleted, or stored just before a shutdown.
         crate::service::jobs::workers::explore::queue(&jobs).await;
         tokio::select! {
             () = shutdown.cancelled() => return,
@@ -124,7 +127,7 @@ async fn tidy(jobs: Jobs, shutdown: CancellationToken) {
     tokio::select! {
         () = shutdown.cancelled() => return,
         checked = jobs.store.check() => if let Err(error) = checked {
-            tracing::error!(%error, source = ?std::error::Error::source(&error), "the database does not stand its check");
+            tracing::error!(%error, source = ?std::error::Error::source(&error), "the database failed its integrity check");
         }
     }
     loop {
@@ -139,17 +142,17 @@ async fn tidy(jobs: Jobs, shutdown: CancellationToken) {
     }
 }
 
-/// Counts a worker for as long as its task lives, however that ends.
-struct Present(Arc<AtomicUsize>);
+/// Counts a worker while its task runs, however the task ends.
+struct CountedWorker(Arc<AtomicUsize>);
 
-impl Present {
+impl CountedWorker {
     fn new(alive: &Arc<AtomicUsize>) -> Self {
         alive.fetch_add(1, Ordering::Relaxed);
         Self(Arc::clone(alive))
     }
 }
 
-impl Drop for Present {
+impl Drop for CountedWorker {
     fn drop(&mut self) {
         self.0.fetch_sub(1, Ordering::Relaxed);
     }

@@ -1,4 +1,4 @@
-//! What leaves a solve: lines and checkpoints on its way, and how it ended.
+//! The output of a solve: lines and checkpoints, and how it ended.
 
 use crate::check::judged::JudgedReport;
 use crate::model::InputErrors;
@@ -14,29 +14,29 @@ pub enum SolveEnd {
     Refused(InputErrors),
     Panicked(String),
     Unwritable(String),
-    /// This increment is stored and comes out otherwise now, or not at all.
+    /// The recomputed increment of this index differs from the stored one, or the path does not reach it.
     Differs(u64),
-    /// Where the job begins, or what it has found already, cannot be read.
+    /// The stored beginning of the job, or its stored lines, cannot be read.
     Unreadable(String),
-    /// A study has ended, complete or cancelled.
+    /// A study has ended, completed or cancelled.
     Studied(error_against_time::Report),
-    /// Cancelled before there was anything to report.
+    /// Cancelled before there was a report.
     Cancelled,
-    /// It would have gone past a bound where there is no path to report it.
+    /// The solve would have exceeded a bound before there was a path with a report.
     Exceeded(Breach),
-    /// Without a report: nobody listened any more, or a defect.
+    /// Ended without a report: the receiver was gone, or the solver has a defect.
     Silent,
 }
 
-/// What leaves a solve, in the order in which it is to be stored.
+/// A piece of output, in the order in which it is to be stored.
 #[derive(Debug)]
-pub enum Sent {
-    /// An increment, or a row of a study, and, of a limit point, the load there, as JSON.
+pub enum SolveOutput {
+    /// An increment or a row of a study; with the load of a limit point, as JSON.
     Line(Line, Option<String>),
     Checkpoint(Checkpoint),
 }
 
-impl Sent {
+impl SolveOutput {
     pub fn index(&self) -> u64 {
         match self {
             Self::Line(line, _) => line.index,
