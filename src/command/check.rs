@@ -1,4 +1,4 @@
-//! `arcslip check`: is this model all right, and what would be done?
+//! `arcslip check`: checks a model and prints its plan.
 
 use crate::command::options::{bounds, input};
 use crate::command::output::outcome::{Failure, Outcome, say};

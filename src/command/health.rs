@@ -1,4 +1,4 @@
-//! `arcslip health`: asks a running service, for containers that have no other client.
+//! `arcslip health`: asks a running service whether it is ready, for containers without another HTTP client.
 
 use crate::command::output::outcome::{Failure, Outcome, say};
 use std::io::{Read, Write};
@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 const PATIENCE: Duration = Duration::from_secs(5);
-/// The status line is all that counts.
+/// Only the status line is read.
 const ENOUGH: u64 = 4096;
 
 /// Ask a running service whether it is ready; exit status 0 if so.

@@ -1,4 +1,4 @@
-//! The command line: one file a command.
+//! The command line: one file per command.
 //!
 //! Exit status: 0 done, 1 stopped or failed, 2 bad input. Called by `main` alone.
 
@@ -68,7 +68,7 @@ fn run_command() -> Outcome {
     }
 }
 
-/// Runs what the process was asked for.
+/// Runs the command given on the command line.
 pub fn run() -> ExitCode {
     let outcome = run_command();
     match outcome {

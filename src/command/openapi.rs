@@ -1,4 +1,4 @@
-//! `arcslip openapi`: the description that is committed under `openapi/`.
+//! `arcslip openapi`: prints the OpenAPI description that is committed under `openapi/`.
 
 use crate::command::output::outcome::{Failure, Outcome, say};
 use std::process::ExitCode;

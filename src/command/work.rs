@@ -1,4 +1,4 @@
-//! `arcslip work`: workers alone, for a database that others serve.
+//! `arcslip work`: workers without HTTP, for a database that other processes serve.
 
 use crate::command::options::service;
 use crate::command::options::settings::Setting;
@@ -9,13 +9,13 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use tokio_util::sync::CancellationToken;
 
-/// Solve jobs that are taken elsewhere, and listen on no port: any number of these, on any number of machines, share one
-/// PostgreSQL database.
+/// Solve queued jobs without listening on a port: any number of such processes, on any number of machines, share a PostgreSQL
+/// database.
 ///
-/// Settings are taken from the command line, else from the environment, else from the file, else they are the defaults.
+/// Settings are taken from the command line, else from the environment, else from the file; otherwise the defaults apply.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Solves at a time, 1 to 1024. Default: one a processor.
+    /// Number of workers, 1 to 1024. Default: one per processor.
     #[arg(long, value_name = "N", env = "ARCSLIP_WORKERS", value_parser = clap::value_parser!(u16).range(1..=1024))]
     workers: Option<u16>,
     #[command(flatten)]
@@ -35,7 +35,7 @@ async fn work(arguments: &Arguments) -> Outcome {
     let shutdown = CancellationToken::new();
     let pool = WorkerPool::start(&jobs, &shutdown);
     let workers = pool.worker_count().expected();
-    // Where standard output is closed, the log says the same.
+    // The log has the same message, in case standard output is closed.
     let _ = say(format_args!("arcslip works on {}\n", service.database));
     tracing::info!(database = %service.database, workers, "working");
     ends.asked().await;

@@ -1,4 +1,4 @@
-//! Who may call a service, as arguments of `serve`.
+//! Arguments of `serve` for access control.
 
 use crate::command::output::outcome::Failure;
 use crate::service::http::access::origins::Origins;
@@ -11,43 +11,43 @@ use std::net::SocketAddr;
 use std::num::NonZeroU32;
 use std::path::PathBuf;
 
-/// Files besides connections: the database's, the log, what a backup or a sort takes.
+/// Open files besides connections: the database, the log, and temporary files of backups and sorts.
 const OTHER_FILES: u64 = 64;
-/// Requests a second of one address, and of one token, where others than this machine reach the service.
+/// Default rate limit of an address and of a token, if other machines reach the service.
 const RATE: u32 = 100;
 
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Access")]
 #[group(skip)]
 pub struct Arguments {
-    /// Tokens that callers have to show: a line each, as `arcslip token` prints it; read again at SIGHUP.
+    /// File of the valid tokens: a line for each, as printed by `arcslip token`; read again at SIGHUP.
     #[arg(long, value_name = "FILE", env = "ARCSLIP_TOKENS_FILE")]
     pub tokens_file: Option<PathBuf>,
-    /// Take everyone without a token, from other machines too.
+    /// Admit everyone without a token, from other machines, too.
     #[arg(long, env = "ARCSLIP_OPEN")]
     open: bool,
-    /// Requests a second of one address, 0 for as many as come. Default: 100, or 0 where only this machine reaches the service.
+    /// Requests per second from an address, 0 for no limit. Default: 100, or 0 if only this machine reaches the service.
     #[arg(long, value_name = "N", env = "ARCSLIP_ADDRESS_RATE")]
     address_rate: Option<u32>,
-    /// Requests a second with one token, 0 for as many as come. Default: as for an address.
+    /// Requests per second with a token, 0 for no limit. Default: as for an address.
     #[arg(long, value_name = "N", env = "ARCSLIP_TOKEN_RATE")]
     token_rate: Option<u32>,
-    /// Pages of browsers that may call from elsewhere, such as `https://plots.example.org`; several with commas. Default: none.
+    /// Origins of other pages that may call, such as `https://plots.example.org`; several separated by commas. Default: none.
     #[arg(long, value_name = "ORIGIN", env = "ARCSLIP_ALLOW_ORIGIN", value_delimiter = ',')]
     allow_origin: Vec<String>,
-    /// Connections served at a time; those past that wait. Each takes a file descriptor (`ulimit -n`).
+    /// Connections served at a time; further ones wait. Each takes a file descriptor (`ulimit -n`).
     #[arg(long, value_name = "N", default_value_t = 800, env = "ARCSLIP_MAX_CONNECTIONS",
         value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     max_connections: u32,
-    /// Connections of one address, 0 for as many as come; those past that are closed. This machine's own addresses, which a
-    /// proxy has, may have any number.
+    /// Connections from an address, 0 for no limit; further ones are closed. Loopback addresses, as of a proxy, have no
+    /// limit.
     #[arg(long, value_name = "N", default_value_t = 100, env = "ARCSLIP_ADDRESS_CONNECTIONS")]
     address_connections: u32,
 }
 
 impl Arguments {
     /// # Errors
-    /// An address that others reach without a word about who may call, or a file of tokens that is none.
+    /// The address is reachable from other machines but neither tokens nor `--open` are given, or the file of tokens is invalid.
     pub fn access(&self, listen: SocketAddr) -> Result<Access, Failure> {
         let loopback = listen.ip().is_loopback();
         let policy = match (&self.tokens_file, self.open) {
@@ -77,7 +77,7 @@ impl Arguments {
         Ok(Access::new(policy, Rates::new(rate(self.address_rate), rate(self.token_rate)), origins))
     }
 
-    /// As many as are asked for, or as the process may open files for.
+    /// The requested number of connections, or fewer if the process may not open as many files.
     pub fn connections(&self) -> Connections {
         let files = open_files();
         let room = files.saturating_sub(OTHER_FILES).max(1);
@@ -86,22 +86,22 @@ impl Arguments {
             tracing::warn!(asked, served = room, files, "fewer connections are served: each takes a file (ulimit -n)");
         }
         let all = usize::try_from(asked.min(room)).unwrap_or(usize::MAX);
-        // Fewer files are no reason to let fewer wait.
+        // The backlog does not depend on the number of files.
         let waiting = usize::try_from(asked).unwrap_or(usize::MAX);
         Connections { all, waiting, an_address: NonZeroU32::new(self.address_connections) }
     }
 
-    /// The tokens as the file has them now.
+    /// Reads the file of tokens again.
     ///
     /// # Errors
-    /// No file is named, or it is none of tokens.
+    /// No file is given, or the file is invalid.
     pub fn tokens(&self) -> Result<Tokens, Failure> {
         let file = self.tokens_file.as_deref().ok_or_else(|| bad("no file of tokens is named".to_owned()))?;
         Tokens::of_file(file).map_err(|error| bad(format!("--tokens-file: {error}")))
     }
 }
 
-/// How many files the process may open, after asking for as many as it may have.
+/// Raises the limit on open files to its maximum and answers it.
 fn open_files() -> u64 {
     let limit = getrlimit(Resource::Nofile);
     let raised = Rlimit { current: limit.maximum, maximum: limit.maximum };

@@ -1,4 +1,4 @@
-//! What one solve may take, as arguments of all commands that solve or check.
+//! Bounds on a solve, as arguments of all commands that solve or check.
 
 use crate::command::options::size::bytes;
 use crate::command::output::outcome::{Failure, Outcome};
@@ -9,15 +9,15 @@ use crate::resources::cancel::CancelFlag;
 #[command(next_help_heading = "Limits")]
 #[group(skip)]
 pub struct Arguments {
-    /// Bytes that one solve, or check, may hold at a time, such as `2GiB`: the sizes of its matrices and lists, summed; past
-    /// that a path ends, `memory_limit`.
+    /// Memory of a solve or check, such as `2GiB`: the total size of its matrices and lists; a path that exceeds it ends with
+    /// `memory_limit`.
     #[arg(long, value_name = "BYTES", default_value = "4GiB", env = "ARCSLIP_MAX_MEMORY", value_parser = bytes)]
     max_memory: u64,
-    /// Entries of the sparse triangular factor of a structure's stiffness; past that it is refused.
+    /// Entries of the sparse triangular factor of the stiffness matrix; a structure that exceeds them is refused.
     #[arg(long, value_name = "N", default_value_t = Bounds::default().factor_entries,
         env = "ARCSLIP_MAX_FACTOR_ENTRIES", value_parser = clap::value_parser!(u64).range(1..))]
     max_factor_entries: u64,
-    /// Multiplications of one factorisation of it; past that it is refused.
+    /// Multiplications of a factorisation of the stiffness matrix; a structure that exceeds them is refused.
     #[arg(long, value_name = "N", default_value_t = Bounds::default().factor_work,
         env = "ARCSLIP_MAX_FACTOR_WORK", value_parser = clap::value_parser!(u64).range(1..))]
     max_factor_work: u64,

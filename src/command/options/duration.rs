@@ -1,12 +1,12 @@
-//! Durations as they are written in arguments: `300ms`, `10s`, `2h`, `7d`.
+//! Parses durations in arguments: `300ms`, `10s`, `2h`, `7d`.
 
 use jiff::{SignedDuration, Span, SpanRelativeTo};
 use std::time::Duration;
 
-/// Shorter leases are lost to a busy machine's pauses.
+/// Shorter leases could expire during pauses of a busy machine.
 const SHORTEST_LEASE: Duration = Duration::from_millis(100);
 
-/// Longer than nothing; days are of 24 hours.
+/// A positive duration; a day has 24 hours.
 pub fn positive(text: &str) -> Result<Duration, String> {
     let span: Span =
         text.parse().map_err(|_| format!("{text:?} is no duration; one is written like 300ms, 10s, 2h or 7d"))?;

@@ -1,11 +1,11 @@
-//! Where a command's model comes from.
+//! Reads the model of a command.
 
 use crate::check::scenes;
 use crate::command::output::outcome::Failure;
 use crate::model::{InputErrors, JobRequest, decode};
 use std::io::{ErrorKind, Read};
 
-/// A model on the command line.
+/// The argument that names a model.
 #[derive(Debug, clap::Args)]
 pub struct Model {
     /// A file, `-` for standard input, or the name of a built-in scene.
@@ -39,7 +39,7 @@ impl Model {
     }
 }
 
-/// One line for each mistake: `place: detail`.
+/// One line per mistake: `place: detail`.
 pub fn refused(errors: InputErrors) -> Failure {
     Failure::Input(errors.0.iter().map(ToString::to_string).collect())
 }

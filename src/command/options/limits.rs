@@ -1,4 +1,4 @@
-//! What a service takes and keeps, as arguments of `serve` and `work`.
+//! Limits of a service, as arguments of `serve` and `work`.
 
 use crate::command::options::size::bytes;
 use crate::command::options::{bounds, duration};
@@ -13,11 +13,11 @@ use std::time::Duration;
 pub struct Arguments {
     #[command(flatten)]
     bounds: bounds::Arguments,
-    /// Jobs and studies that may wait; past that 429.
+    /// Waiting jobs and studies; further ones are refused with 429.
     #[arg(long, value_name = "N", default_value_t = Limits::default().queued, env = "ARCSLIP_MAX_QUEUED",
         value_parser = clap::value_parser!(u64).range(1..))]
     max_queued: u64,
-    /// Bytes of a request, such as `4MiB`; at most 16 MiB.
+    /// Size of a request, such as `4MiB`; at most 16 MiB.
     #[arg(long, value_name = "BYTES", default_value = "16MiB", env = "ARCSLIP_MAX_BODY", value_parser = body)]
     max_body: usize,
     /// Nodes of a model, at most 100,000.
@@ -28,7 +28,7 @@ pub struct Arguments {
     #[arg(long, value_name = "N", default_value_t = Limits::default().elements, env = "ARCSLIP_MAX_ELEMENTS",
         value_parser = |text: &str| count(text, MAX_ELEMENTS))]
     max_elements: usize,
-    /// Contacts of a model, at most 20,000; 0 takes none.
+    /// Contacts of a model, at most 20,000; 0 allows none.
     #[arg(long, value_name = "N", default_value_t = Limits::default().contacts, env = "ARCSLIP_MAX_CONTACTS",
         value_parser = |text: &str| most(text, MAX_CONTACTS))]
     max_contacts: usize,
@@ -36,18 +36,18 @@ pub struct Arguments {
     #[arg(long, value_name = "N", default_value_t = Limits::default().increments, env = "ARCSLIP_MAX_INCREMENTS",
         value_parser = clap::value_parser!(u64).range(1..=MAX_INCREMENTS))]
     max_increments: u64,
-    /// Time that checking a request may take, such as `30s`; past that 422.
+    /// Time for the check of a request, such as `30s`; a longer check is refused with 422.
     #[arg(long, value_name = "DURATION", default_value = "2m", env = "ARCSLIP_MAX_CHECK_TIME",
         value_parser = duration::positive)]
     max_check_time: Duration,
-    /// Time that a job may run in all, such as `30m` or `7d`.
+    /// Total running time of a job, such as `30m` or `7d`.
     #[arg(long, value_name = "DURATION", default_value = "24h", env = "ARCSLIP_MAX_WALL_TIME",
         value_parser = duration::positive)]
     max_wall_time: Duration,
-    /// Bytes that may be stored of a job, such as `512MiB`.
+    /// Stored size of a job, such as `512MiB`.
     #[arg(long, value_name = "BYTES", default_value = "8GiB", env = "ARCSLIP_MAX_STORED", value_parser = bytes)]
     max_stored: u64,
-    /// Ended jobs that are kept: so many, or those that ended no longer ago than so (`1000`, `30d`). Default: all.
+    /// Ended jobs to keep: a number, or a time since their end (`1000`, `30d`). Default: all.
     #[arg(long, value_name = "COUNT|DURATION", env = "ARCSLIP_KEEP", value_parser = keep)]
     pub keep: Option<Keep>,
 }

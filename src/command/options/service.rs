@@ -1,4 +1,4 @@
-//! What `serve` and `work` share: where the jobs are, how workers behave, the log, and the signals that end a service.
+//! What `serve` and `work` share: the database, the settings of workers, the log, and the signals that end a service.
 
 use crate::command::options::settings::Setting;
 use crate::command::options::{duration, limits};
@@ -17,10 +17,10 @@ use tracing_subscriber::EnvFilter;
 #[derive(Debug, Clone, clap::Args)]
 #[group(skip)]
 pub struct Arguments {
-    /// A TOML file of settings: the names of these flags, without the dashes before them.
+    /// A TOML file of settings; its keys are the names of these flags without the leading dashes.
     #[arg(long, value_name = "FILE", env = "ARCSLIP_CONFIG")]
     config: Option<PathBuf>,
-    /// Where jobs are kept: a file, created if it is not there, or `postgres://USER@HOST:PORT/DATABASE`, which processes on many
+    /// The database: a file, created if it does not exist, or `postgres://USER@HOST:PORT/DATABASE`, which processes on many
     /// machines share.
     #[arg(
         long,
@@ -30,10 +30,10 @@ pub struct Arguments {
         hide_env_values = true
     )]
     pub database: Location,
-    /// A worker that has not been heard of for so long has lost its job, which is then taken up by another; such as `10s`.
+    /// A worker that has not renewed its lease for this time, such as `10s`, has lost its job, which another one then resumes.
     #[arg(long, value_name = "DURATION", default_value = "10s", env = "ARCSLIP_LEASE", value_parser = duration::lease)]
     lease: Duration,
-    /// How the log is written; `RUST_LOG` says how much.
+    /// The format of the log; `RUST_LOG` sets its level.
     #[arg(long, value_enum, default_value_t = LogFormat::Text, env = "ARCSLIP_LOG")]
     log: LogFormat,
     #[command(flatten)]
@@ -47,7 +47,7 @@ enum LogFormat {
 }
 
 impl Arguments {
-    /// With so many workers, or one a processor.
+    /// The settings, with the given number of workers or one per processor.
     pub fn settings(&self, workers: Option<u16>) -> Settings {
         let processors = || std::thread::available_parallelism().map_or(1, NonZero::get);
         Settings {
@@ -64,7 +64,7 @@ impl Arguments {
         store::open(database.clone()).await.map_err(|error| Failure::Other(format!("--database {database}: {error}")))
     }
 
-    /// Begins the log with every setting in force.
+    /// Starts the log, with every setting in force.
     pub fn start_log(&self, settings: &[Setting]) {
         let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new("info"));
         let log = tracing_subscriber::fmt()
@@ -75,7 +75,7 @@ impl Arguments {
             LogFormat::Text => log.init(),
             LogFormat::Json => log.json().init(),
         }
-        // A panic in a solve belongs to its job: in the log it stands under that job's span.
+        // A panic is logged within the span of the job whose solve panicked.
         std::panic::set_hook(Box::new(|panic| tracing::error!(%panic, "a panic")));
         for Setting { name, value, from } in settings {
             tracing::info!(name, value, from, "setting");
@@ -87,19 +87,19 @@ impl Arguments {
 pub fn run<T>(service: impl Future<Output = Result<T, Failure>>) -> Result<T, Failure> {
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build().map_err(Failure::other)?;
     let outcome = runtime.block_on(service);
-    // Models that are being checked for clients who have gone are not waited for.
+    // Checks for clients that have disconnected are not waited for.
     runtime.shutdown_background();
     outcome
 }
 
-/// What asks a service to end.
+/// The signals that ask a service to end.
 pub struct Ends {
     interrupt: Signal,
     terminate: Signal,
 }
 
 impl Ends {
-    /// Heard from now on, so that a signal during start-up is not lost.
+    /// Listens from now on, so that a signal during start-up is not lost.
     pub fn heard() -> Result<Self, Failure> {
         let hear = |kind| signal(kind).map_err(Failure::other);
         Ok(Self { interrupt: hear(SignalKind::interrupt())?, terminate: hear(SignalKind::terminate())? })
@@ -110,6 +110,6 @@ impl Ends {
             _ = self.interrupt.recv() => {}
             _ = self.terminate.recv() => {}
         }
-        tracing::info!("going down");
+        tracing::info!("shutting down");
     }
 }

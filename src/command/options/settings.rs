@@ -1,7 +1,7 @@
-//! Settings of `serve` and `work`: from the command line, else from the environment, else from a file (`--config`), else the default.
+//! Settings of `serve` and `work`: from the command line, else from the environment, else from a file (`--config`), else defaults.
 //!
-//! The file is TOML; its keys are the names of the flags. What it holds takes the place of the defaults, so that there is
-//! one reader for every value wherever it comes from. One file serves both commands: each takes what is its own.
+//! The file is TOML; its keys are the names of the flags. Its values replace the defaults of the flags, so that every value is
+//! parsed in the same way. One file serves both commands: each reads its own settings.
 
 use crate::command::output::outcome::Failure;
 use crate::model::input::names::{quoted, suggestion_of_all};
@@ -10,7 +10,7 @@ use clap::parser::ValueSource;
 use clap::{ArgAction, ArgMatches, Command};
 use std::path::{Path, PathBuf};
 
-/// The subcommands whose settings these are, and their flags that name the file, and a database, whose password is not told.
+/// The subcommands with these settings; the flags of the file, and of the database, whose password is not logged.
 const SERVICES: [&str; 2] = ["serve", "work"];
 const CONFIG: &str = "config";
 const DATABASE: &str = "database";
@@ -23,14 +23,14 @@ pub struct Setting {
     pub from: &'static str,
 }
 
-/// A value of the file as it would stand on the command line; several for a list.
+/// A value of the file as text for the command line; several for a list.
 type Value = (String, Vec<String>);
 
-/// Reads the command line, with the settings' file where one is named.
+/// Reads the command line, and the file of settings if one is given.
 ///
 /// # Errors
-/// A file that cannot be read, or holds what is no setting. What is wrong on the command line itself ends the process, with
-/// the usual text.
+/// The file cannot be read, or has an unknown setting. A mistake on the command line ends the process with the usual
+/// message.
 pub fn parse(command: fn() -> Command) -> Result<ArgMatches, Failure> {
     let matches = command().get_matches();
     let service = matches.subcommand().filter(|(name, _)| SERVICES.contains(name));
@@ -41,12 +41,12 @@ pub fn parse(command: fn() -> Command) -> Result<ArgMatches, Failure> {
     with_defaults(command(), service, values).try_get_matches().map_err(|error| bad(error.to_string()))
 }
 
-/// Every setting of the service that was asked for, by name.
+/// Every setting of the selected subcommand, by name.
 pub fn in_force(mut command: Command, matches: &ArgMatches) -> Vec<Setting> {
     let Some((name, service)) = matches.subcommand().filter(|(name, _)| SERVICES.contains(name)) else {
         return Vec::new();
     };
-    // Only then flags without a value have their default.
+    // Flags without a value only have their default then.
     command.build();
     let usual = flags(&command, name);
     let mut settings: Vec<Setting> = usual
@@ -85,7 +85,7 @@ fn flags(command: &Command, service: &str) -> Vec<clap::Arg> {
 fn read(file: &Path, command: &Command) -> Result<Vec<Value>, String> {
     let text = std::fs::read_to_string(file).map_err(|error| error.to_string())?;
     let table: toml::Table = text.parse().map_err(|error: toml::de::Error| error.to_string())?;
-    // Each with whether it takes several values.
+    // For each setting, whether it takes several values.
     let known: Vec<(String, bool)> = SERVICES
         .iter()
         .flat_map(|service| flags(command, service))
@@ -123,7 +123,7 @@ fn with_defaults(command: Command, service: &str, values: Vec<Value>) -> Command
         flags(&command, service).iter().filter_map(|flag| flag.get_long().map(str::to_owned)).collect();
     command.mut_subcommand(service, |mut service| {
         for (name, values) in values.into_iter().filter(|(name, _)| own.contains(name)) {
-            // Identifiers are the flags' names, with `_` for `-`.
+            // Identifiers are the names of the flags, with `_` for `-`.
             service = service.mut_arg(name.replace('-', "_"), |argument| argument.default_values(values));
         }
         service

@@ -1,4 +1,4 @@
-//! Sizes in bytes as they are written on the command line.
+//! Parses sizes in bytes on the command line.
 
 /// `1048576`, `1024KiB`, `1MiB`, `1GiB`.
 pub(crate) fn bytes(text: &str) -> Result<u64, String> {

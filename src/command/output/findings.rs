@@ -1,4 +1,4 @@
-//! What `study` and `sweep` have found, written down as asked, and how far they have come.
+//! Writes the findings of `study` and `sweep` in the selected format, and shows their progress.
 
 use crate::command::output::outcome::Failure;
 use crate::command::output::written::{one_on_standard_output, write};
@@ -7,34 +7,34 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
-/// Where findings go.
+/// The arguments for the output of findings.
 #[derive(Debug, clap::Args)]
 pub struct Written {
-    /// Write the table here; `-` is standard output.
+    /// Write the table to this file; `-` is standard output.
     #[arg(long, value_name = "FILE", default_value = "-")]
     out: PathBuf,
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
-    /// Draw the picture here, as an SVG; `-` is standard output.
+    /// Draw the picture to this file, as SVG; `-` is standard output.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Format {
-    /// Columns for a reader.
+    /// Aligned columns of text.
     Text,
     /// A table with named columns.
     Csv,
-    /// All of it as one JSON object.
+    /// Everything as one JSON object.
     Json,
 }
 
 impl Written {
-    /// Before anything is traced.
+    /// Checks the output files before anything is traced.
     ///
     /// # Errors
-    /// Two things that go to the same place, or a place in a folder that is not there.
+    /// Two outputs have the same file, or the folder of a file does not exist.
     pub fn check(&self) -> Result<(), Failure> {
         let places = [("--out", Some(self.out.as_path())), ("--plot", self.plot.as_deref())];
         for (option, place) in places {
@@ -47,7 +47,7 @@ impl Written {
     }
 
     /// # Errors
-    /// A file that cannot be written, or nothing that could be drawn.
+    /// A file cannot be written, or there is nothing to draw.
     pub fn write(&self, findings: &impl Findings) -> Result<(), Failure> {
         let text = match self.format {
             Format::Text => findings.text(),
@@ -62,7 +62,7 @@ impl Written {
     }
 }
 
-/// On a terminal, where it does not disturb the table: that comes when all is done.
+/// The progress bar, on a terminal; the table is only written at the end.
 pub fn progress_bar(paths: u64) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();

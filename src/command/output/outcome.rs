@@ -1,4 +1,4 @@
-//! How a command ends: its exit status, or why it failed.
+//! The outcome of a command: its exit status, or why it failed.
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -7,12 +7,12 @@ pub(crate) const FAILED: u8 = 1;
 
 pub(crate) const BAD_INPUT: u8 = 2;
 
-/// How a command ended, when not well.
+/// Why a command failed.
 #[derive(Debug)]
 pub enum Failure {
-    /// The input is at fault: one line each.
+    /// Mistakes in the input, one line each.
     Input(Vec<String>),
-    /// Something else is.
+    /// Any other reason.
     Other(String),
 }
 
@@ -24,7 +24,7 @@ impl Failure {
 
 pub(crate) type Outcome = Result<ExitCode, Failure>;
 
-/// Writes to standard output, whose reader may have gone.
+/// Writes to standard output, which may be closed.
 pub(crate) fn say(text: impl std::fmt::Display) -> Result<(), Failure> {
     write!(std::io::stdout(), "{text}").map_err(|error| Failure::Other(format!("standard output: {error}")))
 }
