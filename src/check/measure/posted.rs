@@ -1,4 +1,4 @@
-//! The posted model with its names replaced by numbers, so that judging an increment looks nothing up.
+//! The posted model with numbers instead of names, so that judging an increment needs no look-ups.
 
 use crate::check::measure::elements::Element;
 use crate::check::measure::obstacles::{Frame, Obstacle};
@@ -30,7 +30,7 @@ pub(super) struct Node {
 pub(super) struct Contact {
     pub node: usize,
     pub obstacle: usize,
-    /// Its obstacle's place among those that move.
+    /// The index of its obstacle among the moving ones.
     pub motion: Option<usize>,
     pub friction: f64,
 }
@@ -41,14 +41,14 @@ pub(super) struct Stage {
     forces: Pattern,
     displacements: Pattern,
     motions: Pattern,
-    /// Load factor of one dimensionless load.
+    /// Load factor of a dimensionless load of 1.
     pub load_scale: f64,
 }
 
-/// Nodes or moving obstacles and what the load factor multiplies there.
+/// Nodes or moving obstacles, with the vectors that the load factor multiplies.
 type Pattern = Vec<(usize, Vector)>;
 
-/// What acts on the structure: one vector a node, one a node, one a moving obstacle.
+/// Loads on the structure: forces on the nodes, displacements of the nodes, and displacements of the moving obstacles.
 #[derive(Debug, Clone)]
 pub(super) struct Loading {
     pub forces: Vec<Vector>,
@@ -95,7 +95,7 @@ impl Posted {
 }
 
 impl Posted {
-    /// How a contact's obstacle lies to its node.
+    /// The gap and the frame of a contact.
     pub fn frame(&self, contact: &Contact, loading: &Loading, displacements: &[Vector]) -> Frame {
         let place = &self.nodes[contact.node].place;
         let obstacle = &self.obstacles[contact.obstacle];
@@ -108,7 +108,7 @@ fn pattern(posted: &IndexMap<String, Vec<f64>>, number: &dyn Fn(&str) -> Option<
 }
 
 impl Stage {
-    /// Motion of a contact's obstacle by unit load factor (length).
+    /// Motion of the obstacle of a contact per unit load factor (length).
     pub fn motion(&self, contact: &Contact) -> Vector {
         let of_this = |(place, _): &&(usize, Vector)| Some(*place) == contact.motion;
         self.motions.iter().find(of_this).map_or_else(Vector::zeros, |(_, motion)| *motion)
@@ -125,12 +125,12 @@ impl Loading {
         }
     }
 
-    /// How far a contact's obstacle has moved.
+    /// The displacement of the obstacle of a contact.
     pub fn shift(&self, contact: &Contact) -> Vector {
         contact.motion.map_or_else(Vector::zeros, |place| self.shifts[place])
     }
 
-    /// Becomes what is held with a stage under a load factor on top.
+    /// Sets the sum of the held loads and those of a stage at a load factor.
     pub fn set(&mut self, held: &Self, stage: &Stage, load: f64) {
         let all = [
             (&mut self.forces, &held.forces, &stage.forces),

@@ -1,4 +1,4 @@
-//! A study as text: CSV, and columns for a reader.
+//! The findings of a study as text: CSV, and aligned columns.
 
 use crate::output::columns::{name_of, push_columns};
 use crate::output::csv::CsvRow;
@@ -36,10 +36,10 @@ const COLUMNS: [&str; 26] = [
 ];
 
 impl Report {
-    /// One line a row, names first. What is null in JSON is an empty cell.
+    /// A header and one line per row. A null value is an empty cell.
     ///
     /// # Errors
-    /// None in practice: names of the contract that cannot be written are a defect.
+    /// None in practice: a name that cannot be written is a defect.
     pub fn csv(&self) -> serde_json::Result<String> {
         let mut header = CsvRow::default();
         COLUMNS.iter().for_each(|name| header.raw(name));
@@ -80,7 +80,7 @@ impl Report {
         Ok(line.end())
     }
 
-    /// Columns for a reader, the reference above and the orders below.
+    /// Aligned columns, with the reference above and the orders below.
     ///
     /// # Errors
     /// As for [`csv`](Self::csv).
