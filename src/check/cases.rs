@@ -1,9 +1,9 @@
-//! Every case with a known answer.
+//! Every case with a known solution.
 
 use crate::check::extreme;
 use crate::check::verify::{Case, published};
 
-/// Built-in scenes and published problems first, then the extreme families; linear structures both with jumps from event to
+/// Built-in scenes and published problems first, then the extreme families. Linear structures are solved both from event to
 /// event and in steps.
 pub fn cases() -> Vec<Case> {
     published::cases().into_iter().chain(extreme::cases()).flat_map(Case::with_steps).collect()

@@ -1,17 +1,17 @@
-//! `arcslip backup`: a copy of the database, while the service runs or not.
+//! `arcslip backup`: copies the database, while the service runs or not.
 
-use crate::command::outcome::{Failure, Outcome, say};
+use crate::command::output::outcome::{Failure, Outcome, say};
 use crate::service::store::{self, Location};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Copy the database as it is at one moment, while the service runs; the copy is whole, checked and can be served.
+/// Copy the database as a consistent snapshot, while the service runs; the copy is checked and can be served.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// The database that is copied.
+    /// The database to copy.
     #[arg(long, value_name = "FILE", default_value = "arcslip.db", env = "ARCSLIP_DATABASE", hide_env_values = true)]
     database: Location,
-    /// Where the copy goes; there must be nothing yet.
+    /// The file of the copy, which must not exist yet.
     #[arg(value_name = "COPY")]
     copy: PathBuf,
 }

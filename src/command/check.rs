@@ -1,7 +1,7 @@
-//! `arcslip check`: is this model all right, and what would be done?
+//! `arcslip check`: checks a model and prints its plan.
 
-use crate::command::outcome::{Failure, Outcome, say};
-use crate::command::{bounds, input};
+use crate::command::options::{bounds, input};
+use crate::command::output::outcome::{Failure, Outcome, say};
 use crate::continuation::scene::Scene;
 use std::process::ExitCode;
 

@@ -1,13 +1,13 @@
-//! `arcslip health`: asks a running service, for containers that have no other client.
+//! `arcslip health`: asks a running service whether it is ready, for containers without another HTTP client.
 
-use crate::command::outcome::{Failure, Outcome, say};
+use crate::command::output::outcome::{Failure, Outcome, say};
 use std::io::{Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::process::ExitCode;
 use std::time::Duration;
 
 const PATIENCE: Duration = Duration::from_secs(5);
-/// The status line is all that counts.
+/// Only the status line is read.
 const ENOUGH: u64 = 4096;
 
 /// Ask a running service whether it is ready; exit status 0 if so.
@@ -22,7 +22,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     say(format_args!("{status}\n"))?;
     match status.split(' ').nth(1) {
         Some("200") => Ok(ExitCode::SUCCESS),
-        _ => Ok(ExitCode::from(crate::command::outcome::FAILED)),
+        _ => Ok(ExitCode::from(crate::command::output::outcome::FAILED)),
     }
 }
 

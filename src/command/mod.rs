@@ -1,23 +1,15 @@
-//! The command line: one file a command.
+//! The command line: one file per command.
 //!
 //! Exit status: 0 done, 1 stopped or failed, 2 bad input. Called by `main` alone.
 
-mod access;
 mod backup;
-mod bounds;
 mod check;
-mod duration;
-mod findings;
 mod health;
-mod input;
-mod limits;
 mod openapi;
-pub(crate) mod outcome;
+mod options;
+pub(crate) mod output;
 mod scenes;
 mod serve;
-mod service;
-mod settings;
-mod size;
 mod solve;
 mod study;
 mod sweep;
@@ -25,9 +17,8 @@ mod token;
 mod verify;
 pub(crate) mod verify_picture;
 mod work;
-mod written;
 
-use crate::command::outcome::{BAD_INPUT, FAILED, Failure, Outcome};
+use crate::command::output::outcome::{BAD_INPUT, FAILED, Failure, Outcome};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::process::ExitCode;
 
@@ -57,11 +48,13 @@ enum Command {
 }
 
 fn run_command() -> Outcome {
-    let matches = settings::parse(Arguments::command)?;
+    let matches = options::settings::parse(Arguments::command)?;
     let arguments = Arguments::from_arg_matches(&matches).map_err(Failure::other)?;
     match arguments.command {
-        Command::Serve(arguments) => serve::run(&arguments, &settings::in_force(Arguments::command(), &matches)),
-        Command::Work(arguments) => work::run(&arguments, &settings::in_force(Arguments::command(), &matches)),
+        Command::Serve(arguments) => {
+            serve::run(&arguments, &options::settings::in_force(Arguments::command(), &matches))
+        }
+        Command::Work(arguments) => work::run(&arguments, &options::settings::in_force(Arguments::command(), &matches)),
         Command::Solve(arguments) => arguments.bounds.within(|| solve::run(&arguments)),
         Command::Study(arguments) => arguments.bounds.within(|| study::run(&arguments)),
         Command::Sweep(arguments) => arguments.bounds.within(|| sweep::run(&arguments)),
@@ -75,7 +68,7 @@ fn run_command() -> Outcome {
     }
 }
 
-/// Runs what the process was asked for.
+/// Runs the command given on the command line.
 pub fn run() -> ExitCode {
     let outcome = run_command();
     match outcome {

@@ -1,6 +1,6 @@
-//! `arcslip openapi`: the description that is committed under `openapi/`.
+//! `arcslip openapi`: prints the OpenAPI description that is committed under `openapi/`.
 
-use crate::command::outcome::{Failure, Outcome, say};
+use crate::command::output::outcome::{Failure, Outcome, say};
 use std::process::ExitCode;
 
 /// Print the OpenAPI document.
@@ -8,6 +8,6 @@ use std::process::ExitCode;
 pub struct Arguments {}
 
 pub fn run(_arguments: &Arguments) -> Outcome {
-    say(crate::service::http::openapi_json().map_err(Failure::other)?)?;
+    say(crate::service::http::router::openapi_json().map_err(Failure::other)?)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -1,11 +1,11 @@
-//! `arcslip scenes`: what is built in.
+//! `arcslip scenes`: the built-in scenes.
 
 use crate::check::scenes;
-use crate::command::outcome::{Failure, Outcome, say};
+use crate::command::output::outcome::{Failure, Outcome, say};
 use crate::model::input::names::suggestion_of_all;
 use std::process::ExitCode;
 
-/// List the built-in scenes, or print one, ready to change and solve.
+/// List the built-in scenes, or print the job request of one.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// Print this scene's job request instead.

@@ -1,28 +1,29 @@
 //! `arcslip serve`: the HTTP service and its workers.
 
-use crate::command::outcome::{Failure, Outcome, say};
-use crate::command::settings::Setting;
-use crate::command::{access, service};
+use crate::command::options::settings::Setting;
+use crate::command::options::{access, service};
+use crate::command::output::outcome::{Failure, Outcome, say};
 use crate::service::http::access::Access;
-use crate::service::http::server::{Front, Server};
-use crate::service::jobs::{PathSolver, Settings, demonstration};
+use crate::service::http::server::{ListenOptions, Server};
+use crate::service::jobs::queue::demonstration;
+use crate::service::jobs::{PathSolver, Settings};
 use std::net::SocketAddr;
 use std::process::ExitCode;
 use std::sync::Arc;
 use tokio::signal::unix::{SignalKind, signal};
 
-/// Take jobs over HTTP, solve them, keep them.
+/// Accept jobs over HTTP, solve and store them.
 ///
-/// Settings are taken from the command line, else from the environment, else from the file, else they are the defaults.
+/// Settings are taken from the command line, else from the environment, else from the file; otherwise the defaults apply.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// Address and port to listen on. Addresses that other machines reach need --tokens-file or --open.
     #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:8080", env = "ARCSLIP_LISTEN")]
     listen: SocketAddr,
-    /// Solves at a time, 0 to 1024; with 0 others solve: see `arcslip work`. Default: one a processor.
+    /// Number of workers, 0 to 1024; with 0 other processes solve: see `arcslip work`. Default: one per processor.
     #[arg(long, value_name = "N", env = "ARCSLIP_WORKERS", value_parser = clap::value_parser!(u16).range(0..=1024))]
     workers: Option<u16>,
-    /// A job fails that has lost so many workers in a row with nothing stored between.
+    /// A job that has lost this many workers in a row without storing anything in between fails.
     #[arg(long, value_name = "N", default_value_t = 3, env = "ARCSLIP_MAX_ATTEMPTS",
         value_parser = clap::value_parser!(u32).range(1..))]
     max_attempts: u32,
@@ -47,14 +48,14 @@ async fn serve(arguments: &Arguments, access: Access) -> Outcome {
     let mut hang_up = signal(SignalKind::hangup()).map_err(Failure::other)?;
     let store = service.open().await?;
     let connections = arguments.access.connections();
-    let front = Front { listen: arguments.listen, connections, access: access.clone() };
+    let front = ListenOptions { listen: arguments.listen, connections, access: access.clone() };
     let settings = Settings { max_attempts: arguments.max_attempts, ..service.settings(arguments.workers) };
     let workers = settings.workers;
     let server = Server::start(front, store, Arc::new(PathSolver), settings).await.map_err(Failure::other)?;
     if arguments.demo {
         demonstration::queue_scenes(server.jobs()).await.map_err(Failure::other)?;
     }
-    // Where standard output is closed, the log says the same.
+    // The log has the same message, in case standard output is closed.
     let _ = say(format_args!("arcslip listens on http://{}\n", server.address()));
     tracing::info!(address = %server.address(), database = %service.database, workers, "listening");
     loop {
@@ -69,7 +70,7 @@ async fn serve(arguments: &Arguments, access: Access) -> Outcome {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Exchanges the tokens; where the file is none, those before hold.
+/// Replaces the tokens; if the file cannot be read, the old ones remain valid.
 fn read_again(arguments: &access::Arguments, access: &Access) {
     if arguments.tokens_file.is_none() {
         return tracing::info!("SIGHUP: there is no file of tokens to be read again");

@@ -1,9 +1,9 @@
-//! `arcslip solve`: a model's path, one line an increment, as it converges.
+//! `arcslip solve`: traces the path of a model and writes one line per increment as it converges.
 
 use crate::check::judged::JudgedIncrement;
-use crate::command::outcome::{Failure, Outcome};
-use crate::command::written::{is_standard_output, one_on_standard_output, write};
-use crate::command::{bounds, input};
+use crate::command::options::{bounds, input};
+use crate::command::output::outcome::{Failure, Outcome};
+use crate::command::output::written::{is_standard_output, one_on_standard_output, write};
 use crate::model::{JobRequest, Model};
 use crate::output::{Table, json_line};
 use crate::resources::cancel::CancelFlag;
@@ -18,7 +18,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Trace a model's path.
+/// Trace the path of a model.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     #[command(flatten)]
@@ -31,7 +31,7 @@ pub struct Arguments {
     /// Draw load factor against a displacement here, as an SVG; `-` is standard output.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
-    /// The displacement that is drawn, such as `tip.x`. Default: the one that goes farthest.
+    /// The displacement to draw, such as `tip.x`. Default: the largest one.
     #[arg(long, value_name = "NODE.COMPONENT", requires = "plot")]
     against: Option<String>,
     #[command(flatten)]
@@ -40,7 +40,7 @@ pub struct Arguments {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Format {
-    /// One JSON object a line.
+    /// One JSON object per line.
     Ndjson,
     /// A table with named columns.
     Csv,
@@ -49,7 +49,7 @@ enum Format {
 pub fn run(arguments: &Arguments) -> Outcome {
     one_on_standard_output(&[("--out", Some(&arguments.out)), ("--plot", arguments.plot.as_deref())])?;
     let request = arguments.model.read()?;
-    // Checked before the file is opened, so that a mistake does not cost an earlier result.
+    // Checked before the file is opened, so that a mistake does not overwrite an earlier result.
     PathSolver.plan(&request).map_err(input::refused)?;
     if request.analysis.explore.is_some() {
         eprintln!("explore: the directions not taken are followed by `arcslip serve` only; this traces one path");
@@ -95,12 +95,12 @@ pub fn run(arguments: &Arguments) -> Outcome {
     Ok(match report.report.stop_reason.outcome() {
         stop_reason::Outcome::Completed => ExitCode::SUCCESS,
         stop_reason::Outcome::Stopped | stop_reason::Outcome::Cancelled => {
-            ExitCode::from(crate::command::outcome::FAILED)
+            ExitCode::from(crate::command::output::outcome::FAILED)
         }
     })
 }
 
-/// Nothing is drawn unless a person watches and the increments go elsewhere.
+/// The progress bar; hidden unless standard error is a terminal and the increments do not go to it.
 fn progress_bar(max_increments: u64, to_file: bool) -> ProgressBar {
     let elsewhere = to_file || !std::io::stdout().is_terminal();
     if !(std::io::stderr().is_terminal() && elsewhere) {
@@ -129,7 +129,7 @@ impl Writer {
         Ok(Self { to, format: arguments.format, table: Table::of(request), begun: false })
     }
 
-    /// Each increment is written in one piece and at once.
+    /// Writes each increment in one piece, without delay.
     fn write(&mut self, judged: &JudgedIncrement) -> std::io::Result<()> {
         let text = match self.format {
             Format::Ndjson => json_line(judged)? + "\n",
@@ -144,7 +144,7 @@ impl Writer {
     }
 }
 
-/// A picture to be drawn when the path has ended: what goes farthest is known only then.
+/// A picture that is drawn when the path has ended, as the largest displacement is only known then.
 struct Picture<'a> {
     file: &'a Path,
     against: Option<Against>,

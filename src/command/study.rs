@@ -1,7 +1,8 @@
-//! `arcslip study`: a scene over a ladder of settings and over methods, error against run time.
+//! `arcslip study`: traces a scene with several settings and methods and measures error against run time.
 
-use crate::command::outcome::{Failure, Outcome};
-use crate::command::{bounds, findings, input};
+use crate::command::options::{bounds, input};
+use crate::command::output::findings;
+use crate::command::output::outcome::{Failure, Outcome};
 use crate::model::request::Method;
 use crate::model::{StudyRequest, decode};
 use crate::resources::cancel::CancelFlag;
@@ -16,19 +17,19 @@ use std::process::ExitCode;
 pub struct Arguments {
     #[command(flatten)]
     model: input::Model,
-    /// Arc lengths in place of the study's, falling, with commas between.
+    /// Arc lengths instead of those in the file, decreasing, separated by commas.
     #[arg(long, value_name = "NUMBERS", value_delimiter = ',', conflicts_with_all = ["tolerances", "penalties"])]
     arc_lengths: Option<Vec<f64>>,
-    /// Tolerances of the regularised method in place of the study's, falling.
+    /// Tolerances of the regularised method instead of those in the file, decreasing.
     #[arg(long, value_name = "NUMBERS", value_delimiter = ',', conflicts_with = "penalties")]
     tolerances: Option<Vec<f64>>,
-    /// Penalties of the regularised method in place of the study's, rising.
+    /// Penalties of the regularised method instead of those in the file, increasing.
     #[arg(long, value_name = "NUMBERS", value_delimiter = ',')]
     penalties: Option<Vec<f64>>,
-    /// Methods in place of the study's, with commas between.
+    /// Methods instead of those in the file, separated by commas.
     #[arg(long, value_name = "NAMES", value_enum, value_delimiter = ',')]
     methods: Option<Vec<MethodName>>,
-    /// Times that each path is timed, in place of the study's.
+    /// Number of timed runs of each path, instead of that in the file.
     #[arg(long, value_name = "N")]
     repeats: Option<u64>,
     #[command(flatten)]

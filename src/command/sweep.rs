@@ -1,8 +1,9 @@
-//! `arcslip sweep`: one model with other values in its places, on all cores.
+//! `arcslip sweep`: traces a model with varied parameters, on all cores.
 
 use crate::check::judged::JudgedIncrement;
-use crate::command::outcome::{Failure, Outcome};
-use crate::command::{bounds, findings, input};
+use crate::command::options::{bounds, input};
+use crate::command::output::findings;
+use crate::command::output::outcome::{Failure, Outcome};
 use crate::model::{Sweep, decode};
 use crate::output::json_line;
 use crate::studies::sweeps::{self, Found, Row};
@@ -15,21 +16,21 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
 
-/// Trace a model with other values in its places: the first limit load of each.
+/// Trace a model with varied parameters and find the first limit load of each path.
 ///
 /// FILE is a job request with `"sweep": {"replace": {POINTER: [VALUES]}}`, or one without where --replace is given.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     #[command(flatten)]
     model: input::Model,
-    /// Put these values at this place, in place of those in the file, such as `/model/contacts/0/friction=0.1,0.2`; again for
-    /// further places.
+    /// Replace the value at a JSON pointer by each of these, instead of those in the file, such as
+    /// `/model/contacts/0/friction=0.1,0.2`; repeat the option for further parameters.
     #[arg(long, value_name = "POINTER=VALUES", value_parser = replacement)]
     replace: Vec<(String, Vec<serde_json::Value>)>,
-    /// How the values of several places meet.
+    /// How the values of several parameters are combined.
     #[arg(long, value_enum)]
     combine: Option<CombineName>,
-    /// Paths traced at a time. Default: one a processor.
+    /// Paths traced at a time. Default: one per processor.
     #[arg(long, value_name = "N")]
     threads: Option<NonZeroUsize>,
     #[command(flatten)]
@@ -43,13 +44,14 @@ pub struct Arguments {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum CombineName {
-    /// Each with each.
+    /// All combinations.
     Grid,
-    /// The first of each, then the second of each and so on.
+    /// The first values of all parameters, then the second ones, and so on.
     List,
 }
 
-/// Values with commas between: JSON where all of them can be read as such, and otherwise each one that can, the others texts.
+/// Values separated by commas. If the list as a whole is not JSON, each value that is JSON is read as such and the others are
+/// texts.
 fn replacement(argument: &str) -> Result<(String, Vec<serde_json::Value>), String> {
     let (pointer, values) = argument.split_once('=').ok_or("POINTER=VALUE,VALUE,... is expected")?;
     let values = serde_json::from_str(&format!("[{values}]")).unwrap_or_else(|_| {
@@ -83,11 +85,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let any_failed = rows.iter().any(|row| row.error.is_some());
     let found = Found { name: sweep.name, variation: sweep.variation, rows };
     arguments.written.write(&found)?;
-    Ok(if any_failed { ExitCode::from(crate::command::outcome::FAILED) } else { ExitCode::SUCCESS })
+    Ok(if any_failed { ExitCode::from(crate::command::output::outcome::FAILED) } else { ExitCode::SUCCESS })
 }
 
 impl Arguments {
-    /// The document, with what the command line says in the place of its own.
+    /// The document, with the values of the command line instead of its own.
     fn text(&self) -> Result<Vec<u8>, Failure> {
         let text = self.model.text()?;
         if self.replace.is_empty() && self.combine.is_none() {
@@ -102,7 +104,7 @@ impl Arguments {
         }
         let mut document = decode::object(&text).map_err(input::refused)?;
         let sweep = document.entry("sweep").or_insert_with(|| serde_json::json!({}));
-        // What it is instead of an object is told where the sweep is read.
+        // A value other than an object is reported when the sweep is read.
         let Some(sweep) = sweep.as_object_mut() else { return Ok(text) };
         if !replace.is_empty() {
             sweep.insert("replace".to_owned(), replace.into());
@@ -118,7 +120,7 @@ impl Arguments {
     }
 }
 
-/// Files of paths, written by several threads.
+/// The files of the paths, which several threads write.
 struct Paths {
     folder: PathBuf,
     files: Mutex<HashMap<u64, BufWriter<File>>>,

@@ -1,17 +1,17 @@
-//! `arcslip token`: a new token and the line that makes a service take it.
+//! `arcslip token`: makes a new token and its line for the file of tokens.
 
-use crate::command::outcome::{Failure, Outcome, say};
+use crate::command::output::outcome::{Failure, Outcome, say};
 use crate::service::http::access::tokens::{self, Scopes};
 use std::io::Write;
 use std::process::ExitCode;
 
-/// Make a token: its line for the file of tokens on standard output, the token itself, once, on standard error.
+/// Make a token. Its line for the file of tokens goes to standard output, the token itself, once, to standard error.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Whose it is: jobs posted with it belong to this name.
+    /// The owner: jobs posted with the token belong to this name.
     #[arg(value_parser = name)]
     name: String,
-    /// `read`, `submit`, `admin`, or several with commas.
+    /// `read`, `submit`, `admin`, or several separated by commas.
     #[arg(long, default_value = "read,submit", value_parser = Scopes::read)]
     scopes: Scopes,
 }
@@ -22,7 +22,7 @@ fn name(text: &str) -> Result<String, String> {
 
 pub fn run(arguments: &Arguments) -> Outcome {
     let (token, hash) = tokens::make().map_err(Failure::other)?;
-    // The line first: a token that no file knows is of no use to anyone.
+    // The line first: a token without its line is useless.
     say(format_args!("{} {} {hash}\n", arguments.name, arguments.scopes))?;
     writeln!(std::io::stderr(), "{token}").map_err(Failure::other)?;
     Ok(ExitCode::SUCCESS)

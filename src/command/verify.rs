@@ -1,26 +1,27 @@
-//! `arcslip verify`: every scene with a known answer, solved and judged here and now.
+//! `arcslip verify`: solves every scene with a known solution and judges the result.
 
 use crate::check::cases::cases;
 use crate::check::verify::case::{Case, CaseRow};
-use crate::command::outcome::{Failure, Outcome, say};
+use crate::command::output::outcome::{Failure, Outcome, say};
+use crate::command::output::written::{is_standard_output, one_on_standard_output, write};
 use crate::command::verify_picture;
-use crate::command::written::{is_standard_output, one_on_standard_output, write};
 use crate::model::input::names::suggestion_of_all;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Solve every scene with a known answer, the stiff and extreme ones among them, and judge the result.
+/// Solve every scene with a known solution, including stiff and extreme ones, and judge the result.
 ///
 /// The exit status is 1 if a case fails.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Only this scene, or this family of extreme cases.
+    /// Only run this scene, or this family of extreme cases.
     #[arg(long, value_name = "NAME")]
     scene: Option<String>,
-    /// Write the rows here as JSON; `-` is standard output, and the table goes to standard error then.
+    /// Write the rows to this file as JSON; `-` is standard output, in which case the table goes to standard error.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// Draw errors against their bars here, as an SVG; `-` is standard output, and the table goes to standard error then.
+    /// Draw errors against their tolerances to this file, as SVG; `-` is standard output, in which case the table goes to standard
+    /// error.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
 }
@@ -55,10 +56,10 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if let Some(file) = &arguments.plot {
         write(file, &verify_picture::svg(&rows).map_err(Failure::other)?)?;
     }
-    Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::from(crate::command::outcome::FAILED) })
+    Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::from(crate::command::output::outcome::FAILED) })
 }
 
-/// The cases asked for.
+/// The selected cases.
 fn chosen(scene: Option<&str>) -> Result<Vec<Case>, Failure> {
     let all = cases();
     let Some(scene) = scene else { return Ok(all) };

@@ -1,4 +1,4 @@
-//! Errors over their bars, a line a scene or family.
+//! A picture of errors over their tolerances, one line per scene or family.
 
 use crate::check::verify::case::CaseRow;
 use plotters::coord::Shift;
@@ -22,12 +22,12 @@ const NAMES: i32 = 170;
 const MARGIN: i32 = 20;
 const ABOVE: i32 = 50;
 const BELOW: i32 = 30;
-/// Decades of error over bar; what lies beyond is drawn at the edge.
+/// Decades of error over tolerance; values outside are drawn at the edge.
 const DECADES: std::ops::RangeInclusive<i32> = -9..=3;
 
 type DrawingError = DrawingAreaErrorKind<std::io::Error>;
 
-/// The picture as SVG text. An error that is not finite stands at the right edge.
+/// The picture as SVG text. An error that is not finite is drawn at the right edge.
 pub fn svg(rows: &[CaseRow]) -> Result<String, DrawingError> {
     let mut families: Vec<&str> = rows.iter().map(|row| row.family).collect();
     families.dedup();
@@ -44,7 +44,7 @@ pub fn svg(rows: &[CaseRow]) -> Result<String, DrawingError> {
     Ok(text)
 }
 
-/// Where an error that is this many decades above its bar stands.
+/// The position of an error that is this many decades above its tolerance.
 fn across(decades: f64) -> i32 {
     let (first, last) = (f64::from(*DECADES.start()), f64::from(*DECADES.end()));
     let part = (decades.clamp(first, last) - first) / (last - first);
@@ -72,7 +72,7 @@ fn draw(
         let y = ABOVE + LINE * row + LINE / 2;
         sheet.draw(&Text::new((*family).to_owned(), (NAMES, y), lettering(12, HPos::Right)))?;
         for found in rows.iter().filter(|found| found.family == *family) {
-            // A request that is refused, as it should be, has no error.
+            // A request that is refused as expected has no error.
             let decades = match found.error {
                 Some(error) => (error / found.bar).log10(),
                 None if found.pass => continue,

@@ -1,21 +1,21 @@
-//! `arcslip work`: workers alone, for a database that others serve.
+//! `arcslip work`: workers without HTTP, for a database that other processes serve.
 
-use crate::command::outcome::{Outcome, say};
-use crate::command::service;
-use crate::command::settings::Setting;
-use crate::service::jobs::crew::wound_up;
-use crate::service::jobs::{Crew, Jobs, PathSolver};
+use crate::command::options::service;
+use crate::command::options::settings::Setting;
+use crate::command::output::outcome::{Outcome, say};
+use crate::service::jobs::workers::worker_pool::finish_shutdown;
+use crate::service::jobs::{Jobs, PathSolver, WorkerPool};
 use std::process::ExitCode;
 use std::sync::Arc;
 use tokio_util::sync::CancellationToken;
 
-/// Solve jobs that are taken elsewhere, and listen on no port: any number of these, on any number of machines, share one
-/// PostgreSQL database.
+/// Solve queued jobs without listening on a port: any number of such processes, on any number of machines, share a PostgreSQL
+/// database.
 ///
-/// Settings are taken from the command line, else from the environment, else from the file, else they are the defaults.
+/// Settings are taken from the command line, else from the environment, else from the file; otherwise the defaults apply.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Solves at a time, 1 to 1024. Default: one a processor.
+    /// Number of workers, 1 to 1024. Default: one per processor.
     #[arg(long, value_name = "N", env = "ARCSLIP_WORKERS", value_parser = clap::value_parser!(u16).range(1..=1024))]
     workers: Option<u16>,
     #[command(flatten)]
@@ -33,14 +33,14 @@ async fn work(arguments: &Arguments) -> Outcome {
     let store = service.open().await?;
     let jobs = Jobs::new(store, Arc::new(PathSolver), service.settings(arguments.workers));
     let shutdown = CancellationToken::new();
-    let crew = Crew::start(&jobs, &shutdown);
-    let workers = crew.attendance().expected();
-    // Where standard output is closed, the log says the same.
+    let pool = WorkerPool::start(&jobs, &shutdown);
+    let workers = pool.worker_count().expected();
+    // The log has the same message, in case standard output is closed.
     let _ = say(format_args!("arcslip works on {}\n", service.database));
     tracing::info!(database = %service.database, workers, "working");
     ends.asked().await;
     shutdown.cancel();
-    if !wound_up(crew.stopped(), jobs.store()).await {
+    if !finish_shutdown(pool.stopped(), jobs.store()).await {
         tracing::warn!("went down before everything had ended");
     }
     Ok(ExitCode::SUCCESS)

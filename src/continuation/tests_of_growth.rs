@@ -5,7 +5,7 @@
 //! against equilibrium and the laws of contact written down once more below.
 
 use crate::continuation::path::iterator::Path;
-use crate::continuation::scene::{Parts, Scene};
+use crate::continuation::scene::{AdditionalParts, Scene};
 use crate::mechanics::contact::kinematics::{CoupledKinematics, Kinematics};
 use crate::mechanics::contact::obstacle::Obstacle;
 use crate::mechanics::contact::vector::Vector;
@@ -277,7 +277,7 @@ fn scene(method: &str, extra: usize) -> Scene {
         friction: FRICTION,
         sliding: Sliding::Line { across: [0.0, 0.0, 1.0] },
     };
-    let parts = Parts { elements: vec![Arc::new(lever)], contacts: vec![("right", "rail", contact)] };
+    let parts = AdditionalParts { elements: vec![Arc::new(lever)], contacts: vec![("right", "rail", contact)] };
     Scene::with_parts(None, &request(method, extra), parts).expect("a scene")
 }
 

@@ -1,8 +1,8 @@
-//! What a user posts, decoded from JSON and checked.
+//! Requests of users, decoded from JSON and checked.
 //!
-//! [`request`], [`study`](request::study) and [`sweep`](request::sweep) hold the types of the contract, [`mod@decode`] reads them from JSON text and says where each mistake is,
-//! [`runs`] makes the runs of a sweep, [`mod@check`] looks at what can only be judged on the whole (unknown names, zero lengths, penetration). Nothing here
-//! knows how a path is traced. [`read`] does both.
+//! [`request`], [`study`](request::study) and [`sweep`](request::sweep) have the types of the contract, [`mod@decode`] reads
+//! them from JSON text and reports the place of each mistake, [`runs`] makes the runs of a sweep, [`mod@check`] checks decoded
+//! requests (unknown names, zero lengths, penetration). Nothing here knows how a path is traced. [`read`] decodes and checks.
 
 pub mod check;
 pub mod decode;
@@ -20,10 +20,10 @@ pub use request::{Analysis, FollowRequest, JobRequest, Model};
 pub use run_mistakes::RunMistakes;
 pub use runs::Sweep;
 
-/// Reads a job request from JSON text and checks it: what every edge (HTTP, command line) does with what comes in.
+/// Reads a job request from JSON text and checks it, as HTTP and command line do with every request.
 ///
 /// # Errors
-/// Everything that is wrong with the text, see [`decode::decode`], or else with what it says, see [`check::check`].
+/// All mistakes of form, see [`decode::decode`], or else of content, see [`check::check`].
 pub fn read(text: &[u8]) -> Result<JobRequest, InputErrors> {
     let request = decode::decode(text)?;
     check::check(&request)?;

@@ -1,9 +1,9 @@
-//! What is wrong with the runs of a sweep: what several share is told once. Used wherever a sweep is taken.
+//! The mistakes in the runs of a sweep; a mistake that several runs share is reported once.
 
 use crate::model::input::limits::MAX_LISTED_MISTAKES;
 use crate::model::{InputError, InputErrors, Sweep};
 
-/// Mistakes in runs that were checked, as mistakes in the sweep.
+/// Mistakes in the checked runs, as mistakes in the sweep.
 #[derive(Debug, Default)]
 pub struct RunMistakes {
     checked: u64,
@@ -13,13 +13,13 @@ pub struct RunMistakes {
 #[derive(Debug)]
 struct Told {
     error: InputError,
-    /// The first run that has it.
+    /// The first run with the mistake.
     first: u64,
     runs: u64,
 }
 
 impl RunMistakes {
-    /// What checking a run gave; runs come in order.
+    /// Notes the result of checking a run; runs come in order.
     pub fn note(&mut self, run: u64, mistakes: Option<InputErrors>) {
         self.checked += 1;
         for error in mistakes.into_iter().flat_map(|errors| errors.0) {
@@ -30,12 +30,12 @@ impl RunMistakes {
         }
     }
 
-    /// As many as are told: further runs need not be checked.
+    /// Whether as many mistakes have been found as are reported, so that further runs need not be checked.
     pub fn are_enough(&self) -> bool {
         self.told.len() >= MAX_LISTED_MISTAKES
     }
 
-    /// All of them, of the runs of that sweep; a mistake that some runs have and others have not, and that is not at a value of its own, says which.
+    /// All mistakes in the runs of the sweep. A mistake that only some runs have and that is not at a varied value names the run.
     ///
     /// # Errors
     /// There are mistakes.
@@ -43,7 +43,7 @@ impl RunMistakes {
         let Self { checked, mut told } = self;
         told.truncate(MAX_LISTED_MISTAKES);
         let located = told.into_iter().map(|Told { error, first, runs }| {
-            // Of a value of its own, or of all runs.
+            // A mistake at a varied value, or of all runs.
             if runs == sweep.runs_at(&error.pointer, checked).unwrap_or(checked) {
                 return error;
             }

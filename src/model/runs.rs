@@ -1,4 +1,4 @@
-//! The runs of a sweep: made one by one from its text, and what is wrong with one told at its place in the sweep.
+//! The runs of a sweep, made one by one from its text; mistakes in a run are reported at their place in the sweep.
 
 use crate::model::input::error::{InputError, InputErrors};
 use crate::model::input::limits::{MAX_NAME_BYTES, MAX_SWEEP_RUNS};
@@ -8,7 +8,7 @@ use crate::model::template::{Template, item};
 use crate::model::{check, decode};
 use serde_json::Value;
 
-/// A sweep that has been read: its runs can be made, and have still to be checked one by one.
+/// A decoded sweep, whose runs are made and checked one by one.
 #[derive(Debug, Clone)]
 pub struct Sweep {
     pub name: Option<String>,
@@ -17,25 +17,25 @@ pub struct Sweep {
     template: Template,
 }
 
-/// One run of a sweep.
+/// A run of a sweep.
 #[derive(Debug, Clone)]
 pub struct Run {
-    /// A job request as it would be posted.
+    /// The job request of the run, as JSON text.
     pub text: String,
     pub request: JobRequest,
 }
 
 impl Sweep {
-    /// Reads a sweep; what its runs are is checked in [`run`](Self::run).
+    /// Reads a sweep; its runs are checked in [`run`](Self::run).
     ///
     /// # Errors
-    /// As for [`decode::decode`], places that the document cannot have, and too many runs.
+    /// As for [`decode::decode`]; places that the document cannot have; too many runs.
     pub fn read(text: &[u8]) -> Result<Self, InputErrors> {
         let form = decode::replacements(text)?;
         let wrong = |error: serde_json::Error| InputErrors(vec![InputError::new("", error.to_string())]);
         let mut base: Value = serde_json::from_slice(text).map_err(wrong)?;
         let name = base.pointer("/model/name").and_then(Value::as_str);
-        // Where other names are put in its place, nothing else checks this one.
+        // If other names replace this name, nothing else checks it.
         let name = name.filter(|name| name.len() <= MAX_NAME_BYTES).map(str::to_owned);
         let posted = base.as_object_mut().and_then(|members| members.remove("sweep")).unwrap_or_default();
         let mut mistakes = Vec::new();
@@ -65,15 +65,15 @@ impl Sweep {
         }
     }
 
-    /// How many there are, 1 at the least.
+    /// The number of runs, at least 1.
     pub fn runs(&self) -> u64 {
         self.runs
     }
 
-    /// A run, read and checked.
+    /// Makes and checks a run.
     ///
     /// # Errors
-    /// What is wrong with it, each with its place in the sweep.
+    /// The mistakes in the run, each with its place in the sweep.
     pub fn run(&self, run: u64) -> Result<Run, InputErrors> {
         let (text, request) = self.template.fill(&self.variation.values(run));
         let request = request.map_err(|errors| self.located(run, errors))?;
@@ -85,7 +85,7 @@ impl Sweep {
         Ok(Run { text, request })
     }
 
-    /// In how many of so many runs, from the first, the value at that place of the sweep is put; `None` where none is.
+    /// In how many of the first `runs` runs the value at the given place of the sweep is inserted; `None` if no value is there.
     pub fn runs_at(&self, pointer: &str, runs: u64) -> Option<u64> {
         let (parameter, choice) = pointer.rsplit_once('/')?;
         let choice: usize = choice.parse().ok()?;
@@ -94,14 +94,14 @@ impl Sweep {
         Some((0..runs).filter(has_it).count() as u64)
     }
 
-    /// Mistakes in a run as mistakes in the sweep: those at or about a value that was put there are that value's.
+    /// Mistakes in a run as mistakes in the sweep: a mistake at an inserted value is reported at that value.
     pub fn located(&self, run: u64, errors: InputErrors) -> InputErrors {
         let (parameters, choices) = (&self.variation.parameters, self.variation.choices(run));
         let located = errors.0.into_iter().map(|error| {
             let about = |parameter: &&Parameter| {
                 is_within(&error.pointer, &parameter.pointer) || is_within(&parameter.pointer, &error.pointer)
             };
-            // The mistake of a whole object may be anybody's.
+            // A mistake of a whole object may be due to any of its values.
             let found = parameters.iter().position(|parameter| about(&parameter));
             match found.filter(|_| error.pointer.len() > 1) {
                 Some(place) => {
@@ -116,12 +116,12 @@ impl Sweep {
     }
 }
 
-/// Where a pointer stands in the sweep's own document.
+/// The place of a pointer in the document of the sweep.
 fn place_of(pointer: &str) -> String {
     format!("/sweep/replace/{}", pointer.replace('~', "~0").replace('/', "~1"))
 }
 
-/// Whether a pointer is another or below it.
+/// Whether a pointer is equal to another one or below it.
 fn is_within(pointer: &str, other: &str) -> bool {
     pointer.strip_prefix(other).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
 }
@@ -160,7 +160,7 @@ fn count(combine: Combine, parameters: &[Parameter]) -> Result<u64, InputError> 
     Ok(runs)
 }
 
-/// Whether something can be put there: members of objects may be missing, items of arrays not.
+/// Whether a value can be inserted at a place: members of objects may be missing, items of arrays not.
 fn can_hold(document: &Value, pointer: &str) -> Result<(), String> {
     if !["/model/", "/analysis/"].iter().any(|root| pointer.starts_with(root)) {
         return Err("a JSON pointer that begins with `/model/` or `/analysis/` is expected".to_owned());

@@ -1,15 +1,15 @@
-//! Requests that differ in a few places, of which the rest is read and written once.
+//! A template for requests that differ in a few places; the common parts are read and written once.
 
 use crate::model::decode;
 use crate::model::input::error::InputErrors;
 use crate::model::request::{JobRequest, Model};
 use serde_json::{Map, Value};
 
-/// A document by the members of its model and the others of its root.
+/// A document, split into the members of its model and the other members of its root.
 #[derive(Debug, Clone)]
 pub(super) struct Template {
     members: Vec<Member>,
-    /// The request with the first values, where it can be read: what it has beside the places is that of all.
+    /// The request with the first values, if it can be read; apart from the varied places all requests are equal to it.
     first: Option<JobRequest>,
 }
 
@@ -23,17 +23,17 @@ struct Member {
 
 #[derive(Debug, Clone)]
 enum Content {
-    /// JSON text: nothing is put there.
+    /// JSON text without varied places.
     Common(String),
-    /// What stands there, and each place within it: which of the values, and the rest of its pointer.
+    /// The value of the member, and the varied places within it: the number of the value, and the rest of its pointer.
     Varied(Value, Vec<(usize, String)>),
 }
 
 impl Template {
-    /// Of a document in which values are put at JSON pointers; which values is said by [`fill`](Self::fill), and `first` are
-    /// some that may be.
+    /// The template of a document with varied values at JSON pointers, which [`fill`](Self::fill) inserts; `first` are valid
+    /// examples of them.
     pub fn new(mut document: Value, pointers: &[&str], first: &[Value]) -> Self {
-        // Members that are missing come in the order in which values put there make them.
+        // Missing members follow in the order in which they are inserted.
         for (pointer, value) in pointers.iter().zip(first) {
             put(&mut document, pointer, value.clone());
         }
@@ -58,7 +58,7 @@ impl Template {
         template
     }
 
-    /// The document with these values, and the request that it is.
+    /// The document with these values, and the decoded request.
     ///
     /// # Errors
     /// As for [`decode::decode`].
@@ -68,7 +68,7 @@ impl Template {
         (text, request)
     }
 
-    /// The request by what is common to all and what differs; `None` where that does not give one, as where it has mistakes.
+    /// The request, composed of its common and its varied parts; `None` if this is not possible, for example because of mistakes.
     fn read(&self, values: &[Value]) -> Option<JobRequest> {
         let first = self.first.as_ref()?;
         let differing = decode::decode(self.text(values, false).as_bytes()).ok()?;
@@ -91,7 +91,7 @@ impl Template {
         Some(JobRequest { model, analysis })
     }
 
-    /// The document's text; if not `whole`, what is common to all models is empty.
+    /// The text of the document; unless `whole`, the common members of the model are empty.
     fn text(&self, values: &[Value], whole: bool) -> String {
         let mut text = String::from("{");
         let mut in_model = false;
@@ -164,7 +164,7 @@ pub(super) fn item(name: &str) -> Option<usize> {
     if is_plain { name.parse().ok() } else { None }
 }
 
-/// Puts a value where one can be: members of objects may be missing, items of arrays not.
+/// Inserts a value at a place: members of objects may be missing, items of arrays not.
 fn put(document: &mut Value, pointer: &str, value: Value) {
     let mut at = document;
     for step in pointer.split('/').skip(1) {

@@ -1,8 +1,8 @@
-//! Text in columns, for a reader, and names as the contract spells them.
+//! Text in aligned columns, and the names of values in the JSON interface.
 
 use std::fmt::Write;
 
-/// Cells under one another, the first column and the last to the left. All rows are as long as the first.
+/// Aligns cells in columns, the first and the last to the left, the others to the right. All rows have the length of the first.
 pub fn push_columns(text: &mut String, rows: &[Vec<String>]) {
     let columns = rows.first().map_or(0, Vec::len);
     let widths: Vec<usize> = (0..columns)
@@ -24,10 +24,10 @@ pub fn push_columns(text: &mut String, rows: &[Vec<String>]) {
     }
 }
 
-/// The name of a value without fields, as it stands in JSON.
+/// The name of a value without fields, as written in JSON.
 ///
 /// # Errors
-/// Other values.
+/// The value has another form.
 pub fn name_of(value: &impl serde::Serialize) -> serde_json::Result<String> {
     serde_json::from_value(serde_json::to_value(value)?)
 }

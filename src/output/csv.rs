@@ -1,9 +1,9 @@
-//! One row of CSV (RFC 4180), cell by cell.
+//! Writes a row of CSV (RFC 4180), cell by cell.
 
-/// What formulas begin with. Spreadsheets may skip white space before one.
+/// The characters with which formulas begin. Spreadsheets may skip white space before them.
 const FORMULAS: [char; 4] = ['=', '+', '-', '@'];
 
-/// A row being written.
+/// A row that is being written.
 #[derive(Default)]
 pub struct CsvRow(String);
 
@@ -14,8 +14,8 @@ impl CsvRow {
         self.0.push(',');
     }
 
-    /// Text, in quotes where it needs them. What a spreadsheet would take for a formula has an apostrophe before it, by which
-    /// it is text there too; numbers are written by [`number`](Self::number) and have none.
+    /// A text, in quotes if necessary. A text that a spreadsheet would take for a formula is preceded by an apostrophe; numbers are
+    /// written by [`number`](Self::number), without one.
     pub fn text(&mut self, cell: &str) {
         let apostrophe = if cell.trim_start().starts_with(FORMULAS) { "'" } else { "" };
         if cell.contains(['"', ',', '\n', '\r']) {
@@ -25,7 +25,7 @@ impl CsvRow {
         }
     }
 
-    /// The shortest text that reads back to the same bits, with an exponent where that is shorter.
+    /// The shortest text from which the same number is read, with an exponent if that is shorter.
     pub fn number(&mut self, value: f64) {
         self.raw(&format!("{value:?}"));
     }
@@ -38,14 +38,14 @@ impl CsvRow {
         }
     }
 
-    /// So many cells, empty where there is no number.
+    /// The given number of cells, empty for missing numbers.
     pub fn numbers(&mut self, values: &[f64], cells: usize) {
         for place in 0..cells {
             self.optional(values.get(place).copied());
         }
     }
 
-    /// The line, its line feed included.
+    /// The line with its line feed.
     pub fn end(mut self) -> String {
         self.0.pop();
         self.0.push('\n');

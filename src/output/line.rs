@@ -2,7 +2,7 @@
 
 use crate::check::judged::JudgedIncrement;
 
-/// Without the line's end. Numbers read back to the same bits.
+/// The JSON without a line feed. Numbers are read back exactly.
 pub fn json_line(increment: &JudgedIncrement) -> serde_json::Result<String> {
     serde_json::to_string(increment)
 }

@@ -1,8 +1,8 @@
 //! Increments as text: the JSON line and the CSV table.
 //!
-//! The one place where an increment is written, so that `arcslip solve`, the store and every stream show the same bytes.
-//! [`csv`] writes rows of any table, [`columns`] text for a reader. Called by `jobs`, `http`, `studies` and `command`; knows only `judged`, `measure` and
-//! `result::increment`.
+//! Increments are only written here, so that `arcslip solve`, the store and every stream have identical bytes.
+//! [`csv`] writes rows of any table, [`columns`] aligned text. Called by `jobs`, `http`, `studies` and `command`; only uses
+//! `judged`, `measure` and `result::increment`.
 
 pub mod columns;
 pub mod csv;

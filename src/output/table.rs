@@ -1,8 +1,8 @@
 //! Increments as CSV (RFC 4180, lines ended by a single line feed).
 //!
-//! The columns come from the request: a column for every component of every node that is recorded, and a group of columns
-//! for every contact that may have a row, so `tip.x`, `tip.y`, `tip/floor.status`, `tip/floor.gap`. Rows find their values
-//! by name; what they lack is an empty cell.
+//! The request determines the columns: one for every component of every recorded node, and a group for every contact that may
+//! have a row, such as `tip.x`, `tip.y`, `tip/floor.status`, `tip/floor.gap`. Values are assigned by name; missing values are
+//! empty cells.
 
 use crate::check::measure::Errors;
 use crate::model::JobRequest;
@@ -28,7 +28,7 @@ struct ContactColumns {
 }
 
 impl Table {
-    /// The table of a request's path.
+    /// The table of the path of a request.
     pub fn of(request: &JobRequest) -> Self {
         let (model, record) = (&request.model, request.analysis.record.as_ref());
         let named = record.and_then(|record| record.nodes.as_ref());
@@ -46,7 +46,7 @@ impl Table {
         Self { dimension: model.dimension, nodes, contacts: contacts.map(columns).collect() }
     }
 
-    /// The first line, its line feed included.
+    /// The header line with its line feed.
     pub fn header(&self) -> String {
         let mut line = CsvRow::default();
         for name in ["index", "stage", "load_factor", "arc_length", "step", "point", "bifurcation", "event"] {
@@ -83,7 +83,7 @@ impl Table {
         line.end()
     }
 
-    /// One increment, its line feed included; without a measure those cells are empty.
+    /// The line of an increment with its line feed; without a measure the cells of the measure are empty.
     pub fn row(&self, increment: &Increment, measure: Option<&Errors>) -> String {
         let mut line = CsvRow::default();
         line.raw(&increment.index.to_string());
@@ -99,7 +99,7 @@ impl Table {
             let values = increment.displacements.get(node.as_str()).unwrap_or_default();
             line.numbers(values, self.dimension);
         }
-        // Rows and columns are in the model's order.
+        // Rows and columns are in the order of the model.
         let mut rows = increment.contacts.iter().peekable();
         for columns in &self.contacts {
             let state = rows.next_if(|row| *row.node == columns.node && *row.obstacle == columns.obstacle);
@@ -130,7 +130,7 @@ impl Table {
     }
 }
 
-/// The counts of work with their columns.
+/// The counts of the solver's work, with the names of their columns.
 fn counts(diagnostics: &Diagnostics) -> [(&'static str, u64); 8] {
     [
         ("factorisations", diagnostics.factorisations),

@@ -2,7 +2,7 @@
 
 use arcslip::service::http::access::Access;
 use arcslip::service::http::listen::Connections;
-use arcslip::service::http::server::{Front, Server};
+use arcslip::service::http::server::{ListenOptions, Server};
 use arcslip::service::jobs::{Settings, Solver};
 use arcslip::service::store;
 use arcslip::service::store::contract::interface::Store;
@@ -61,7 +61,7 @@ impl TestServer {
     }
 
     pub async fn start_for(store: Arc<dyn Store>, solver: impl Solver, settings: Settings, access: Access) -> Self {
-        let front = Front { listen: any_port(), connections: CONNECTIONS, access };
+        let front = ListenOptions { listen: any_port(), connections: CONNECTIONS, access };
         let server = Server::start(front, store, Arc::new(solver), settings).await;
         let server = server.expect("the server starts");
         let url = format!("http://{}", server.address());

@@ -9,7 +9,7 @@ use arcslip::result::plan::Plan;
 use arcslip::result::report::Report;
 use arcslip::result::stop_reason::StopReason;
 use arcslip::service::jobs::Solver;
-use arcslip::service::jobs::solver::{Accept, Beginning, Place, ResumeError};
+use arcslip::service::jobs::solving::solver::{Accept, Beginning, Place, ResumeError};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;

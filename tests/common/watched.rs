@@ -4,7 +4,7 @@ use arcslip::check::judged::{JudgedCheckpoint, JudgedReport, Step};
 use arcslip::model::{InputErrors, JobRequest};
 use arcslip::resources::cancel::CancelFlag;
 use arcslip::result::plan::Plan;
-use arcslip::service::jobs::solver::{Accept, Beginning, Place, ResumeError};
+use arcslip::service::jobs::solving::solver::{Accept, Beginning, Place, ResumeError};
 use arcslip::service::jobs::{PathSolver, Solver};
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex, MutexGuard};

@@ -6,7 +6,7 @@ use crate::common::solver::MadeUp;
 use arcslip::service::http::access::origins::Origins;
 use arcslip::service::http::access::rates::Rates;
 use arcslip::service::http::access::tokens::{self, Tokens};
-use arcslip::service::http::access::{Access, Door};
+use arcslip::service::http::access::{Access, AccessPolicy};
 use arcslip::service::store;
 use reqwest::{Method, Response};
 use serde_json::{Value, json};
@@ -40,7 +40,7 @@ impl People {
     }
 
     fn access(&self) -> Access {
-        Access::new(Door::with(self.tokens()), Rates::default(), Origins::default())
+        Access::new(AccessPolicy::with(self.tokens()), Rates::default(), Origins::default())
     }
 }
 
@@ -74,7 +74,7 @@ async fn problem(answer: Response, status: u16, kind: &str) -> Value {
 /// Every call that the service describes.
 fn calls() -> Vec<(Method, String)> {
     let document: Value =
-        serde_json::from_str(&arcslip::service::http::openapi_json().expect("a document")).expect("JSON");
+        serde_json::from_str(&arcslip::service::http::router::openapi_json().expect("a document")).expect("JSON");
     let paths = document["paths"].as_object().expect("paths");
     let calls = paths.iter().flat_map(|(path, item)| {
         let path = path.replace("{id}", "01890000-0000-7000-8000-000000000000").replace("{name}", "klarbring");
@@ -226,7 +226,7 @@ async fn too_many_requests_of_one_address_or_token_are_told_when_to_come_back() 
     let folder = tempfile::tempdir().expect("a folder");
     let people = People::new();
     let (few, many) = (NonZeroU32::new(5), NonZeroU32::new(40));
-    let access = Access::new(Door::with(people.tokens()), Rates::new(many, few), Origins::default());
+    let access = Access::new(AccessPolicy::with(people.tokens()), Rates::new(many, few), Origins::default());
     let server = start(folder.path(), access).await;
     let answers = async |token: &str, count: usize| {
         let mut answers = Vec::new();
@@ -277,7 +277,7 @@ async fn listed_pages_may_call_also_before_they_show_a_token() {
     let folder = tempfile::tempdir().expect("a folder");
     let people = People::new();
     let origins = Origins::read(["https://plots.example"]).expect("an origin");
-    let access = Access::new(Door::with(people.tokens()), Rates::default(), origins);
+    let access = Access::new(AccessPolicy::with(people.tokens()), Rates::default(), origins);
     let server = start(folder.path(), access).await;
     let asked = async |origin: &str| {
         let ask = server.ask(Method::OPTIONS, "/v1/jobs").header("origin", origin);

@@ -7,7 +7,7 @@ use arcslip::check::judged::{JudgedCheckpoint, JudgedReport};
 use arcslip::model::{InputErrors, JobRequest};
 use arcslip::resources::cancel::CancelFlag;
 use arcslip::result::plan::Plan;
-use arcslip::service::jobs::solver::{Accept, Beginning, ResumeError};
+use arcslip::service::jobs::solving::solver::{Accept, Beginning, ResumeError};
 use arcslip::service::jobs::{Limits, Settings, Solver};
 use serde_json::{Value, json};
 use std::io::Write;

@@ -36,7 +36,7 @@ async fn the_committed_description_is_the_one_that_is_served() {
 #[test]
 fn the_description_s_bounds_are_the_model_s_limits() {
     let document: Value =
-        serde_json::from_str(&arcslip::service::http::openapi_json().expect("a document")).expect("JSON");
+        serde_json::from_str(&arcslip::service::http::router::openapi_json().expect("a document")).expect("JSON");
     for (schema, field, bound, limit) in [
         ("Analysis", "max_increments", "maximum", limits::MAX_INCREMENTS),
         ("FollowRequest", "max_increments", "maximum", limits::MAX_INCREMENTS),

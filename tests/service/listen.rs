@@ -5,7 +5,7 @@ use crate::common::service::{request, scene};
 use crate::common::solver::MadeUp;
 use arcslip::service::http::access::Access;
 use arcslip::service::http::listen::Connections;
-use arcslip::service::http::server::{Front, Server};
+use arcslip::service::http::server::{ListenOptions, Server};
 use arcslip::service::jobs::{PathSolver, Settings};
 use arcslip::service::store;
 use serde_json::{Value, json};
@@ -19,7 +19,7 @@ async fn as_many_connections_wait_as_are_served() {
     let folder = tempfile::tempdir().expect("a folder");
     let store = store::open(&folder.path().join("jobs.db")).await.expect("a store");
     let connections = Connections { all: 2, waiting: 2, an_address: None };
-    let front = Front { listen: any_port(), connections, access: Access::loopback() };
+    let front = ListenOptions { listen: any_port(), connections, access: Access::loopback() };
     let server = Server::start(front, store, Arc::new(MadeUp::default()), settings()).await.expect("it starts");
     let place = server.address();
     let connected: Vec<TcpStream> =

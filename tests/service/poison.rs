@@ -5,7 +5,7 @@ use crate::common::server::{CONNECTIONS, any_port};
 use crate::common::service::{indices, request};
 use crate::common::solver::{ABORTS, MadeUp};
 use arcslip::service::http::access::Access;
-use arcslip::service::http::server::{Front, Server};
+use arcslip::service::http::server::{ListenOptions, Server};
 use arcslip::service::jobs::Settings;
 use arcslip::service::store::contract::interface::Store;
 use arcslip::service::store::{self, NewJob, Submitted, Task};
@@ -33,7 +33,7 @@ fn serve() {
         let lease = Duration::from_millis(300);
         let settings = Settings { workers: 3, lease, max_attempts: 3, ..Settings::default() };
         let solver = MadeUp::pausing(Duration::from_millis(1));
-        let front = Front { listen: any_port(), connections: CONNECTIONS, access: Access::loopback() };
+        let front = ListenOptions { listen: any_port(), connections: CONNECTIONS, access: Access::loopback() };
         let server = Server::start(front, store, Arc::new(solver), settings).await.expect("the server starts");
         println!("the test's server listens on http://{}", server.address());
         std::future::pending::<()>().await;

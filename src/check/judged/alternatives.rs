@@ -1,4 +1,4 @@
-//! Which of the directions that a path does not take are followed by jobs of their own.
+//! The alternatives of a path: directions that it does not take and that other jobs follow.
 //!
 //! On a stretch of bifurcation points the same alternative exists at every increment; to follow it from each would fill
 //! the queue with nearly the same path. An alternative is followed
@@ -8,16 +8,16 @@
 //!   and the same sign of the load rate, or only one of the two increments is a bifurcation.
 //!
 //! The way back is no alternative, nor is a direction that cannot be followed (a mechanism; the stage ends). The first
-//! increment of a job that follows another is a point of that one, whose alternatives are that one's.
+//! increment of a job that follows another is a point of the other path, to which its alternatives belong.
 
 use crate::result::increment::{Direction, Increment, PointKind, Status};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Load rates below this fraction of the largest one listed have no sign.
+/// Load rates below this fraction of the largest listed one count as zero.
 const STATIONARY: f64 = 1e-9;
 
-/// Sees the increments of one path in order.
+/// Receives the increments of a path in order.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Alternatives {
@@ -26,14 +26,14 @@ pub struct Alternatives {
     before: Vec<AlternativeKey>,
 }
 
-/// By what an alternative is known again at the next increment.
+/// The properties by which an alternative is recognised at the next increment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct AlternativeKey {
-    /// Those that are not free: others may come into reach meanwhile.
+    /// The statuses of the contacts that are not free; free ones may come into reach meanwhile.
     held: Vec<(Arc<str>, Arc<str>, Status)>,
     load: i8,
-    /// Among several with the same statuses and sign.
+    /// The number among several with the same statuses and sign.
     place: usize,
 }
 
@@ -43,12 +43,12 @@ impl Alternatives {
         Self { follows, ..Self::default() }
     }
 
-    /// Nothing has been seen, and the path follows no other.
+    /// No increment has been received, and the path follows no other.
     pub fn is_fresh(&self) -> bool {
         *self == Self::default()
     }
 
-    /// The directions that are followed from this increment; `open` says which of those listed can be.
+    /// The directions that are to be followed from this increment; `open` tells for each listed direction whether it can be.
     pub fn at(&mut self, increment: &Increment, open: &[bool]) -> Vec<u64> {
         let directions = increment.directions.as_deref().unwrap_or_default();
         let largest = directions.iter().fold(0.0_f64, |largest, direction| largest.max(direction.load_rate.abs()));

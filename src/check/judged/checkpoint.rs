@@ -1,4 +1,4 @@
-//! A path put down at a point together with what its judge remembers.
+//! A checkpoint of a judged path: the path at a point, and the history of its judge.
 
 use crate::check::judged::alternatives::Alternatives;
 use crate::check::judged::increment::JudgedIncrement;
@@ -7,23 +7,23 @@ use crate::check::measure::{HistoryError, JudgeHistory};
 use crate::continuation::path::checkpoint::{Checkpoint, CheckpointError};
 use serde::{Deserialize, Serialize};
 
-/// A judged path at one of its points. The parts carry their versions.
+/// A checkpoint of a judged path. Its parts have version numbers.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct JudgedCheckpoint {
     pub path: Checkpoint,
     pub history: JudgeHistory,
-    /// What the measure has said of the path up to here.
+    /// The maxima of the measure up to here.
     pub measure: MeasureReport,
-    /// By what the directions are known that are not new at the next increment.
+    /// The properties by which known alternatives are recognised at the next increment.
     #[serde(default, skip_serializing_if = "Alternatives::is_fresh")]
     pub alternatives: Alternatives,
-    /// The increment at which the path is, where it is not recorded: it is given after all if it proves to be the last.
+    /// The current increment, if it is not recorded: it is emitted if it turns out to be the last.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub left_out: Option<Box<JudgedIncrement>>,
 }
 
-/// Why a judged path cannot be taken up, or a direction of it not followed.
+/// Why a judged path cannot be resumed, or a direction of it cannot be followed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum JudgedCheckpointError {
     #[error(transparent)]

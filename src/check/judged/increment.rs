@@ -1,4 +1,4 @@
-//! An increment with what the measure says of it.
+//! An increment with its measure of error.
 
 use crate::check::measure::Errors;
 use crate::result::increment::Increment;

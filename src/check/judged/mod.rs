@@ -1,16 +1,16 @@
-//! The path as it leaves the solver: every increment with what the measure says of it, the report with the maxima.
+//! Judged paths: every increment with its measure of error, and the report with the maxima.
 //!
-//! Solver and measure meet here and nowhere else: [`continuation`](crate::continuation) does not know that it is judged, and
-//! [`measure`](crate::check::measure) reads increments as anybody may. Whatever prints, stores or streams increments takes them
-//! from a [`JudgedPath`].
+//! Solver and measure are only combined here: [`continuation`](crate::continuation) does not depend on the measure, and
+//! [`measure`](crate::check::measure) only reads the published increments. All increments that are printed, stored or streamed
+//! come from a [`JudgedPath`].
 //!
 //! | file | what it does |
 //! |---|---|
 //! | `continuation` | step by step, or as an iterator of what is recorded: traces, judges, goes on from a checkpoint |
 //! | `increment`, `report` | what it gives |
-//! | `record` | what of an increment is kept, after it has been judged |
+//! | `record` | the parts of an increment that are kept after it has been judged |
 //! | `alternatives` | which directions are new at an increment |
-//! | `checkpoint` | a path put down together with the judge's memory of it |
+//! | `checkpoint` | a checkpoint of the path with the history of its judge |
 //! | `schema` | their JSON Schema |
 
 pub mod alternatives;

@@ -1,4 +1,4 @@
-//! A path being traced and judged.
+//! Traces and judges a path.
 
 use crate::check::judged::alternatives::Alternatives;
 use crate::check::judged::checkpoint::{JudgedCheckpoint, JudgedCheckpointError};
@@ -14,46 +14,46 @@ use crate::model::request::Method;
 use crate::resources::cancel::CancelFlag;
 use crate::result::increment::{Diagnostics, Increment};
 
-/// An iterator of judged increments, by whichever method the analysis names.
+/// An iterator over judged increments, for every method of the analysis.
 pub struct JudgedPath<'a> {
     path: TracedPath<'a>,
     judge: Judge,
     measure: MeasureReport,
     record: Recorder,
-    /// The last increment is off the measure.
+    /// The last increment exceeds the tolerance of the measure.
     off_measure: bool,
     alternatives: Alternatives,
-    /// Directions that appear first at the last increment.
+    /// The directions that are listed for the first time at the last increment.
     found: Vec<u64>,
-    /// The last increment where it was left out: the last of the path is given after all.
+    /// The last increment, if it was not recorded: it is emitted if it is the last of the path.
     left_out: Option<PendingIncrement>,
-    /// The path at the last increment given, where it has gone on from there.
+    /// A checkpoint at the last emitted increment, if the path has continued from there.
     put_down: Option<Option<PausedPath>>,
 }
 
-/// An increment of the path, and the increment itself where it is recorded.
+/// A step of the path, with its increment if this is recorded.
 #[derive(Debug)]
 pub struct Step {
     pub index: u64,
-    /// The path's totals.
+    /// The totals of the path.
     pub diagnostics: Diagnostics,
     pub given: Option<JudgedIncrement>,
 }
 
-/// An increment not given yet.
+/// An increment that has not been emitted yet.
 struct PendingIncrement {
     judged: JudgedIncrement,
     place: Option<PausedPath>,
 }
 
-/// A path put down where directions are listed.
+/// A checkpoint at an increment with listed directions.
 struct PausedPath {
     checkpoint: JudgedCheckpoint,
     open: Vec<bool>,
 }
 
 impl<'a> JudgedPath<'a> {
-    /// From the start; `scene` is the request's.
+    /// Traces the path from its start; `scene` is that of the request.
     pub fn new(request: &JobRequest, scene: &'a Scene, cancel: CancelFlag) -> Self {
         Self::of(request, TracedPath::new(scene, cancel), judge(request, scene), fresh(request))
     }
@@ -72,11 +72,11 @@ impl<'a> JudgedPath<'a> {
         }
     }
 
-    /// Along a direction listed at a checkpoint: see [`Path::follow`]. The judge goes on from where it was; the maxima
-    /// are the new path's own.
+    /// Follows a direction listed at a checkpoint: see [`Path::follow`]. The judge continues with its history; the maxima are
+    /// those of the new path.
     ///
     /// # Errors
-    /// A checkpoint that does not fit, and a direction along which there is no path.
+    /// The checkpoint does not fit, or there is no path along the direction.
     pub fn follow(
         request: &JobRequest,
         scene: &'a Scene,
@@ -93,11 +93,11 @@ impl<'a> JudgedPath<'a> {
         Ok(followed)
     }
 
-    /// Takes a path up where it was put down: increments and report are the same as if it had not been, but for
+    /// Resumes a path from a checkpoint: increments and report are the same as without the interruption, except for
     /// `elapsed_s`.
     ///
     /// # Errors
-    /// A checkpoint of another model, or of another version of this program.
+    /// The checkpoint is of another model, or of another version of this program.
     pub fn resume(
         request: &JobRequest,
         scene: &'a Scene,
@@ -113,7 +113,7 @@ impl<'a> JudgedPath<'a> {
         Ok(resumed)
     }
 
-    /// The path at the last step; `None` by a method whose paths cannot be put down.
+    /// A checkpoint at the last step; `None` for a method without checkpoints.
     pub fn checkpoint(&self) -> Option<JudgedCheckpoint> {
         match &self.put_down {
             Some(place) => place.as_ref().map(|place| place.checkpoint.clone()),
@@ -124,7 +124,7 @@ impl<'a> JudgedPath<'a> {
         }
     }
 
-    /// Traces and judges one increment more; the last of a path is given though it was left out before.
+    /// Traces and judges one more increment. The last increment of a path is emitted even if it would not be recorded.
     pub fn step(&mut self) -> Option<Step> {
         self.put_down = None;
         let Some(increment) = self.path.next() else {
@@ -160,14 +160,14 @@ impl<'a> JudgedPath<'a> {
         })
     }
 
-    /// Put down here where directions are listed: what comes next may not lead to a point, and leave another state behind.
+    /// Makes a checkpoint where directions are listed: the next step may fail and leave another state behind.
     fn place(&self) -> Option<PausedPath> {
         let open = self.open_directions();
         if open.is_empty() { None } else { self.present().map(|checkpoint| PausedPath { checkpoint, open }) }
     }
 
-    /// For each direction listed with the last increment, whether a path goes along it; empty where there is one way on,
-    /// and where none are recorded.
+    /// For each direction listed at the last increment, whether it can be followed; empty if no directions are listed or
+    /// recorded.
     pub fn open_directions(&self) -> Vec<bool> {
         match &self.put_down {
             _ if !self.record.directions() => Vec::new(),
@@ -176,7 +176,7 @@ impl<'a> JudgedPath<'a> {
         }
     }
 
-    /// The directions among them that appear first at the last increment.
+    /// The directions that are listed for the first time at the last increment.
     pub fn alternatives(&self) -> &[u64] {
         &self.found
     }
@@ -186,12 +186,12 @@ impl<'a> JudgedPath<'a> {
         (0..path.listed_directions()).map(|direction| path.can_be_followed(direction)).collect()
     }
 
-    /// Whether the last increment is off the measure: a defect of the solver.
+    /// Whether the last increment exceeds the tolerance of the measure, which is a defect of the solver.
     pub fn is_off_measure(&self) -> bool {
         self.off_measure
     }
 
-    /// Present when the path has ended, that is when `next` has returned `None`.
+    /// The report, once the path has ended, that is when `next` has returned `None`.
     pub fn report(&self) -> Option<JudgedReport> {
         self.path.report().map(|report| JudgedReport { report, measure: self.measure })
     }

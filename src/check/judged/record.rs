@@ -1,22 +1,22 @@
-//! What of an increment is kept, after it has been judged in full.
+//! Selects the parts of a judged increment that are recorded.
 
 use crate::model::JobRequest;
 use crate::result::increment::{ContactState, Increment, PointKind};
 use std::collections::HashSet;
 
-/// A request's `record`, made ready.
+/// The selection in the `record` of a request.
 #[derive(Debug, Clone)]
 pub(super) struct Recorder {
-    /// One a node; `None`: all are kept.
+    /// One for each node; `None`: all nodes are kept.
     nodes: Option<Vec<bool>>,
-    /// Node and obstacle of the contacts that are named, in the model's order; `None`: every row is kept.
+    /// Node and obstacle of the selected contacts, in the order of the model; `None`: every row is kept.
     contacts: Option<Vec<(String, String)>>,
     every: u64,
     directions: bool,
 }
 
 impl Recorder {
-    /// Of a request that has been checked.
+    /// The selection of a checked request.
     pub fn new(request: &JobRequest) -> Self {
         let record = request.analysis.record.clone().unwrap_or_default();
         let model = &request.model;
@@ -40,7 +40,7 @@ impl Recorder {
         self.directions
     }
 
-    /// Whether an increment is kept for itself.
+    /// Whether an increment is recorded.
     pub fn keeps(&self, increment: &Increment) -> bool {
         increment.index == 0
             || increment.point.kind != PointKind::Regular
@@ -48,7 +48,7 @@ impl Recorder {
             || increment.index.is_multiple_of(self.every)
     }
 
-    /// An increment without what is not kept.
+    /// An increment without the parts that are not kept.
     pub fn cut(&self, mut increment: Increment) -> Increment {
         if let Some(kept) = &self.nodes {
             increment.displacements.keep(|node| kept.get(node).is_some_and(|kept| *kept));
@@ -72,7 +72,7 @@ impl Recorder {
     }
 }
 
-/// Keeps the items whose place is marked.
+/// Keeps the marked items.
 fn retain<Item>(items: &mut Vec<Item>, kept: &[bool]) {
     let mut kept = kept.iter();
     items.retain(|_| kept.next().is_some_and(|kept| *kept));

@@ -1,4 +1,4 @@
-//! JSON Schema of what the path gives, with the measure as one more member of the same object, as it is written.
+//! JSON Schemas of judged increments and reports, with the measure as another member of the same object.
 
 use crate::check::judged::increment::JudgedIncrement;
 use crate::check::judged::report::{JudgedReport, MeasureReport};
@@ -12,7 +12,7 @@ use utoipa::{PartialSchema, ToSchema};
 
 type Schemas = Vec<(String, RefOr<Schema>)>;
 
-/// An object's schema with a required member `measure`.
+/// The schema of an object with the additional required member `measure`.
 fn with_measure<Whole: PartialSchema, Measure: ToSchema>() -> RefOr<Schema> {
     let mut schema = Whole::schema();
     if let RefOr::T(Schema::Object(object)) = &mut schema {
@@ -22,7 +22,7 @@ fn with_measure<Whole: PartialSchema, Measure: ToSchema>() -> RefOr<Schema> {
     schema
 }
 
-/// What the members of the whole refer to, and the measure.
+/// The schemas to which the members of the object refer, and that of the measure.
 fn referred<Whole: ToSchema, Measure: ToSchema>(schemas: &mut Schemas) {
     Whole::schemas(schemas);
     schemas.push((Measure::name().into_owned(), Measure::schema()));

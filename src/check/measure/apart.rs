@@ -1,8 +1,8 @@
-//! Contacts without a row: the increment says of them that they are out of reach, so their gaps must be open.
+//! Checks contacts without a row in an increment: they are out of reach, so that their gaps must be open.
 //!
 //! Over a dimensionless distance `a` a node moves by at most `ℓ a cos α`, its obstacle by `|d| σ a sin α` (`d` its motion
-//! per load factor, `σ` the load scale), so a gap changes by at most `a √(ℓ² + |d|² σ²)`, and an open one needs no look
-//! before it could have closed.
+//! per load factor, `σ` the load scale), so a gap changes by at most `a √(ℓ² + |d|² σ²)`, and an open gap need not be
+//! checked before it could have closed.
 
 use crate::check::measure::errors::{Errors, worse};
 use crate::check::measure::posted::{Posted, PostedContact, PostedLoading};
@@ -10,26 +10,26 @@ use crate::check::measure::vector::MeasuredVector;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// What rounding may do to a bound.
+/// Relative allowance for rounding in a bound.
 const ROUNDING: f64 = 1e-9;
 
 #[derive(Debug, Clone)]
 pub(super) struct Apart {
-    /// The plan's displacement scale.
+    /// The displacement scale of the plan.
     length: f64,
-    /// For each contact, how far its gap may change by unit distance (length).
+    /// For each contact, the largest change of its gap per unit distance (length).
     fastest: Vec<f64>,
-    /// Distance that the path has gone.
+    /// The length of the path so far.
     travelled: f64,
-    /// Contacts without a row, and perhaps some that have one by now; the one that may close first on top.
+    /// Contacts without a row, and perhaps some that have one by now, in a heap; the one that may close first is on top.
     waiting: BinaryHeap<Reverse<SeparatedContact>>,
     /// For each contact, whether it has a row.
     has_row: Vec<bool>,
-    /// Those that have.
+    /// The contacts with a row.
     rows: Vec<usize>,
 }
 
-/// A contact, and the distance that the path has to go before its gap can have closed.
+/// A contact, and the length of the path before which its gap cannot have closed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct SeparatedContact {
     until: f64,
@@ -65,7 +65,7 @@ impl Apart {
         Self { length, fastest, travelled: 0.0, waiting, has_row, rows: Vec::new() }
     }
 
-    /// Begins with no rows at all, where everything is now.
+    /// Begins at the current state, without any rows.
     pub fn begin(&mut self, posted: &Posted, loading: &PostedLoading, displacements: &[MeasuredVector]) {
         let waiting = |(contact, posted_contact)| {
             let gap = posted.frame(posted_contact, loading, displacements).gap;
@@ -82,18 +82,18 @@ impl Apart {
         SeparatedContact { until: self.travelled + way - ROUNDING * (self.travelled + way), contact }
     }
 
-    /// From now on these contacts have rows, and all others none.
+    /// Sets the contacts that have rows from now on.
     pub fn rows_are(&mut self, rows: &[usize]) {
         let before = std::mem::replace(&mut self.rows, rows.to_vec());
         before.iter().for_each(|contact| self.has_row[*contact] = false);
         rows.iter().for_each(|contact| self.has_row[*contact] = true);
-        // They wait again; one that has never been taken off waits twice, and does no harm.
+        // They are put into the heap again; one that is still in it is there twice, which does no harm.
         let lost = before.iter().filter(|contact| !self.has_row[**contact]);
         self.waiting
             .extend(lost.map(|contact| Reverse(SeparatedContact { until: f64::NEG_INFINITY, contact: *contact })));
     }
 
-    /// Takes into `errors` the gaps that are not open at the end of an increment of this length.
+    /// Adds to `errors` the gaps that are not open at the end of an increment of the given length.
     pub fn judge(
         &mut self,
         posted: &Posted,

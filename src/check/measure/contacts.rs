@@ -1,4 +1,4 @@
-//! One contact against the laws of contact and friction.
+//! Judges a contact by the laws of contact and friction.
 
 use crate::check::measure::errors::{Errors, worse};
 use crate::check::measure::obstacles::MeasuredFrame;
@@ -13,7 +13,7 @@ pub(super) struct Seen<'a> {
     pub state: &'a ContactState,
     pub frame: &'a MeasuredFrame,
     pub friction: f64,
-    /// Motion of the node against the obstacle in the increment (length).
+    /// Motion of the node relative to the obstacle in the increment (length).
     pub motion: MeasuredVector,
     /// `-r_t/|r_t|` in space where the increment began, if the contact was on its cone there.
     pub direction_before: Option<MeasuredVector>,
@@ -21,7 +21,7 @@ pub(super) struct Seen<'a> {
 }
 
 impl Seen<'_> {
-    /// Takes the contact's errors into `errors`; answers its direction of slip at the end, where it is on its cone.
+    /// Adds the errors of the contact to `errors`; answers its direction of slip at the end, if it is on the friction cone.
     /// `length` and `force` make lengths and forces dimensionless.
     pub fn judge(&self, length: f64, force: f64, errors: &mut Errors) -> Option<MeasuredVector> {
         let Self { state, frame, friction, .. } = *self;
@@ -38,7 +38,7 @@ impl Seen<'_> {
         let size = traction[0].hypot(traction[1]);
         let radius = friction * normal;
 
-        // Written out: `min` passes over what is not a number.
+        // Written out, as `min` ignores NaN.
         let apart = state.gap / length;
         errors.contact = worse(errors.contact, if normal < apart { normal.abs() } else { apart.abs() });
         errors.contact = worse(errors.contact, if normal.is_nan() { normal } else { 0.0 });
@@ -94,7 +94,7 @@ fn natural_map(traction: [f64; 2], slip: [f64; 2], radius: f64) -> f64 {
     (traction[0] - factor * moved[0]).hypot(traction[1] - factor * moved[1])
 }
 
-/// The whole force of an obstacle on its node.
+/// The total force of an obstacle on its node.
 pub(super) fn force(state: &ContactState, frame: &MeasuredFrame) -> MeasuredVector {
     let component = |k: usize| state.tangential_reaction.get(k).copied().unwrap_or(0.0);
     frame.in_space([component(0), component(1)]) + frame.normal * state.normal_reaction

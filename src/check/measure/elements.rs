@@ -1,4 +1,4 @@
-//! Forces and strain energy of the posted elements, for the measure alone.
+//! Forces and strain energy of the posted elements, for the measure only.
 
 use crate::check::measure::vector::{MeasuredVector, largest, padded};
 use crate::model::request::{Element as Posted, Model, Strain};
@@ -26,7 +26,7 @@ pub(super) enum MeasuredElement {
     },
 }
 
-/// What the nodes do to an element: a force on the second node, the opposite on the first; and its energy.
+/// The forces of the nodes on an element, on the second node and opposite on the first, and its energy.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ElementResponse {
     pub first: Option<usize>,
@@ -34,11 +34,11 @@ pub(super) struct ElementResponse {
     /// On the second node.
     pub force: MeasuredVector,
     pub energy: f64,
-    /// What the rounding of the displacements (and of a bar's places, over its length) puts into the force.
+    /// Rounding error of the force due to the displacements (and, for a bar, its coordinates, relative to its length).
     pub rounding: f64,
 }
 
-/// Multiple of unit round-off that a difference of two rounded numbers, made from rounded ones, may be off by.
+/// Error of a difference of two rounded numbers that were computed from rounded ones, in units of round-off.
 const ROUNDINGS: f64 = 16.0;
 
 impl MeasuredElement {
@@ -62,8 +62,8 @@ impl MeasuredElement {
         }
     }
 
-    /// Under these displacements of the nodes.
-    /// Force by unit displacement, undeformed: the largest in any direction, near enough.
+    /// The response to the given displacements of the nodes.
+    /// Approximately the largest stiffness in any direction, in the undeformed state.
     pub fn stiffness(&self) -> f64 {
         match self {
             Self::Bar { rest, stiffness, .. } => stiffness / rest,
@@ -77,7 +77,7 @@ impl MeasuredElement {
                 let change = u[ends[1]] - u[ends[0]];
                 let deformed = reference + change;
                 let length = deformed.norm();
-                // `L - L0` and `(L - L0)/L0` without the cancellation of two lengths.
+                // `L - L0` and `(L - L0)/L0` without cancellation.
                 let grown = change.dot(&(reference * 2.0 + change)) / (length + before);
                 let elongation = grown + (before - rest);
                 let linear = elongation / rest;

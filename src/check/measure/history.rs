@@ -1,5 +1,5 @@
-//! What a judge remembers of the increments before, so that a path that is taken up again, or followed along another
-//! direction, is judged as if it had not been put down.
+//! The history of a judge, with which a path that is resumed, or followed along another direction, is judged as if it had not
+//! been interrupted.
 
 use crate::check::measure::Judge;
 use crate::check::measure::posted::{Posted, PostedLoading};
@@ -7,17 +7,17 @@ use crate::check::measure::vector::MeasuredVector;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Changes when a history of before would be read as something else.
+/// The version of the format, which changes with its meaning.
 const VERSION: u32 = 2;
 
-/// The point before, as far as the next increment is judged by it.
+/// The data of the previous point by which the next increment is judged.
 #[derive(Debug, Clone)]
 pub(super) struct PreviousPoint {
     pub displacements: Vec<MeasuredVector>,
     pub shifts: Vec<MeasuredVector>,
     /// `-r_t/|r_t|` in space of the contacts that are on their cones; in 3D only.
     pub directions: BTreeMap<usize, MeasuredVector>,
-    /// Load factor in the running stage.
+    /// Load factor in the current stage.
     pub load: f64,
     pub arc_length: f64,
 }
@@ -34,16 +34,16 @@ impl PreviousPoint {
     }
 }
 
-/// What a [`Judge`] remembers, in the user's units. Written as JSON it reads back to the same bits.
+/// The history of a [`Judge`], in the units of the user. Its numbers are read back from JSON exactly.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct JudgeHistory {
     version: u32,
-    /// Loads at which the stages before ended.
+    /// Loads at which the previous stages ended.
     reached: Vec<f64>,
     load: f64,
     arc_length: f64,
-    /// One a node.
+    /// One for each node.
     displacements: Vec<MeasuredVector>,
     /// Directions of slip of the contacts that have one, in order.
     directions: Vec<(usize, MeasuredVector)>,
@@ -51,7 +51,7 @@ pub struct JudgeHistory {
     largest_energy: f64,
 }
 
-/// Why a history cannot be taken up.
+/// Why a history cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum HistoryError {
     #[error("the measure's history is of version {found}; this program reads version {VERSION}")]

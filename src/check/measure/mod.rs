@@ -1,5 +1,5 @@
-//! The measure of error, apart from the solver that it judges: it reads the posted model and the streamed increments,
-//! in the user's units, and shares no code with what produced them.
+//! The measure of error, independent of the solver: it reads the posted model and the streamed increments, in the units of the
+//! user, and shares no code with the solver.
 //!
 //! ```text
 //! equilibrium     max |Σ N d + K Δu - s f - f_held - Σ n r_n - Σ t r_t| / F    free components; F: largest force so far
@@ -15,14 +15,14 @@
 //! slip_direction  3D: angle between the slip and the sum of the unit directions -r_t/|r_t| at its two ends
 //! ```
 //!
-//! What the rounding of the numbers that are given puts into a gap or a balance of forces is no error of the state: of a
-//! bar, unit round-off times `EA/L0` times its displacements and places; of a spring, times `|K|` and its displacements.
-//! Both count only where stiff elements move far.
+//! Errors of a gap or of a balance of forces that are due to the rounding of the published numbers do not count: for a bar,
+//! unit round-off times `EA/L0` times its displacements and coordinates; for a spring, times `|K|` and its displacements. Both
+//! are only relevant for large motions of stiff elements.
 //!
 //! `ℓ` and `σ` are the plan's displacement and load scales. (Natural map: F. Facchinei, J.-S. Pang, *Finite-Dimensional
 //! Variational Inequalities and Complementarity Problems*, Springer 2003, section 1.5; of Coulomb's law: P. Alart,
 //! A. Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353, doi:10.1016/0045-7825(91)90022-X.) `W` and `D` are the
-//! reported ones: integrals along the path, of which two increments do not hold enough to compute them anew.
+//! reported values: they are integrals along the path, which cannot be computed from two increments.
 //!
 //! In 3D the slip of an increment is the chord of a curve. Traction opposes the velocity, and the chord of a curve with
 //! unit end directions `d0`, `d1` is along `d0 + d1` up to an angle of second order in the step. So on the cone the
@@ -35,8 +35,8 @@
 //! | `errors` | the figures and their maxima |
 //! | `posted`, `elements`, `obstacles`, `vector` | the model as posted, with numbers for names |
 //! | `contacts` | one contact |
-//! | `rows`, `apart` | which contacts an increment has rows of; those that it has none of |
-//! | `history` | what a judge remembers, put down and taken up |
+//! | `rows`, `apart` | the contacts with a row in an increment, and those without |
+//! | `history` | the history of a judge, for checkpoints |
 
 pub(crate) mod apart;
 pub(crate) mod contacts;
@@ -63,21 +63,21 @@ use posted::{Posted, PostedLoading};
 use rows::{ContactRows, RowChange};
 use vector::{MeasuredVector, largest, padded};
 
-/// Forces below this part of what the stiffest element takes to be stretched by the displacement scale are none.
+/// Forces below this part of the force that stretches the stiffest element by the displacement scale count as zero.
 const NO_FORCE: f64 = 1e-20;
-/// Energies below this part of the largest force times the displacement scale are rounding.
+/// Energies below this part of the largest force times the displacement scale count as rounding errors.
 const NO_ENERGY: f64 = 1e-10;
 
-/// Judges the increments of one path, in order.
+/// Judges the increments of a path, in order.
 #[derive(Debug, Clone)]
 pub struct Judge {
     posted: Posted,
     /// The plan's displacement scale.
     length: f64,
-    /// Forces below this are none: what rounding leaves where nothing is loaded.
+    /// Forces below this count as zero: rounding errors without load.
     no_force: f64,
     stage: usize,
-    /// Loads at which the stages before ended.
+    /// Loads at which the previous stages ended.
     reached: Vec<f64>,
     held: PostedLoading,
     before: PreviousPoint,
@@ -86,7 +86,7 @@ pub struct Judge {
     initial_strain: f64,
     rows: ContactRows,
     apart: Apart,
-    /// What the increment at hand is computed in.
+    /// Work space for the current increment.
     work: Workspace,
 }
 
@@ -94,16 +94,16 @@ pub struct Judge {
 struct Workspace {
     loading: PostedLoading,
     displacements: Vec<MeasuredVector>,
-    /// Unbalanced force, one a node.
+    /// Unbalanced force of each node.
     balance: Vec<MeasuredVector>,
-    /// What rounding puts into it.
+    /// Rounding error of the unbalanced force.
     rounding: Vec<f64>,
     frames: Vec<MeasuredFrame>,
 }
 
 impl Judge {
-    /// Of a request that has been checked. The scales are those of the plan: `displacement_scale` makes lengths
-    /// dimensionless, `load_scales` the load factor, one a stage.
+    /// The judge of a checked request. The scales are those of the plan: `displacement_scale` makes lengths dimensionless,
+    /// `load_scales` the load factor of each stage.
     pub fn new(request: &JobRequest, displacement_scale: f64, load_scales: &[f64]) -> Self {
         let posted = Posted::new(request, load_scales);
         let none = PostedLoading::none(&posted);
@@ -133,7 +133,7 @@ impl Judge {
         }
     }
 
-    /// Errors of the next increment.
+    /// The errors of the next increment.
     pub fn judge(&mut self, increment: &Increment) -> Errors {
         let mut errors = Errors::default();
         if !self.read(increment) {
@@ -144,7 +144,7 @@ impl Judge {
         errors.equilibrium = worse(0.0, self.unbalanced() / force);
         errors.support = self.off_support();
         let distance = self.distance(increment);
-        // Of long steps the part that rounding may change is as much longer.
+        // The rounding error of a step grows with its length.
         let of_step = (distance - increment.step).abs() / distance.max(1.0);
         let sum = self.before.arc_length + increment.step;
         let of_sum = (increment.arc_length - sum).abs() / sum.max(1.0);
@@ -176,7 +176,7 @@ impl Judge {
         errors
     }
 
-    /// Goes to the increment's stage and takes its displacements and load; `false` where it does not fit the model.
+    /// Sets the stage, displacements and load of an increment; `false` if it does not fit the model.
     fn read(&mut self, increment: &Increment) -> bool {
         let posted = &self.posted;
         let known = posted.stages[self.stage..].iter().position(|stage| stage.name == *increment.stage);
@@ -258,7 +258,7 @@ impl Judge {
         worse(0.0, components.fold(0.0, worse) / self.length)
     }
 
-    /// The dimensionless distance from the increment before.
+    /// The dimensionless distance from the previous increment.
     fn distance(&self, increment: &Increment) -> f64 {
         let mut squared =
             ((increment.load_factor - self.before.load) / self.posted.stages[self.stage].load_scale).powi(2);

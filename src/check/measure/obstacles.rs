@@ -1,4 +1,4 @@
-//! Obstacles as posted: where they are under a load factor, and their frame at a node, for the measure alone.
+//! Obstacles as posted: their position under a load factor, and their frame at a node, for the measure only.
 //!
 //! A frame is the gap, the unit normal into the free side, and the tangents: in 2D `(n_y, -n_x)`; in 3D
 //! `t1 = (e_k - n_k n)/|.|` with `k` the first of the smallest `|n_k|`, and `t2 = n x t1`.
@@ -22,14 +22,14 @@ enum ObstacleShape {
     Ball { radius: f64, sign: f64 },
 }
 
-/// How the obstacle lies to a node.
+/// The gap and the frame of an obstacle at a node.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MeasuredFrame {
     pub gap: f64,
-    /// What rounding of the coordinates may put into the gap.
+    /// Rounding error of the gap due to the coordinates.
     pub rounding: f64,
     pub normal: MeasuredVector,
-    /// `dimension - 1` of them; the other is zero.
+    /// `dimension - 1` tangents; a remaining one is zero.
     pub tangents: [MeasuredVector; 2],
 }
 

@@ -1,4 +1,4 @@
-//! The posted model with its names replaced by numbers, so that judging an increment looks nothing up.
+//! The posted model with numbers instead of names, so that judging an increment needs no look-ups.
 
 use crate::check::measure::elements::MeasuredElement;
 use crate::check::measure::obstacles::{MeasuredFrame, MeasuredObstacle};
@@ -30,7 +30,7 @@ pub(super) struct PostedNode {
 pub(super) struct PostedContact {
     pub node: usize,
     pub obstacle: usize,
-    /// Its obstacle's place among those that move.
+    /// The index of its obstacle among the moving ones.
     pub motion: Option<usize>,
     pub friction: f64,
 }
@@ -41,14 +41,14 @@ pub(super) struct PostedStage {
     forces: PostedLoadPattern,
     displacements: PostedLoadPattern,
     motions: PostedLoadPattern,
-    /// Load factor of one dimensionless load.
+    /// Load factor of a dimensionless load of 1.
     pub load_scale: f64,
 }
 
-/// Nodes or moving obstacles and what the load factor multiplies there.
+/// Nodes or moving obstacles, with the vectors that the load factor multiplies.
 type PostedLoadPattern = Vec<(usize, MeasuredVector)>;
 
-/// What acts on the structure: one vector a node, one a node, one a moving obstacle.
+/// Loads on the structure: forces on the nodes, displacements of the nodes, and displacements of the moving obstacles.
 #[derive(Debug, Clone)]
 pub(super) struct PostedLoading {
     pub forces: Vec<MeasuredVector>,
@@ -113,7 +113,7 @@ fn pattern(posted: &IndexMap<String, Vec<f64>>, number: &dyn Fn(&str) -> Option<
 }
 
 impl PostedStage {
-    /// Motion of a contact's obstacle by unit load factor (length).
+    /// Motion of the obstacle of a contact per unit load factor (length).
     pub fn motion(&self, contact: &PostedContact) -> MeasuredVector {
         let of_this = |(place, _): &&(usize, MeasuredVector)| Some(*place) == contact.motion;
         self.motions.iter().find(of_this).map_or_else(MeasuredVector::zeros, |(_, motion)| *motion)
@@ -130,12 +130,12 @@ impl PostedLoading {
         }
     }
 
-    /// How far a contact's obstacle has moved.
+    /// The displacement of the obstacle of a contact.
     pub fn shift(&self, contact: &PostedContact) -> MeasuredVector {
         contact.motion.map_or_else(MeasuredVector::zeros, |place| self.shifts[place])
     }
 
-    /// Becomes what is held with a stage under a load factor on top.
+    /// Sets the sum of the held loads and those of a stage at a load factor.
     pub fn set(&mut self, held: &Self, stage: &PostedStage, load: f64) {
         let all = [
             (&mut self.forces, &held.forces, &stage.forces),

@@ -1,26 +1,26 @@
-//! Which contacts of the model an increment has rows of: all of them, or those within reach and those that are asked for.
+//! The contacts of the model with a row in an increment: all of them, or those within reach and the requested ones.
 
 use crate::model::JobRequest;
 use crate::result::increment::ContactState;
 use std::collections::HashMap;
 
-/// The contacts of the last increment's rows.
+/// The contacts of the rows of the last increment.
 #[derive(Debug, Clone)]
 pub(super) struct ContactRows {
     /// Node and obstacle of every contact of the model.
     names: Vec<(String, String)>,
-    /// By node and obstacle, the contacts of these names, in order.
+    /// The contacts by the names of node and obstacle, in order.
     named: HashMap<String, HashMap<String, Vec<usize>>>,
     /// For each row its contact.
     contacts: Vec<usize>,
 }
 
-/// What is different from the rows of the increment before.
+/// The difference from the rows of the previous increment.
 pub(super) enum RowChange {
     None,
-    /// They are of other contacts.
+    /// The rows are of other contacts.
     Others,
-    /// They are not of the model, or not in its order.
+    /// The rows are not of the model, or not in its order.
     Unknown,
 }
 
@@ -40,7 +40,7 @@ impl ContactRows {
         &self.contacts
     }
 
-    /// Goes to the rows of the next increment.
+    /// Sets the rows of the next increment.
     pub fn read(&mut self, rows: &[ContactState]) -> RowChange {
         let is_of = |(row, contact): (&ContactState, &usize)| {
             let (node, obstacle) = &self.names[*contact];

@@ -4,14 +4,14 @@ use nalgebra::Vector3;
 
 pub(super) type MeasuredVector = Vector3<f64>;
 
-/// Of two or three components; what is missing is 0.
+/// A vector of two or three components; a missing one is 0.
 pub(super) fn padded(values: &[f64]) -> MeasuredVector {
     let mut vector = MeasuredVector::zeros();
     vector.iter_mut().zip(values).for_each(|(to, from)| *to = *from);
     vector
 }
 
-/// The largest component; one that is not a number is passed over.
+/// The largest component in size; NaN is ignored.
 pub(super) fn largest(a: &MeasuredVector) -> f64 {
     a.x.abs().max(a.y.abs()).max(a.z.abs())
 }

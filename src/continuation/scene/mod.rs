@@ -57,7 +57,7 @@ pub struct Scene {
 
 /// Elements and contacts that a request has no words for, dimensionless by the scales of the request's own.
 #[derive(Debug, Default)]
-pub(crate) struct Parts {
+pub(crate) struct AdditionalParts {
     pub elements: Vec<Arc<dyn Element>>,
     /// Each with the names of its node and its obstacle.
     pub contacts: Vec<(&'static str, &'static str, Contact)>,
@@ -117,14 +117,18 @@ impl Scene {
     /// # Errors
     /// As for [`new`](Self::new).
     pub fn like(other: Option<&Self>, request: &JobRequest) -> Result<Self, InputErrors> {
-        Self::with_parts(other, request, Parts::default())
+        Self::with_parts(other, request, AdditionalParts::default())
     }
 
     /// As [`like`](Self::like), with elements and contacts beside those of the request.
     ///
     /// # Errors
     /// As for [`new`](Self::new).
-    pub(crate) fn with_parts(other: Option<&Self>, request: &JobRequest, parts: Parts) -> Result<Self, InputErrors> {
+    pub(crate) fn with_parts(
+        other: Option<&Self>,
+        request: &JobRequest,
+        parts: AdditionalParts,
+    ) -> Result<Self, InputErrors> {
         let other = other.map(|other| &other.structure);
         Budget::under_way(budget::cancel_flag()).during(|| Self::built(request, other, parts)).unwrap_or_else(
             |breach| {
@@ -140,7 +144,7 @@ impl Scene {
         )
     }
 
-    fn built(request: &JobRequest, like: Option<&Structure>, parts: Parts) -> Result<Self, InputErrors> {
+    fn built(request: &JobRequest, like: Option<&Structure>, parts: AdditionalParts) -> Result<Self, InputErrors> {
         crate::model::check::check(request)?;
         let model = &request.model;
         let numbers: HashMap<&str, usize> =

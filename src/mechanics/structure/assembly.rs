@@ -11,12 +11,12 @@ pub struct ElementAt<'a> {
 
 /// Memory for the numbers of one element, kept from one to the next.
 #[derive(Default)]
-pub struct Scratch {
+pub struct ElementBuffer {
     displacement: Vec<f64>,
     values: Vec<f64>,
 }
 
-impl Scratch {
+impl ElementBuffer {
     /// The element's displacement, and room for so many numbers.
     fn of(&mut self, at: ElementAt<'_>, displacement: &[f64], count: usize) -> (&[f64], &mut [f64]) {
         self.displacement.clear();
@@ -28,8 +28,8 @@ impl Scratch {
 
 impl ElementAt<'_> {
     /// Calls `add(freedom, force)` with the nodal forces; returns the size of the force that the element carries.
-    pub fn each_force(self, displacement: &[f64], scratch: &mut Scratch, mut add: impl FnMut(usize, f64)) -> f64 {
-        let (own, force) = scratch.of(self, displacement, self.freedoms.len());
+    pub fn each_force(self, displacement: &[f64], buffer: &mut ElementBuffer, mut add: impl FnMut(usize, f64)) -> f64 {
+        let (own, force) = buffer.of(self, displacement, self.freedoms.len());
         let carried = self.element.write_force(own, force);
         self.freedoms.iter().zip(force).for_each(|(freedom, value)| add(*freedom, *value));
         carried
@@ -40,18 +40,23 @@ impl ElementAt<'_> {
         self,
         displacement: &[f64],
         least: f64,
-        scratch: &mut Scratch,
+        buffer: &mut ElementBuffer,
         mut add: impl FnMut(usize, f64),
     ) {
-        let (own, sizes) = scratch.of(self, displacement, self.freedoms.len());
+        let (own, sizes) = buffer.of(self, displacement, self.freedoms.len());
         self.element.write_force_sizes(own, least, sizes);
         self.freedoms.iter().zip(sizes).for_each(|(freedom, size)| add(*freedom, *size));
     }
 
     /// Calls `add(row, column, value)` for every entry of the tangent.
-    pub fn each_stiffness(self, displacement: &[f64], scratch: &mut Scratch, add: &mut impl FnMut(usize, usize, f64)) {
+    pub fn each_stiffness(
+        self,
+        displacement: &[f64],
+        buffer: &mut ElementBuffer,
+        add: &mut impl FnMut(usize, usize, f64),
+    ) {
         let count = self.freedoms.len();
-        let (own, stiffness) = scratch.of(self, displacement, count * count);
+        let (own, stiffness) = buffer.of(self, displacement, count * count);
         self.element.write_stiffness(own, stiffness);
         self.each_entry(stiffness, add);
     }
@@ -60,11 +65,11 @@ impl ElementAt<'_> {
     pub fn each_stiffness_across(
         self,
         displacement: &[f64],
-        scratch: &mut Scratch,
+        buffer: &mut ElementBuffer,
         add: &mut impl FnMut(usize, usize, f64),
     ) {
         let count = self.freedoms.len();
-        let (own, stiffness) = scratch.of(self, displacement, count * count);
+        let (own, stiffness) = buffer.of(self, displacement, count * count);
         self.element.write_stiffness_across(own, stiffness);
         self.each_entry(stiffness, add);
     }
@@ -90,8 +95,8 @@ impl ElementAt<'_> {
 
     /// The summands `k c cᵀ` of the tangent by which the element resists being stretched.
     pub fn stretching(self, displacement: &[f64]) -> impl Iterator<Item = Stretching> {
-        let (mut scratch, freedoms) = (Scratch::default(), self.freedoms);
-        let own = self.element.stretching(scratch.of(self, displacement, 0).0);
+        let (mut buffer, freedoms) = (ElementBuffer::default(), self.freedoms);
+        let own = self.element.stretching(buffer.of(self, displacement, 0).0);
         own.into_iter().map(|mut stretching| {
             stretching.along.iter_mut().for_each(|(freedom, _)| *freedom = freedoms[*freedom]);
             stretching
@@ -99,17 +104,17 @@ impl ElementAt<'_> {
     }
 
     /// The stiffness against a motion, as an axial one.
-    pub fn axial_stiffness(self, motion: &[f64], scratch: &mut Scratch) -> f64 {
-        self.element.axial_stiffness(scratch.of(self, motion, 0).0)
+    pub fn axial_stiffness(self, motion: &[f64], buffer: &mut ElementBuffer) -> f64 {
+        self.element.axial_stiffness(buffer.of(self, motion, 0).0)
     }
 
     /// Strain energy.
-    pub fn energy(self, displacement: &[f64], scratch: &mut Scratch) -> f64 {
-        self.element.energy(scratch.of(self, displacement, 0).0)
+    pub fn energy(self, displacement: &[f64], buffer: &mut ElementBuffer) -> f64 {
+        self.element.energy(buffer.of(self, displacement, 0).0)
     }
 
     /// The stretch `L/L0` of an element that may shrink to a point.
-    pub fn stretch(self, displacement: &[f64], scratch: &mut Scratch) -> Option<f64> {
-        self.element.stretch(scratch.of(self, displacement, 0).0)
+    pub fn stretch(self, displacement: &[f64], buffer: &mut ElementBuffer) -> Option<f64> {
+        self.element.stretch(buffer.of(self, displacement, 0).0)
     }
 }

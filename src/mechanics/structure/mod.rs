@@ -12,7 +12,7 @@ pub mod elements;
 pub mod numbering;
 pub mod sparsity;
 
-use assembly::{ElementAt, Scratch};
+use assembly::{ElementAt, ElementBuffer};
 use elements::{Element, Stretching};
 use nalgebra::DMatrix;
 use numbering::Numbering;
@@ -222,9 +222,9 @@ impl Structure {
     /// Writes `f_int(u)` over all degrees of freedom and returns the largest force any element carries.
     pub fn internal_force(&self, displacement: &[f64], force: &mut [f64]) -> f64 {
         force.fill(0.0);
-        let mut scratch = Scratch::default();
+        let mut buffer = ElementBuffer::default();
         self.elements().fold(0.0, |largest: f64, element| {
-            largest.max(element.each_force(displacement, &mut scratch, |freedom, value| force[freedom] += value))
+            largest.max(element.each_force(displacement, &mut buffer, |freedom, value| force[freedom] += value))
         })
     }
 
@@ -241,18 +241,18 @@ impl Structure {
     /// forces elsewhere (W. Oettli, W. Prager, Numer. Math. 6 (1964) 405, doi:10.1007/BF01386090).
     pub fn force_sizes(&self, displacement: &[f64], least: f64, sizes: &mut [f64]) {
         sizes.fill(0.0);
-        let mut scratch = Scratch::default();
+        let mut buffer = ElementBuffer::default();
         for element in self.elements() {
-            element.each_force_size(displacement, least, &mut scratch, |freedom, size| sizes[freedom] += size);
+            element.each_force_size(displacement, least, &mut buffer, |freedom, size| sizes[freedom] += size);
         }
     }
 
     /// The largest of them of a node's translations.
     pub fn force_size_at(&self, node: usize, displacement: &[f64], least: f64) -> f64 {
         let first = self.translations_of(node).start;
-        let (mut sizes, mut scratch) = ([0.0; 3], Scratch::default());
+        let (mut sizes, mut buffer) = ([0.0; 3], ElementBuffer::default());
         for element in &self.elements_at[self.first_at[node]..self.first_at[node + 1]] {
-            self.element(*element).each_force_size(displacement, least, &mut scratch, |freedom, size| {
+            self.element(*element).each_force_size(displacement, least, &mut buffer, |freedom, size| {
                 if let Some(sum) = freedom.checked_sub(first).and_then(|component| sizes.get_mut(component)) {
                     *sum += size;
                 }
@@ -264,8 +264,8 @@ impl Structure {
     /// Calls `add(row, column, value)` for every entry of every element's tangent; rows and columns are degrees of
     /// freedom, supported ones included.
     pub fn each_stiffness(&self, displacement: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
-        let mut scratch = Scratch::default();
-        self.elements().for_each(|element| element.each_stiffness(displacement, &mut scratch, add));
+        let mut buffer = ElementBuffer::default();
+        self.elements().for_each(|element| element.each_stiffness(displacement, &mut buffer, add));
     }
 
     /// Adds `K(u)` into the leading `unknowns x unknowns` block.
@@ -279,8 +279,8 @@ impl Structure {
 
     /// Calls `add` for every entry of every element's tangent without the parts that [`Self::stretching`] lists.
     pub fn each_stiffness_across(&self, displacement: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
-        let mut scratch = Scratch::default();
-        self.elements().for_each(|element| element.each_stiffness_across(displacement, &mut scratch, add));
+        let mut buffer = ElementBuffer::default();
+        self.elements().for_each(|element| element.each_stiffness_across(displacement, &mut buffer, add));
     }
 
     /// The summands `k c cᵀ` of the tangent by which elements resist being stretched, `c` over degrees of freedom.
@@ -290,14 +290,14 @@ impl Structure {
 
     /// The smallest stretch `L/L0` of the elements that may shrink to a point; infinite where there are none.
     pub fn smallest_stretch(&self, displacement: &[f64]) -> f64 {
-        let mut scratch = Scratch::default();
-        self.elements().filter_map(|element| element.stretch(displacement, &mut scratch)).fold(f64::INFINITY, f64::min)
+        let mut buffer = ElementBuffer::default();
+        self.elements().filter_map(|element| element.stretch(displacement, &mut buffer)).fold(f64::INFINITY, f64::min)
     }
 
     /// `W(u)`.
     pub fn strain_energy(&self, displacement: &[f64]) -> f64 {
-        let mut scratch = Scratch::default();
-        self.elements().map(|element| element.energy(displacement, &mut scratch)).sum()
+        let mut buffer = ElementBuffer::default();
+        self.elements().map(|element| element.energy(displacement, &mut buffer)).sum()
     }
 
     /// The largest change of any element's nodal forces under a displacement rate, over its stiffness times the rate's
@@ -308,11 +308,11 @@ impl Structure {
         if size == 0.0 {
             return 0.0;
         }
-        let (mut scratch, mut largest) = (Scratch::default(), 0.0_f64);
+        let (mut buffer, mut largest) = (ElementBuffer::default(), 0.0_f64);
         for at in self.elements() {
             // Row, force and stiffness.
             let mut changes: Vec<(usize, f64, f64)> = Vec::new();
-            at.each_stiffness(displacement, &mut scratch, &mut |row, column, value| match changes
+            at.each_stiffness(displacement, &mut buffer, &mut |row, column, value| match changes
                 .iter_mut()
                 .find(|(freedom, _, _)| *freedom == row)
             {

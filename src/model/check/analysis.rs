@@ -1,4 +1,4 @@
-//! How the path is to be traced.
+//! Checks the settings of the analysis.
 
 use crate::model::check::numbers;
 use crate::model::input::limits::{
@@ -41,7 +41,7 @@ pub(super) fn analysis(analysis: &Analysis, at: &DocumentPlace, mistakes: &mut M
     }
 }
 
-/// The methods with dense matrices take fewer unknowns.
+/// The methods with dense matrices accept fewer unknowns.
 pub(super) fn unknowns_of_method(free: usize, method: Method, mistakes: &mut Mistakes) {
     let is_dense = matches!(method, Method::Mpec | Method::Regularised);
     if is_dense && (MAX_DENSE_UNKNOWNS + 1..=MAX_UNKNOWNS).contains(&free) {
@@ -54,7 +54,7 @@ pub(super) fn unknowns_of_method(free: usize, method: Method, mistakes: &mut Mis
     }
 }
 
-/// What `record` names is in the model, and stands there once.
+/// Every name in `record` is in the model, and occurs once.
 pub(super) fn recorded(record: &Record, model: &Model, at: &DocumentPlace, mistakes: &mut Mistakes) {
     let mut seen = HashSet::new();
     for (index, name) in record.nodes.iter().flatten().enumerate() {
@@ -88,7 +88,7 @@ pub(super) fn recorded(record: &Record, model: &Model, at: &DocumentPlace, mista
     }
 }
 
-/// Each value by itself, as all of them have to be.
+/// Checks each value by itself.
 pub(super) fn regularised(regularised: &Regularised, at: &DocumentPlace, mistakes: &mut Mistakes) {
     let &Regularised { normal_penalty, tangential_penalty, desired_iterations, tolerance, load_weight, load_sign: _ } =
         regularised;

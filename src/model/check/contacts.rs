@@ -1,4 +1,4 @@
-//! Contacts: who they join, and the gaps at the start.
+//! Checks contacts: their nodes and obstacles, and the gaps at the start.
 
 use std::collections::{HashMap, HashSet};
 
@@ -36,7 +36,7 @@ pub(super) fn contacts(scope: &Scope, mistakes: &mut Mistakes) {
             continue;
         }
         start(contact, obstacle, &facing, &at, mistakes);
-        // A second contact with one obstacle leaves no less room than the first.
+        // A second contact with the same obstacle restricts the node no further.
         if !seen.insert((node, number)) {
             continue;
         }
@@ -56,7 +56,7 @@ fn friction(contact: &Contact, at: &DocumentPlace, mistakes: &mut Mistakes) {
     }
 }
 
-/// Notes a contact whose reaction can move nothing, because no free component of its node has a part along the normal.
+/// Notes a contact whose reaction acts on no free component of its node.
 ///
 /// A ball's normal turns as the node moves, so there it matters only while the two touch, and where the node cannot
 /// move freely at all.
@@ -109,7 +109,7 @@ fn start(contact: &Contact, obstacle: &Obstacle, facing: &Facing, at: &DocumentP
     }
 }
 
-/// Notes a second plane that faces one before it with no room between.
+/// Notes a second plane that faces an earlier one without a gap between them.
 fn room(contact: &Contact, gap: &Gap, others: &[Gap], at: &DocumentPlace, mistakes: &mut Mistakes) {
     budget::spend(others.len());
     let faces = |other: &&Gap| dot(&gap.normal, &other.normal) <= OPPOSED - 1.0;

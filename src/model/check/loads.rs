@@ -1,4 +1,4 @@
-//! What a stage multiplies by its load factor: forces, displacements of supports, motions of obstacles.
+//! Checks what a stage multiplies by its load factor: forces, displacements of supports, motions of obstacles.
 
 use crate::model::check::numbers::{self, dot, largest, norm};
 use crate::model::check::scope::Scope;
@@ -7,10 +7,10 @@ use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::quoted;
 use crate::model::request::{Element, Obstacle, Stage};
 
-/// A motion whose part along a normal is this small, in units of its length, runs along the plane.
+/// A motion whose component along the normal is at most this part of its length is parallel to the plane.
 const ALONG: f64 = 8.0 * f64::EPSILON;
 
-/// What a moving support or obstacle acts on, looked up once for all stages.
+/// The parts of the model on which moving supports and obstacles act, computed once for all stages.
 pub(super) struct Surroundings {
     /// For each node, whether an element joins it to a free component.
     driving: Vec<bool>,
@@ -50,7 +50,7 @@ fn used(scope: &Scope) -> Vec<Use> {
         let found = if contact.friction > 0.0 { Use::Frictional } else { Use::Frictionless };
         match scope.model.obstacles.get_index_of(&contact.obstacle) {
             Some(obstacle) => used[obstacle] = used[obstacle].max(found),
-            // A misspelt name, which is noted already, may mean any of them.
+            // A misspelt name, which has been reported, may mean any of them.
             None => return vec![Use::Frictional; used.len()],
         }
     }
@@ -73,7 +73,7 @@ pub(super) fn loads(scope: &Scope, around: &Surroundings, stage: &Stage, at: &Do
     }
 }
 
-/// A force on a supported component goes into the support; forces that go there as a whole move nothing.
+/// A force on a supported component is carried by the support. A stage whose forces are all carried by supports moves nothing.
 fn forces(scope: &Scope, stage: &Stage, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
     let mut loaded = false;
     for (name, force) in &stage.forces {
@@ -143,7 +143,7 @@ fn motions(scope: &Scope, around: &Surroundings, stage: &Stage, at: &DocumentPla
     loaded
 }
 
-/// Whether the obstacle stays the same set of points: a plane that moves along itself does nothing without friction.
+/// Whether the motion maps the obstacle onto itself: a plane that moves along itself has no effect without friction.
 fn slides_along(obstacle: &Obstacle, motion: &[f64]) -> bool {
     match obstacle {
         Obstacle::Plane { normal, .. } => dot(normal, motion).abs() <= ALONG * norm(normal) * norm(motion),

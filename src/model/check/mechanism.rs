@@ -1,7 +1,7 @@
-//! Parts of the model that nothing holds, judged by what is connected to what.
+//! Finds unconnected parts of the model, by the connections of nodes alone.
 //!
 //! A part that is connected to a support, to the ground by a spring, or to an obstacle by a contact may still be a
-//! mechanism; that takes numbers and is not judged here.
+//! mechanism, which depends on the numbers and is not checked here.
 
 use crate::model::check::scope::Scope;
 use crate::model::input::mistakes::Mistakes;
@@ -9,7 +9,7 @@ use crate::model::input::names::quoted;
 use crate::model::request::Element;
 
 pub(super) fn mechanism(scope: &Scope, mistakes: &mut Mistakes) {
-    // A misspelt name, which is noted already, would let a part look loose that is not meant to be.
+    // Because of a misspelt name, which has been reported, a part could look unconnected.
     if names_nodes_that_exist(scope) {
         note_loose_parts(scope, mistakes);
     }
@@ -80,7 +80,7 @@ impl Parts {
 
     fn root(&mut self, mut node: usize) -> usize {
         while self.parent[node] != node {
-            // Halving the way keeps later look-ups short.
+            // Path halving keeps later look-ups short.
             self.parent[node] = self.parent[self.parent[node]];
             node = self.parent[node];
         }
@@ -89,7 +89,7 @@ impl Parts {
 
     fn join(&mut self, one: usize, other: usize) {
         let (one, other) = (self.root(one), self.root(other));
-        // The least number stands for the part, so that the first node as written is the one that is named.
+        // The least number represents the part, so that the first node in the document is named.
         self.parent[one.max(other)] = one.min(other);
     }
 

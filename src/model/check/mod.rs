@@ -1,7 +1,7 @@
-//! What can only be judged on the whole request: names, shapes, magnitudes, geometry, loads, sizes.
+//! Checks of a decoded request: names, shapes, magnitudes, geometry, loads, sizes.
 //!
-//! Everything here takes time linear in the model, except pairs of contacts on one node. Whether the structure is a
-//! mechanism is judged here only by what is connected to what; the numbers are looked at where the tangent is at hand.
+//! All checks take time linear in the size of the model, except for pairs of contacts on one node. Mechanisms are only detected
+//! here by the connections of nodes; those that depend on the numbers are detected when the tangent stiffness is known.
 
 mod analysis;
 mod contacts;
@@ -23,13 +23,13 @@ use crate::model::input::limits::{MAX_CONTACTS, MAX_ELEMENTS, MAX_NODES, MAX_OBS
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::{InputErrors, JobRequest, Model};
 
-/// Refuses what cannot be solved; every mistake that can be told apart is listed.
+/// Refuses a request that cannot be solved, with a list of all mistakes.
 ///
-/// Where the sizes pass the [limits](crate::model::input::limits) or the dimension is neither 2 nor 3, nothing else of the model is
-/// looked at.
+/// If the sizes exceed the [limits](crate::model::input::limits) or the dimension is neither 2 nor 3, nothing else of the model is
+/// checked.
 ///
 /// # Errors
-/// Never empty; each entry names its place, what was found and what would do.
+/// The list is never empty; each entry names its place, what was found and what is expected.
 pub fn check(request: &JobRequest) -> Result<(), InputErrors> {
     let mut mistakes = Mistakes::default();
     let at = DocumentPlace::ROOT.member("model");

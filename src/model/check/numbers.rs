@@ -1,4 +1,4 @@
-//! Numbers and vectors by themselves: finite, within the magnitudes taken, of the right length.
+//! Checks numbers and vectors: finite, within the accepted magnitudes, of the right length.
 
 use crate::model::input::limits::{MAX_MAGNITUDE, MIN_MAGNITUDE};
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
@@ -7,7 +7,7 @@ fn is_sane(value: f64) -> bool {
     value == 0.0 || (MIN_MAGNITUDE..=MAX_MAGNITUDE).contains(&value.abs())
 }
 
-/// Whether the vector has that length and only numbers that are taken.
+/// Whether the vector has the given length and only accepted numbers.
 pub(super) fn well_formed(values: &[f64], length: usize) -> bool {
     values.len() == length && values.iter().all(|&value| is_sane(value))
 }
@@ -29,7 +29,7 @@ pub(super) fn number(value: f64, at: &DocumentPlace, mistakes: &mut Mistakes) ->
     sane
 }
 
-/// Notes a number that is not above 0 too.
+/// Also notes a number that is not above 0.
 pub(super) fn positive(value: f64, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
     let sane = number(value, at, mistakes);
     if sane && value <= 0.0 {
@@ -47,7 +47,7 @@ pub(super) fn count(value: u64, limit: u64, at: &DocumentPlace, mistakes: &mut M
     }
 }
 
-/// Notes a wrong length and every number that is not taken.
+/// Notes a wrong length and every number that is not accepted.
 pub(super) fn vector(values: &[f64], dimension: usize, at: &DocumentPlace, mistakes: &mut Mistakes) -> bool {
     let right_length = values.len() == dimension;
     if !right_length {
@@ -65,7 +65,7 @@ pub(super) fn dot(left: &[f64], right: &[f64]) -> f64 {
     left.iter().zip(right).map(|(left, right)| left * right).sum()
 }
 
-/// Euclidean length; the magnitudes taken keep the squares from overflowing and vanishing.
+/// Euclidean length; within the accepted magnitudes the squares neither overflow nor underflow.
 pub(super) fn norm(values: &[f64]) -> f64 {
     dot(values, values).sqrt()
 }

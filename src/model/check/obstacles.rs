@@ -1,4 +1,4 @@
-//! Obstacles: their form, and how a node lies to one at the start.
+//! Checks the shapes of obstacles, and the positions of nodes relative to them at the start.
 
 use crate::model::check::numbers::{self, difference, dot, largest, norm};
 use crate::model::check::scope::{Scope, proper_name};
@@ -27,18 +27,18 @@ pub(super) fn obstacles(scope: &Scope, mistakes: &mut Mistakes) {
     }
 }
 
-/// How a node lies to an obstacle at the start.
+/// The position of a node relative to an obstacle at the start.
 #[derive(Debug)]
 pub(super) struct Facing {
     /// Distance into the free side (length).
     pub gap: f64,
-    /// Unit vector into the free side; none at the centre of a ball, from where every way out is the shortest.
+    /// Unit normal into the free side; `None` at the centre of a ball, where the normal is undefined.
     pub normal: Option<Vec<f64>>,
-    /// What rounding of coordinates and radius leaves of a gap (length).
+    /// Rounding error of the gap due to the coordinates and the radius (length).
     pub tolerance: f64,
 }
 
-/// None where node or obstacle are not well formed, which is noted elsewhere.
+/// `None` if the node or the obstacle is malformed, which is reported elsewhere.
 pub(super) fn facing(scope: &Scope, node: usize, obstacle: &Obstacle) -> Option<Facing> {
     let position = scope.position(node)?;
     match obstacle {

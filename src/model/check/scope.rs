@@ -1,4 +1,4 @@
-//! The model with what several checks look up.
+//! The model with tables that several checks use.
 
 use crate::model::Model;
 use crate::model::check::numbers;
@@ -7,7 +7,7 @@ use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::{quoted, suggestion};
 use crate::model::request::Obstacle;
 
-/// The model with what several checks look up. Its dimension is 2 or 3; nothing else in it can be relied on.
+/// The model with tables that several checks use. Only its dimension, 2 or 3, has been checked.
 pub(crate) struct Scope<'a> {
     pub model: &'a Model,
     pub at: DocumentPlace<'a>,
@@ -30,7 +30,7 @@ impl<'a> Scope<'a> {
         Self { model, at, supported, size: size(model) }
     }
 
-    /// The node's number; an unknown name is noted.
+    /// The number of a node; notes an unknown name.
     pub fn node(&self, name: &str, at: &DocumentPlace, mistakes: &mut Mistakes) -> Option<usize> {
         let found = self.model.nodes.get_index_of(name);
         if found.is_none() {
@@ -40,7 +40,7 @@ impl<'a> Scope<'a> {
         found
     }
 
-    /// The obstacle and its number; an unknown name is noted.
+    /// The obstacle and its number; notes an unknown name.
     pub fn obstacle(&self, name: &str, at: &DocumentPlace, mistakes: &mut Mistakes) -> Option<(usize, &'a Obstacle)> {
         let found = self.model.obstacles.get_full(name);
         if found.is_none() {
@@ -64,7 +64,7 @@ impl<'a> Scope<'a> {
         (0..self.model.dimension).any(|component| self.is_free(node, component))
     }
 
-    /// How far behind an obstacle rounding alone can put a node, given the largest coordinate or radius involved.
+    /// The largest penetration of an obstacle that rounding can cause, given the largest coordinate or radius.
     pub fn penetration_tolerance(&self, reach: f64) -> f64 {
         PENETRATION_TOLERANCE * self.size + 4.0 * f64::EPSILON * reach
     }
@@ -81,7 +81,7 @@ pub(crate) fn size(model: &Model) -> f64 {
     numbers::norm(&widths)
 }
 
-/// A name that can stand in a table, a log line and a JSON pointer.
+/// Checks a name, which has to be usable in a table, a log line and a JSON pointer.
 pub(crate) fn printable(name: &str, at: &DocumentPlace, mistakes: &mut Mistakes) {
     let bytes = name.len();
     if bytes > MAX_NAME_BYTES {

@@ -1,4 +1,4 @@
-//! Stages: their names and ends.
+//! Checks the names and ends of stages.
 
 use std::collections::HashSet;
 

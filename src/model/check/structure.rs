@@ -1,4 +1,4 @@
-//! Nodes, supports and elements.
+//! Checks nodes, supports and elements.
 
 use crate::model::check::numbers::{self, difference, largest, norm};
 use crate::model::check::scope::{Scope, proper_name};
@@ -97,12 +97,12 @@ fn bar_nodes(scope: &Scope, nodes: &[String], at: &DocumentPlace, mistakes: &mut
     }
 }
 
-/// The numbers of the nodes if all are known and none stands twice.
+/// The numbers of the nodes if all are known and none occurs twice.
 fn distinct_nodes(scope: &Scope, names: &[String], at: &DocumentPlace, mistakes: &mut Mistakes) -> Option<Vec<usize>> {
     let at = at.member("nodes");
     let before = mistakes.count();
     let mut found = Vec::with_capacity(names.len());
-    // An element has two nodes at most: of a longer list the rest is not looked at.
+    // An element has two nodes at most: the rest of a longer list is not checked.
     for (index, name) in names.iter().enumerate().take(2) {
         let at = at.index(index);
         found.extend(scope.node(name, &at, mistakes));

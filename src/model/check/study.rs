@@ -1,4 +1,4 @@
-//! What a study varies, and how much it takes.
+//! Checks the settings of a study and the amount of its work.
 
 use crate::model::InputErrors;
 use crate::model::check::numbers;
@@ -10,8 +10,8 @@ use crate::model::input::names::listed;
 use crate::model::request::Method;
 use crate::model::request::study::{Parameter, Study, StudyRequest};
 
-/// Refuses what `study` says wrongly, alone or against `analysis`; the jobs that it leads to are checked by
-/// [`check`](crate::model::check::check) each.
+/// Refuses mistakes in `study`, by itself or in combination with `analysis`. Each job of the study is checked by
+/// [`check`](crate::model::check::check).
 ///
 /// # Errors
 /// As for [`check`](crate::model::check::check).
@@ -30,7 +30,7 @@ pub fn study(request: &StudyRequest) -> Result<(), InputErrors> {
         mistakes.add(&at.member("refinement"), || format!("found {found}; 2 to {MAX_STUDY_REFINEMENT} is expected"));
     }
     let analysis = DocumentPlace::ROOT.member("analysis");
-    // Also what gives way to the study's values has to be such.
+    // The values that those of the study replace have to be valid, too.
     crate::model::check::analysis::arc_lengths(
         &request.analysis.arc_length,
         &analysis.member("arc_length"),
@@ -132,7 +132,7 @@ fn methods(study: &Study, at: &DocumentPlace, mistakes: &mut Mistakes) {
     }
 }
 
-/// Bounds the points of a study's longest path, the reference.
+/// Bounds the number of points of the longest path of a study, the reference.
 fn sizes(request: &StudyRequest, at: &DocumentPlace, mistakes: &mut Mistakes) {
     let increments = request.finer_job(request.study.refinement as f64).analysis.max_increments;
     let at = at.member("max_increments");

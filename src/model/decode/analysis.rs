@@ -1,4 +1,4 @@
-//! Reads how the path is to be traced.
+//! Reads the settings of the analysis.
 
 use crate::model::decode::reader::{Choices, Fields, Input, boolean, count, number, text};
 use crate::model::input::mistakes::Mistakes;

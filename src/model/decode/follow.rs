@@ -1,4 +1,4 @@
-//! Reads which direction of another job is to be followed.
+//! Reads a request to follow a direction of another job.
 
 use crate::model::decode::reader::{Fields, Input, count};
 use crate::model::input::limits::MAX_INCREMENTS;

@@ -1,7 +1,7 @@
-//! JSON text to a job request, with all mistakes of form.
+//! Decodes JSON text into a request and lists all mistakes of form.
 //!
-//! The types and their names are those of [`crate::model::request`]; a test holds the two equal. They are not read by serde's
-//! derived code because that stops at the first mistake and does not say where it is.
+//! The types and their names are those of [`crate::model::request`]; a test compares both. serde's derived code is not used,
+//! because it stops at the first mistake and does not report its place.
 
 mod analysis;
 mod follow;
@@ -21,7 +21,7 @@ const JOB_REQUEST: Fields = Fields { what: "a job request", known: &["model", "a
 const SWEEP_REQUEST: Fields = Fields { what: "a sweep", known: &["model", "analysis", "sweep"], later: &[] };
 const STUDY_REQUEST: Fields = Fields { what: "a study", known: &["model", "analysis", "study"], later: &[] };
 
-/// Reads a job request from JSON text and checks nothing but form; [`crate::model::check::check`] looks at the rest.
+/// Reads a job request from JSON text and only checks its form; [`crate::model::check::check`] checks the rest.
 ///
 /// # Errors
 /// Text that cannot be read as JSON is one error. Otherwise every mistake is listed (up to
@@ -31,7 +31,7 @@ pub fn decode(text: &[u8]) -> Result<JobRequest, InputErrors> {
     read(text, JOB_REQUEST.what, job_request)
 }
 
-/// Reads a study from JSON text and checks nothing but form; [`crate::model::check::study`] looks at the rest.
+/// Reads a study from JSON text and only checks its form; [`crate::model::check::study`] checks the rest.
 ///
 /// # Errors
 /// As for [`decode`].
@@ -39,7 +39,7 @@ pub fn study(text: &[u8]) -> Result<StudyRequest, InputErrors> {
     read(text, STUDY_REQUEST.what, study_request)
 }
 
-/// Reads from a sweep's JSON text what it replaces; its model is read with the values put in it.
+/// Reads the replacements in the JSON text of a sweep; its model is read later, with the values inserted.
 ///
 /// # Errors
 /// As for [`decode`].
@@ -51,16 +51,16 @@ pub fn replacements(text: &[u8]) -> Result<sweep::Form, InputErrors> {
     })
 }
 
-/// The outermost object of a document, for whoever changes something in it before it is read.
+/// The outermost object of a document, which can be changed before it is decoded.
 ///
 /// # Errors
-/// Text that is no JSON object, and members that stand twice in it: who reads them otherwise takes one of them.
+/// The text is no JSON object, or a member occurs twice.
 pub fn object(text: &[u8]) -> Result<serde_json::Map<String, serde_json::Value>, InputErrors> {
     read(text, "an object", |input, mistakes| input.map(mistakes, |_, _| Some(())).map(drop))?;
     serde_json::from_slice(text).map_err(|error| InputErrors(vec![InputError::new("", error.to_string())]))
 }
 
-/// Reads a request to follow a direction from JSON text, and checks it as far as it goes by itself.
+/// Reads a request to follow a direction from JSON text, and checks what does not depend on the job.
 ///
 /// # Errors
 /// As for [`decode`].
@@ -75,7 +75,7 @@ fn read<T>(text: &[u8], what: &str, reader: fn(&Input, &mut Mistakes) -> Option<
     reader::note_duplicates(&root, &mut mistakes);
     let request = reader(&root, &mut mistakes);
     mistakes.into_result()?;
-    // A reader that returns nothing has noted why, so the error here is for a defect: a refusal, not a panic.
+    // A reader that returns `None` has noted a mistake; the error here only covers a defect.
     request.ok_or_else(|| InputErrors(vec![InputError::new("", format!("the document could not be read as {what}"))]))
 }
 

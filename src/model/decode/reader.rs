@@ -1,6 +1,6 @@
-//! Reads typed values out of a [`Json`] value, keeping track of the place; every mistake is noted and reading goes on.
+//! Reads typed values from a [`Json`] value and keeps track of their places; reading continues after a mistake.
 //!
-//! A reader returns `None` only after it has noted why.
+//! A reader returns `None` only after it has noted a mistake.
 
 use indexmap::IndexMap;
 
@@ -9,20 +9,20 @@ use crate::model::input::limits::MAX_NAME_BYTES;
 use crate::model::input::mistakes::{DocumentPlace, Mistakes};
 use crate::model::input::names::{listed, quoted, suggestion};
 
-/// A value and where it stands.
+/// A value and its place in the document.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Input<'a> {
     value: &'a Json,
     at: DocumentPlace<'a>,
 }
 
-/// The fields of a kind of object.
+/// The known fields of a type of object.
 #[derive(Debug)]
 pub(super) struct Fields {
     /// With its article: `a contact`.
     pub what: &'static str,
     pub known: &'static [&'static str],
-    /// Fields of the contract that this version does not have, each with what would do instead.
+    /// Fields of the contract that this version does not support, each with an alternative.
     pub later: &'static [(&'static str, &'static str)],
 }
 
@@ -32,7 +32,7 @@ pub(super) struct Choices<T: 'static> {
     /// With its article: `a method`.
     pub what: &'static str,
     pub known: &'static [(&'static str, T)],
-    /// Values of the contract that this version does not have.
+    /// Values of the contract that this version does not support.
     pub later: &'static [&'static str],
 }
 
@@ -69,7 +69,7 @@ impl<'a> Input<'a> {
         (list.len() == items.len()).then_some(list)
     }
 
-    /// An object whose member names are the user's. Of duplicate members, which are noted elsewhere, the first counts.
+    /// An object whose member names are chosen by the user. Of duplicate members, which are reported elsewhere, the first counts.
     pub fn map<T>(
         &self,
         mistakes: &mut Mistakes,
@@ -109,7 +109,7 @@ impl<'a> Input<'a> {
         None
     }
 
-    /// The value of the member `kind`, by which an object says what other members it has.
+    /// The value of the member `kind`, which determines the other members of an object.
     pub fn kind<T: Copy>(&self, choices: &Choices<T>, mistakes: &mut Mistakes) -> Option<T> {
         let Json::Object(members) = self.value else {
             return self.refuse("an object", mistakes);
@@ -239,7 +239,7 @@ impl Object<'_> {
     }
 }
 
-/// Notes every member that stands twice in one object.
+/// Notes every member that occurs twice in an object.
 pub(super) fn note_duplicates(input: &Input, mistakes: &mut Mistakes) {
     match input.value {
         Json::Array(items) => {

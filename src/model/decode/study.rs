@@ -1,4 +1,4 @@
-//! Reads what a study varies.
+//! Reads the settings of a study.
 
 use crate::model::decode::analysis::METHOD;
 use crate::model::decode::reader::{Choices, Fields, Input, count, numbers};

@@ -1,4 +1,4 @@
-//! Reads the form of what a sweep replaces; the values are taken from the text as they stand.
+//! Reads the replacements of a sweep; the values are kept as they are written.
 
 use crate::model::decode::reader::{Choices, Fields, Input};
 use crate::model::input::mistakes::Mistakes;
@@ -9,7 +9,7 @@ const SWEEP: Fields = Fields { what: "what a sweep replaces", known: &["replace"
 const COMBINE: Choices<Combine> =
     Choices { what: "a way to combine values", known: &[("grid", Combine::Grid), ("list", Combine::List)], later: &[] };
 
-/// Pointers, in the order of the text, and how their values meet.
+/// The pointers, in the order of the text, and how their values are combined.
 #[derive(Debug)]
 pub struct Form {
     pub replace: Vec<String>,

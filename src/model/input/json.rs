@@ -1,4 +1,4 @@
-//! A JSON value that keeps what `serde_json::Value` forgets: the order of members and duplicates.
+//! A JSON value that keeps the order of members and duplicates, unlike `serde_json::Value`.
 //!
 //! The text is read by serde_json, which bounds the nesting (127 levels) and refuses numbers out of range and text
 //! after the document; the number of values is bounded here.
@@ -32,7 +32,7 @@ pub enum Number {
 }
 
 impl Json {
-    /// Parses one document; `what` it is to be goes into the message where it is empty.
+    /// Parses a document; `what` names the expected content in the message about an empty one.
     ///
     /// # Errors
     /// Text that is too long, not UTF-8, not JSON, nested too deeply, with a number out of range, with more than
@@ -58,7 +58,7 @@ impl Json {
         parsed.or_else(|error| whole(format!("not a JSON document that can be read: {}", told(text, &error))))
     }
 
-    /// What was found, for a message: its type and, where short, its value.
+    /// A description for messages: the type and, if short, the value.
     pub fn describe(&self) -> String {
         match self {
             Self::Null => "null".to_owned(),
@@ -82,7 +82,7 @@ impl Number {
 
     /// The number if it is whole and not negative; `1e3` and `5.0` are, as JSON Schema has it.
     pub fn as_u64(self) -> Option<u64> {
-        /// Up to here every whole number has its own `f64`.
+        /// Up to this bound every whole number is an `f64`.
         const LAST_EXACT: f64 = 9_007_199_254_740_992.0;
         match self {
             Self::Unsigned(value) => Some(value),

@@ -1,8 +1,8 @@
-//! Sizes and magnitudes that a request must keep to; a breach is an error that names the limit.
+//! Limits on the sizes and magnitudes of a request; an error names the limit that is exceeded.
 
 /// Bytes of one JSON document.
 pub const MAX_TEXT_BYTES: usize = 16 * 1024 * 1024;
-/// Values (numbers, strings, arrays, objects) in one JSON document: what bounds the memory that reading takes.
+/// Values (numbers, strings, arrays, objects) in a JSON document, which bounds the memory for reading.
 pub const MAX_VALUES: usize = 4_000_000;
 /// Mistakes listed for one document; a last entry says how many more there are.
 pub const MAX_LISTED_MISTAKES: usize = 100;
@@ -17,7 +17,8 @@ pub const MAX_ELEMENTS: usize = 250_000;
 pub const MAX_OBSTACLES: usize = 20_000;
 /// Contacts of a model.
 pub const MAX_CONTACTS: usize = 20_000;
-/// Contacts up to which every increment has a row of each; of more, those out of reach have none unless asked for.
+/// Up to this number of contacts an increment has a row for each. With more contacts, those out of reach have none unless
+/// requested.
 pub const MAX_ROWS_UNASKED: usize = 100;
 /// Stages of a model.
 pub const MAX_STAGES: usize = 1_000;
@@ -55,7 +56,7 @@ pub const MIN_MAGNITUDE: f64 = 1e-75;
 /// See [`MIN_MAGNITUDE`].
 pub const MAX_MAGNITUDE: f64 = 1e75;
 
-/// A node may lie this much behind an obstacle at the start, in units of the model's size: what rounding leaves.
+/// Largest penetration of an obstacle at the start, relative to the size of the model, that counts as rounding error.
 pub const PENETRATION_TOLERANCE: f64 = 1e-12;
 /// Two nodes closer than this, in units of their coordinates, are at the same place.
 pub const COINCIDENCE_TOLERANCE: f64 = 1e-12;

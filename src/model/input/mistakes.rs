@@ -3,7 +3,7 @@
 use crate::model::input::limits::{MAX_LISTED_MISTAKES, MAX_NAME_BYTES};
 use crate::model::{InputError, InputErrors};
 
-/// A place in the document as a chain of steps from the root. It costs nothing until a mistake is found there.
+/// A place in the document as a chain of steps from the root, which is only written out for a mistake.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DocumentPlace<'a> {
     parent: Option<&'a DocumentPlace<'a>>,
@@ -74,7 +74,7 @@ impl Mistakes {
         self.listed.len() + self.unlisted
     }
 
-    /// All that was found, as an error if it is anything.
+    /// The mistakes as an error, if there are any.
     pub fn into_result(mut self) -> Result<(), InputErrors> {
         if self.unlisted > 0 {
             let more = format!("{} more mistakes are not listed", self.unlisted);

@@ -1,4 +1,4 @@
-//! What comes in: text, numbers, names, mistakes, and the limits of what is taken.
+//! Input: JSON text, names, mistakes and limits.
 
 pub mod error;
 pub mod json;

@@ -1,14 +1,14 @@
 //! Names in error messages: shortened, listed, and the nearest known one to an unknown one.
 
-/// Names that are listed in one message; the rest is counted.
+/// The most names listed in a message; the others are counted.
 const LISTED: usize = 12;
-/// Candidates that are compared, and the longest ones: comparing takes time with the product of the lengths, and a
-/// hostile document has many long names.
+/// The most candidates that are compared, and their longest names: the time of a comparison grows with the product of the
+/// lengths, and a malicious document has many long names.
 const COMPARED: usize = 2_000;
 const COMPARED_CHARACTERS: usize = 32;
-/// One letter in two may be wrong.
+/// At most one letter in two may differ.
 const LIKENESS: f64 = 0.5;
-/// Characters of a text that are shown.
+/// The most characters of a text that are shown.
 const SHOWN: usize = 60;
 
 /// The text in quotes, cut where it is long, control characters escaped.
@@ -25,7 +25,7 @@ pub(crate) fn suggestion<'a>(unknown: &str, known: impl Iterator<Item = &'a str>
     suggestion_among(unknown, known, LISTED)
 }
 
-/// The same with every name, of lists that are the program's own.
+/// The same with all names, for lists of the program itself.
 #[cfg(feature = "server")]
 pub(crate) fn suggestion_of_all<'a>(unknown: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
     suggestion_among(unknown, known, usize::MAX)
@@ -61,7 +61,7 @@ fn listed_up_to<'a>(names: impl Iterator<Item = &'a str>, most: usize) -> String
     }
 }
 
-/// The most alike name (letter case aside), the first among equals; none if nothing is like it.
+/// The most similar name, ignoring case, the first among equals; `None` if no name is similar.
 fn nearest<'a>(unknown: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let short = |text: &str| text.chars().nth(COMPARED_CHARACTERS).is_none();
     if !short(unknown) {

@@ -1,6 +1,6 @@
-//! Taking connections: so many at a time, none that dawdles over its request, each told where it comes from.
+//! Accepts connections: with bounds on their number, with timeouts, and with the address of the client in each request.
 //!
-//! (axum's own loop has no bound on connections, and waits for ever for a request that does not come.)
+//! (The accept loop of axum has neither a bound on connections nor a timeout for requests.)
 
 use crate::service::http::access::rates::subscriber;
 use axum::Router;
@@ -24,37 +24,37 @@ use tokio_io_timeout::TimeoutStream;
 use tokio_util::sync::CancellationToken;
 use tower::ServiceExt;
 
-/// A request's head has to come within so long of the connection, or of the answer before.
+/// The head of a request has to come within this time after the connection or the previous answer.
 const HEAD: Duration = Duration::from_secs(30);
-/// A client that takes nothing of its answer for so long is gone; a stream can be resumed.
+/// A client that reads nothing of its answer for this time is disconnected; it can resume a stream.
 const UNREAD: Duration = Duration::from_secs(60);
-/// When no connection can be taken, as when there are no more file descriptors.
+/// The pause after a failed accept, for example for lack of file descriptors.
 const PAUSE: Duration = Duration::from_millis(200);
 
-/// How many connections are served at a time.
+/// Bounds on the number of connections.
 #[derive(Debug, Clone, Copy)]
 pub struct Connections {
-    /// Those past that wait ...
+    /// Connections that are served at a time; further ones wait.
     pub all: usize,
-    /// ... up to so many, or as many as the system lets wait; those past that are asked to come back by the system.
+    /// Connections that may wait, the backlog of the socket; the operating system may lower it, and refuses further ones.
     pub waiting: usize,
-    /// Those past that are closed at once; this machine's own addresses have no such bound.
+    /// Connections from one address; further ones are closed at once. Loopback addresses have no such bound.
     pub an_address: Option<NonZeroU32>,
 }
 
-/// Listens there.
+/// Listens on an address.
 ///
 /// # Errors
-/// The address is taken, or none of this machine's.
+/// The address is in use, or does not belong to this machine.
 pub fn bind(place: SocketAddr, connections: Connections) -> io::Result<TcpListener> {
     let socket = if place.is_ipv4() { TcpSocket::new_v4()? } else { TcpSocket::new_v6()? };
-    // As a listener that is bound by name does: the port is free again at once when the service has gone.
+    // As the listener of the standard library does: the port can be bound again at once after the service has ended.
     socket.set_reuseaddr(true)?;
     socket.bind(place)?;
     socket.listen(u32::try_from(connections.waiting).unwrap_or(u32::MAX))
 }
 
-/// Takes connections until `shutdown`, then waits for those under way to end.
+/// Accepts connections until `shutdown`, then waits for the open ones to end.
 pub async fn listen(listener: TcpListener, router: Router, connections: Connections, shutdown: CancellationToken) {
     let (places, addresses) = (Arc::new(Semaphore::new(connections.all)), Addresses::default());
     let graceful = GracefulShutdown::new();
@@ -62,7 +62,7 @@ pub async fn listen(listener: TcpListener, router: Router, connections: Connecti
     protocol.timer(TokioTimer::new()).header_read_timeout(HEAD);
     while let Some((place, stream, address)) = next(&listener, &places, &shutdown).await {
         let Some(held) = addresses.take(address.ip(), connections.an_address) else {
-            tracing::debug!(%address, "an address has as many connections as it may");
+            tracing::debug!(%address, "the address has too many connections");
             continue;
         };
         let router = router.clone();
@@ -76,7 +76,7 @@ pub async fn listen(listener: TcpListener, router: Router, connections: Connecti
         tokio::spawn(async move {
             let _place = (place, held);
             if let Err(error) = connection.await {
-                tracing::debug!(%error, %address, "a connection broke off");
+                tracing::debug!(%error, %address, "the connection failed");
             }
         });
     }
@@ -84,11 +84,11 @@ pub async fn listen(listener: TcpListener, router: Router, connections: Connecti
     graceful.shutdown().await;
 }
 
-/// Connections of each address from which there are any.
+/// The number of connections of each connected address.
 #[derive(Debug, Default, Clone)]
 struct Addresses(Arc<Mutex<HashMap<IpAddr, u32>>>);
 
-/// One of them.
+/// A counted connection; dropping it ends the count.
 #[derive(Debug)]
 struct Held {
     addresses: Addresses,
@@ -96,7 +96,7 @@ struct Held {
 }
 
 impl Addresses {
-    /// `None`: there are enough.
+    /// Counts a connection; `None` if the address has the most that it may have.
     fn take(&self, address: IpAddr, most: Option<NonZeroU32>) -> Option<Held> {
         let address = subscriber(address);
         let mut all = self.all();
@@ -109,7 +109,7 @@ impl Addresses {
     }
 
     fn all(&self) -> MutexGuard<'_, HashMap<IpAddr, u32>> {
-        // The map is whole at every point where its holder could panic.
+        // The map is consistent wherever a thread that holds the lock could panic.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -128,7 +128,7 @@ impl Drop for Held {
 
 type Place = tokio::sync::OwnedSemaphorePermit;
 
-/// The next connection, once there is a place for it; those past that wait to be taken. `None`: nothing more is taken.
+/// The next connection, accepted once there is a place for it. `None` after `shutdown`.
 async fn next(
     listener: &TcpListener,
     places: &Arc<Semaphore>,
@@ -139,12 +139,12 @@ async fn next(
         loop {
             match listener.accept().await {
                 Ok((stream, address)) => {
-                    // Events are small and are to be seen when they happen.
+                    // Events are small and are sent without delay.
                     let _ = stream.set_nodelay(true);
                     return Some((place, stream, address));
                 }
                 Err(error) => {
-                    tracing::warn!(%error, "no connection could be taken");
+                    tracing::warn!(%error, "no connection could be accepted");
                     tokio::time::sleep(PAUSE).await;
                 }
             }

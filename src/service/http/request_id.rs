@@ -1,4 +1,4 @@
-//! Names every request, in its answer and on every line of the log that it causes.
+//! Gives every request an id, in its answer and on every line of the log that belongs to it.
 
 use axum::extract::Request;
 use axum::http::{HeaderName, HeaderValue};
@@ -11,7 +11,7 @@ use uuid::Uuid;
 const HEADER: HeaderName = HeaderName::from_static("x-request-id");
 const LONGEST: usize = 64;
 
-/// A caller's own id is kept when it is short and plain, so that its log and ours can be read together.
+/// Keeps the id that the client has sent, if it is short and plain, so that both logs can be compared.
 pub async fn name_request(request: Request, next: Next) -> Response {
     let id = request.headers().get(HEADER).filter(|id| is_plain(id)).cloned().unwrap_or_else(new_id);
     let span = tracing::info_span!(

@@ -1,17 +1,17 @@
-//! Listening, and going down in good order.
+//! Starts and stops the service.
 //!
-//! Going down: nothing new is accepted, streams end by themselves (a graceful shutdown would wait for them for ever),
-//! solves stop and their jobs go back to the queue, then the database is closed; all of it within a bound.
+//! A shutdown accepts no new connections, ends the streams (a graceful shutdown of the server alone would wait for them
+//! for ever), stops the solves and returns their jobs to the queue, then closes the database; all within a time limit.
 
 use crate::service::http::access::Access;
-use crate::service::http::aside::Aside;
-use crate::service::http::bodies::Bodies;
 use crate::service::http::listen::{Connections, bind, listen};
-use crate::service::http::router;
-use crate::service::http::service::Service;
-use crate::service::http::stream::READING_AT_ONCE;
-use crate::service::jobs::crew::wound_up;
-use crate::service::jobs::{Crew, Jobs, Settings, Solver};
+use crate::service::http::router::router;
+use crate::service::http::state::bodies::Bodies;
+use crate::service::http::state::offload::Offload;
+use crate::service::http::state::service::Service;
+use crate::service::http::tasks::stream::READING_AT_ONCE;
+use crate::service::jobs::workers::worker_pool::finish_shutdown;
+use crate::service::jobs::{Jobs, Settings, Solver, WorkerPool};
 use crate::service::store::contract::interface::Store;
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -27,49 +27,49 @@ pub enum ServerError {
     Description(#[from] serde_json::Error),
 }
 
-/// How a service is reached.
+/// Where a service listens, and whom it admits.
 #[derive(Debug, Clone)]
-pub struct Front {
+pub struct ListenOptions {
     /// Port 0 takes any free one.
     pub listen: SocketAddr,
     pub connections: Connections,
     pub access: Access,
 }
 
-/// A service that listens and works.
+/// A running service: its listener and its workers.
 pub struct Server {
     address: SocketAddr,
     jobs: Jobs,
-    crew: Crew,
+    workers: WorkerPool,
     listening: JoinHandle<()>,
     shutdown: CancellationToken,
 }
 
 impl Server {
     pub async fn start(
-        front: Front,
+        front: ListenOptions,
         store: Arc<dyn Store>,
         solver: Arc<dyn Solver>,
         settings: Settings,
     ) -> Result<Self, ServerError> {
-        let Front { listen: place, connections, access } = front;
+        let ListenOptions { listen: place, connections, access } = front;
         let refused = |source| ServerError::Listen { address: place, source };
         let listener = bind(place, connections).map_err(refused)?;
         let address = listener.local_addr().map_err(refused)?;
         let shutdown = CancellationToken::new();
         let jobs = Jobs::new(store, solver, settings);
-        let crew = Crew::start(&jobs, &shutdown);
+        let workers = WorkerPool::start(&jobs, &shutdown);
         let service = Service {
             jobs: jobs.clone(),
-            attendance: crew.attendance(),
+            worker_count: workers.worker_count(),
             access,
-            aside: Aside::default(),
+            offload: Offload::default(),
             bodies: Bodies::default(),
             stream_turns: Arc::new(Semaphore::new(READING_AT_ONCE)),
             shutdown: shutdown.clone(),
         };
         let listening = tokio::spawn(listen(listener, router(service)?, connections, shutdown.clone()));
-        Ok(Self { address, jobs, crew, listening, shutdown })
+        Ok(Self { address, jobs, workers, listening, shutdown })
     }
 
     pub fn address(&self) -> SocketAddr {
@@ -80,9 +80,9 @@ impl Server {
         &self.jobs
     }
 
-    /// Ends everything; answers whether it all ended within the bound.
+    /// Stops the service; answers whether everything ended within the time limit.
     pub async fn stop(self) -> bool {
         self.shutdown.cancel();
-        wound_up(async { tokio::join!(self.listening, self.crew.stopped()) }, self.jobs.store()).await
+        finish_shutdown(async { tokio::join!(self.listening, self.workers.stopped()) }, self.jobs.store()).await
     }
 }

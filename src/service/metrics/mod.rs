@@ -1,9 +1,8 @@
-//! What the service counts and times while it works, as text that Prometheus reads.
+//! The metrics of the service, as text for Prometheus.
 //!
-//! [`work`] holds what is seen of jobs, [`streams`] of those who follow them, [`requests`] of calls, [`process`] what the
-//! system knows of this process. What is there to be read at the moment of asking comes along as a [`Reading`]. Labels are
-//! few and bounded: statuses, kinds of write, the calls' routes; never an id.
-//! `jobs` and `http` put in what they see; knows neither of them, nor the store.
+//! [`work`] has the metrics of jobs, [`streams`] of streams, [`requests`] of calls, [`process`] of this process. Values that
+//! are read at the time of a request are passed in as a [`Reading`]. Labels are few and bounded: statuses, kinds of write,
+//! routes of calls; never an id. `jobs` and `http` record the metrics; this module depends neither on them nor on the store.
 
 pub(crate) mod process;
 pub(crate) mod requests;
@@ -22,30 +21,30 @@ pub use requests::Requests;
 pub use streams::{Open, Streams};
 pub use work::{Solved, Work, Write};
 
-/// As the text calls itself.
+/// The media type of the text.
 pub const MEDIA_TYPE: &str = "application/openmetrics-text; version=1.0.0; charset=utf-8";
 
-/// Everything that is measured of one service.
+/// The metrics of a service.
 #[derive(Debug)]
 pub struct Metrics {
     pub work: Work,
     pub streams: Streams,
     pub requests: Requests,
     now: Now,
-    /// Read and written by one at a time: a reading is of one moment.
+    /// Locked as a whole, so that a reading is consistent.
     registry: Mutex<Registry>,
 }
 
-/// What is read when somebody asks.
+/// Values that are read at the time of a request.
 #[derive(Debug, Default)]
 pub struct Reading {
-    /// Name of the status and number of jobs; none where the store does not answer.
+    /// The number of jobs by status; empty if the store does not answer.
     pub jobs: Vec<(&'static str, u64)>,
     pub workers_alive: usize,
     pub workers_expected: usize,
 }
 
-/// Where a reading is put to be written.
+/// The gauges that a reading sets.
 #[derive(Debug, Default)]
 struct Now {
     jobs: Family<[(&'static str, &'static str); 1], Gauge>,
@@ -66,9 +65,9 @@ impl Default for Metrics {
 
 impl Metrics {
     /// # Errors
-    /// A metric that cannot be written, which would be a defect.
+    /// A metric cannot be written, which would be a defect.
     pub fn text(&self, reading: &Reading) -> Result<String, std::fmt::Error> {
-        // Nothing in it is half done where its holder could panic.
+        // The value is consistent wherever a thread that holds the lock could panic.
         let registry = self.registry.lock().unwrap_or_else(PoisonError::into_inner);
         self.now.put(reading);
         let mut text = String::new();
@@ -104,14 +103,14 @@ fn gauge(count: u64) -> i64 {
     i64::try_from(count).unwrap_or(i64::MAX)
 }
 
-/// From a tenth of a millisecond to a minute: what a disk, a queue and a reader take.
+/// From 0.1 ms to a minute: times of a disk, a queue and a reader.
 fn seconds() -> Histogram {
     Histogram::new([
         0.0001, 0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 60.0,
     ])
 }
 
-/// Waits in the queue may be long: from a millisecond to a day.
+/// From a millisecond to a day: times of waiting in the queue.
 fn long_seconds() -> Histogram {
     Histogram::new([0.001, 0.01, 0.1, 0.5, 1.0, 5.0, 10.0, 30.0, 60.0, 300.0, 1800.0, 7200.0, 86_400.0])
 }

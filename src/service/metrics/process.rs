@@ -1,4 +1,4 @@
-//! This process as the system sees it; nothing where the system has no `/proc`.
+//! Metrics of this process from `/proc`; none on a system without it.
 
 use std::fs;
 
@@ -10,6 +10,6 @@ pub(super) fn resident_bytes() -> Option<u64> {
 }
 
 pub(super) fn open_files() -> Option<u64> {
-    // One of them reads this directory.
+    // One of the open files is this directory.
     u64::try_from(fs::read_dir("/proc/self/fd").ok()?.count()).ok()?.checked_sub(1)
 }

@@ -1,4 +1,4 @@
-//! Calls: how many, and how long until the head of their answers.
+//! Metrics of calls: their number, and the time to the head of the answer.
 
 use crate::service::metrics::{observe, seconds};
 use prometheus_client::encoding::EncodeLabelSet;
@@ -36,7 +36,7 @@ impl Requests {
         requests
     }
 
-    /// `route` is the call's own, with names for what varies: it bounds the number of labels, and so does `method`.
+    /// Counts an answer. `route` is the pattern of the address, not the address itself, which bounds the number of labels.
     pub fn answered(&self, method: &str, route: Option<&str>, status: u16, took: Duration) {
         const METHODS: [&str; 7] = ["GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"];
         let method = METHODS.into_iter().find(|known| *known == method).unwrap_or("other");

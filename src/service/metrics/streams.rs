@@ -1,4 +1,4 @@
-//! Those who follow jobs.
+//! Metrics of streams.
 
 use crate::service::metrics::{observe, seconds};
 use prometheus_client::metrics::gauge::Gauge;
@@ -12,7 +12,7 @@ pub struct Streams {
     lag: Histogram,
 }
 
-/// Counts a stream for as long as it lives, however it ends.
+/// Counts an open stream until it is dropped.
 #[derive(Debug)]
 pub struct Open(Gauge);
 
@@ -30,7 +30,7 @@ impl Streams {
         Open(self.open.clone())
     }
 
-    /// Lines stored so long ago are sent now.
+    /// Records the delay between storing and sending of lines.
     pub fn sent_after(&self, lag: Duration) {
         observe(&self.lag, lag);
     }

@@ -1,4 +1,4 @@
-//! Jobs: how long they wait, what is stored of them, what their solver does.
+//! Metrics of jobs: waiting times, stored increments, and work of the solver.
 
 use crate::service::metrics::{long_seconds, observe, seconds};
 use prometheus_client::metrics::counter::Counter;
@@ -10,22 +10,22 @@ use std::time::{Duration, Instant};
 
 type Kind = [(&'static str, &'static str); 1];
 
-/// A write to the store that jobs wait for.
+/// The kinds of writes for which jobs wait.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Write {
     /// A job is queued.
     Submit,
-    /// A worker takes one, or finds none.
+    /// A worker claims a job, or finds none.
     Claim,
     /// Increments are stored.
     Append,
-    /// A lease is prolonged.
+    /// A lease is renewed.
     Renew,
-    /// A job's end is stored, with its last increments.
+    /// The end of a job is stored, with its last increments.
     Finish,
 }
 
-/// What a solver has done for some increments.
+/// The work of a solver for a step.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Solved {
     pub time: Duration,
@@ -94,7 +94,7 @@ impl Work {
         self.increments.inc_by(increments as u64);
     }
 
-    /// Times a write; one that fails counts too.
+    /// Times a write; failed writes count, too.
     pub async fn timed<T>(&self, write: Write, writing: impl Future<Output = T>) -> T {
         let began = Instant::now();
         let answer = writing.await;

@@ -1,4 +1,4 @@
-//! What an error of the database means, by the codes of the engine that it comes from.
+//! Classifies errors of the database by the error codes of its engine.
 
 use crate::service::store::contract::error::{Source, StoreError};
 use crate::service::store::{postgres, sqlite};
@@ -14,7 +14,7 @@ impl From<sqlx::Error> for StoreError {
                     sqlite::fault(&code)
                 }
             }
-            // A connection that was cut off, in the middle of an answer perhaps.
+            // A connection that was closed, perhaps in the middle of an answer.
             (
                 None,
                 sqlx::Error::PoolTimedOut

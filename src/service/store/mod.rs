@@ -1,9 +1,10 @@
-//! What is kept: jobs, their increments, and who is working on what.
+//! The store of jobs, increments and leases.
 //!
-//! [`Store`] is the whole boundary: above it nobody knows SQL, below it nobody knows HTTP or how a path is traced.
-//! [`record`](contract::record) holds what goes in and out, [`signals`](contract::signals) wakes those who wait for a change, `announcements` is what other
-//! processes are told of them; [`sql`] is what is said to both engines, [`sqlite`] (a file of this machine) and [`postgres`]
-//! (a server that many machines share); [`location`](contract::location) says which, [`faults`] what their errors mean. Called by `jobs` (which writes) and by `http` (which reads).
+//! [`Store`] is the interface: its callers know no SQL, and its implementation knows neither HTTP nor the path tracer.
+//! [`record`](contract::record) has the stored records, [`signals`](contract::signals) wakes readers after a change and
+//! `announcements` tells other processes. [`sql`] is the implementation over both engines, [`sqlite`] (a file on this machine)
+//! and [`postgres`] (a server that many machines share); [`location`](contract::location) selects the engine, [`faults`]
+//! classifies its errors. Called by `jobs`, which writes, and by `http`, which reads.
 
 pub mod contract;
 pub(crate) mod faults;
@@ -26,16 +27,15 @@ pub use contract::record::{
 
 pub use contract::signals::Change;
 
-/// Copies the database in that file, as it is at one moment, to a file that is not there yet, and checks the copy. Others may
-/// write meanwhile.
+/// Copies the database file to a new file, as a consistent snapshot, and checks the copy. Other processes may write meanwhile.
 pub async fn back_up(file: &Path, copy: &Path) -> Result<()> {
     sqlite::backup::back_up(file, copy).await
 }
 
-/// Opens (and creates, where it is a file, and migrates) the database there.
+/// Opens the database at a location and migrates it; a file is created if it does not exist.
 ///
 /// # Errors
-/// [`StoreError::Open`], which says what would do, and no password.
+/// [`StoreError::Open`], whose message says what is expected and holds no password.
 pub async fn open(location: impl Into<Location>) -> Result<Arc<dyn Store>> {
     Ok(match location.into() {
         Location::File(file) => Arc::new(sqlite::SqliteEngine::open(&file).await?),

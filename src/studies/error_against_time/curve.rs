@@ -1,14 +1,14 @@
-//! A stage of the reference as a curve: its vertices, and what runs between them.
+//! A stage of the reference as a curve: its vertices and the segments between them.
 
 use crate::check::scenes::exact;
 use crate::result::increment::PointKind;
 use crate::studies::error_against_time::interpolation::SegmentPolynomial;
 use crate::studies::error_against_time::trace::{ScaledPoint, TraceScales, TracedStage, distance};
 
-/// Vertices of an exact stage, roughly; a piece gets two at least.
+/// Approximate number of vertices of an exact stage; a piece has at least two.
 const VERTICES: usize = 2000;
 
-/// What runs from one vertex to the next.
+/// A segment from one vertex to the next.
 enum Segment {
     Straight,
     Polynomial(SegmentPolynomial),
@@ -33,7 +33,7 @@ pub(super) struct Curve {
 }
 
 impl Curve {
-    /// Through the points of a path; corners stay corners.
+    /// The curve through the points of a path, with corners at events.
     pub fn interpolating(traced: TracedStage) -> Self {
         let points = traced.points;
         let is_corner = |kind: PointKind| matches!(kind, PointKind::ContactChange | PointKind::NonsmoothLimit);
@@ -52,7 +52,7 @@ impl Curve {
         Self::new(traced.stage, points, segments, events, None)
     }
 
-    /// A stage in closed form.
+    /// The curve of a stage in closed form.
     pub fn exact(number: usize, stage: exact::Stage, scales: &TraceScales) -> Self {
         let parts = (VERTICES / stage.pieces.len().max(1)).max(2);
         let scaled = |place: exact::Place| scales.point(number, place.displacements.into_iter(), place.load);
@@ -106,7 +106,7 @@ impl Curve {
         sags.fold(0.0, f64::max)
     }
 
-    /// The point at a part of the way along a segment, from 0 to 1.
+    /// The point of a segment at a parameter from 0 to 1.
     pub fn at(&self, segment: usize, part: f64) -> ScaledPoint {
         match (&self.segments[segment], &self.exact) {
             (Segment::Polynomial(polynomial), _) => polynomial.at(&self.vertices, part),

@@ -1,4 +1,4 @@
-//! The events of a path beside those of the reference: the longest sequence of the same kinds that both have.
+//! Compares the events of a path with those of the reference: the longest common subsequence of their kinds.
 
 use crate::result::increment::PointKind;
 use crate::studies::error_against_time::curve::Curve;
@@ -63,7 +63,7 @@ pub(super) fn compare(trace: &StudyTrace, curves: &[Curve]) -> EventsFound {
     }
 }
 
-/// Pairs of like events, in order, as many as possible.
+/// The longest sequence of pairs of events of the same kind, in order.
 fn in_common(found: &[ComparedEvent], expected: &[ComparedEvent]) -> Vec<(usize, usize)> {
     let alike = found.iter().zip(expected).take_while(|(a, b)| a.is_like(b)).count();
     let mut pairs: Vec<(usize, usize)> = (0..alike).map(|index| (index, index)).collect();
@@ -71,7 +71,7 @@ fn in_common(found: &[ComparedEvent], expected: &[ComparedEvent]) -> Vec<(usize,
     let ends = rest.iter().rev().zip(other_rest.iter().rev()).take_while(|(a, b)| a.is_like(b)).count();
     let (columns, rows) = (rest.len() - ends, other_rest.len() - ends);
     if columns * rows <= MOST_COMPARED {
-        // Lengths of the longest common sequences of what is left from each place on.
+        // Lengths of the longest common subsequences of the remaining events.
         let width = columns + 1;
         let mut longest = vec![0_u32; width * (rows + 1)];
         for row in (0..rows).rev() {

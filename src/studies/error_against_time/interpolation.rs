@@ -1,17 +1,17 @@
-//! The curve through the points of a path, between two neighbours.
+//! Interpolation of the curve through the points of a path, between two neighbouring points.
 //!
-//! Over the chord of a few points the curve is the graph of a smooth function, and that is what is interpolated: a
-//! polynomial of degree up to seven in the place along the chord, through the two points and their neighbours on both
-//! sides. A parameter such as the sum of chords would not do: it is not smooth in the arc length, and interpolation in it
-//! is of fourth order at most (M. S. Floater, T. Surazhsky, *Parameterization for curve interpolation*, in: Topics in
-//! Multivariate Approximation and Interpolation, Elsevier 2006, 39). Neighbours are so far apart that round-off is not
-//! magnified, and only as many as the curve runs along their chord at no steep angle.
+//! Over the chord of a few points the curve is the graph of a smooth function, which is interpolated by a polynomial of degree
+//! up to seven in the coordinate along the chord, through the two points and their neighbours on both sides. The sum of
+//! chords would not be a suitable parameter: it is not smooth in the arc length, so that interpolation in it is of fourth
+//! order at most (M. S. Floater, T. Surazhsky, *Parameterization for curve interpolation*, in: Topics in
+//! Multivariate Approximation and Interpolation, Elsevier 2006, 39). Neighbours are chosen far enough apart that
+//! round-off is not magnified, and only as many that the curve is nowhere at a steep angle to their chord.
 
 use crate::studies::error_against_time::trace::{ScaledPoint, distance};
 
-/// Points of a polynomial at most.
+/// The most points of a polynomial.
 const MOST: usize = 8;
-/// Neighbours closer than this to the last one taken, in chords, are passed over.
+/// Neighbours closer than this to the last chosen one, relative to the chord, are skipped.
 const CLOSEST: f64 = 0.25;
 /// Cosine of the steepest angle with the chord of all.
 const GENTLE: f64 = 0.5;
@@ -19,13 +19,13 @@ const GENTLE: f64 = 0.5;
 /// A polynomial from one point to the next.
 #[derive(Debug, Clone)]
 pub(super) struct SegmentPolynomial {
-    /// Which of the points, in order.
+    /// The indices of the nodes among the points, in order.
     nodes: Vec<usize>,
-    /// Places along the chord; 0 and 1 are the segment's ends.
+    /// Coordinates of the nodes along the chord; 0 and 1 are the ends of the segment.
     places: Vec<f64>,
-    /// Of barycentric interpolation (J.-P. Berrut, L. N. Trefethen, SIAM Rev. 46 (2004) 501).
+    /// Weights of barycentric interpolation (J.-P. Berrut, L. N. Trefethen, SIAM Rev. 46 (2004) 501).
     weights: Vec<f64>,
-    /// Which of the nodes is the segment's first.
+    /// The index of the first point of the segment among the nodes.
     start: usize,
 }
 
@@ -61,12 +61,12 @@ impl SegmentPolynomial {
         Self { nodes, places, weights, start }
     }
 
-    /// The point at a part of the way, from 0 to 1.
+    /// The point at a parameter from 0 to 1.
     pub fn at(&self, points: &[ScaledPoint], part: f64) -> ScaledPoint {
         if let Some(node) = self.places.iter().position(|place| *place == part) {
             return points[self.nodes[node]].clone();
         }
-        // As a change from the first point, which keeps its digits.
+        // As a difference from the first point, to avoid round-off.
         let from = &points[self.nodes[self.start]];
         let shares: Vec<f64> =
             self.places.iter().zip(&self.weights).map(|(place, weight)| weight / (part - place)).collect();
@@ -86,7 +86,7 @@ fn neighbours(points: &[ScaledPoint], segment: usize, first: usize, last: usize)
     let closest = CLOSEST * distance(&points[segment], &points[segment + 1]);
     let mut nodes = std::collections::VecDeque::from([segment, segment + 1]);
     let (mut before, mut after) = (true, true);
-    // From both sides in turn, so that the two points stay in the middle.
+    // From both sides in turn, so that the two points remain in the middle.
     while nodes.len() < MOST && (before || after) {
         if before {
             let end = nodes[0];
@@ -104,8 +104,8 @@ fn neighbours(points: &[ScaledPoint], segment: usize, first: usize, last: usize)
     nodes.into()
 }
 
-/// Places of the nodes along the chord from the first to the last, 0 and 1 at the segment's ends; none where the curve
-/// runs at too steep an angle.
+/// Coordinates of the nodes along the chord from the first to the last, 0 and 1 at the ends of the segment; `None` if the curve
+/// is at too steep an angle to the chord.
 fn places(points: &[ScaledPoint], segment: usize, nodes: &[usize]) -> Option<Vec<f64>> {
     let (from, to) = (&points[*nodes.first()?], &points[*nodes.last()?]);
     let length = distance(from, to);

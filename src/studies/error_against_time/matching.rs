@@ -1,9 +1,9 @@
-//! How far the points of a path are from a curve, laid onto it in their order.
+//! The distance of the points of a path from a curve, with the points matched to the curve in their order.
 //!
-//! Whether all points fit within a distance `e` of places that never run backward is decided greedily: each point goes to
-//! the first place within `e` at or behind the place of the one before. The least `e` is bracketed on the polygon through
-//! the curve's vertices; the earliest and the latest place of each point at that `e` bound where on the curve itself its
-//! distance is taken.
+//! Whether all points can be matched within a distance `e` to places in non-decreasing order is decided greedily: each point is
+//! matched to the first place within `e` that does not precede the place of the previous point. The least `e` is bracketed on
+//! the polygon through the vertices of the curve; the earliest and the latest place of each point for this `e` bound the part
+//! of the curve to which its distance is computed.
 
 use crate::resources::cancel::CancelFlag;
 use crate::studies::error_against_time::curve::Curve;
@@ -13,14 +13,14 @@ use crate::studies::error_against_time::trace::{ScaledPoint, distance};
 /// Bisections of the logarithm of the distance: from seventeen decades to a part in a hundred.
 const BISECTIONS: usize = 12;
 const DECADES: f64 = 1e-17;
-/// Places on the polygon and on the curve that belong together are this many times the curve's sag apart at most.
+/// Corresponding places on the polygon and on the curve are at most this many times the sag of the curve apart.
 const SLACK: f64 = 4.0;
 
-/// The largest distance of any point; infinite where it overflows, and when cancelled.
+/// The largest distance of a point; infinite on overflow or cancellation.
 pub(super) fn path_error(points: &[ScaledPoint], curve: &Curve, cancel: &CancelFlag) -> f64 {
     let polygon = Polygon { vertices: &curve.vertices, arc: &curve.arc, backward: false };
     let Some(start) = curve.vertices.first() else { return f64::INFINITY };
-    // Everything fits onto the first place within this.
+    // Within this distance all points can be matched to the first place.
     let mut enough = points.iter().map(|point| distance(point, start)).fold(0.0, f64::max);
     if enough == 0.0 || !enough.is_finite() {
         return enough;
@@ -56,7 +56,7 @@ pub(super) fn path_error(points: &[ScaledPoint], curve: &Curve, cancel: &CancelF
         .fold(0.0, f64::max)
 }
 
-/// Distance of a point from a curve between two places: from the segment whose chord is nearest, and its neighbours.
+/// Distance of a point from a curve between two places, computed for the segment with the nearest chord and its neighbours.
 fn distance_from_window(curve: &Curve, polygon: &Polygon<'_>, (from, to): (f64, f64), point: &[f64]) -> f64 {
     let last = curve.segments() - 1;
     let (first, last) = ((from.floor() as usize).min(last), (to.floor() as usize).min(last));
@@ -67,7 +67,7 @@ fn distance_from_window(curve: &Curve, polygon: &Polygon<'_>, (from, to): (f64, 
         if found < nearest.1 {
             nearest = (segment, found);
         }
-        // What comes before this cannot be nearer than the nearest so far.
+        // Segments before this one cannot be nearer than the nearest so far.
         let beyond = distance(&curve.vertices[segment + 1], point) - nearest.1;
         segment = polygon.first_ending_past(polygon.length(segment + 1) + beyond, segment + 1);
     }
@@ -80,8 +80,8 @@ fn distance_from_window(curve: &Curve, polygon: &Polygon<'_>, (from, to): (f64, 
     .fold(f64::INFINITY, f64::min)
 }
 
-/// The polygon through a curve's vertices, run through from either end. A place is a number: its whole part is the
-/// segment, the rest the part of the way.
+/// The polygon through the vertices of a curve, traversed from either end. A place is a number: its integer part is the segment,
+/// its fraction the parameter on the segment.
 #[derive(Clone, Copy)]
 struct Polygon<'a> {
     vertices: &'a [ScaledPoint],
@@ -119,7 +119,7 @@ impl Polygon<'_> {
         segment as f64 + part
     }
 
-    /// The first segment from this one on whose end is at a length or past it; one past the last where none is.
+    /// The first segment from the given one on that ends at or after a length; the number of segments if there is none.
     fn first_ending_past(&self, length: f64, from: usize) -> usize {
         let (mut low, mut high) = (from, self.segments());
         while low < high {
@@ -129,7 +129,7 @@ impl Polygon<'_> {
         low
     }
 
-    /// The earliest places of points in order, each within a distance; none where they do not fit.
+    /// The earliest places of the points in order, each within a distance; `None` if the points cannot be matched.
     fn places<'b>(&self, points: impl Iterator<Item = &'b ScaledPoint>, within: f64) -> Option<Vec<f64>> {
         let mut place = 0.0;
         points
@@ -151,7 +151,7 @@ impl Polygon<'_> {
             {
                 return Some(segment as f64 + first.max(part));
             }
-            // Everything nearer along the polygon than this is too far from the point.
+            // All places closer along the polygon than this are too far from the point.
             let clear = self.length(segment + 1) + (distance(end, point) - within);
             segment = self.first_ending_past(clear, segment + 1);
             part = 0.0;
@@ -160,7 +160,7 @@ impl Polygon<'_> {
     }
 }
 
-/// The parts of the way from one place to another, from 0 to 1, that are within a distance of a point.
+/// The interval of parameters, from 0 to 1, of a segment within a distance of a point.
 fn parts_within(start: &[f64], end: &[f64], point: &[f64], within: f64) -> Option<(f64, f64)> {
     let (mut squared, mut along, mut apart) = (0.0, 0.0, 0.0);
     for ((start, end), point) in start.iter().zip(end).zip(point) {
@@ -172,7 +172,7 @@ fn parts_within(start: &[f64], end: &[f64], point: &[f64], within: f64) -> Optio
         return (apart.sqrt() <= within).then_some((0.0, 1.0));
     }
     let middle = along / squared;
-    // From the foot itself: the difference of the squares would cancel.
+    // From the foot itself, as the difference of the squares would cancel.
     let foot = start.iter().zip(end).zip(point).map(|((start, end), point)| start + middle * (end - start) - point);
     let beside = foot.map(|value| value * value).sum::<f64>();
     let room = within * within - beside;

@@ -32,8 +32,8 @@
 //! | `curve`, `interpolation` | the reference as a curve |
 //! | `matching`, `nearest` | the error of a path |
 //! | `events` | the error of its events |
-//! | `reference` | what errors are measured against |
-//! | `row`, `report`, `table` | what is found, as values and as text |
+//! | `reference` | the reference against which errors are measured |
+//! | `row`, `report`, `table` | the findings, as values and as text |
 //! | `plan`, `run` | the ladder, planned and run |
 //!
 //! Called by `jobs` and `command`; knows `model`, `continuation` and `scenes`.

@@ -3,16 +3,16 @@
 use crate::studies::error_against_time::curve::Curve;
 use crate::studies::error_against_time::trace::distance;
 
-/// Steps of the descent; each but the last few gains digits.
+/// The most steps of the descent.
 const MOST_STEPS: usize = 30;
-/// Halvings of a step that does not descend.
+/// The most halvings of a step that does not descend.
 const HALVINGS: usize = 6;
-/// Half the interval of a difference quotient, in parts of the segment.
+/// Half the interval of a difference quotient, as a part of the segment.
 const DIFFERENCE: f64 = 1e-4;
 
-/// Least distance, by Gauss's and Newton's method on the part of the way from where the chord is nearest; where the curve
-/// itself is near, an error in the part counts only by its square. Any place tried bounds it from above. Only parts of
-/// the segment from the first to the second of `within` are looked at.
+/// The least distance, by the Gauss-Newton method for the parameter, starting where the chord is nearest; near the curve an error
+/// of the parameter only has a second-order effect. Every parameter tried gives an upper bound. Only parameters within
+/// `within` are considered.
 pub(super) fn distance_from_segment(curve: &Curve, segment: usize, within: (f64, f64), point: &[f64]) -> f64 {
     let bounded = |part: f64| part.max(within.0).min(within.1);
     let mut part = bounded(chord(&curve.vertices[segment], &curve.vertices[segment + 1], point).1);
@@ -49,7 +49,7 @@ pub(super) fn distance_from_segment(curve: &Curve, segment: usize, within: (f64,
     least
 }
 
-/// Distance of a point from the chord between two, and the part of the way there.
+/// Distance of a point from the chord between two points, and the parameter of its foot.
 pub(super) fn chord(from: &[f64], to: &[f64], point: &[f64]) -> (f64, f64) {
     let (mut along, mut squared) = (0.0, 0.0);
     for ((from, to), point) in from.iter().zip(to).zip(point) {

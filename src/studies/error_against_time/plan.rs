@@ -1,4 +1,4 @@
-//! What a study is going to do.
+//! The plan of a study.
 
 use crate::continuation::scene::Scene;
 use crate::model::request::Method;
@@ -39,7 +39,7 @@ pub fn plan(request: &StudyRequest) -> Result<Plan, InputErrors> {
     let methods = request.study.methods();
     let fine = request.finer_job(request.study.refinement as f64);
     let mut scene = None;
-    // The model is the same everywhere, and what is varied has been checked: one job a method tells the rest.
+    // The model is the same for all jobs and the varied values have been checked: one job per method is enough.
     for method in methods {
         let planned = Scene::new(&request.job(*method, values[0]))?.plan().clone();
         scene.get_or_insert(planned);

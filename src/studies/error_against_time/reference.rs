@@ -1,4 +1,4 @@
-//! What errors are measured against.
+//! The reference against which errors are measured.
 
 use crate::check::scenes::exact::{self, Exact, Reach};
 use crate::continuation::path::iterator::Path;
@@ -18,12 +18,12 @@ use serde::{Deserialize, Serialize};
 
 /// Errors below this are round-off and the tolerance of Newton's method.
 const ROUND_OFF: f64 = 1e-12;
-/// A self-converged reference's error is at most this much larger than what is found of it: in the middle between points
-/// that are unevenly apart it is not at its largest, and `error_estimate` is an estimate.
+/// Factor between the measured and the stated uncertainty of a self-converged reference: midway between points at uneven
+/// distances the error is not at its maximum, and `error_estimate` is an estimate.
 const SAFETY: f64 = 4.0;
-/// Errors are resolved from this many times the reference's own uncertainty on.
+/// Errors are resolved if they exceed this many times the uncertainty of the reference.
 const CLEAR: f64 = 2.0;
-/// The middle between two points is passed over when it is nearer than this, in their distance.
+/// The middle between two points is skipped if it is nearer to one of them than this part of their distance.
 const CLOSEST: f64 = 0.1;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -58,7 +58,7 @@ pub struct Reference {
     pub stop_reason: Option<StopReason>,
 }
 
-/// The exact solution, where the choice leaves it; refuses a choice that cannot be met.
+/// The exact solution, if the request admits it; refuses a choice of the reference that is not available.
 pub(super) fn exact_of(request: &StudyRequest, job: &JobRequest) -> Result<Option<Exact>, InputErrors> {
     let known = || exact::recognise(job);
     match request.study.reference {
@@ -85,14 +85,14 @@ enum Source {
     Fine(Vec<Curve>),
 }
 
-/// A reference ready to be measured against.
+/// A reference with its curves.
 pub(super) struct Standard {
     source: Source,
     scales: TraceScales,
     pub reference: Reference,
 }
 
-/// What a path is off the reference.
+/// The error of a path.
 pub(super) struct Measured {
     pub path_error: Option<f64>,
     pub points_outside: u64,
@@ -153,7 +153,7 @@ impl Standard {
         &self.scales
     }
 
-    /// Without a meaning when cancelled meanwhile.
+    /// Meaningless after a cancellation.
     pub fn measure(&self, trace: &StudyTrace, cancel: &CancelFlag) -> Measured {
         match &self.source {
             Source::Fine(curves) => against(trace, curves, cancel),
@@ -185,7 +185,7 @@ fn against(trace: &StudyTrace, curves: &[Curve], cancel: &CancelFlag) -> Measure
             None => outside += stage.points.len() as u64,
         }
     }
-    // JSON has no infinity; a path that overflows has no error that could be told.
+    // JSON has no infinity: a path that overflows has no error.
     let path_error = largest.filter(|error| error.is_finite());
     Measured { path_error, points_outside: outside, events: events::compare(trace, curves) }
 }
@@ -200,7 +200,7 @@ struct FinePath {
     largest_estimate: f64,
 }
 
-/// Where a point of a path is.
+/// The place of a point on a path.
 struct PlaceOnPath {
     arc_length: f64,
     is_event: bool,

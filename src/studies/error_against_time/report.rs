@@ -1,4 +1,4 @@
-//! All rows of a study.
+//! The findings of a study: all of its rows.
 
 use crate::model::request::Method;
 use crate::model::request::study::Parameter;
@@ -31,8 +31,7 @@ pub struct MethodOrder {
 }
 
 impl Report {
-    /// What has been found when these are the last runs of a study so far: as many as it has rows, or all. `None` before
-    /// the first.
+    /// The findings of a study, given its last runs so far, as many as there are rows, or all. `None` before the first run.
     pub fn of_runs(name: Option<String>, plan: &Plan, runs: &[Run]) -> Option<Self> {
         let last = runs.last()?;
         let mut rows: Vec<StudyRow> = Vec::new();

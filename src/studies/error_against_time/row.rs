@@ -1,4 +1,4 @@
-//! What is found of one path of a study.
+//! The findings for a path of a study.
 
 use crate::model::request::Method;
 use crate::result::stop_reason::StopReason;
@@ -81,19 +81,19 @@ pub struct Run {
 }
 
 impl StudyRow {
-    /// What an order is read against: the mean step, or the value of what is varied.
+    /// The abscissa for orders: the mean step, or the varied value.
     pub fn setting(&self, by_step: bool) -> f64 {
         if by_step { self.mean_step } else { self.value }
     }
 
-    /// The error, where an order can be read from it.
+    /// The error, if it is resolved.
     fn readable(&self) -> Option<f64> {
         self.path_error.filter(|_| self.resolved)
     }
 }
 
-/// Settings less than a quarter apart give no slope: the solver's own step control then made them alike. The spread of
-/// two logarithms is half their difference squared.
+/// Settings that differ by less than a quarter give no slope, as the step control of the solver made them alike. The variance of
+/// two logarithms is half the square of their difference.
 const LEAST_SPREAD: f64 = 0.5 * 0.2231 * 0.2231;
 
 /// The slope through two rows.
@@ -101,7 +101,7 @@ pub(super) fn order(coarse: &StudyRow, fine: &StudyRow, by_step: bool) -> Option
     slope(&[coarse, fine], by_step)
 }
 
-/// The slope of the least squares through all rows whose error can be read.
+/// The slope through all rows with a resolved error, by least squares.
 pub(super) fn slope(rows: &[&StudyRow], by_step: bool) -> Option<f64> {
     let logarithms: Vec<(f64, f64)> = rows
         .iter()
@@ -109,7 +109,7 @@ pub(super) fn slope(rows: &[&StudyRow], by_step: bool) -> Option<f64> {
         .filter(|(setting, error)| setting.is_finite() && error.is_finite())
         .collect();
     let count = logarithms.len() as f64;
-    // Both rows of a pair, or as many of all as can be read.
+    // Both rows of a pair, or all rows with a resolved error.
     if logarithms.len() < 2 {
         return None;
     }

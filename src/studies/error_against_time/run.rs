@@ -1,4 +1,4 @@
-//! The ladder, run.
+//! Runs a study.
 
 use crate::continuation::method_dispatch::TracedPath;
 use crate::continuation::scene::Scene;
@@ -14,10 +14,10 @@ use crate::studies::error_against_time::row::{Run, StudyRow, Time, order};
 use crate::studies::error_against_time::trace::StudyTrace;
 use std::ops::ControlFlow;
 
-/// Runs a study; `done` are its first runs, from an earlier attempt, and every further one goes to `accept`, which breaks
-/// when nobody wants more. What is found is the same in every run of the program, but for the times.
+/// Runs a study; `done` are its first runs, from an earlier attempt. Every further run is passed to `accept`, which breaks to end
+/// the study. Except for the times, the findings are reproducible.
 ///
-/// `None`: `accept` broke, or it was cancelled before the reference was there.
+/// `None`: `accept` broke, or the study was cancelled before the reference was complete.
 ///
 /// # Errors
 /// As for [`plan`].
@@ -56,7 +56,7 @@ pub fn run(
     Ok(Some(found.report(request, standard, true)))
 }
 
-/// What there is so far.
+/// The findings so far.
 struct StudyInProgress<'a> {
     plan: &'a Plan,
     rows: Vec<StudyRow>,
@@ -68,7 +68,7 @@ impl StudyInProgress<'_> {
         self.rows.len() as u64 + self.times.iter().map(|times| times.len() as u64).sum::<u64>()
     }
 
-    /// Adds what follows from the other runs: order and times.
+    /// Adds the values that depend on the other runs: order and times.
     fn complete(&self, mut run: Run) -> Run {
         let row = run.row.row as usize;
         if run.round == 0 {

@@ -1,4 +1,4 @@
-//! A study as text: CSV, and columns for a reader.
+//! The findings of a study as text: CSV, and aligned columns.
 
 use crate::output::columns::{name_of, push_columns};
 use crate::output::csv::CsvRow;

@@ -1,4 +1,4 @@
-//! A path as points of one dimensionless space.
+//! A path as points in a dimensionless space.
 
 use crate::model::Model;
 use crate::result::increment::{Increment, PointKind};
@@ -7,7 +7,7 @@ use crate::result::plan::Plan;
 /// Displacement components over their scale, then the load factor over its stage's.
 pub(super) type ScaledPoint = Vec<f64>;
 
-/// What makes points dimensionless.
+/// The scales that make points dimensionless.
 #[derive(Debug, Clone)]
 pub(super) struct TraceScales {
     pub displacement: f64,
@@ -15,7 +15,7 @@ pub(super) struct TraceScales {
     loads: Vec<(String, f64)>,
 }
 
-/// A path's points, stage by stage.
+/// The points of a path, stage by stage.
 #[derive(Debug, Clone, Default)]
 pub(super) struct StudyTrace {
     pub stages: Vec<TracedStage>,
@@ -23,18 +23,18 @@ pub(super) struct StudyTrace {
 
 #[derive(Debug, Clone)]
 pub(super) struct TracedStage {
-    /// Place among the model's stages.
+    /// Index among the stages of the model.
     pub stage: usize,
-    /// The first is where the stage begins, at no load.
+    /// The first point is the start of the stage, at zero load.
     pub points: Vec<ScaledPoint>,
     pub events: Vec<TracedEvent>,
 }
 
-/// Something that happens at a point.
+/// An event at a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct TracedEvent {
     pub kind: PointKind,
-    /// Which point of the stage.
+    /// The index of the point in the stage.
     pub point: usize,
 }
 
@@ -59,7 +59,7 @@ impl StudyTrace {
         let same = known.is_some_and(|stage| *scales.loads[stage].0 == *increment.stage);
         if !same {
             let Some(stage) = scales.loads.iter().position(|(name, _)| **name == *increment.stage) else { return };
-            // A stage begins where the one before it ended; no increment of its own says so.
+            // A stage begins where the previous one ended, without an increment for its start.
             let begins = self.stages.last().and_then(|last| last.points.last()).map(|last| {
                 let mut begins = last.clone();
                 begins.last_mut().into_iter().for_each(|load| *load = 0.0);

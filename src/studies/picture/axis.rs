@@ -1,19 +1,19 @@
-//! An axis: its range, and numbers as texts.
+//! An axis: its range and the texts of its ticks.
 
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::Ranged;
 use std::ops::Range;
 
-/// Free room at either end of an axis, in units of what is drawn.
+/// Margin at either end of an axis, relative to the range of the values.
 const MARGIN: f64 = 0.07;
-/// Powers of ten that are written out; beyond them the axis carries the power.
+/// Powers of ten that are written out; beyond them the title of the axis has the power.
 const WRITTEN_OUT: std::ops::RangeInclusive<i32> = -3..=4;
-/// Values this small against the largest are zero but for rounding.
+/// Values this small relative to the largest count as zero.
 const ROUNDING: f64 = 1e-12;
 /// Significant digits of a load in the legend.
 const DIGITS: usize = 6;
 
-/// One of the two axes. What is drawn are values over a power of ten, since the library's ticks want numbers near 1.
+/// One of the two axes. Values are divided by a power of ten, as the library needs numbers near 1 for its ticks.
 #[derive(Debug, Clone)]
 pub struct Axis {
     exponent: i32,
@@ -22,11 +22,11 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// The axis that shows these values, 0 among them: every path starts there, and a load that falls to a half looks like it.
+    /// The axis for these values and 0, where every path starts; in this way proportions of loads are visible.
     pub fn showing(values: impl Iterator<Item = f64>, ticks: usize) -> Self {
         let (low, high) = values.fold((0.0_f64, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
         let largest = high.max(-low);
-        // An axis on which nothing moves still has a length.
+        // An axis with a single value still has a length.
         let (low, high) = if largest > 0.0 { (low, high) } else { (-1.0, 1.0) };
         let power = if largest > 0.0 { largest.log10().floor() as i32 } else { 0 };
         let exponent = if WRITTEN_OUT.contains(&power) { 0 } else { power };
@@ -43,7 +43,7 @@ impl Axis {
         axis
     }
 
-    /// Where a value stands on the axis.
+    /// The position of a value on the axis.
     pub fn drawn(&self, value: f64) -> f64 {
         value / 10_f64.powi(self.exponent)
     }
@@ -51,16 +51,16 @@ impl Axis {
     /// The text of a tick.
     pub fn tick(&self, drawn: f64) -> String {
         let text = format!("{drawn:.*}", self.decimals);
-        // What rounds to zero has no sign.
+        // A value that rounds to zero has no sign.
         if text.trim_start_matches(['-', '0', '.']).is_empty() { text.trim_start_matches('-').to_owned() } else { text }
     }
 
-    /// The axis' name with its power of ten.
+    /// The name of the axis with its power of ten.
     pub fn named(&self, name: &str) -> String {
         if self.exponent == 0 { name.to_owned() } else { format!("{name} / 1e{}", self.exponent) }
     }
 
-    /// A value in words, for the legend.
+    /// A value as text, for the legend.
     pub fn number(&self, value: f64) -> String {
         let largest = self.range.start.abs().max(self.range.end.abs());
         if self.drawn(value).abs() <= ROUNDING * largest {
@@ -76,7 +76,7 @@ impl Axis {
     }
 }
 
-/// A number of that many significant digits, without zeros at its end.
+/// A number with the given number of significant digits, without trailing zeros.
 fn plain(value: f64, digits: usize) -> String {
     if value == 0.0 {
         return "0".to_owned();

@@ -9,10 +9,10 @@ use std::ops::Range;
 /// Widths, in pixels.
 pub const MARGIN: i32 = 16;
 pub const CAPTION: i32 = 42;
-/// Room for the ticks' texts and the axes' names.
+/// Room for the texts of ticks and the names of axes.
 const BELOW: i32 = 48;
 const BESIDE: i32 = 70;
-/// Characters of the title and of an axis' name.
+/// The most characters of the title and of the name of an axis.
 pub const LONGEST: usize = 80;
 
 const GRID: RGBColor = RGBColor(228, 228, 228);
@@ -22,18 +22,18 @@ const TICK: Lettering = Lettering { size: 12, ..NAME };
 
 pub type Chart<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-/// One of the two axes, as it is written.
+/// One of the two axes.
 pub struct Side<'s> {
     pub name: String,
-    /// In units of what is drawn.
+    /// The range of the values.
     pub range: Range<f64>,
-    /// The text at a place of the range.
+    /// The text of a tick.
     pub tick: &'s dyn Fn(f64) -> String,
-    /// Texts at most.
+    /// The most texts.
     pub ticks: usize,
 }
 
-/// An empty chart on a part of a sheet that begins at its upper left corner and is that wide, in pixels.
+/// An empty chart in the left part of a sheet, with the given width in pixels.
 pub fn chart<'a>(
     part: &Sheet<'a>,
     width: i32,

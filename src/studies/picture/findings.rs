@@ -1,4 +1,4 @@
-//! What studies and sweeps find, in the forms in which it is read: called by `command` and `http`.
+//! The findings of studies and sweeps as tables and pictures; called by `command` and `http`.
 
 use crate::studies::error_against_time::Report;
 use crate::studies::error_against_time::table;
@@ -6,7 +6,7 @@ use crate::studies::picture::{PlotError, study, sweep};
 use crate::studies::sweeps::Found;
 use serde::Serialize;
 
-/// Findings that can be written down and drawn.
+/// Findings that can be written as tables and drawn.
 pub trait Findings: Serialize {
     /// Why there may be no picture yet.
     const NOT_DRAWN: &'static str;
@@ -17,7 +17,7 @@ pub trait Findings: Serialize {
     /// A value that cannot be written.
     fn csv(&self) -> serde_json::Result<String>;
 
-    /// Columns for a reader.
+    /// Aligned columns.
     ///
     /// # Errors
     /// A value that cannot be written.
@@ -26,7 +26,7 @@ pub trait Findings: Serialize {
     /// A picture.
     ///
     /// # Errors
-    /// There is nothing to be drawn yet, or the drawing failed.
+    /// There is nothing to draw yet, or the drawing failed.
     fn svg(&self) -> Result<String, PlotError>;
 }
 

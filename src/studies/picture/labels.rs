@@ -1,21 +1,21 @@
-//! Room for the letters: each stands near its point, where it covers least.
+//! Places the letters of a picture: each near its point, where it covers least.
 
 use crate::studies::picture::shapes::Place;
 
 /// Side of a cell of the map, in fine units.
 const CELL: i32 = 30;
-/// What it costs to cover a cell of what stands there already.
+/// The cost of covering an occupied cell.
 const CURVE: u32 = 14;
 const MARKER: u32 = 20;
 const LETTER: u32 = 60;
-/// What it costs to leave the map.
+/// The cost of leaving the map.
 const OUTSIDE: u32 = 400;
-/// Distances of a letter's middle from its point, in fine units, and what each costs.
+/// Distances of the centre of a letter from its point, in fine units, and their costs.
 const DISTANCES: [(i32, u32); 7] = [(140, 0), (190, 6), (250, 14), (330, 26), (430, 42), (560, 64), (720, 92)];
-/// Directions that are tried, beginning above and to the right.
+/// The number of directions that are tried, beginning at the upper right.
 const DIRECTIONS: i32 = 16;
 
-/// What covers the picture so far.
+/// The occupied cells of the picture.
 #[derive(Debug)]
 pub struct Map {
     corner: Place,
@@ -46,7 +46,7 @@ impl Map {
         self.add_box(middle, (size, size), MARKER);
     }
 
-    /// Finds room for a letter of half this size, and takes it.
+    /// Finds the best place for a letter, given half its size, and occupies it.
     pub fn take_room(&mut self, point: Place, half: Place) -> Place {
         let mut best = (u32::MAX, point);
         for (distance, far) in DISTANCES {

@@ -1,8 +1,8 @@
 //! Pictures, as SVG.
 //!
-//! [`result`] is load against displacement, [`study`] error against run time (or what is varied), [`sweep`] limit load against what is
-//! varied; [`findings`] is what both of the latter can be read as. [`shapes`] is what all are drawn with, [`chart`] two of them
-//! into, [`axis`] finds ranges and tick texts, [`labels`] room for letters. Called by `command` and `http`;
+//! [`result`] draws load against displacement, [`study`] error against run time (or the varied setting), [`sweep`] limit load against
+//! the varied parameters; [`findings`] is the common interface of the latter two. [`shapes`] has the drawing primitives,
+//! [`chart`] the chart of two of them, [`axis`] ranges and tick texts, [`labels`] places of letters. Called by `command` and `http`;
 //! knows `result`, `model`, `studies` and `sweeps`.
 
 pub(crate) mod axis;

@@ -1,5 +1,5 @@
-//! What the picture is made of. The library places things on whole units, so the picture is drawn in units of a tenth of
-//! a pixel, and shown at its size in the end.
+//! Drawing primitives. The library uses integer coordinates, so that pictures are drawn in units of a tenth of a pixel, and scaled
+//! at the end.
 
 use plotters::coord::Shift;
 use plotters::prelude::{
@@ -8,13 +8,13 @@ use plotters::prelude::{
 use plotters::style::FontStyle;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-/// Units a pixel.
+/// Units per pixel.
 pub const FINE: i32 = 10;
 
 pub const INK: RGBColor = RGBColor(34, 34, 34);
 pub const FAINT_INK: RGBColor = RGBColor(100, 100, 100);
 pub const PAPER: RGBColor = RGBColor(255, 255, 255);
-/// The library's text sizes count the lines' spacing.
+/// Text sizes of the library include the line spacing.
 const TEXT_SIZE: f64 = 1.24;
 
 /// A place on the sheet, in fine units.
@@ -38,14 +38,14 @@ pub fn svg(width: i32, height: i32, draw: impl FnOnce(&Sheet<'_>) -> Drawn) -> R
     Ok(text.replacen(&size(fine), &size(shown), 1))
 }
 
-/// How a text stands.
+/// The style of a text.
 #[derive(Debug, Clone, Copy)]
 pub struct Lettering {
     /// In pixels.
     pub size: i32,
     pub color: &'static RGBColor,
     pub bold: bool,
-    /// Around its place, rather than to the right of it.
+    /// Centred at its place, rather than to the right of it.
     pub centred: bool,
 }
 
@@ -57,13 +57,13 @@ impl Lettering {
         TextStyle::from(("sans-serif", size, style).into_font()).color(self.color).pos(Pos::new(across, VPos::Center))
     }
 
-    /// Writes a text, cut where it is longer than this.
+    /// Writes a text, truncated to a length.
     pub fn write(self, sheet: &Sheet<'_>, place: Place, text: &str, longest: usize) -> Drawn {
         sheet.draw(&Text::new(legible(text, longest), place, self.style()))
     }
 }
 
-/// A text of the user's as XML can hold it, on one line.
+/// A text of the user on one line, without characters that XML does not allow.
 pub fn legible(text: &str, longest: usize) -> String {
     let stands_in_xml = |character: char| !character.is_control() && !matches!(character, '\u{fffe}' | '\u{ffff}');
     let shown = |character: char| if stands_in_xml(character) { character } else { '\u{fffd}' };

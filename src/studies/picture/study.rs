@@ -1,5 +1,5 @@
-//! The picture of a study: error down, time across, both on logarithmic scales, one line a method. As long as there are
-//! rows without a time, what is varied stands in its place.
+//! The picture of a study: error against time on logarithmic scales, one line per method. As long as there are rows without a
+//! time, the varied setting replaces the time.
 
 use crate::model::request::Method;
 use crate::model::request::study::Parameter;
@@ -22,11 +22,11 @@ const MARGIN: i32 = 16;
 const MARKER: i32 = 5;
 const ROW: i32 = 22;
 
-/// Errors below this, zero among them, stand at it.
+/// Smaller errors, including zero, are drawn at this value.
 const LEAST: f64 = 1e-17;
-/// Texts of an axis at most; decades are passed over, or parted, to keep to it.
+/// The most texts of an axis; decades are skipped or subdivided accordingly.
 const MOST_TICKS: i32 = 12;
-/// Characters of a title.
+/// The most characters of a title.
 const LONGEST: usize = 90;
 
 const GRID: RGBColor = RGBColor(228, 228, 228);
@@ -37,7 +37,7 @@ const TICK: Lettering = Lettering { size: 12, ..NAME };
 const FAINT: Lettering = Lettering { size: 11, color: &FAINT_INK, bold: false, centred: true };
 const PLAIN: Lettering = Lettering { size: 12, color: &INK, bold: false, centred: false };
 
-/// What errors are drawn against.
+/// The abscissa of the errors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Against {
     Time,
@@ -45,7 +45,7 @@ enum Against {
 }
 
 impl Against {
-    /// Time, where all rows that have an error have one.
+    /// Time, if all rows with an error have one.
     fn of(report: &Report) -> Self {
         let timed = report.rows.iter().filter(|row| row.path_error.is_some()).all(|row| row.time.is_some());
         if timed { Self::Time } else { Self::Setting(report.parameter) }
@@ -61,10 +61,10 @@ impl Against {
     }
 }
 
-/// A path with an error and something to draw it against.
+/// A path with an error and an abscissa.
 struct Dot {
     error: f64,
-    /// Of times, their median.
+    /// Of times, the median.
     across: f64,
     /// Least and largest time.
     spread: Option<(f64, f64)>,
@@ -77,13 +77,13 @@ impl Dot {
             Against::Time => row.time.map(|time| (time.median_s, Some((time.least_s, time.largest_s))))?,
             Against::Setting(parameter) => (row.setting(parameter == Parameter::ArcLength), None),
         };
-        // A clock that did not move has no logarithm, nor has the step of a path without increments.
+        // A time of zero has no logarithm, nor has the step of a path without increments.
         let drawn = spread.map_or(across, |(least, _)| least) > 0.0;
         let error = row.path_error?.max(LEAST);
         drawn.then(|| Self { error, across, spread, label: format!("{}", row.value) })
     }
 
-    /// All that has to be on the axis.
+    /// All values on the axis.
     fn extent(&self) -> [f64; 2] {
         self.spread.map_or([self.across; 2], |(least, largest)| [least, largest])
     }
@@ -136,7 +136,7 @@ impl Scale {
         let logarithms = values.map(|value| value.max(f64::MIN_POSITIVE).log10());
         let (low, high) =
             logarithms.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
-        // Room for marks at the ends, and a length for an axis on which all is the same.
+        // Margins for marks at the ends, and a length for an axis with a single value.
         let margin = (0.06 * (high - low)).max(0.15);
         Self { decades: (low - margin, high + margin), pixels }
     }
@@ -162,7 +162,7 @@ impl Scale {
     }
 }
 
-/// Title, axes and what cannot be resolved.
+/// Title, axes and the range of unresolved errors.
 fn frame(sheet: &Sheet<'_>, report: &Report, against: Against, (across, errors): (&Scale, &Scale)) -> Drawn {
     let (left, right) = (across.pixels.0 * FINE, across.pixels.1 * FINE);
     let (bottom, top) = (errors.pixels.0 * FINE, errors.pixels.1 * FINE);
@@ -196,7 +196,7 @@ fn look(method: Method) -> RGBColor {
     }
 }
 
-/// No two methods have the same shape.
+/// Every method has its own shape.
 fn mark(sheet: &Sheet<'_>, method: Method, (x, y): Place) -> Drawn {
     let (size, color) = (MARKER * FINE, look(method).filled());
     match method {
@@ -231,7 +231,7 @@ fn curve(sheet: &Sheet<'_>, method: Method, dots: &[Dot], scales: (&Scale, &Scal
                 ))?;
             }
         }
-        // A rim, so that marks upon one another can be told apart.
+        // A rim, so that overlapping marks can be distinguished.
         sheet.draw(&Circle::new(place, MARKER * FINE * 14 / 10, PAPER.filled()))?;
         mark(sheet, method, place)?;
     }
@@ -251,7 +251,7 @@ fn legend(sheet: &Sheet<'_>, report: &Report, against: Against, left: i32) -> Dr
         sheet.draw(&PathElement::new(sample, look(order.method).stroke_width(16)))?;
         mark(sheet, order.method, (place.0 - 17 * FINE, place.1))?;
         let words = match order.order {
-            // What rounds to zero has no sign.
+            // A value that rounds to zero has no sign.
             Some(slope) => format!("order {:.1}", (10.0 * slope).round() / 10.0 + 0.0),
             None => "no order to be read".to_owned(),
         };

@@ -18,15 +18,15 @@ const HEIGHT: i32 = 480;
 const DOT: i32 = 4;
 const ROW: i32 = 20;
 const TICKS: usize = 9;
-/// Lines that the legend names; more are drawn and counted.
+/// The most lines in the legend; further ones are drawn and counted.
 const NAMED: usize = 18;
-/// Characters of a line's name.
+/// The most characters of the name of a line.
 const LONGEST_NAME: usize = 34;
 const LONGEST_TICK: usize = 12;
-/// Values that are all positive and so far apart stand on a logarithmic axis.
+/// Positive values whose ratio exceeds this have a logarithmic axis.
 const FAR_APART: f64 = 100.0;
 
-/// Of the first line and of the last.
+/// Colours of the first and of the last line.
 const FIRST: RGBColor = RGBColor(25, 85, 150);
 const LAST: RGBColor = RGBColor(190, 20, 40);
 const PLAIN: Lettering = Lettering { size: 12, color: &INK, bold: false, centred: false };
@@ -37,7 +37,7 @@ enum Across {
     Linear(Axis),
     /// Powers of ten at both ends.
     Logarithmic(Range<f64>),
-    /// What is no number stands side by side.
+    /// Values that are no numbers, side by side.
     Named(Vec<String>),
 }
 
@@ -69,7 +69,7 @@ impl Across {
         }
     }
 
-    /// Where a value stands.
+    /// The position of a value.
     fn place(&self, value: &Value) -> Option<f64> {
         match self {
             Self::Linear(axis) => value.as_f64().map(|value| axis.drawn(value)),
@@ -101,7 +101,7 @@ impl Across {
     }
 }
 
-/// Runs that differ in the first parameter alone.
+/// Runs that only differ in the first parameter.
 struct Line<'a> {
     /// Values of the other parameters.
     others: &'a [Value],
@@ -162,7 +162,7 @@ fn draw_chart(sheet: &Sheet<'_>, found: &Found, lines: &[Line<'_>], (across, loa
                 Some(chart.backend_coord(&(at, load.drawn(limit.load_factor))))
             })
             .collect();
-        // A run without a limit point parts the line.
+        // A run without a limit point interrupts the line.
         if !matches!(across, Across::Named(_)) {
             for stretch in places.split(Option::is_none) {
                 sheet.draw(&PathElement::new(

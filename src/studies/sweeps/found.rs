@@ -1,4 +1,4 @@
-//! What is found of the runs of a sweep.
+//! The findings of a sweep.
 
 use crate::model::request::sweep::Variation;
 use crate::studies::sweeps::LimitLoad;

@@ -1,4 +1,4 @@
-//! The load that a structure carries: that of a limit point.
+//! The limit load of a structure: the load at a limit point.
 
 use crate::result::increment::{Increment, PointKind};
 use serde::{Deserialize, Serialize};
@@ -18,7 +18,7 @@ pub struct LimitLoad {
 }
 
 impl LimitLoad {
-    /// Where an increment is a limit point.
+    /// The limit load of an increment that is a limit point.
     pub fn at(increment: &Increment) -> Option<Self> {
         let kind = increment.point.kind;
         match kind {

@@ -1,13 +1,13 @@
-//! Sweeps: one model with other values put in its places, and the first limit load of each.
+//! Sweeps: one model with varied parameters, and the first limit load of each path.
 //!
 //! | file | what it does |
 //! |---|---|
 //! | `limit_load` | the load of a limit point |
-//! | `found` | what is found of the runs, row by row |
-//! | `table` | that as text |
+//! | `found` | the findings, row by row |
+//! | `table` | the findings as text |
 //! | `run` | all runs on the cores of this machine |
 //!
-//! What is replaced is read by [`model::sweep`](crate::model::request::sweep). Called by `jobs`, `http`, `picture` and `command`;
+//! The replacements are read by [`model::sweep`](crate::model::request::sweep). Called by `jobs`, `http`, `picture` and `command`;
 //! knows `model`, `judged` and `continuation`.
 
 pub(crate) mod found;

@@ -1,4 +1,4 @@
-//! All runs of a sweep on the cores of this machine.
+//! Traces all runs of a sweep on the cores of this machine.
 
 use crate::check::judged::{JudgedIncrement, JudgedPath};
 use crate::continuation::scene::Scene;
@@ -15,17 +15,17 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// As large as the main thread's, with which the solver is tested.
+/// The usual size of the stack of a main thread, with which the solver is tested.
 const STACK_BYTES: usize = 8 << 20;
 
-/// Takes the increments of the runs, from several threads; those of one run in order. Breaks where no more are wanted.
+/// Receives the increments of the runs, from several threads; those of a run in order. Breaks to end the sweep.
 pub type Accept<'a> = &'a (dyn Fn(u64, &JudgedIncrement) -> ControlFlow<()> + Sync);
 
-/// Traces every run, as many at a time as there are threads; what is found does not depend on their number. `done` hears of
-/// each that has ended.
+/// Traces every run, as many at a time as there are threads; the findings do not depend on their number. `done` is called for each
+/// run that has ended.
 ///
 /// # Errors
-/// Runs that are not accepted, all of them checked before the first one is traced.
+/// Mistakes in the runs, all of which are checked before the first one is traced.
 pub fn run(
     sweep: &Sweep,
     threads: NonZeroUsize,
@@ -89,7 +89,7 @@ fn trace(sweep: &Sweep, run: u64, accept: Accept<'_>) -> Result<Row, InputErrors
     })
 }
 
-/// A panic is the mishap of one run.
+/// A panic only fails one run.
 fn panicked(sweep: &Sweep, run: u64, text: &str) -> Row {
     Row {
         run,
@@ -103,9 +103,9 @@ fn panicked(sweep: &Sweep, run: u64, text: &str) -> Row {
     }
 }
 
-/// Calls `work` for each number below `count` on so many threads; the results are in order.
+/// Calls `work` for each number below `count` on the given number of threads; the results are in order.
 fn on_threads<T: Send>(count: u64, threads: NonZeroUsize, work: impl Fn(u64) -> T + Sync) -> Vec<T> {
-    // Each has these for itself.
+    // Each thread has its own.
     let bounds = budget::bounds();
     let next = AtomicU64::new(0);
     let results = Mutex::new(Vec::new());
@@ -123,7 +123,7 @@ fn on_threads<T: Send>(count: u64, threads: NonZeroUsize, work: impl Fn(u64) -> 
     std::thread::scope(|scope| {
         let others = threads.get().min(usize::try_from(count).unwrap_or(usize::MAX)) - 1;
         for _ in 0..others {
-            // Where there can be no more threads, there are fewer.
+            // If no further thread can be started, there are fewer.
             if std::thread::Builder::new().stack_size(STACK_BYTES).spawn_scoped(scope, take_part).is_err() {
                 break;
             }

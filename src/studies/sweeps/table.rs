@@ -1,4 +1,4 @@
-//! What is found of a sweep as text: CSV, and columns for a reader.
+//! The findings of a sweep as text: CSV, and aligned columns.
 
 use crate::model::InputError;
 use crate::output::columns::{name_of, push_columns};
@@ -20,11 +20,11 @@ const COLUMNS: [&str; 9] = [
 ];
 
 impl Found {
-    /// One line a run: its number, its job at a service, its values under their pointers, and what was found. What is null
-    /// in JSON is an empty cell.
+    /// One line per run: its number, its job at a service, its values under their pointers, and its findings. A null value is an
+    /// empty cell.
     ///
     /// # Errors
-    /// None in practice: names of the contract that cannot be written are a defect.
+    /// None in practice: a name that cannot be written is a defect.
     pub fn csv(&self) -> serde_json::Result<String> {
         let mut header = CsvRow::default();
         ["run", "job"].iter().for_each(|name| header.raw(name));
@@ -37,7 +37,7 @@ impl Found {
         Ok(text)
     }
 
-    /// Columns for a reader.
+    /// Aligned columns.
     ///
     /// # Errors
     /// As for [`csv`](Self::csv).
@@ -97,7 +97,7 @@ fn text_row(row: &Row) -> serde_json::Result<Vec<String>> {
     Ok(cells)
 }
 
-/// A text without its quotes; anything else as JSON.
+/// A text without quotes; any other value as JSON.
 pub fn shown(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }

@@ -23,7 +23,7 @@ use crate::mechanics::contact::Contact;
 use crate::mechanics::contact::vector::{Vector, add, dot};
 use crate::mechanics::problem::contact_motion;
 use crate::mechanics::problem::loading::LoadPattern;
-use crate::mechanics::structure::assembly::{ElementAt, Scratch};
+use crate::mechanics::structure::assembly::{ElementAt, ElementBuffer};
 use crate::mechanics::structure::elements::Stretching;
 use crate::mechanics::structure::{MOST_ANALYSED, Structure};
 use nalgebra::DVector;
@@ -89,10 +89,10 @@ fn stiffness_at(structure: &Structure, still: &[f64]) -> Vec<f64> {
 /// The stiffness of which as many bars are stiffer as softer, or one more; of linear elements where there are only these. An element's
 /// is the sum of its diagonal entries at a node, a bar's own whatever the axes.
 fn usual_stiffness(structure: &Structure, still: &[f64]) -> f64 {
-    let mut scratch = Scratch::default();
+    let mut buffer = ElementBuffer::default();
     let of_element = |at: ElementAt<'_>| {
         let mut sum = 0.0_f64;
-        at.each_stiffness(still, &mut scratch, &mut |row, column, value| {
+        at.each_stiffness(still, &mut buffer, &mut |row, column, value| {
             if row == column {
                 sum += value;
             }
@@ -287,16 +287,16 @@ impl StiffnessEstimate<'_> {
     fn mean(&self, motion: &Motion, is_finite: bool) -> Option<f64> {
         let still = vec![0.0; motion.displacement.len()];
         let (mut stored, mut logarithms, mut most) = (0.0, 0.0, 0.0);
-        let mut scratch = Scratch::default();
+        let mut buffer = ElementBuffer::default();
         for element in self.structure.elements() {
             let energy = if is_finite {
-                let after = element.energy(&motion.displacement, &mut scratch);
-                2.0 * (after - element.energy(&still, &mut scratch)).abs()
+                let after = element.energy(&motion.displacement, &mut buffer);
+                2.0 * (after - element.energy(&still, &mut buffer)).abs()
             } else {
-                energy_at_first_order(element, &still, motion, &mut scratch)
+                energy_at_first_order(element, &still, motion, &mut buffer)
             };
-            let stiffness = element.axial_stiffness(&motion.displacement, &mut scratch);
-            most += most_energy(element, &still, motion, &mut scratch);
+            let stiffness = element.axial_stiffness(&motion.displacement, &mut buffer);
+            most += most_energy(element, &still, motion, &mut buffer);
             if energy > 0.0 && stiffness > 0.0 {
                 stored += energy;
                 logarithms += energy * stiffness.ln();
@@ -310,20 +310,20 @@ impl StiffnessEstimate<'_> {
 }
 
 /// What an element would store if no displacement took any of another away.
-fn most_energy(element: ElementAt<'_>, still: &[f64], motion: &Motion, scratch: &mut Scratch) -> f64 {
+fn most_energy(element: ElementAt<'_>, still: &[f64], motion: &Motion, buffer: &mut ElementBuffer) -> f64 {
     let mut most = 0.0;
-    element.each_stiffness(still, scratch, &mut |row, column, value| {
+    element.each_stiffness(still, buffer, &mut |row, column, value| {
         most += (motion.displacement[row] * value * motion.displacement[column]).abs();
     });
     most
 }
 
 /// `u·K_e u`
-fn energy_at_first_order(element: ElementAt<'_>, still: &[f64], motion: &Motion, scratch: &mut Scratch) -> f64 {
+fn energy_at_first_order(element: ElementAt<'_>, still: &[f64], motion: &Motion, buffer: &mut ElementBuffer) -> f64 {
     let of = |stretching: Stretching| Tie { stretching, by_load: 0.0 }.energy(motion);
     let stretched: f64 = element.stretching(still).map(of).sum();
     let mut across = 0.0;
-    element.each_stiffness_across(still, scratch, &mut |row, column, value| {
+    element.each_stiffness_across(still, buffer, &mut |row, column, value| {
         across += motion.displacement[row] * value * motion.displacement[column];
     });
     stretched + across.abs()

@@ -1,9 +1,9 @@
-//! What comes before every call: how often, from which page, by whom.
+//! Admission of requests before any call is reached: request rates, origins of pages, and tokens.
 //!
-//! Everything that is not listed as public needs a token, so that a call that is added cannot be forgotten.
+//! Every address that is not listed as public needs a token, so that a new call is protected by default.
 
 use crate::service::http::access::tokens::Scope;
-use crate::service::http::access::{Access, Door, origins};
+use crate::service::http::access::{Access, AccessPolicy, origins};
 use crate::service::http::answer::problem::{Kind, Problem};
 use crate::service::jobs::Caller;
 use axum::extract::{ConnectInfo, Request, State};
@@ -12,15 +12,15 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use std::net::SocketAddr;
 
-/// Pages without anybody's data, and probes.
+/// Public addresses: pages without data of users, and probes.
 const PUBLIC: [&str; 5] = ["/", "/docs", "/openapi.json", "/healthz", "/readyz"];
 const PUBLIC_FOLDERS: [&str; 2] = ["/docs/", "/assets/"];
 
-/// Lets a request through with its [`Caller`], if it has one, or answers why not.
+/// Passes a request on with its [`Caller`], or answers why it is refused.
 pub async fn admit(State(access): State<Access>, mut request: Request, next: Next) -> Response {
     match access.caller(&request) {
         Ok(caller) => {
-            // A call that wants one where there is none fails, and shows nothing.
+            // A call that needs a caller fails without one, and shows nothing.
             if let Some(caller) = caller {
                 request.extensions_mut().insert(caller);
             }
@@ -30,7 +30,7 @@ pub async fn admit(State(access): State<Access>, mut request: Request, next: Nex
     }
 }
 
-/// What a request needs; `None` where anyone may.
+/// The scope that a request needs; `None` for public addresses.
 fn needed(method: &Method, path: &str) -> Option<Scope> {
     let reads = matches!(*method, Method::GET | Method::HEAD);
     match (reads, is_public(path)) {
@@ -40,7 +40,7 @@ fn needed(method: &Method, path: &str) -> Option<Scope> {
     }
 }
 
-/// Whether anyone may look at it.
+/// Whether the address may be read without a token.
 pub fn is_public(path: &str) -> bool {
     PUBLIC.contains(&path) || PUBLIC_FOLDERS.iter().any(|folder| path.starts_with(folder))
 }
@@ -64,7 +64,7 @@ impl Access {
             ));
         }
         let Some(tokens) = self.tokens() else {
-            if matches!(rules.door, Door::Loopback) && !origins::names_this_machine(headers) {
+            if matches!(rules.policy, AccessPolicy::Loopback) && !origins::names_this_machine(headers) {
                 return Err(Problem::new(
                     Kind::Forbidden,
                     "without tokens this service answers to the address of its own machine, or to localhost, and to no \

@@ -1,5 +1,5 @@
-//! What browsers are told about every answer (OWASP's list of secure headers, what of it concerns a service that is reached
-//! through HTTP; `Strict-Transport-Security` is for whoever ends TLS in front of it).
+//! Security headers of every answer: those of OWASP's list that concern a service behind plain HTTP.
+//! `Strict-Transport-Security` is left to the proxy that terminates TLS.
 
 use axum::extract::Request;
 use axum::http::{HeaderName, HeaderValue, header};
@@ -7,7 +7,7 @@ use axum::middleware::Next;
 use axum::response::Response;
 
 const ALWAYS: [(HeaderName, &str); 6] = [
-    // The pages bring their own scripts and nothing from elsewhere; Swagger's has styles and pictures inline, and Plotly
+    // The pages load scripts of this service only. Swagger's page has inline styles and pictures, and Plotly
     // makes the picture that a reader saves from a blob.
     (
         header::CONTENT_SECURITY_POLICY,
@@ -20,7 +20,7 @@ const ALWAYS: [(HeaderName, &str); 6] = [
     (HeaderName::from_static("cross-origin-opener-policy"), "same-origin"),
     (HeaderName::from_static("permissions-policy"), "camera=(), geolocation=(), microphone=()"),
 ];
-/// What a call does not say may be kept is not.
+/// Answers are not cached unless the call allows it.
 const KEPT_BY_NO_ONE: HeaderValue = HeaderValue::from_static("no-store");
 
 pub async fn secure(request: Request, next: Next) -> Response {

@@ -1,8 +1,8 @@
-//! Who may ask for what, and how often.
+//! Access control: who may call, and how often.
 //!
-//! [`tokens`] are what callers show, [`admission`] asks for them before any call is reached, [`rates`] says how often,
-//! [`origins`] which pages of browsers may call, [`headers`] what browsers are told about answers. Calls learn of all this
-//! only the [`Caller`](crate::service::jobs::Caller), whose jobs they show and change.
+//! [`tokens`] reads the bearer tokens, [`admission`] checks every request before any call is reached, [`rates`] limits the
+//! rate of requests, [`origins`] lists the pages of browsers that may call, [`headers`] sets the security headers of
+//! answers. Calls only receive the [`Caller`](crate::service::jobs::Caller), whose jobs they show and change.
 
 pub mod admission;
 pub mod headers;
@@ -18,16 +18,16 @@ use tokio_util::sync::CancellationToken;
 
 /// Who may call.
 #[derive(Debug)]
-pub enum Door {
-    /// Whoever is on this machine: nobody else reaches the address that is listened on.
+pub enum AccessPolicy {
+    /// Everyone on this machine: the service listens on a loopback address.
     Loopback,
-    /// Everyone; whoever started the service has said so.
+    /// Everyone, as the operator has chosen.
     Open,
-    /// Whoever shows a token; they can be exchanged while the service runs.
+    /// Everyone with a valid token; the list of tokens can be replaced while the service runs.
     Tokens(RwLock<Arc<Tokens>>),
 }
 
-impl Door {
+impl AccessPolicy {
     pub fn with(tokens: Tokens) -> Self {
         Self::Tokens(RwLock::new(Arc::new(tokens)))
     }
@@ -35,10 +35,10 @@ impl Door {
 
 #[derive(Debug)]
 struct Rules {
-    door: Door,
+    policy: AccessPolicy,
     rates: Rates,
     origins: Origins,
-    /// Cancelled, and replaced, when the tokens are exchanged.
+    /// Cancelled, and replaced by a new one, when the list of tokens is replaced.
     exchange: RwLock<CancellationToken>,
 }
 
@@ -47,21 +47,21 @@ struct Rules {
 pub struct Access(Arc<Rules>);
 
 impl Access {
-    pub fn new(door: Door, rates: Rates, origins: Origins) -> Self {
-        Self(Arc::new(Rules { door, rates, origins, exchange: RwLock::default() }))
+    pub fn new(policy: AccessPolicy, rates: Rates, origins: Origins) -> Self {
+        Self(Arc::new(Rules { policy, rates, origins, exchange: RwLock::default() }))
     }
 
-    /// For a service that only its own machine reaches.
+    /// The rules of a service that only its own machine reaches.
     pub fn loopback() -> Self {
-        Self::new(Door::Loopback, Rates::default(), Origins::default())
+        Self::new(AccessPolicy::Loopback, Rates::default(), Origins::default())
     }
 
-    /// The tokens that hold from now on; without effect where none are asked for.
+    /// Replaces the list of tokens; without effect on a service that asks for no tokens.
     pub fn exchange(&self, tokens: Tokens) {
-        if let Door::Tokens(current) = &self.0.door {
-            // What is behind the lock is replaced whole.
+        if let AccessPolicy::Tokens(current) = &self.0.policy {
+            // The value behind the lock is replaced as a whole, so that a poisoned lock holds a valid one.
             *current.write().unwrap_or_else(PoisonError::into_inner) = Arc::new(tokens);
-            // After the tokens: who is sent away because of them finds the new ones.
+            // After the tokens: a client whose stream ends now authenticates against the new tokens.
             std::mem::take(&mut *self.0.exchange.write().unwrap_or_else(PoisonError::into_inner)).cancel();
         }
     }
@@ -70,20 +70,20 @@ impl Access {
         &self.0.origins
     }
 
-    /// Cancelled when the tokens are exchanged the next time.
+    /// A signal that is cancelled when the tokens are replaced next.
     pub(super) fn next_exchange(&self) -> CancellationToken {
         self.0.exchange.read().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     pub(super) fn asks_tokens(&self) -> bool {
-        matches!(self.0.door, Door::Tokens(_))
+        matches!(self.0.policy, AccessPolicy::Tokens(_))
     }
 
-    /// `None`: no tokens are asked for.
+    /// The valid tokens; `None` where the service asks for no tokens.
     fn tokens(&self) -> Option<Arc<Tokens>> {
-        match &self.0.door {
-            Door::Tokens(current) => Some(Arc::clone(&current.read().unwrap_or_else(PoisonError::into_inner))),
-            Door::Loopback | Door::Open => None,
+        match &self.0.policy {
+            AccessPolicy::Tokens(current) => Some(Arc::clone(&current.read().unwrap_or_else(PoisonError::into_inner))),
+            AccessPolicy::Loopback | AccessPolicy::Open => None,
         }
     }
 }

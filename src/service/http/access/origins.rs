@@ -1,14 +1,14 @@
-//! Pages of browsers: those of other origins may not call unless they are listed.
+//! Cross-origin requests: a page of another origin may call only if its origin is listed.
 //!
-//! A browser lets any page send some requests to any address, and hides only the answer; it names the page in `Origin`. A
-//! page may also give its own name the address of this machine ("DNS rebinding"); then the request names it in `Host`.
+//! A browser lets any page send some requests to any address, and hides only the answers; the header `Origin` names the
+//! page. A page may also resolve its own name to the address of this machine ("DNS rebinding"); then `Host` has that name.
 
 use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, Uri, header};
 use std::net::IpAddr;
 use std::time::Duration;
 use tower_http::cors::{AllowOrigin, CorsLayer};
 
-/// How long a browser need not ask again what it may send.
+/// How long a browser may cache the answer to a preflight request.
 const ASKED_AGAIN: Duration = Duration::from_secs(600);
 
 /// Origins of pages that may call from elsewhere, such as `https://dashboards.example.org`.
@@ -17,12 +17,12 @@ pub struct Origins(Vec<HeaderValue>);
 
 impl Origins {
     /// # Errors
-    /// A sentence: an origin is a scheme, a name and perhaps a port, and nothing else.
+    /// The text is no origin, which is a scheme, a name and optionally a port.
     pub fn read<'a>(origins: impl IntoIterator<Item = &'a str>) -> Result<Self, String> {
         origins.into_iter().map(origin).collect::<Result<_, _>>().map(Self)
     }
 
-    /// What browsers are told; `None` where no page of another origin may call.
+    /// The layer that answers with CORS headers; `None` where no page of another origin may call.
     pub fn layer(&self) -> Option<CorsLayer> {
         let named = |name: &'static str| HeaderName::from_static(name);
         (!self.0.is_empty()).then(|| {
@@ -43,7 +43,7 @@ impl Origins {
         })
     }
 
-    /// Whether a request that changes something comes from a page that may not send it.
+    /// Whether a modifying request comes from a page whose origin is not allowed.
     pub fn is_foreign(&self, headers: &HeaderMap) -> bool {
         let Some(origin) = headers.get(header::ORIGIN) else { return false };
         if self.0.contains(origin) {
@@ -65,8 +65,8 @@ fn origin(text: &str) -> Result<HeaderValue, String> {
     text.parse().map_err(|_| wrong())
 }
 
-/// Whether the request names this machine by an address or as `localhost`, and not by a name that somebody may have given
-/// it.
+/// Whether the request names this machine by an IP address or as `localhost`, and not by another name, which anyone may have
+/// assigned to the address.
 pub fn names_this_machine(headers: &HeaderMap) -> bool {
     let mut hosts = headers.get_all(header::HOST).iter();
     let (Some(host), None) = (hosts.next(), hosts.next()) else { return headers.get(header::HOST).is_none() };

@@ -1,4 +1,4 @@
-//! How many requests a second are answered to one address and to one token: the generic cell rate algorithm, by `governor`.
+//! Rate limits by address and by token: the generic cell rate algorithm, implemented by `governor`.
 
 use governor::clock::{Clock, DefaultClock};
 use governor::{DefaultKeyedRateLimiter, Quota, RateLimiter};
@@ -8,12 +8,12 @@ use std::num::NonZeroU32;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
-/// After so many requests those who have been quiet are forgotten, so that memory is bounded by what comes meanwhile.
+/// After this many requests, idle addresses and tokens are removed, so that memory is bounded by the number of active ones.
 const FORGET_AFTER: u32 = 4096;
-/// Bits of an IPv6 address that one subscriber has (RFC 6177).
+/// Length of the IPv6 prefix of one subscriber (RFC 6177).
 const SUBSCRIBER: Ipv6Addr = Ipv6Addr::new(0xffff, 0xffff, 0xffff, 0xffff, 0, 0, 0, 0);
 
-/// Requests a second; as many at once may come after a pause of one.
+/// Requests per second; after an idle second this many may come at once.
 #[derive(Debug, Default)]
 pub struct Rates {
     addresses: Option<Rate<IpAddr>>,
@@ -21,25 +21,25 @@ pub struct Rates {
 }
 
 impl Rates {
-    /// `None`: as many as come.
+    /// `None`: unlimited.
     pub fn new(an_address: Option<NonZeroU32>, a_token: Option<NonZeroU32>) -> Self {
         Self { addresses: an_address.map(Rate::new), tokens: a_token.map(Rate::new) }
     }
 
     /// # Errors
-    /// How long it takes until a request of this address is answered again.
+    /// The time until the next request from this address is answered.
     pub fn of_address(&self, address: IpAddr) -> Result<(), Duration> {
         self.addresses.as_ref().map_or(Ok(()), |rate| rate.take(&subscriber(address)))
     }
 
     /// # Errors
-    /// How long it takes until a request with this token is answered again.
+    /// The time until the next request with this token is answered.
     pub fn of_token(&self, name: &str) -> Result<(), Duration> {
         self.tokens.as_ref().map_or(Ok(()), |rate| rate.take(&name.to_owned()))
     }
 }
 
-/// Whoever has one address of an IPv6 network has all of them.
+/// The key under which an address is counted: an IPv6 subscriber has all addresses of a prefix.
 pub fn subscriber(address: IpAddr) -> IpAddr {
     match address.to_canonical() {
         IpAddr::V6(address) => IpAddr::V6(address & SUBSCRIBER),

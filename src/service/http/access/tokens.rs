@@ -1,30 +1,30 @@
-//! Bearer tokens (RFC 6750): read from a file that holds their hashes, never themselves.
+//! Bearer tokens (RFC 6750): read from a file that holds their hashes, never the tokens themselves.
 //!
-//! One line a token: `NAME SCOPES SHA-256`, such as `ann read,submit 9f86d0…`; empty lines and what follows `#` are left
-//! out. A token is 256 random bits, so that one plain hash of it tells nothing. A name may stand on several lines: so a
-//! token is exchanged without a break.
+//! One line per token: `NAME SCOPES SHA-256`, such as `ann read,submit 9f86d0…`; empty lines and text after `#` are
+//! ignored. A token has 256 random bits, so that its plain hash cannot be inverted. A name may have several lines: in this
+//! way a token is replaced without interruption.
 
 use sha2::{Digest, Sha256};
 use std::fmt::{self, Write};
 use std::path::Path;
 use subtle::ConstantTimeEq;
 
-/// Told apart from other secrets at sight, by readers and by programs that look for leaks.
+/// The prefix of all tokens, by which readers and secret scanners recognise them.
 const PREFIX: &str = "arcslip_";
 const RANDOM_BYTES: usize = 32;
 const HASH_BYTES: usize = 32;
-/// Longer ones (bytes) are none of ours and not hashed.
+/// Longer tokens (bytes) cannot be valid and are not hashed.
 const LONGEST: usize = 512;
 const LONGEST_NAME: usize = 64;
 
-/// What a token lets its bearer do.
+/// What the bearer of a token may do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scope {
-    /// Look at jobs and studies of its own, at scenes and at metrics.
+    /// Read its own jobs and studies, scenes and metrics.
     Read,
-    /// Queue, follow, cancel and delete its own.
+    /// Queue, follow, cancel and delete its own jobs and studies.
     Submit,
-    /// All that, of every owner.
+    /// All of this for the jobs and studies of every owner.
     Admin,
 }
 
@@ -49,10 +49,10 @@ impl Scope {
 pub struct Scopes(Vec<Scope>);
 
 impl Scopes {
-    /// Of `read,submit` and the like.
+    /// Reads a list of scopes such as `read,submit`.
     ///
     /// # Errors
-    /// A sentence that names what is no scope.
+    /// An unknown scope, which the error names.
     pub fn read(text: &str) -> Result<Self, String> {
         let scope = |name: &str| {
             Scope::from_name(name).ok_or_else(|| format!("{name:?} is no scope; `read`, `submit` and `admin` are"))
@@ -72,16 +72,16 @@ impl fmt::Display for Scopes {
     }
 }
 
-/// A token as the file has it.
+/// A token as it is listed in the file.
 #[derive(Debug)]
 pub struct Token {
-    /// Whose it is; the owner of the jobs that are posted with it.
+    /// The name of the bearer, who owns the jobs posted with the token.
     pub name: String,
     pub scopes: Scopes,
     hash: [u8; HASH_BYTES],
 }
 
-/// Every token that is taken.
+/// All valid tokens.
 #[derive(Debug)]
 pub struct Tokens(Vec<Token>);
 
@@ -97,7 +97,7 @@ pub enum TokensError {
 
 impl Tokens {
     /// # Errors
-    /// A file that cannot be read, has no token, or a line that is none.
+    /// The file cannot be read, has no token, or has a line that is no token.
     pub fn of_file(file: &Path) -> Result<Self, TokensError> {
         let name = file.display().to_string();
         match std::fs::read_to_string(file) {
@@ -109,7 +109,7 @@ impl Tokens {
     /// `file` is named in errors.
     pub fn of_text(file: &str, text: &str) -> Result<Self, TokensError> {
         let mut tokens = Vec::new();
-        // Some editors begin a file with a mark of its encoding.
+        // Some editors begin a file with a byte order mark.
         for (number, line) in (1..).zip(text.trim_start_matches('\u{feff}').lines()) {
             let fields: Vec<&str> = line.split('#').next().unwrap_or_default().split_whitespace().collect();
             if fields.is_empty() {
@@ -124,7 +124,7 @@ impl Tokens {
         Ok(Self(tokens))
     }
 
-    /// The token that was shown. Every hash is looked at, in a time that does not tell how much of one was right.
+    /// The entry of a presented token. Every hash is compared, in a time that does not depend on how many bytes agree.
     pub fn find(&self, shown: &str) -> Option<&Token> {
         if shown.len() > LONGEST {
             return None;
@@ -153,7 +153,7 @@ fn token(fields: &[&str]) -> Result<Token, String> {
 }
 
 /// # Errors
-/// What would do in its place.
+/// What is expected instead.
 pub fn check_name(name: &str) -> Result<(), String> {
     let plain = |byte: u8| byte.is_ascii_alphanumeric() || matches!(byte, b'.' | b'_' | b'-');
     if (1..=LONGEST_NAME).contains(&name.len()) && name.bytes().all(plain) {
@@ -162,10 +162,10 @@ pub fn check_name(name: &str) -> Result<(), String> {
     Err(format!("{name:?} is no name: 1 to {LONGEST_NAME} letters, digits, dots, dashes and underscores would do"))
 }
 
-/// A new token, and its hash as the file has it.
+/// A new token and its hash as it is listed in the file.
 ///
 /// # Errors
-/// The system gives no randomness.
+/// The system provides no random numbers.
 pub fn make() -> Result<(String, String), getrandom::Error> {
     let mut random = [0; RANDOM_BYTES];
     getrandom::fill(&mut random)?;

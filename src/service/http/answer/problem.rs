@@ -1,7 +1,7 @@
-//! The edge where errors become answers: RFC 9457 problem documents, and nothing else.
+//! The only place where errors become answers: problem documents (RFC 9457).
 //!
-//! What is below has typed errors and knows no status; what is told to a client here holds no SQL, no path of this
-//! machine and no stack trace, which go to the log under the request's id.
+//! The layers below have typed errors without HTTP status codes. A problem document holds no SQL, no file path of this
+//! machine and no stack trace; these go to the log under the id of the request.
 
 use crate::model::{InputError, InputErrors};
 use crate::service::jobs::JobsError;
@@ -16,12 +16,12 @@ use std::any::Any;
 use std::time::Duration;
 
 const MEDIA_TYPE: &str = "application/problem+json";
-/// When what is unavailable is worth asking for again.
+/// The `Retry-After` of an unavailable service.
 const RETRY_AFTER: Duration = Duration::from_secs(2);
-/// A queue as long as it may be takes longer, and so does a full disk.
+/// The `Retry-After` of a full queue and of a full disk, which take longer to recover.
 const RETRY_WHEN_FULL: Duration = Duration::from_secs(10);
 
-/// Every kind of problem: the last part of its `type`, its status, its title.
+/// The kinds of problems; each has the last part of its `type`, a status and a title.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     InvalidJson,
@@ -136,7 +136,7 @@ impl Kind {
         }
     }
 
-    /// For answers that came from a layer that knows nothing of problems.
+    /// The kind of an error answer of the framework, which has a status alone.
     fn of_status(status: StatusCode) -> Self {
         match status {
             StatusCode::NOT_FOUND => Self::NotFound,
@@ -177,7 +177,7 @@ pub struct Problem {
     kind: Kind,
     detail: String,
     errors: Vec<InputError>,
-    /// When the same request is worth sending again.
+    /// After which time the same request may succeed.
     retry_after: Option<Duration>,
 }
 
@@ -191,7 +191,7 @@ impl Problem {
         Self { kind, detail: detail.into(), errors: Vec::new(), retry_after }
     }
 
-    /// Of whom more requests have come than are answered.
+    /// The rate limit of an address or token is exceeded.
     pub fn too_often(whom: &str, wait: Duration) -> Self {
         let detail = format!("too many requests of {whom}; the next is answered in {:.3} s", wait.as_secs_f64());
         Self { retry_after: Some(wait), ..Self::new(Kind::RateLimited, detail) }
@@ -288,11 +288,11 @@ impl IntoResponse for Problem {
     fn into_response(self) -> Response {
         let (kind, status, title) = self.kind.parts();
         let document = Document { kind, title, status: status.as_u16(), detail: self.detail, errors: self.errors };
-        // Five plain members: there is nothing in them that JSON cannot hold.
+        // Five plain members, which can always be written as JSON.
         let body = serde_json::to_vec(&document).unwrap_or_default();
         let mut response = (status, [(header::CONTENT_TYPE, MEDIA_TYPE)], body).into_response();
         if let Some(wait) = self.retry_after {
-            // Whole seconds (RFC 9110, section 10.2.3), and none too early.
+            // Whole seconds (RFC 9110, section 10.2.3), rounded up.
             response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from(wait.as_secs_f64().ceil() as u64));
         }
         if self.kind == Kind::Unauthorized {
@@ -304,7 +304,7 @@ impl IntoResponse for Problem {
     }
 }
 
-/// Gives errors that come from the framework (no such address, method, body) the same form, keeping their headers.
+/// Turns error answers of the framework (unknown address, method or body) into problem documents and keeps their headers.
 pub async fn every_error(request: Request, next: Next) -> Response {
     let asked = format!("{} {}", request.method(), request.uri().path());
     let response = next.run(request).await;
@@ -327,7 +327,7 @@ pub async fn every_error(request: Request, next: Next) -> Response {
     Response::from_parts(parts, body)
 }
 
-/// A defect in a call: its text goes to the log alone.
+/// The answer to a call that panicked; the text of the panic only goes to the log.
 pub fn from_panic(panic: Box<dyn Any + Send + 'static>) -> Response<Body> {
     let text = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
     tracing::error!(panic = text, "a call panicked");

@@ -1,4 +1,4 @@
-//! Entity tags (RFC 9110, section 8.8.3) of what is finished: who has it need not be sent it again.
+//! Entity tags (RFC 9110, section 8.8.3) of finished resources: a client that has one is not sent it again.
 
 use crate::service::http::answer::problem::Problem;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
@@ -6,34 +6,34 @@ use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
-/// Kept by whoever asked, and asked about each time: a job can be deleted.
+/// Clients may keep an answer but must revalidate it each time, as a job can be deleted.
 const ASKED_ABOUT: HeaderValue = HeaderValue::from_static("private, no-cache");
-/// Bytes of a hash that a tag shows.
+/// Bytes of the hash in a tag.
 const SHOWN: usize = 16;
 
-/// A strong tag: equal for equal bytes alone.
+/// A strong tag: equal only for equal bytes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Tag(String);
 
 impl Tag {
-    /// Of the answer itself, or of what determines it.
+    /// The tag of an answer, computed from its bytes or from what determines them.
     pub fn of(content: &[u8]) -> Self {
         let hash = Sha256::digest(content);
         let shown: String = hash.iter().take(SHOWN).map(|byte| format!("{byte:02x}")).collect();
         Self(format!("\"{shown}\""))
     }
 
-    /// Whether the client has what this tag is of (`If-None-Match`, compared weakly).
+    /// Whether the client has the answer with this tag (`If-None-Match`, weak comparison).
     fn is_known(&self, headers: &HeaderMap) -> bool {
         let values = headers.get_all(header::IF_NONE_MATCH).iter().filter_map(|value| value.to_str().ok());
         let known = |tag: &str| tag == "*" || tag.strip_prefix("W/").unwrap_or(tag) == self.0;
         values.flat_map(|value| value.split(',')).any(|tag| known(tag.trim()))
     }
 
-    /// The answer, or 304 where the client has it already; it is only made where it is needed.
+    /// The answer, or 304 where the client has it already; `make` is only called where it is needed.
     ///
     /// # Errors
-    /// Those of making it.
+    /// Those of `make`.
     pub fn answer(
         self,
         headers: &HeaderMap,
@@ -48,16 +48,16 @@ impl Tag {
     }
 }
 
-/// A value as JSON, with a tag where it is of something finished.
+/// A value as JSON, with a tag where its resource is finished.
 ///
 /// # Errors
-/// It cannot be written.
+/// The value cannot be written.
 pub fn json(headers: &HeaderMap, is_finished: bool, value: &impl Serialize) -> Result<Response, Problem> {
     let body = serde_json::to_vec(value)?;
     bytes(headers, is_finished, [(header::CONTENT_TYPE, "application/json")], body)
 }
 
-/// Bytes with headers of their own, with a tag where they are of something finished.
+/// Bytes with their headers, with a tag where their resource is finished.
 ///
 /// # Errors
 /// None of its own.

@@ -1,7 +1,7 @@
-//! The dashboard: pages, scripts and styles that are part of the program, so that it needs no network and no file.
+//! The dashboard: a page with scripts and styles that are part of the program, so that it needs no network and no files.
 //!
-//! The page itself is in `page/`: plain ES modules that use the calls of version 1 and nothing else. What it draws with,
-//! Plotly, comes from its crate. Called by [`crate::service::http::router`].
+//! The page is in `page/`: plain ES modules that use the calls of version 1 and nothing else. The plotting library, Plotly,
+//! comes from its crate. Called by [`crate::service::http::router`].
 
 use crate::service::http::answer::problem::Problem;
 use crate::service::http::answer::tag::Tag;
@@ -22,12 +22,12 @@ use tokio::task::spawn_blocking;
 #[folder = "src/service/http/dashboard/page/"]
 struct Page;
 
-/// Plotly's script as the page names it.
+/// The name of Plotly's script in the page.
 const PLOTLY: &str = "plotly.js";
-/// What its crate puts around it.
+/// The tags that the crate puts around the script.
 const OPENING: &str = "<script type=\"text/javascript\">";
 const CLOSING: &str = "</script>";
-/// Where within it the licence ends, and the script itself begins and ends; what stands before the list of its kinds of plot.
+/// Marks in the script: the end of the licence, the beginning and end of the library, the beginning of its list of trace types.
 const LICENCE_END: &str = "*/";
 const OWN_BEGINS: &str = "\"use strict\";var Plotly=";
 const OWN_ENDS: &str = "\nreturn Plotly;\n}));";
@@ -35,13 +35,13 @@ const REGISTERED: &str = ".register([";
 const HTML: &str = "text/html; charset=utf-8";
 const SCRIPT: &str = "text/javascript; charset=utf-8";
 
-/// Makes ready what takes longest, beside the start of the service: the first reader does not wait for it.
+/// Compresses the script in the background when the service starts, so that the first reader does not wait for it.
 pub fn prepare() {
-    // A script that cannot be compressed goes out plain.
+    // A script that cannot be compressed is sent uncompressed.
     thread::spawn(|| LazyLock::force(&COMPRESSED));
 }
 
-/// What a browser sees first.
+/// The page.
 pub async fn index(headers: HeaderMap) -> Result<Response, Problem> {
     embedded("index.html", &headers)
 }
@@ -64,9 +64,9 @@ fn embedded(name: &str, headers: &HeaderMap) -> Result<Response, Problem> {
     Tag::of(&file.data).answer(headers, || Ok((own, file.data.into_owned()).into_response()))
 }
 
-/// Plotly's script, so that a browser starts it quickly: without the wrapper for other loaders, which makes it read all of the
-/// script three times over, and without the kinds of plot that the page does not draw, of which most of its start is.
-/// Scatter plots are part of its core. `None`: it is written in another way than this knows.
+/// Plotly's script without the parts that slow down its start: the wrapper for other module loaders, because of which a browser
+/// parses the script three times, and the trace types that the page does not draw. Scatter plots are part of the core.
+/// `None` for a script without the expected marks.
 fn quick_to_start(script: &str) -> Option<String> {
     let (licence, _) = script.split_once(LICENCE_END)?;
     let own = script.get(script.find(OWN_BEGINS)?..)?;
@@ -76,7 +76,7 @@ fn quick_to_start(script: &str) -> Option<String> {
     Some([licence, LICENCE_END, "\n", before, REGISTERED, "])", after].concat())
 }
 
-/// A script as it is sent, and its tag.
+/// A script as it is sent, and its entity tag.
 struct Sent {
     bytes: &'static [u8],
     tag: Tag,
@@ -89,7 +89,7 @@ impl Sent {
     }
 }
 
-/// Plotly's script without MathJax, which the crate puts beside it; `None` where the crate writes them otherwise.
+/// Plotly's script without MathJax, which the crate adds; `None` if the crate's text has another form.
 static PLAIN: LazyLock<Option<Sent>> = LazyLock::new(|| {
     let fragment = Plot::offline_js_sources();
     let (_, rest) = fragment.split_once(OPENING)?;
@@ -97,7 +97,7 @@ static PLAIN: LazyLock<Option<Sent>> = LazyLock::new(|| {
     Some(Sent::of(quick_to_start(script).unwrap_or_else(|| script.to_owned()).into_bytes()))
 });
 
-/// The same compressed, once.
+/// The script compressed with gzip, made once.
 static COMPRESSED: LazyLock<Option<Sent>> = LazyLock::new(|| {
     let compress = |plain: &[u8]| -> io::Result<Vec<u8>> {
         let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
@@ -125,7 +125,7 @@ async fn plotly(headers: &HeaderMap) -> Result<Response, Problem> {
     Ok(answer)
 }
 
-/// Whether the client reads gzip (`Accept-Encoding`, RFC 9110, section 12.5.3).
+/// Whether the client accepts gzip (`Accept-Encoding`, RFC 9110, section 12.5.3).
 fn takes_gzip(headers: &HeaderMap) -> bool {
     let values = headers.get_all(header::ACCEPT_ENCODING).iter().filter_map(|value| value.to_str().ok());
     values.flat_map(|value| value.split(',')).any(|coding| {

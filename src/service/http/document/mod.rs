@@ -1,5 +1,5 @@
-//! The OpenAPI description: collected from the calls, completed with what holds for all of them; [`operations`] completes
-//! each.
+//! The OpenAPI description: collected from the calls and completed with what all calls share; [`operations`] completes each
+//! operation.
 
 pub(crate) mod operations;
 
@@ -39,7 +39,7 @@ unknown members and unknown query parameters are refused. Every error is `applic
 |---|---|---|
 ";
 
-/// The name of the tokens' scheme.
+/// The name of the security scheme.
 const TOKEN: &str = "token";
 
 #[derive(OpenApi)]
@@ -61,7 +61,7 @@ pub fn base() -> utoipa::openapi::OpenApi {
     Base::openapi()
 }
 
-/// The document as text, with the problems and the limits in it; `asks_tokens`: the service takes nobody without one.
+/// The document as text, completed with the kinds of problems and the limits; `asks_tokens`: every call needs a token.
 pub fn finish(
     mut document: utoipa::openapi::OpenApi,
     limits: &Limits,
@@ -77,7 +77,7 @@ pub fn finish(
     document.info.description = Some(description);
     for (path, item) in &mut document.paths.paths {
         for operation in [&mut item.get, &mut item.post, &mut item.delete].into_iter().flatten() {
-            operations::complete(operation)?;
+            operations::complete(path, operation)?;
             if admission::is_public(path) {
                 operation.security = Some(Vec::new());
             }
@@ -87,7 +87,7 @@ pub fn finish(
     let components = document.components.get_or_insert_default();
     components.security_schemes.insert(TOKEN.to_owned(), SecurityScheme::Http(scheme).into());
     let token = SecurityRequirement::new(TOKEN, Vec::<String>::new());
-    // Where none is asked for, one does no harm.
+    // Where the service asks for no tokens, a token is allowed.
     document.security = Some(if asks_tokens { vec![token] } else { vec![SecurityRequirement::default(), token] });
     let mut text = serde_json::to_string_pretty(&document)?;
     text.push('\n');

@@ -1,13 +1,25 @@
-//! What the calls' own descriptions leave out: problems, tags, examples, and where an answer leads.
+//! What the descriptions of the calls leave out because many calls share it: the id, the idempotency key and the address of
+//! a resource, problems, entity tags, links and examples.
 
 use crate::check::scenes;
+use crate::service::http::input::extract::LONGEST_KEY;
 use serde_json::{Value, json};
 use utoipa::openapi::link::Link;
 use utoipa::openapi::path::{Operation, Parameter, ParameterBuilder, ParameterIn};
 use utoipa::openapi::schema::SchemaType;
-use utoipa::openapi::{ContentBuilder, Header, Object, Ref, RefOr, ResponseBuilder, Schema, Type};
+use utoipa::openapi::{
+    ContentBuilder, Header, KnownFormat, Object, ObjectBuilder, Ref, RefOr, Required, ResponseBuilder, Schema,
+    SchemaFormat, Type,
+};
 
-/// Calls whose answers carry a tag where what they tell of is finished.
+/// The resources: the beginning of their addresses, and their names.
+const RESOURCES: [(&str, &str); 3] = [("/v1/jobs", "job"), ("/v1/studies", "study"), ("/v1/sweeps", "sweep")];
+/// Calls that queue a new resource.
+const QUEUEING: [&str; 4] = ["submit_job", "submit_study", "submit_sweep", "follow_direction"];
+/// The call that queues a known resource again.
+const QUEUEING_AGAIN: &str = "retry_job";
+
+/// Calls whose answers carry an entity tag once their resource has ended.
 const TAGGED: [&str; 15] = [
     "get_job",
     "get_request",
@@ -25,7 +37,7 @@ const TAGGED: [&str; 15] = [
     "get_sweep_table_txt",
     "get_sweep_picture",
 ];
-/// What can be asked of a job that has been queued, by its id; of a study likewise.
+/// The calls that take the id of a job that has been queued.
 const OF_A_JOB: [&str; 11] = [
     "get_job",
     "get_request",
@@ -39,6 +51,7 @@ const OF_A_JOB: [&str; 11] = [
     "retry_job",
     "delete_job",
 ];
+/// The calls that take the id of a study.
 const OF_A_STUDY: [&str; 7] = [
     "get_study",
     "stream_study",
@@ -48,6 +61,7 @@ const OF_A_STUDY: [&str; 7] = [
     "cancel_study",
     "delete_study",
 ];
+/// The calls that take the id of a sweep.
 const OF_A_SWEEP: [&str; 8] = [
     "get_sweep",
     "list_sweep_rows",
@@ -58,10 +72,11 @@ const OF_A_SWEEP: [&str; 8] = [
     "cancel_sweep",
     "delete_sweep",
 ];
-/// The scene that examples are of.
+/// The built-in scene in the examples.
 const EXAMPLE: &str = "klarbring";
 
-pub(super) fn complete(operation: &mut Operation) -> serde_json::Result<()> {
+/// Completes the description of the operation at an address.
+pub(super) fn complete(path: &str, operation: &mut Operation) -> serde_json::Result<()> {
     let content = ContentBuilder::new().schema(Some(Ref::from_schema_name("Problem"))).build();
     let problem = ResponseBuilder::new().description("A problem.").content("application/problem+json", content).build();
     operation.responses.responses.insert("default".to_owned(), RefOr::T(problem));
@@ -71,6 +86,17 @@ pub(super) fn complete(operation: &mut Operation) -> serde_json::Result<()> {
         }
     }
     let id = operation.operation_id.clone().unwrap_or_default();
+    if let Some((_, resource)) = RESOURCES.iter().find(|(address, _)| path.starts_with(address)) {
+        if path.contains("{id}") {
+            identified(operation, resource);
+        }
+        if QUEUEING.contains(&id.as_str()) {
+            repeatable(operation, resource);
+        }
+        if QUEUEING.contains(&id.as_str()) || id == QUEUEING_AGAIN {
+            located(operation, resource);
+        }
+    }
     if TAGGED.contains(&id.as_str()) {
         tagged(operation);
     }
@@ -104,7 +130,7 @@ fn scene() -> serde_json::Result<Value> {
     serde_json::from_str(scenes::find(EXAMPLE).map_or("{}", |scene| scene.request))
 }
 
-/// A parameter that is left out is not there: `null` is no value of it.
+/// Removes `null` from the values of a parameter: an optional parameter is left out instead.
 fn never_null(parameter: &mut Parameter) {
     match &mut parameter.schema {
         Some(RefOr::T(Schema::Object(object))) => {
@@ -127,7 +153,51 @@ fn never_null(parameter: &mut Parameter) {
     }
 }
 
-/// What tags add to a call.
+/// Adds the id of the resource in the address, unless the call describes the id itself.
+fn identified(operation: &mut Operation, resource: &str) {
+    let parameters = operation.parameters.get_or_insert_default();
+    let is_id = |parameter: &RefOr<Parameter>| matches!(parameter, RefOr::T(parameter) if parameter.name == "id");
+    if parameters.iter().any(is_id) {
+        return;
+    }
+    let uuid =
+        ObjectBuilder::new().schema_type(Type::String).format(Some(SchemaFormat::KnownFormat(KnownFormat::Uuid)));
+    let id = ParameterBuilder::new()
+        .name("id")
+        .parameter_in(ParameterIn::Path)
+        .required(Required::True)
+        .description(Some(format!("The {resource}'s id.")))
+        .schema(Some(uuid.build()))
+        .build();
+    parameters.insert(0, id.into());
+}
+
+/// Adds the idempotency key of a call that queues a resource.
+fn repeatable(operation: &mut Operation, resource: &str) {
+    let text = ObjectBuilder::new().schema_type(Type::String);
+    let text = text.min_length(Some(1)).max_length(Some(LONGEST_KEY)).pattern(Some("^[ -~]+$"));
+    let description = format!(
+        "Sent again with the same body, it answers the {resource} of the first time; with another body it is refused."
+    );
+    let key = ParameterBuilder::new()
+        .name("Idempotency-Key")
+        .parameter_in(ParameterIn::Header)
+        .description(Some(description))
+        .schema(Some(text.build()))
+        .build();
+    operation.parameters.get_or_insert_default().push(key.into());
+}
+
+/// Adds the address of the queued resource to the answer.
+fn located(operation: &mut Operation, resource: &str) {
+    let text = Some(Object::with_type(Type::String));
+    let location = Header::builder().schema(text).description(Some(format!("The {resource}'s address."))).build();
+    if let Some(RefOr::T(queued)) = operation.responses.responses.get_mut("202") {
+        queued.headers.insert("Location".to_owned(), location.into());
+    }
+}
+
+/// Adds entity tags to a call.
 fn tagged(operation: &mut Operation) {
     let text = || Some(Object::with_type(Type::String));
     let tag = Header::builder().schema(text()).description(Some("Of a finished one.")).build();

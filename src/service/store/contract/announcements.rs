@@ -1,20 +1,20 @@
-//! What other processes are to be told of changes here, gathered until it is sent.
+//! Announcements of changes to other processes, gathered until they are sent.
 //!
-//! Only that something changed is told, never what: a change that is told twice, late or not at all costs a look at the store.
-//! So changes of one moment are sent together, after they have been stored and apart from it.
+//! An announcement only says that something has changed: one that comes twice, late or not at all costs a read of the store.
+//! Changes within a short time are therefore announced together, after they have been stored and apart from the transaction.
 
 use std::collections::BTreeSet;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tokio::sync::Notify;
 use uuid::Uuid;
 
-/// Ids of one message, which has room for 8,000 bytes.
+/// The most ids in a message, which may have 8,000 bytes.
 const JOBS_A_MESSAGE: usize = 100;
 const QUEUE: &str = "queue";
 
 #[derive(Debug)]
 pub struct Announcements {
-    /// Names this process, so that it does not heed what it has said itself.
+    /// The name of this process, by which it ignores its own messages.
     from: Uuid,
     waiting: Mutex<Waiting>,
     more: Notify,
@@ -26,7 +26,7 @@ struct Waiting {
     jobs: BTreeSet<Uuid>,
 }
 
-/// What another process tells.
+/// An announcement of another process.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Announced {
     Queue,
@@ -48,7 +48,7 @@ impl Announcements {
         self.more.notify_one();
     }
 
-    /// Waits for something to tell; the messages that tell it.
+    /// Waits for changes; answers the messages that announce them.
     pub async fn next(&self) -> Vec<String> {
         loop {
             let messages = self.take();
@@ -59,7 +59,7 @@ impl Announcements {
         }
     }
 
-    /// What there is to tell now.
+    /// The messages for the changes gathered so far.
     pub fn take(&self) -> Vec<String> {
         let Waiting { queue, jobs } = std::mem::take(&mut *self.waiting());
         let mut words: Vec<String> = jobs.iter().map(|id| id.simple().to_string()).collect();
@@ -69,7 +69,7 @@ impl Announcements {
         words.chunks(JOBS_A_MESSAGE).map(|words| format!("{} {}", self.from.simple(), words.join(" "))).collect()
     }
 
-    /// What a message tells, if it comes from another process. What is not understood may be a later version's.
+    /// The announcements in a message of another process. Parts that cannot be read may be of a later version and are ignored.
     pub fn read(&self, message: &str) -> Vec<Announced> {
         let mut words = message.split(' ');
         if words.next().and_then(|from| from.parse::<Uuid>().ok()) == Some(self.from) {
@@ -83,7 +83,7 @@ impl Announcements {
     }
 
     fn waiting(&self) -> MutexGuard<'_, Waiting> {
-        // Whole at every point where its holder could panic.
+        // Consistent wherever a thread that holds the lock could panic.
         self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

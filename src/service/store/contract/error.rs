@@ -1,28 +1,28 @@
-//! What can go wrong with storage, told apart by what a caller can do about it.
+//! Errors of the store, distinguished by what a caller can do about them.
 
 pub(crate) type Source = Box<dyn std::error::Error + Send + Sync>;
 
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
-    /// Passing: locked, closed, or no connection free. Trying again may help.
+    /// Transient: locked, closed, or no free connection. The call may be repeated.
     #[error("the database is not available")]
     Unavailable(#[source] Source),
-    /// Nothing more can be written until there is room.
+    /// The disk is full: nothing can be written until there is space.
     #[error("the disk that holds the database is full")]
     Full(#[source] Source),
-    /// What is stored cannot be read as what was written.
+    /// The database is damaged.
     #[error("the database is damaged")]
     Damaged(#[source] Source),
-    /// The file cannot be opened, or its tables are not ours.
+    /// The database cannot be opened, or has other tables.
     #[error("the database cannot be opened: {0}")]
     Open(#[source] Source),
-    /// A defect: a statement that should have worked was refused.
+    /// A statement was refused, which is a defect.
     #[error("the database refused a statement")]
     Refused(#[source] Source),
 }
 
 impl StoreError {
-    /// The same for another who waited for the same.
+    /// A copy for another caller that waited for the same result.
     pub fn told_again(&self) -> Self {
         let why = || std::error::Error::source(self).map_or_else(|| self.to_string(), ToString::to_string).into();
         match self {
@@ -34,7 +34,7 @@ impl StoreError {
         }
     }
 
-    /// Worth another try of the same call.
+    /// Whether the same call may succeed when it is repeated.
     pub fn is_passing(&self) -> bool {
         match self {
             Self::Unavailable(_) => true,

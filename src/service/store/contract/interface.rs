@@ -1,4 +1,4 @@
-//! What an engine of storage does, whichever it is.
+//! The interface of the store, independent of the database engine.
 
 use crate::service::store::contract::error::Result;
 use crate::service::store::contract::record::{
@@ -11,101 +11,101 @@ use std::time::Duration;
 use tokio::sync::watch;
 use uuid::Uuid;
 
-/// An engine that keeps jobs. Every write of a worker carries its [`Lease`] and changes nothing once that is lost.
+/// Stores jobs. Every write of a worker carries its [`Lease`] and changes nothing once the lease is lost.
 #[async_trait]
 pub trait Store: Send + Sync + 'static {
     /// Stores a job as `queued`, or finds the one that came with the same idempotency key.
     async fn submit(&self, job: NewJob) -> Result<Submitted>;
 
-    /// Stores a sweep and all of its runs, those as `queued`, or finds the one that came with the same idempotency key.
+    /// Stores a sweep with all of its runs, which are `queued`, or finds the one that came with the same idempotency key.
     async fn submit_sweep(&self, sweep: NewSweep) -> Result<Submitted>;
 
-    /// Cancels the runs of a sweep: those that wait at once; those at work are marked, and answered.
+    /// Cancels the runs of a sweep: waiting runs at once; running ones are marked, and their ids are answered.
     async fn cancel_sweep(&self, id: Uuid) -> Result<Vec<Uuid>>;
 
     /// Stores a job that follows another as `queued`, or finds the one that came with the same idempotency key.
-    /// `None`: the parent, or a branch of it up to that increment, is not there.
+    /// `None`: the parent does not exist, or has no branch up to that increment.
     async fn follow(&self, job: NewFollower) -> Result<Option<Submitted>>;
 
     async fn job(&self, id: Uuid) -> Result<Option<JobRecord>>;
 
-    /// How far a job has come; less to read than [`job`](Self::job).
+    /// The status and last index of a job, which is cheaper than [`job`](Self::job).
     async fn standing(&self, id: Uuid) -> Result<Option<Standing>>;
 
-    /// A job's request, as posted.
+    /// The request of a job, as posted.
     async fn request(&self, id: Uuid) -> Result<Option<String>>;
 
     /// The last branch stored with an increment up to this one.
     async fn branch(&self, id: Uuid, increment: u64) -> Result<Option<Origin>>;
 
-    /// Queues what explorations have found: families are taken job by job, in the order of queueing, and each job when it
-    /// and all before it have ended, so that the same jobs are queued in the same order however many work at once.
-    /// Answers how many were queued.
+    /// Queues the alternatives that explorations have found and answers their number. The jobs of a family are processed in the
+    /// order of queueing, each when it and all before it have ended, so that the same jobs are queued in the same order
+    /// whatever the number of workers.
     async fn explore(&self) -> Result<u64>;
 
-    /// Jobs of one task, newest first, shortened. What is read and held for a page is bounded, however large they are.
+    /// Jobs of a task, newest first, in a short form. The memory of a page is bounded, however large the jobs are.
     async fn jobs(&self, filter: ListFilter) -> Result<Listed>;
 
-    /// How many jobs have each status; told without counting them.
+    /// The number of jobs by status, read from stored counts.
     async fn tally(&self) -> Result<Vec<(Status, u64)>>;
 
     /// Increments with an index above `after`, in order; at most `page.rows` of them and, past the first, at most about
     /// `page.bytes`. Empty exactly when there are no more.
     async fn increments(&self, id: Uuid, after: Option<u64>, page: Page) -> Result<Vec<Line>>;
 
-    /// A queued job is cancelled at once, a running one marked, an ended one left alone. `None`: no such job.
+    /// Cancels a queued job at once and marks a running one; an ended job is not changed. `None`: no such job.
     async fn request_cancel(&self, id: Uuid) -> Result<Option<JobRecord>>;
 
-    /// Drops a job and all its increments; a worker on it loses its lease. `false`: no such job.
+    /// Deletes a job and all its increments; its worker loses the lease. `false`: no such job.
     async fn delete(&self, id: Uuid) -> Result<bool>;
 
-    /// Takes the next queued job, if any: by priority, then in turn between owners and between an owner's single jobs and those
-    /// of which it has many. Of jobs that have lost their worker and stored nothing since, any of which may end
-    /// the process that works on it, no two are worked on at a time: a job is not lost more than once for another's sake.
+    /// Claims the next queued job, if any: by priority, then in turn between owners and between an owner's single jobs and jobs
+    /// of larger groups. A job that has lost its worker and stored nothing since may crash its process: no two such jobs run at
+    /// the same time, so that a job is not lost more than once because of another.
     async fn claim(&self, worker: &str, lease: Duration) -> Result<Option<Claim>>;
 
-    /// Prolongs a lease.
+    /// Renews a lease.
     async fn renew(&self, lease: &Lease, duration: Duration) -> Result<LeaseAnswer>;
 
-    /// Appends increments with what is stored beside them, moves the job's progress and prolongs the lease, all or nothing.
-    /// Where no answer came to such a call, the same call again stores nothing twice and is answered as the first.
+    /// Appends increments with their branches and checkpoints, updates the progress of the job and renews the lease, atomically.
+    /// The call is idempotent: repeated after a lost answer, it stores nothing twice and has the same answer.
     async fn append(&self, lease: &Lease, batch: &Batch, duration: Duration) -> Result<LeaseAnswer>;
 
-    /// Ends a job, with these increments as its last, all or nothing. Checkpoints are of no more use and are not stored.
+    /// Stores the end of a job and its last increments, atomically. Checkpoints are no longer needed and are not stored.
     async fn finish(&self, lease: &Lease, batch: &Batch, ending: &Ending) -> Result<LeaseAnswer>;
 
-    /// Hands a job back to the queue with its attempt, for a worker that is going away in good order.
+    /// Returns a job to the queue without counting the attempt, for a worker that shuts down.
     async fn release(&self, lease: &Lease) -> Result<LeaseAnswer>;
 
-    /// Queues a failed job again, what it has stored kept. `None`: no such job.
+    /// Queues a failed job again and keeps its stored increments. `None`: no such job.
     async fn retry(&self, id: Uuid, most_queued: u64) -> Result<Option<Retried>>;
 
-    /// Puts jobs whose lease has run out back into the queue; one that has lost `max_attempts` workers in a row, with nothing
-    /// stored between, becomes `failed`. A loss of several jobs at once counts for none that had lost no worker before.
-    /// Answers how many were touched.
+    /// Returns jobs whose lease has expired to the queue; a job that has lost `max_attempts` workers in a row without storing
+    /// anything in between becomes `failed`. If several jobs are lost at once, the loss does not count for a job that had lost
+    /// no worker before. Answers the number of changed jobs.
     async fn reclaim_expired(&self) -> Result<u64>;
 
-    /// Drops ended jobs that are not to be kept, a few at a time; answers how many. Those whose alternatives an exploration
-    /// has still to look at stay.
+    /// Deletes ended jobs that are not to be kept, a few at a time, and answers their number. Jobs whose alternatives have not
+    /// been queued yet are kept.
     async fn retire(&self, keep: Keep) -> Result<u64>;
 
-    /// Gives room that is free in the database back to the disk, a part at a time; answers whether there is more.
+    /// Returns free space of the database to the disk, a part at a time; answers whether there is more.
     async fn shrink(&self) -> Result<bool>;
 
-    /// Looks through the whole database for damage.
+    /// Checks the integrity of the whole database.
     ///
     /// # Errors
-    /// [`StoreError::Damaged`](crate::service::store::contract::error::StoreError::Damaged), which every call answers from then on that would write.
+    /// [`StoreError::Damaged`](crate::service::store::contract::error::StoreError::Damaged), which from then on every modifying call answers, too.
     async fn check(&self) -> Result<()>;
 
-    /// Proves that the store takes writes.
+    /// Tests whether the store accepts writes.
     async fn probe(&self) -> Result<()>;
 
-    /// Changes whenever something of this job was stored here, and mostly when it was elsewhere. Subscribe first, then read: no
-    /// change that was made here is missed.
+    /// A signal that changes whenever this process has stored something of the job, and usually when another process has.
+    /// Subscribe before reading: then no change of this process is missed.
     fn job_changes(&self, id: Uuid) -> watch::Receiver<Change>;
 
-    /// Changes whenever a job was put into the queue here, and mostly when it was elsewhere.
+    /// A signal that changes whenever this process has queued a job, and usually when another process has.
     fn queue_changes(&self) -> watch::Receiver<u64>;
 
     async fn close(&self);

@@ -1,4 +1,4 @@
-//! Where a database is: a file, or a PostgreSQL server. What is shown of it has no password.
+//! The location of a database: a file, or a PostgreSQL server. It is displayed without the password.
 
 use std::convert::Infallible;
 use std::fmt;
@@ -7,14 +7,14 @@ use std::str::FromStr;
 
 const SCHEMES: [&str; 2] = ["postgres://", "postgresql://"];
 
-/// As `--database` names it.
+/// The location as given by `--database`.
 #[derive(Clone, PartialEq, Eq)]
 pub enum Location {
     File(PathBuf),
     Postgres(Url),
 }
 
-/// A URL that may hold a password; it is looked at where the database is opened, so that no error repeats it before.
+/// A URL that may hold a password; it is parsed when the database is opened, so that no error message repeats it.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Url(String);
 
@@ -83,7 +83,7 @@ impl fmt::Display for Url {
     }
 }
 
-/// Who, and where and which database; none where these cannot be told from a password that is not written as it should be.
+/// User, host and database of a URL; `None` if they cannot be separated from a malformed password.
 fn public(rest: &str) -> Option<(&str, &str)> {
     let (authority, after) = rest.split_at(rest.find(['/', '?', '#']).unwrap_or(rest.len()));
     let (user, host) = authority.split_once('@').unwrap_or(("", authority));

@@ -1,4 +1,4 @@
-//! What storage says to those who use it: records, errors, signals; no SQL.
+//! The interface of the store to its callers: records, errors and signals, without SQL.
 
 pub(crate) mod announcements;
 pub mod error;

@@ -1,4 +1,4 @@
-//! What goes into a store and comes out of it; no engine shows through.
+//! The records that are written to a store and read from it, independent of the database engine.
 
 use crate::model::request::Explore;
 use jiff::Timestamp;
@@ -41,7 +41,7 @@ impl Status {
         Self::ALL.into_iter().find(|status| status.name() == name)
     }
 
-    /// Nothing of the job changes any more.
+    /// Whether the job has ended; it does not change any more.
     pub fn is_ended(self) -> bool {
         match self {
             Self::Queued | Self::Running => false,
@@ -50,14 +50,14 @@ impl Status {
     }
 }
 
-/// What a job does.
+/// The task of a job.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Task {
-    /// Traces one path; its lines are increments.
+    /// A job that traces one path; its lines are increments.
     Path,
-    /// Traces many; its lines are the paths that have been traced.
+    /// A job that traces many paths; its lines are the traced paths.
     Study,
-    /// Stands for jobs of its own; its lines are those that have ended.
+    /// A group of jobs, its runs; its lines are the runs that have ended.
     Sweep,
 }
 
@@ -79,27 +79,27 @@ impl Task {
 #[derive(Debug, Clone)]
 pub struct NewJob {
     pub task: Task,
-    /// Whose it is; keys of different owners do not meet.
+    /// The owner; idempotency keys are separate for each owner.
     pub owner: Option<String>,
     pub name: Option<String>,
     /// The request as posted.
     pub request: String,
     /// JSON.
     pub plan: String,
-    /// What lists show of the plan, JSON; none where they show all of it.
+    /// The short form of the plan for lists, JSON; `None` if lists show the whole plan.
     pub summary: Option<String>,
     pub max_increments: u64,
-    /// Workers that it may lose in a row, nothing stored between, but for those of which it is not suspected.
+    /// The number of counted losses in a row, without anything stored in between, after which the job fails.
     pub max_attempts: u32,
     /// It is refused where so many wait already.
     pub most_queued: u64,
     pub priority: i32,
     pub idempotency_key: Option<String>,
-    /// The job begins a family.
+    /// The job is the first of an exploration.
     pub explore: Option<Explore>,
 }
 
-/// A sweep to be stored: what stands for all of it, and its runs in order, which have its name, owner and priority.
+/// A sweep to be stored: the record of the whole, and its runs in order, which share its owner and priority.
 #[derive(Debug, Clone)]
 pub struct NewSweep {
     pub whole: NewJob,
@@ -109,12 +109,12 @@ pub struct NewSweep {
 /// A run of a sweep to be queued.
 #[derive(Debug, Clone)]
 pub struct NewRun {
-    /// The model's own.
+    /// The name of the model.
     pub name: Option<String>,
     pub request: String,
     /// JSON.
     pub plan: String,
-    /// A JSON array: what it has in the places that the sweep varies.
+    /// A JSON array: the values of the varied parameters.
     pub values: String,
     pub max_increments: u64,
 }
@@ -134,7 +134,7 @@ pub struct Parent {
     pub direction: u64,
 }
 
-/// A job that follows another, to be queued; what is not here it has from its parent.
+/// A job to be queued that follows another; it shares all other members with its parent.
 #[derive(Debug, Clone)]
 pub struct NewFollower {
     pub parent: Parent,
@@ -147,33 +147,34 @@ pub struct NewFollower {
     pub most_queued: u64,
 }
 
-/// What it takes to go on from an increment along another direction; opaque here.
+/// A checkpoint from which another direction can be followed; its format is opaque to the store.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Branch {
     pub body: String,
-    /// One line: what is new since the branch before.
+    /// One line: the new part of the trail since the previous branch.
     pub trail: Option<String>,
     /// Directions that an exploration follows from here.
     pub alternatives: Vec<u64>,
 }
 
-/// A branch, or a checkpoint, as it is read back.
+/// A stored branch or checkpoint.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Origin {
     pub body: String,
-    /// Lines: everything up to that point.
+    /// The lines of the whole trail up to that point.
     pub trail: String,
 }
 
-/// What it takes to go on with a job from an increment of its own; opaque here. Of a job the newest is kept, until it ends.
+/// A checkpoint from which a job can be resumed; its format is opaque to the store. The newest one of a job is kept until the
+/// job ends.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Checkpoint {
-    /// Of the increment, which need not be stored itself, where few are; those up to it are.
+    /// The index of the increment, which need not be stored itself if not all increments are recorded.
     pub index: u64,
     pub body: String,
-    /// One line: what is new since the checkpoint before.
+    /// One line: the new part of the trail since the previous checkpoint.
     pub trail: Option<String>,
-    /// What the trail held before is of no use any more.
+    /// The trail starts again with this checkpoint.
     pub begins_trail: bool,
 }
 
@@ -184,33 +185,33 @@ pub struct Membership {
     pub family: Uuid,
     pub generation: u64,
     pub explore: Explore,
-    /// Its alternatives have been looked at.
+    /// The alternatives of the job have been processed.
     pub explored: bool,
-    /// Alternatives of this job for which there was no room.
+    /// Alternatives of this job that were not queued because of the bounds of the exploration.
     pub not_queued: u64,
     /// Jobs queued in the whole family so far, the first not counted.
     pub family_queued: u64,
-    /// Alternatives in the whole family for which there was no room so far.
+    /// Alternatives in the whole family that were not queued so far.
     pub family_not_queued: u64,
 }
 
 #[derive(Debug, Clone)]
 pub enum Submitted {
     Created(JobRecord),
-    /// The same key came before with the same request: this is its job.
+    /// The key was used before with the same request, whose job this is.
     Repeated(JobRecord),
-    /// The same key came before with another request.
+    /// The key was used before with another request.
     KeyReused,
     QueueFull {
         most: u64,
     },
 }
 
-/// What became of a call to queue a failed job again.
+/// The result of a call that queues a failed job again.
 #[derive(Debug, Clone)]
 pub enum Retried {
     Queued(JobRecord),
-    /// It has not failed, or is a run of a sweep, whose rows are written once.
+    /// The job has not failed, or is a run of a sweep, whose rows are written once.
     NotRetryable(JobRecord),
     QueueFull {
         most: u64,
@@ -220,9 +221,9 @@ pub enum Retried {
 /// Which ended jobs are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Keep {
-    /// Those that ended no longer ago.
+    /// Jobs that ended within this time.
     For(Duration),
-    /// So many that ended last.
+    /// The given number of jobs that ended last.
     Newest(u64),
 }
 
@@ -263,14 +264,14 @@ pub struct JobRecord {
 }
 
 impl JobRecord {
-    /// Of its texts.
+    /// Bytes of the texts of the record.
     pub fn bytes(&self) -> usize {
         let texts = [&self.owner, &self.name, &self.report, &self.stop_reason, &self.error];
         self.plan.len() + texts.into_iter().flatten().map(String::len).sum::<usize>()
     }
 }
 
-/// How far a job has come. What has ended has all its increments.
+/// The progress of a job. An ended job has all its increments.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Standing {
     pub task: Task,
@@ -283,7 +284,7 @@ pub struct Standing {
 #[derive(Debug, Clone)]
 pub struct ListFilter {
     pub task: Task,
-    /// Only jobs of this one's.
+    /// Only jobs of this owner.
     pub owner: Option<String>,
     pub status: Option<Status>,
     /// Only runs of this sweep.
@@ -292,16 +293,16 @@ pub struct ListFilter {
     pub parent: Option<Uuid>,
     /// Only jobs older than this one.
     pub before: Option<Uuid>,
-    /// Past the first no more than so many of them, and about so many bytes.
+    /// The most jobs, and about the most bytes, of the page.
     pub page: Page,
 }
 
-/// A page of jobs as lists show them: what can be large is shortened. A plan that has a summary is that, names and errors are
-/// cut, and only paths have their report.
+/// A page of jobs in the short form of lists: a summary replaces its plan, names and errors are truncated, and only paths have
+/// their report.
 #[derive(Debug, Clone)]
 pub struct Listed {
     pub jobs: Vec<JobRecord>,
-    /// There are others past these.
+    /// There are further jobs.
     pub more: bool,
 }
 
@@ -317,17 +318,17 @@ pub struct Page {
 pub struct Line {
     pub index: u64,
     pub body: String,
-    /// Stored beside the increment, and not read back with it.
+    /// Stored beside the increment; absent from lines that are read.
     pub branch: Option<Branch>,
 }
 
 impl Line {
-    /// Without what is stored beside it.
+    /// A line without a branch.
     pub fn alone(&self) -> Self {
         Self { index: self.index, body: self.body.clone(), branch: None }
     }
 
-    /// Bytes for which there is a limit; checkpoints are replaced and dropped, and do not count.
+    /// Bytes that count towards the storage limit. Checkpoints do not count, as they are replaced and deleted.
     pub fn bytes(&self) -> u64 {
         let branch =
             self.branch.as_ref().map_or(0, |branch| branch.body.len() + branch.trail.as_ref().map_or(0, String::len));
@@ -335,14 +336,14 @@ impl Line {
     }
 }
 
-/// What a worker stores at once.
+/// What a worker stores in a transaction.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Batch {
     /// In order.
     pub lines: Vec<Line>,
-    /// In order; none before lines up to its increment that are not stored.
+    /// In order; each is stored after the lines up to its increment.
     pub checkpoints: Vec<Checkpoint>,
-    /// The first limit load among the lines, as JSON; of a job the first of all is kept.
+    /// The first limit load among the lines, as JSON; the store keeps the first one of a job.
     pub first_limit: Option<String>,
 }
 
@@ -358,9 +359,8 @@ impl From<Vec<Line>> for Batch {
     }
 }
 
-/// The right to write to a job: valid while the job still names this worker and this attempt, and until the time that it
-/// was given or last prolonged for has passed. After that nothing can be written with it, whether or not the job has been
-/// given to another meanwhile.
+/// The right to write to a job. A lease is valid while the job names this worker and this attempt, until it expires. An
+/// expired lease allows no writes, whether or not another worker has claimed the job meanwhile.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Lease {
     pub job: Uuid,
@@ -368,7 +368,7 @@ pub struct Lease {
     pub attempt: u32,
 }
 
-/// A job taken from the queue.
+/// A claimed job.
 #[derive(Debug, Clone)]
 pub struct Claim {
     pub lease: Lease,
@@ -383,23 +383,23 @@ pub struct Claim {
     pub checkpoint: Option<Origin>,
     /// Where the job begins, if it follows another.
     pub origin: Option<(Parent, Origin)>,
-    /// Its alternatives are to be followed by jobs of their own.
+    /// The alternatives of the job are to be queued as jobs.
     pub explores: bool,
-    /// How long it waited in the queue, if this is its first start.
+    /// The time in the queue, if this is the first start of the job.
     pub waited: Option<Duration>,
-    /// How long its attempts before this one ran.
+    /// The running time of earlier attempts.
     pub ran: Duration,
-    /// Bytes that they stored: see [`Line::bytes`].
+    /// Bytes stored by earlier attempts: see [`Line::bytes`].
     pub stored_bytes: u64,
 }
 
-/// What became of a write under a lease.
+/// The result of a write under a lease.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LeaseAnswer {
     Held {
         cancel_requested: bool,
     },
-    /// The job is gone or another's; nothing was written.
+    /// The job was deleted or claimed by another worker; nothing was written.
     Lost,
 }
 

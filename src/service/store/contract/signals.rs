@@ -1,8 +1,8 @@
-//! Wakes readers as soon as something was stored in this process, and hands them what it was.
+//! Signals that wake readers as soon as this process has stored something.
 //!
-//! A signal says "look again"; what is true is in the store. Lines that were stored last come along, so that many readers of
-//! one job do not all read the same rows. What other processes change is told here too where the engine carries
-//! [`Announcements`]; it may be lost, so whoever waits also looks from time to time.
+//! A signal says that the store has changed. It carries the lines stored last, so that many readers of a job do not all read
+//! the same rows. Changes of other processes are signalled, too, if the engine transmits [`Announcements`]; these may be
+//! lost, so that readers also poll the store from time to time.
 
 use crate::service::store::contract::announcements::Announcements;
 use crate::service::store::{Lease, Line};
@@ -16,37 +16,37 @@ use uuid::Uuid;
 pub struct Signals {
     jobs: Mutex<HashMap<Uuid, Heard>>,
     queue: watch::Sender<u64>,
-    /// What other processes are to be told.
+    /// The announcements to other processes.
     announcements: Option<Arc<Announcements>>,
 }
 
-/// Something of a job has changed.
+/// A change of a job.
 #[derive(Debug, Clone, Default)]
 pub struct Change {
-    /// What was stored, where it is no more than lines.
+    /// The stored lines, if nothing else was stored.
     pub latest: Option<Arc<Latest>>,
-    /// When lines were stored.
+    /// When the lines were stored.
     pub at: Option<Instant>,
-    /// The job has ended with that.
+    /// The job has ended with this change.
     pub ended: bool,
 }
 
-/// The lines of one write.
+/// The lines of a write.
 #[derive(Debug)]
 pub struct Latest {
-    /// The last line before them; none where they are the first of the job.
+    /// The index of the last line before them; `None` if they are the first of the job.
     after: Option<u64>,
     lines: Vec<Line>,
 }
 
-/// A job that somebody listens to.
+/// A job with subscribers.
 #[derive(Debug, Default)]
 struct Heard {
     changes: watch::Sender<Change>,
     holder: Option<Holder>,
 }
 
-/// Who writes a job's lines, in this process, one write after the other.
+/// The lease under which this process writes the lines of the job, one write after another.
 #[derive(Debug)]
 struct Holder {
     lease: Lease,
@@ -54,7 +54,7 @@ struct Holder {
 }
 
 impl Latest {
-    /// The lines past that one, if they are all there are; they may be none.
+    /// The lines past the given index, possibly none; `None` if there may be lines in between.
     pub fn beyond(&self, index: Option<u64>) -> Option<&[Line]> {
         let known = self.lines.partition_point(|line| index.is_some_and(|index| line.index <= index));
         (index >= self.after).then(|| &self.lines[known..])
@@ -68,14 +68,14 @@ impl Default for Signals {
 }
 
 impl Signals {
-    /// Everything that changes here is to be told to others as well.
+    /// Signals whose changes are announced to other processes.
     pub fn announced(announcements: Arc<Announcements>) -> Self {
         Self { announcements: Some(announcements), ..Self::default() }
     }
 
     pub fn job_changes(&self, id: Uuid) -> watch::Receiver<Change> {
         let mut jobs = self.jobs();
-        // A job nobody listens to any more is forgotten here, so that the map stays as small as the open streams.
+        // Jobs without subscribers are removed here, so that the map has only the jobs of open streams.
         jobs.retain(|_, heard| heard.changes.receiver_count() > 0);
         jobs.entry(id).or_default().changes.subscribe()
     }
@@ -96,7 +96,7 @@ impl Signals {
         }
     }
 
-    /// A job was taken from the queue, with lines up to that one.
+    /// A job was claimed, with lines up to the given index.
     pub fn job_claimed(&self, lease: &Lease, last_index: Option<u64>) {
         self.announce_job(lease.job);
         if let Some(heard) = self.jobs().get_mut(&lease.job) {
@@ -123,7 +123,7 @@ impl Signals {
             heard.changes.send_replace(Change { ended, ..Change::default() });
             return;
         };
-        // Between two writes of one lease nobody else writes; between those of two others may have.
+        // Between two writes under the same lease nobody else writes; between writes under different leases others may have.
         let after = heard.holder.take().filter(|holder| holder.lease == *lease).map(|holder| holder.last_index);
         heard.holder = Some(Holder { lease: lease.clone(), last_index: Some(last.index) });
         let latest = after.map(|after| Arc::new(Latest { after, lines: lines.iter().map(Line::alone).collect() }));
@@ -142,7 +142,7 @@ impl Signals {
         self.queue.send_modify(|count| *count += 1);
     }
 
-    /// Anything may have changed elsewhere.
+    /// Anything may have changed in other processes.
     pub fn all_changed_elsewhere(&self) {
         for heard in self.jobs().values() {
             heard.changes.send_replace(Change::default());
@@ -157,7 +157,7 @@ impl Signals {
     }
 
     fn jobs(&self) -> MutexGuard<'_, HashMap<Uuid, Heard>> {
-        // The map is whole at every point where its holder could panic.
+        // The map is consistent wherever a thread that holds the lock could panic.
         self.jobs.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -206,7 +206,7 @@ mod tests {
     fn another_lease_begins_anew() {
         let signals = Signals::default();
         let mut changes = signals.job_changes(Uuid::nil());
-        // Claimed before anybody listened: what came before these is not known.
+        // Claimed before the subscription: the lines before these are not known.
         signals.job_appended(&lease(1), &lines(&[3]));
         assert_eq!(beyond(&mut changes, Some(2)), None);
         signals.job_appended(&lease(1), &lines(&[4]));
@@ -217,7 +217,7 @@ mod tests {
         signals.job_claimed(&lease(4), Some(9));
         signals.job_appended(&lease(4), &lines(&[10]));
         assert_eq!(beyond(&mut changes, Some(9)), Some(vec![10]));
-        // A write of before that is told late.
+        // A late signal of an earlier write.
         signals.job_appended(&lease(3), &lines(&[9]));
         signals.job_appended(&lease(4), &lines(&[11]));
         assert_eq!(beyond(&mut changes, Some(10)), None);

@@ -1,4 +1,4 @@
-//! How a process connects, and what it makes sure of before it begins.
+//! Connects a process to the server, and checks server and schema before the service starts.
 
 use crate::service::store::StoreError;
 use crate::service::store::contract::error::Result;
@@ -12,11 +12,11 @@ use tokio::time::timeout;
 
 static MIGRATIONS: Migrator = sqlx::migrate!("./migrations/postgres");
 
-/// As `server_version_num` has it.
+/// In the format of `server_version_num`.
 const OLDEST_SERVER: i32 = 140_000;
 const TO_CONNECT: Duration = Duration::from_secs(15);
 
-/// What a URL may say besides who and where.
+/// The options that a URL may have.
 const PARAMETERS: [&str; 10] = [
     "application_name",
     "dbname",
@@ -30,7 +30,7 @@ const PARAMETERS: [&str; 10] = [
     "user",
 ];
 
-/// What the server does for a process that is cut off or stands still: what it holds is let go.
+/// Timeouts after which the server releases the locks of a process that is disconnected or suspended.
 const SERVER_SETTINGS: [(&str, &str); 6] = [
     ("idle_in_transaction_session_timeout", "10s"),
     ("lock_timeout", "15s"),
@@ -41,7 +41,7 @@ const SERVER_SETTINGS: [(&str, &str); 6] = [
 ];
 
 /// # Errors
-/// A URL that is none; the error holds nothing of it, because that may be a password.
+/// The URL is malformed; the error does not repeat any part of it, which may be a password.
 pub(super) fn options(url: &Url) -> Result<PgConnectOptions> {
     let bad = |why: String| StoreError::Open(why.into());
     let text = url.with_password();
@@ -52,7 +52,7 @@ pub(super) fn options(url: &Url) -> Result<PgConnectOptions> {
             return Err(bad(format!("there is a parameter that is not known; known are {known}")));
         }
     }
-    // What it says of the mistake may repeat a part of the URL.
+    // The message may repeat a part of the URL.
     let options = PgConnectOptions::from_str(text).map_err(|_| {
         bad("this is no URL of a PostgreSQL database; postgres://USER@HOST:PORT/DATABASE is one, where characters such as / @ \
              : ? # % in a password are written %2F %40 %3A %3F %23 %25"
@@ -68,7 +68,7 @@ pub(super) fn options(url: &Url) -> Result<PgConnectOptions> {
             ));
         }
     }
-    // An address of version 6 stands in brackets in a URL, and nowhere else.
+    // Only in a URL does an IPv6 address have brackets.
     let bare = options.get_host().strip_prefix('[').and_then(|host| host.strip_suffix(']')).map(str::to_owned);
     let options = match bare {
         Some(host) => options.host(&host),
@@ -79,17 +79,17 @@ pub(super) fn options(url: &Url) -> Result<PgConnectOptions> {
     Ok(options.ssl_mode(PgSslMode::Disable).options(SERVER_SETTINGS))
 }
 
-/// Makes the tables, or brings them up to what this program knows; one process after the other, whoever begins first.
+/// Creates or migrates the tables; under a lock, so that processes do this one after another.
 pub(super) async fn prepare(options: &PgConnectOptions) -> Result<()> {
     let open = |error: sqlx::Error| StoreError::Open(Box::new(error));
-    // A change of a large table may take its time, and others wait for it here.
+    // The migration of a large table may take long, and other processes wait for it here.
     let patient = options.clone().options([("lock_timeout", "0"), ("statement_timeout", "0")]);
     let mut connection = timeout(TO_CONNECT, patient.connect())
         .await
         .map_err(|_| StoreError::Open("the server does not answer".into()))?
         .map_err(open)?;
     let prepared = migrate(&mut connection).await.map_err(StoreError::Open);
-    // Closing lets go of the lock, however it ended.
+    // Closing the connection releases the lock in any case.
     connection.close().await.map_err(open)?;
     prepared
 }
@@ -106,7 +106,7 @@ async fn migrate(connection: &mut PgConnection) -> std::result::Result<(), Box<d
         return Err(format!("the database's encoding is {encoding}; one made with ENCODING 'UTF8' would do").into());
     }
     let mut migrations = Migrator::with_migrations(MIGRATIONS.iter().cloned().collect());
-    // Of a later version of this program, which have only added to what this one knows, unless it says otherwise below.
+    // Migrations of later versions only add to the schema, unless the check below says otherwise.
     migrations.set_ignore_missing(true);
     migrations.run(&mut *connection).await?;
     let least: i64 =

@@ -1,11 +1,11 @@
-//! What PostgreSQL says in its own way.
+//! PostgreSQL's dialect of SQL.
 
 use crate::service::store::Line;
 use crate::service::store::sql::dialect::{Dialect, Runs, alternatives, speaks};
 use sqlx::postgres::{PgConnection, PgRow, Postgres};
 use uuid::Uuid;
 
-/// Rows of one INSERT of jobs: their requests are sent together.
+/// Rows of an INSERT of jobs, whose requests are sent together.
 const ROWS_A_STATEMENT: usize = 500;
 
 speaks!(PgRow);
@@ -25,7 +25,7 @@ impl Dialect for Postgres {
                                 sum(octet_length(body)) OVER (ORDER BY increment_index) - octet_length(body) AS before \
                                 FROM increments WHERE job = $1 AND increment_index > $2 ORDER BY increment_index LIMIT $3) \
                                 AS page WHERE before < $4 ORDER BY increment_index";
-    /// Folds the tallies. Rows that another folds at the same moment are its to fold.
+    /// Sums up the tallies, except for rows that another process sums up at the moment.
     const SWEEP: Option<&'static str> = Some(
         "WITH told AS (DELETE FROM tallies WHERE (SELECT count(*) FROM tallies) > 100 RETURNING status, jobs) \
          INSERT INTO tallies (status, jobs) SELECT status, sum(jobs) FROM told GROUP BY status",

@@ -1,9 +1,9 @@
-//! NOTIFY and LISTEN: what changes in one process wakes those who wait in the others.
+//! NOTIFY and LISTEN: changes in a process wake readers in other processes.
 //!
-//! Announcements are sent apart from what they announce, after it was stored and several at a time: a transaction that notifies
-//! holds a lock of the whole database until its commit is on the disk, and those of all workers would follow one another. One
-//! that only notifies writes nothing and is done at once. A process that ends between storing and telling tells nothing, as does
-//! a connection that was lost: whoever waits looks from time to time by itself.
+//! Announcements are sent after the changes have been stored, in transactions of their own, and several at a time: a
+//! transaction that notifies holds a lock on the whole database until its commit is on the disk, which would serialise the
+//! commits of all workers. A transaction that only notifies writes nothing and ends at once. An announcement is lost if the
+//! process ends after the change or its connection fails; readers therefore poll the store from time to time.
 
 use crate::service::store::contract::announcements::{Announced, Announcements};
 use crate::service::store::contract::signals::Signals;
@@ -13,21 +13,21 @@ use std::time::Duration;
 use tokio::time::{sleep, timeout};
 
 const CHANNEL: &str = "arcslip";
-/// Changes of so long are told together.
+/// Changes within this time are announced together.
 const GATHERED: Duration = Duration::from_millis(5);
-/// After a connection that could not be had.
+/// The pause after a failed connection attempt.
 const PAUSE: Duration = Duration::from_secs(1);
-/// A line on which nothing was heard for so long is looked at ...
+/// A connection without messages for this time is tested ...
 const SILENCE: Duration = Duration::from_secs(10);
-/// ... and is lost if it does not answer in this time.
+/// ... and is given up if it does not answer within this time.
 const TO_ANSWER: Duration = Duration::from_secs(5);
 
-/// Tells the others what has changed here, for ever.
+/// Announces the changes of this process to the others; does not end.
 pub(super) async fn tell(pool: PgPool, announcements: Arc<Announcements>) {
     loop {
         let messages = announcements.next().await;
         if let Err(error) = send(&pool, messages).await {
-            tracing::debug!(%error, "other processes were not told of a change; they look for themselves");
+            tracing::debug!(%error, "a change was not announced to other processes; they poll the store");
             sleep(PAUSE).await;
         }
         sleep(GATHERED).await;
@@ -44,18 +44,18 @@ pub(super) async fn send(pool: &PgPool, messages: Vec<String>) -> sqlx::Result<(
     Ok(())
 }
 
-/// Hears what others have changed, for ever.
+/// Receives the announcements of other processes; does not end.
 pub(super) async fn listen(options: PgConnectOptions, signals: Arc<Signals>, announcements: Arc<Announcements>) {
     loop {
         let ended = hear(&options, &signals, &announcements).await;
         if let Err(error) = ended {
-            tracing::debug!(%error, "changes of other processes are not heard of; they are looked for");
+            tracing::debug!(%error, "announcements of other processes are not received; the store is polled");
             sleep(PAUSE).await;
         }
     }
 }
 
-/// Until the connection is lost.
+/// Receives announcements until the connection is lost.
 async fn hear(options: &PgConnectOptions, signals: &Signals, announcements: &Announcements) -> sqlx::Result<()> {
     // A pool of its own, which ends with this call: the listener keeps its connection.
     let line = PgPoolOptions::new().max_connections(1).acquire_timeout(TO_ANSWER).max_lifetime(None).idle_timeout(None);
@@ -63,7 +63,7 @@ async fn hear(options: &PgConnectOptions, signals: &Signals, announcements: &Ann
     let mut listener = PgListener::connect_with(&line).await?;
     listener.eager_reconnect(false);
     listener.listen(CHANNEL).await?;
-    // What was told before this was not heard.
+    // Announcements before this were not received.
     signals.all_changed_elsewhere();
     loop {
         match timeout(SILENCE, listener.try_recv()).await {

@@ -1,9 +1,9 @@
 //! PostgreSQL, 14 or newer: one server that processes on many machines share.
 //!
-//! Claims skip rows that others hold, and all times are the server's, so that the clocks of the machines do not matter. A
-//! process has at most [`CONNECTIONS`] connections for its calls and one to [listen](listen) on. A call that is cut off may have
-//! been carried out: see [`Store::append`](crate::service::store::contract::interface::Store::append) and [`SqlStore`]. Encryption is not this program's: a private
-//! network, a tunnel or a proxy beside it carries what may not be read on the way (`sslmode=require` is refused).
+//! Claims skip rows that others have locked, and all times are taken from the server, so that the clocks of the machines do
+//! not matter. A process has at most [`CONNECTIONS`] connections for its calls and one to [listen](listen) on. A call whose
+//! connection fails may have been carried out: see [`Store::append`](crate::service::store::contract::interface::Store::append) and [`SqlStore`]. Connections are not encrypted (`sslmode=require` is refused): use a
+//! private network, a tunnel or a proxy.
 
 pub(crate) mod connect;
 pub(crate) mod dialect;
@@ -25,12 +25,12 @@ use std::time::Duration;
 use tokio::time::timeout;
 use tokio_util::task::AbortOnDropHandle;
 
-/// For calls, of one process. A server takes 100 as it is installed.
+/// Connections of a process for calls. A server accepts 100 by default.
 const CONNECTIONS: u32 = 8;
 const ACQUIRE_TIMEOUT: Duration = Duration::from_secs(15);
-/// A connection that has been idle for longer is looked at before it is used: the server may have gone meanwhile.
+/// A connection that has been idle for longer is tested before it is used, as the server may have closed it.
 const TRUSTED: Duration = Duration::from_secs(1);
-/// A connection that does not answer for so long is lost.
+/// A connection that does not answer within this time is given up.
 const TO_ANSWER: Duration = Duration::from_secs(5);
 
 pub struct PostgresEngine {
@@ -54,8 +54,7 @@ impl PostgresEngine {
                     Ok(about.idle_for < TRUSTED || matches!(timeout(TO_ANSWER, connection.ping()).await, Ok(Ok(()))))
                 })
             })
-            // What is still on its way of a call that was given up is read first, which on a connection that was cut off may
-            // take for ever.
+            // The rest of the answer to a cancelled call is read first, which may take for ever on a failed connection.
             .after_release(|connection, _| {
                 Box::pin(async move {
                     timeout(TO_ANSWER, connection.ping()).await.map_err(|late| sqlx::Error::Io(late.into()))??;
@@ -74,7 +73,7 @@ impl PostgresEngine {
     }
 }
 
-/// What PostgreSQL's SQLSTATE says.
+/// Classifies an SQLSTATE.
 pub(super) fn fault(code: &str) -> fn(Source) -> StoreError {
     match code {
         "53100" => StoreError::Full,
@@ -119,12 +118,12 @@ impl Engine for PostgresEngine {
         Ok(submitted)
     }
 
-    /// The server gives room back by itself.
+    /// The server returns free space by itself.
     async fn shrink(&self) -> Result<bool> {
         Ok(false)
     }
 
-    /// The server looks for damage itself wherever it reads, if it was set up with checksums.
+    /// The server checks every page that it reads, if it was set up with checksums.
     async fn check(&self) -> Result<()> {
         let failures: Option<i64> = sqlx::query_scalar(
             "SELECT sum(checksum_failures)::bigint FROM pg_stat_database WHERE datname = current_database()",
@@ -141,7 +140,7 @@ impl Engine for PostgresEngine {
     }
 
     async fn close(&self) {
-        // Others need not wait for their next look.
+        // Wakes the other processes before their next poll.
         let _ = timeout(TO_ANSWER, listen::send(&self.pool, self.announcements.take())).await;
         self.pool.close().await;
     }
@@ -151,7 +150,7 @@ impl Engine for PostgresEngine {
 mod tests {
     use super::*;
 
-    /// A job whose increments cannot be stored for such a reason is not at fault, and does not fail.
+    /// A job whose increments cannot be stored for one of these reasons does not fail.
     #[test]
     fn what_keeps_a_process_out_for_a_while_passes() {
         for code in ["08006", "28000", "28P01", "3D000", "42501", "53300", "55000", "57P01", "57P03"] {

@@ -1,11 +1,10 @@
-//! The queue: who works on what, and until when.
+//! The queue: claims of jobs by workers.
 //!
-//! Which job ends the process that works on it cannot be seen from outside: all that ran there are lost alike. So a loss
-//! counts for as long as nothing of the job was stored after it, and of the jobs with a loss that counts one is worked on
-//! at a time, next to others that have none. One that ends every process is then alone among the suspects at each of its
-//! attempts; a job that was beside it at the first is not beside it at the next. What makes a job fail are the losses that
-//! speak against it: those as a suspect, and those of a job that was lost alone. A host that goes down takes several along,
-//! which says nothing of any of them.
+//! If a process crashes, all jobs that it ran are lost, and the job that caused the crash is not known. A job with a loss
+//! after which it has stored nothing is therefore a suspect, and only one suspect runs at a time, beside jobs without losses.
+//! A job that crashes every process is then the only suspect at each of its attempts, and a job that was lost with it once is
+//! not lost with it again. A job fails after a number of counted losses: those as a suspect, and those in which it was the
+//! only job lost. A host that goes down loses several jobs at once, which counts for none of them.
 
 use crate::service::store::contract::error::Result;
 use crate::service::store::sql::dialect::{Cells, Dialect, Value, values};
@@ -15,8 +14,8 @@ use crate::service::store::sql::{followers, increments, rows};
 use crate::service::store::{Claim, Lease, StoreError};
 use std::time::Duration;
 
-/// What a claim is made of. One that a break-down of the database takes back is one that never was: the job waits, and what is
-/// written under it is refused.
+/// The assignments of a claim. If a crash of the database reverts a claim, the job is still queued, and writes under the claim
+/// are refused.
 macro_rules! claimed {
     () => {
         " RETURNING id, task, attempt, request, max_increments, last_index, parent, parent_increment, parent_direction, \
@@ -26,7 +25,7 @@ macro_rules! claimed {
     };
 }
 
-/// Takes the next job from the queue: `$1` worker, `$2` milliseconds. However long the queue is, it looks at its front only.
+/// Claims the next job: `$1` worker, `$2` milliseconds. The statement only reads the front of the queue, however long it is.
 pub(crate) const TAKE: &str = concat!(
     "UPDATE jobs SET status = 'running', worker = $1, lease_until = {now} + $2, attempt = attempt + 1, \
      accompanied = 0, started_at = coalesce(started_at, {now}), updated_at = {now} \
@@ -36,7 +35,7 @@ pub(crate) const TAKE: &str = concat!(
     claimed!()
 );
 
-/// Takes what the worker has already: `$1` worker, `$2` milliseconds.
+/// Claims again the job that the worker already has: `$1` worker, `$2` milliseconds.
 const TAKE_AGAIN: &str = concat!(
     "UPDATE jobs SET lease_until = {now} + $2, ",
     ran!(),
@@ -44,10 +43,10 @@ const TAKE_AGAIN: &str = concat!(
     claimed!()
 );
 
-/// Claims that meet another's, of the only suspect that may be at work, are tried so often at a time.
+/// How often a claim is repeated if another worker claims a suspect at the same time.
 const TRIES: usize = 4;
 
-/// `again`: a claim of this worker's has ended without an answer, and may have been carried out.
+/// Claims a job. `again`: an earlier claim of this worker had no answer and may have been carried out.
 pub(super) async fn claim<E: Engine>(engine: &E, worker: &str, lease: Duration, again: bool) -> Result<Option<Claim>> {
     let mut connection = writer(engine).await?;
     let values = [Value::from(worker), milliseconds(lease)];
@@ -97,14 +96,14 @@ pub(super) async fn claim<E: Engine>(engine: &E, worker: &str, lease: Duration, 
     Ok(Some(claim))
 }
 
-/// Which process a worker is of: its name begins with that, 36 characters long.
+/// The process of a worker: the first 36 characters of its name.
 macro_rules! process {
     ($worker:literal) => {
         concat!("substr(", $worker, ", 1, 36)")
     };
 }
 
-/// Whether another job is lost, or is at work in the same process.
+/// Whether another job of the same process is lost or running.
 macro_rules! has_company {
     () => {
         concat!(
@@ -118,7 +117,7 @@ macro_rules! has_company {
     };
 }
 
-/// A loss that counts, as 1; otherwise 0.
+/// 1 if the loss counts, otherwise 0.
 macro_rules! counts {
     () => {
         concat!("CASE WHEN losses > 0 OR (accompanied = 0 AND NOT ", has_company!(), ") THEN 1 ELSE 0 END")
@@ -143,7 +142,7 @@ works on the job ends, or does not answer in time' END, \
 
 pub(super) async fn reclaim_expired<E: Engine>(engine: &E) -> Result<u64> {
     let mut connection = writer(engine).await?;
-    // Leases of one process do not run out at the same moment: those that are left are told that others were lost before.
+    // The leases of a process do not expire at the same moment: the remaining jobs are marked as lost together with others.
     let tell = concat!(
         "UPDATE jobs SET accompanied = 1 WHERE status = 'running' AND lease_until >= {clock} AND accompanied = 0 AND ",
         process!("worker"),
@@ -152,7 +151,7 @@ pub(super) async fn reclaim_expired<E: Engine>(engine: &E) -> Result<u64> {
         " FROM jobs WHERE status = 'running' AND lease_until < {clock})"
     );
     Of::<E>::run(&mut connection, tell, values![]).await?;
-    // Those that are lost together are told so before any of them is taken back: SQLite looks at one row after the other.
+    // Jobs that are lost together are marked before any of them is reclaimed, as SQLite updates one row after another.
     let together = concat!(
         "UPDATE jobs SET accompanied = 1 WHERE status = 'running' AND lease_until < {clock} AND accompanied = 0 AND ",
         has_company!()

@@ -1,4 +1,4 @@
-//! What a statement has to know of the engine that it runs on, and the values that go in and out of one.
+//! The differences between the SQL dialects of the engines, and the values of statements and rows.
 //!
 //! Statements are texts with `$1`, `$2`, ... for values and a few words in braces for what the engines say differently.
 
@@ -64,7 +64,7 @@ impl From<u32> for Value<'_> {
     }
 }
 
-/// Numbers past what an engine holds only ever stand for "no bound" or "past the end", and so does the largest it holds.
+/// A number larger than an engine can hold means "no bound" or "past the end", as does the largest number that it can hold.
 impl From<u64> for Value<'_> {
     fn from(number: u64) -> Self {
         Self::Number(Some(i64::try_from(number).unwrap_or(i64::MAX)))
@@ -82,7 +82,7 @@ pub(crate) struct Runs<'r> {
     pub sweep: Uuid,
     pub priority: i64,
     pub max_attempts: i64,
-    /// Of the first one; each next one has the next.
+    /// The number of the first run; the others have the following numbers.
     pub turn: u64,
     pub owner: Option<&'r str>,
     pub runs: &'r [NewRun],
@@ -104,22 +104,22 @@ pub(crate) trait Cells: Row {
 pub(crate) trait Dialect: Database<Row: Cells> {
     /// Milliseconds since 1970; the same throughout a statement.
     const NOW: &'static str;
-    /// The same at the moment that it is looked at, which may be later: a statement can wait for a row.
+    /// The same at the moment of evaluation, which may be later, as a statement can wait for a row.
     const CLOCK: &'static str;
-    /// After a table whose index of waiting jobs is to be walked.
+    /// A hint after the name of a table: use the index of waiting jobs.
     const WAITING: &'static str;
-    /// After a selection: only rows that nobody else is changing, and nobody else changes them until the end.
+    /// Suffix of a selection: locks the rows for changes and skips rows that others have locked.
     const FREE: &'static str;
-    /// After a selection: nobody drops these rows until the end.
+    /// Suffix of a selection: locks the rows against deletion.
     const THERE: &'static str;
-    /// At the end of what a statement answers: nobody waits until the disk has it. It is written before anything that comes
-    /// later, or lost with that when the server breaks down.
+    /// Suffix of the returned columns: the commit does not wait for the disk. If the server crashes, the change may be lost, together
+    /// with all later ones.
     const UNSYNCED: &'static str;
-    /// Begins a transaction of which there may be one at a time, where there are several.
+    /// Begins a transaction that excludes others of the same kind.
     const IN_TURN: Option<&'static str>;
     /// Increments of job `$1` past `$2`, in order: at most `$3`, and few past `$4` bytes.
     const PAGE: &'static str;
-    /// What is to be tidied now and then.
+    /// The statements of the regular upkeep.
     const SWEEP: Option<&'static str>;
 
     /// Runs a statement and answers its rows.
@@ -163,7 +163,7 @@ pub(crate) trait Dialect: Database<Row: Cells> {
         async move { Ok(Self::rows(connection, statement, values).await?.into_iter().next()) }
     }
 
-    /// The statement as this engine reads it.
+    /// The statement in the dialect of this engine.
     fn said(statement: &str) -> sqlx::AssertSqlSafe<String> {
         let words = [
             ("{now}", Self::NOW),
@@ -179,12 +179,12 @@ pub(crate) trait Dialect: Database<Row: Cells> {
                 said = said.replace(word, meaning);
             }
         }
-        // Statements are put together from constants alone; whatever comes from outside is a value.
+        // Statements are composed of constants only; external input is always passed as a value.
         sqlx::AssertSqlSafe(said)
     }
 }
 
-/// Writes what is the same in both but for the types.
+/// Implements the parts that only differ in the types of the engines.
 macro_rules! speaks {
     ($row:ty) => {
         impl $crate::service::store::sql::dialect::Cells for $row {
@@ -247,7 +247,7 @@ macro_rules! bound {
 }
 pub(crate) use bound;
 
-/// What is stored of a line's alternatives.
+/// The stored form of the alternatives of a line.
 pub(crate) fn alternatives(alternatives: &[u64]) -> sqlx::Result<Option<String>> {
     if alternatives.is_empty() {
         return Ok(None);

@@ -1,4 +1,4 @@
-//! What the store asks of an engine that speaks SQL.
+//! The interface of an SQL engine to the store.
 
 use crate::service::store::contract::error::Result;
 use crate::service::store::contract::signals::Signals;
@@ -9,12 +9,12 @@ use sqlx::pool::PoolConnection;
 use sqlx::{Pool, Transaction};
 use std::time::Duration;
 
-/// Connections, and what is not said in SQL.
+/// Connections of an engine, and its operations outside SQL.
 #[async_trait]
 pub(crate) trait Engine: Send + Sync + 'static {
     type Dialect: Dialect;
 
-    /// A call that takes longer has met a database that does not answer; none where a call may take any time.
+    /// The time limit of a call, after which the database counts as not answering; `None` without a limit.
     const PATIENCE: Option<Duration>;
 
     fn readers(&self) -> &Pool<Self::Dialect>;
@@ -50,10 +50,10 @@ pub(super) async fn begin<E: Engine>(engine: &E) -> sqlx::Result<Transaction<'st
     engine.writers().begin().await
 }
 
-/// Rolls a transaction back whose end is decided already. Where that fails there is nothing of it any more, and why it was
-/// given up is what counts: SQLite rolls back by itself on a full disk, and a connection that is lost takes it along.
+/// Rolls back a transaction that has failed. An error of the rollback is only logged, as the transaction no longer exists
+/// then: SQLite rolls back by itself on a full disk, and a lost connection ends its transaction.
 pub(super) async fn give_up<D: Dialect>(transaction: Transaction<'static, D>) {
     if let Err(error) = transaction.rollback().await {
-        tracing::debug!(%error, "nothing was left to be rolled back");
+        tracing::debug!(%error, "there was no transaction to roll back");
     }
 }

@@ -1,4 +1,4 @@
-//! Explorations: jobs queued for the directions that a family's jobs did not take.
+//! Explorations: jobs for the directions that the paths of a family did not take.
 
 use crate::service::store::contract::error::Result;
 use crate::service::store::sql::dialect::{Dialect, values};
@@ -29,11 +29,11 @@ pub(super) async fn explore<E: Engine>(engine: &E) -> Result<u64> {
     Ok(queued)
 }
 
-/// Looks at the first job of a family that has not been looked at; answers how many jobs that gave, or `None` where that
-/// job has not ended or there is none. All or nothing, so that no end of the process queues a job twice or not at all.
+/// Queues the alternatives of the first job of a family that has not been processed, and answers their number; `None` if this job
+/// has not ended or there is none. Atomic, so that a crash neither loses nor repeats a job.
 async fn explore_next<E: Engine>(engine: &E, family: Uuid) -> Result<Option<u64>> {
     let mut transaction = begin(engine).await?;
-    // A write first: it waits for other processes' writes, where a read would only fail the write after it.
+    // A write first, which waits for the writes of other processes; after a read the write would fail instead.
     let limits = Of::<E>::first(
         &mut transaction,
         "UPDATE families SET queued = queued WHERE id = $1 RETURNING depth, max_jobs, queued",
@@ -55,7 +55,7 @@ async fn explore_next<E: Engine>(engine: &E, family: Uuid) -> Result<Option<u64>
     let before = rows::number(&limits, "queued")?;
     let room = if generation < rows::number(&limits, "depth")? { rows::number(&limits, "max_jobs")? } else { before };
     let (mut queued, mut not_queued) = (before, 0_u64);
-    // What somebody has cancelled, and what failed, is not taken further.
+    // The alternatives of cancelled and failed jobs are not followed.
     if matches!(status, Status::Completed | Status::Stopped) {
         for (increment, direction) in alternatives::<Of<E>>(&mut transaction, job).await? {
             if queued >= room {
@@ -63,7 +63,7 @@ async fn explore_next<E: Engine>(engine: &E, family: Uuid) -> Result<Option<u64>
                 continue;
             }
             let parent = Parent { job, increment, direction };
-            // Families have a bound of their own.
+            // Families have their own bound on the number of jobs.
             let follower =
                 NewFollower { parent, owner: None, max_increments: None, idempotency_key: None, most_queued: u64::MAX };
             let place = Place { family, number: queued + 1, generation: generation + 1 };

@@ -1,4 +1,4 @@
-//! Jobs that follow a direction of another, and what they begin from.
+//! Jobs that follow a direction of another job, and the checkpoints from which they begin.
 
 use crate::service::store::contract::error::Result;
 use crate::service::store::sql::dialect::{Cells, Dialect, values};
@@ -9,7 +9,7 @@ use crate::service::store::sql::turns::{self, Class, next_turn};
 use crate::service::store::{NewFollower, Origin, Parent, Submitted};
 use uuid::Uuid;
 
-/// A place in a family.
+/// The position of a job in a family.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
     pub family: Uuid,
@@ -17,7 +17,7 @@ pub(super) struct Place {
     pub generation: u64,
 }
 
-/// Everything that was passed on the way to increment `$2` of job `$1`, `$3` being a line break.
+/// The trail up to increment `$2` of job `$1`; `$3` is a line break.
 macro_rules! passed {
     () => {
         "(SELECT string_agg(trail, $3 ORDER BY increment_index) FROM branches WHERE job = $1 AND increment_index <= $2)"
@@ -49,8 +49,8 @@ pub(super) async fn follow<E: Engine>(engine: &E, job: NewFollower) -> Result<Op
     Ok(Some(if same { Submitted::Repeated(record) } else { Submitted::KeyReused }))
 }
 
-/// Queues a job that follows another; what it begins from is copied, so that it stands when the other is deleted.
-/// `None`: the key is taken, there is no such branch, or there are enough jobs that wait.
+/// Queues a job that follows another, with a copy of the branch, so that the other job can be deleted. `None`: the key is
+/// taken, there is no such branch, or the queue is full.
 pub(super) async fn insert<D: Dialect>(
     connection: &mut D::Connection,
     job: &NewFollower,
@@ -58,7 +58,7 @@ pub(super) async fn insert<D: Dialect>(
 ) -> Result<Option<Uuid>> {
     let Parent { job: parent, increment, direction } = job.parent;
     let (id, key) = (Uuid::now_v7(), jobs::owned_key(job.owner.as_deref(), job.idempotency_key.as_deref()));
-    // Nobody drops the parent, and what is copied of it, meanwhile.
+    // Locks the parent, so that it is not deleted meanwhile.
     let class = if place.is_some() { Class::Many } else { Class::Single };
     let inserted = D::first(
         connection,

@@ -1,4 +1,4 @@
-//! Increments: appended in batches with what is stored beside them, read in order.
+//! Increments: appended in batches with their branches and checkpoints, and read in order.
 
 use crate::service::store::contract::error::Result;
 use crate::service::store::sql::dialect::{Dialect, values};
@@ -48,7 +48,7 @@ pub(super) async fn append<E: Engine>(
     }
     if let Err(error) = Of::<E>::insert_lines(&mut transaction, lease.job, lines).await {
         give_up(transaction).await;
-        // The answer to the first try was lost, and the worker asks again.
+        // The answer to an earlier call was lost, and the worker repeats the call.
         if leases::is_repeated(&error) && are_stored(engine, lease.job, lines).await? {
             engine.signals().job_changed(lease.job);
             return leases::renew(engine, lease, duration).await;
@@ -58,7 +58,7 @@ pub(super) async fn append<E: Engine>(
     put_checkpoint::<Of<E>>(&mut transaction, lease.job, &batch.checkpoints).await?;
     transaction.commit().await?;
     if lines.is_empty() {
-        // Nothing that a reader sees.
+        // The change is not visible to readers.
         return Ok(answer);
     }
     engine.signals().job_appended(lease, lines);
@@ -104,7 +104,7 @@ pub(super) async fn finish<E: Engine>(
         engine.signals().job_ended(lease, lines);
     }
     leases::tell_sweep(engine, row.as_ref())?;
-    // Where the job had lost workers, others of the kind may have waited for its end.
+    // If the job was a suspect, other suspects may have waited for its end.
     engine.signals().queue_changed();
     leases::answer(row.as_ref())
 }
@@ -113,7 +113,7 @@ fn bytes(lines: &[Line]) -> u64 {
     lines.iter().map(Line::bytes).sum()
 }
 
-/// Whether these lines, all of them and nothing after them, are what a job ends with.
+/// Whether the stored lines of a job end with exactly these lines.
 async fn are_stored<E: Engine>(engine: &E, job: Uuid, lines: &[Line]) -> Result<bool> {
     let Some(first) = lines.first() else { return Ok(false) };
     let rows = u32::try_from(lines.len()).unwrap_or(u32::MAX).saturating_add(1);
@@ -122,7 +122,7 @@ async fn are_stored<E: Engine>(engine: &E, job: Uuid, lines: &[Line]) -> Result<
         && stored.iter().zip(lines).all(|(one, other)| one.index == other.index && one.body == other.body))
 }
 
-/// The newest checkpoint takes the place of the one before; trails are of all of them.
+/// The newest checkpoint replaces the previous one; the trails of all are kept.
 async fn put_checkpoint<D: Dialect>(
     connection: &mut D::Connection,
     job: Uuid,
@@ -161,7 +161,7 @@ pub(super) async fn last_branch<D: Dialect>(connection: &mut D::Connection, job:
     row.map(|row| rows::text(&row, "body")).transpose()
 }
 
-/// An increment that is there.
+/// A stored increment.
 pub(super) async fn stored<D: Dialect>(connection: &mut D::Connection, job: Uuid, index: u64) -> Result<Line> {
     let select = "SELECT body FROM increments WHERE job = $1 AND increment_index = $2";
     let row = D::first(connection, select, values![job, index]).await?;

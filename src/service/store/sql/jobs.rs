@@ -1,4 +1,4 @@
-//! Jobs as clients see them: submitted, read, listed, cancelled, deleted.
+//! The operations of clients on jobs: submit, read, list, cancel, delete.
 
 use crate::service::store::contract::error::Result;
 use crate::service::store::sql::dialect::{Cells, Dialect, Value, values};
@@ -10,11 +10,10 @@ use crate::service::store::{JobRecord, Keep, ListFilter, Listed, NewJob, Retried
 use tokio_stream::StreamExt;
 use uuid::Uuid;
 
-/// Ended jobs that are dropped in one go.
+/// The most ended jobs that are deleted at a time.
 const DROPPED_AT_ONCE: u32 = 10;
 
-/// How many jobs wait. Submissions under way at the same moment do not see each other's: where an engine takes several at a
-/// time, so many more may come to wait.
+/// The number of waiting jobs. Concurrent submissions do not see each other, so that the limit may be exceeded by their number.
 macro_rules! waiting {
     () => {
         "(SELECT sum(jobs) FROM tallies WHERE status = 'queued')"
@@ -22,7 +21,7 @@ macro_rules! waiting {
 }
 pub(super) use waiting;
 
-/// Queues a job as a part of a transaction, unless its key is known or there are enough that wait.
+/// Queues a job as part of a transaction, unless its key is known or the queue is full.
 pub(crate) async fn insert<D: Dialect>(connection: &mut D::Connection, job: &NewJob) -> Result<Submitted> {
     let id = Uuid::now_v7();
     let key = owned_key(job.owner.as_deref(), job.idempotency_key.as_deref());
@@ -68,17 +67,17 @@ pub(crate) async fn insert<D: Dialect>(connection: &mut D::Connection, job: &New
     let row = D::first(connection, select, values![&key]).await?;
     let Some(row) = row else { return Ok(Submitted::QueueFull { most: job.most_queued }) };
     let record = rows::job(&row)?;
-    // A job that follows another has that one's request, and is another job.
+    // A job that follows another has the same request, but is another job.
     let same = record.task == job.task && record.parent.is_none() && rows::text(&row, "request")? == job.request;
     Ok(if same { Submitted::Repeated(record) } else { Submitted::KeyReused })
 }
 
-/// As it is stored: keys that different owners send do not meet. No name of an owner and no key holds a line break.
+/// The stored key, which contains the owner: keys of different owners are distinct, as neither contains a line break.
 pub(super) fn owned_key(owner: Option<&str>, key: Option<&str>) -> Option<String> {
     key.map(|key| owner.map_or_else(|| key.to_owned(), |owner| format!("{owner}\n{key}")))
 }
 
-/// Whether so many jobs wait.
+/// Whether at least this many jobs wait.
 pub(super) async fn is_full<D: Dialect>(connection: &mut D::Connection, most: u64) -> Result<bool> {
     let select = concat!("SELECT CAST(CASE WHEN ", waiting!(), " >= $1 THEN 1 ELSE 0 END AS BIGINT) AS is_full");
     let row = D::first(connection, select, values![most]).await?;
@@ -106,7 +105,7 @@ pub(super) async fn standing<E: Engine>(engine: &E, id: Uuid) -> Result<Option<S
 }
 
 pub(super) async fn list<E: Engine>(engine: &E, filter: ListFilter) -> Result<Listed> {
-    // Only the conditions that are asked for, so that the statement can walk an index.
+    // Only the requested conditions, so that the statement can use an index.
     let mut select = concat!("SELECT ", listed_columns!(), " FROM jobs WHERE task = $1").to_owned();
     let mut values = vec![Value::from(filter.task.name())];
     let mut add = |condition: &str, value| {
@@ -128,7 +127,7 @@ pub(super) async fn list<E: Engine>(engine: &E, filter: ListFilter) -> Result<Li
     if let Some(before) = filter.before {
         add(" AND id < ", Value::from(before));
     }
-    // One more than asked for tells whether there are others.
+    // One row more than requested shows whether there are further ones.
     add(" ORDER BY id DESC LIMIT ", Value::from(filter.page.rows.saturating_add(1)));
     let mut connection = reader(engine).await?;
     let mut stream = Of::<E>::stream(&mut connection, &select, &values);
@@ -168,7 +167,7 @@ pub(super) async fn request_cancel<E: Engine>(engine: &E, id: Uuid) -> Result<Op
 
 pub(super) async fn retry<E: Engine>(engine: &E, id: Uuid, most: u64) -> Result<Option<Retried>> {
     let mut transaction = begin(engine).await?;
-    // An exploration looks at it once more.
+    // The exploration has to process the job again.
     let again = concat!(
         "UPDATE jobs AS job SET status = 'queued', losses = 0, counted_losses = 0, cancel_requested = 0, stop_reason = NULL, \
          report = NULL, error = NULL, ended_at = NULL, explored = 0, updated_at = {now}, turn = ",
@@ -195,22 +194,22 @@ pub(super) async fn retry<E: Engine>(engine: &E, id: Uuid, most: u64) -> Result<
 
 pub(super) async fn delete<E: Engine>(engine: &E, id: Uuid) -> Result<bool> {
     let mut transaction = begin(engine).await?;
-    // The family before the job, as everybody takes them.
+    // Locks the family before the job, in the order of all transactions.
     let hold = "UPDATE families SET queued = queued WHERE id = (SELECT family FROM jobs WHERE id = $1)";
     Of::<E>::run(&mut transaction, hold, values![id]).await?;
-    // A run of a sweep that is deleted before its end is a cancelled one, and the sweep has a row that says so.
+    // A run of a sweep that is deleted before its end counts as cancelled, and the sweep gets a row for it.
     let end = "UPDATE jobs SET status = 'cancelled', error = 'it was deleted', ended_at = {now}, updated_at = {now}, \
                worker = NULL, lease_until = NULL WHERE id = $1 AND sweep IS NOT NULL AND status IN ('queued', 'running') \
                RETURNING sweep";
     let ended = Of::<E>::first(&mut transaction, end, values![id]).await?;
-    // Of a sweep: its runs before it, as where they end.
+    // Of a sweep: the runs before the sweep, in the same order as at their end.
     Of::<E>::run(&mut transaction, "DELETE FROM jobs WHERE sweep = $1", values![id]).await?;
     let delete = "DELETE FROM jobs WHERE id = $1 RETURNING family";
     let deleted = Of::<E>::first(&mut transaction, delete, values![id]).await?;
     if let Some(row) = &deleted
         && let Some(family) = row.id("family")?
     {
-        // The last of a family takes it along.
+        // The family is deleted with its last job.
         let last = "DELETE FROM families WHERE id = $1 AND NOT EXISTS (SELECT 1 FROM jobs WHERE family = $1)";
         Of::<E>::run(&mut transaction, last, values![family]).await?;
     }

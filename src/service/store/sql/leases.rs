@@ -1,10 +1,10 @@
-//! Leases: until when a job is a worker's, and what that lets it write.
+//! Leases: the time for which a worker holds a job and may write to it.
 //!
-//! Every statement of a worker is fenced by job, worker, attempt, `running` and the time of the lease: a worker that comes
-//! back late changes nothing, whether or not the job was given to another meanwhile. Who holds a lease is then told by the
-//! row alone, and a worker that was stopped for long never goes on with a job that others believe lost. (The time is the
-//! database's: that of its server, or of this machine where it is a file; a clock that jumps forward costs a running job its
-//! lease, and it goes on from its last checkpoint.)
+//! Every statement of a worker is conditional on job, worker, attempt, status `running` and the expiry of the lease: a worker
+//! that returns late changes nothing, whether or not the job was claimed by another one meanwhile. The row of the job alone
+//! determines who holds the lease, and a worker that was suspended for long never continues a job that counts as lost. (The
+//! time is that of the database server, or of this machine for a file. If the clock jumps forward, a running job loses its
+//! lease and is resumed from its last checkpoint.)
 
 use crate::service::store::contract::error::Result;
 use crate::service::store::sql::dialect::{Cells, Dialect, Value, values};
@@ -21,7 +21,7 @@ macro_rules! held {
 }
 pub(super) use held;
 
-/// Counts the time since the job was last heard of. A clock that was set back takes none away.
+/// Adds the time since the last write to the running time. A clock that was set back subtracts nothing.
 macro_rules! ran {
     () => {
         "ran_ms = ran_ms + CASE WHEN updated_at < {now} THEN {now} - updated_at ELSE 0 END, updated_at = {now}"
@@ -29,13 +29,13 @@ macro_rules! ran {
 }
 pub(super) use ran;
 
-/// What is to be there once is there.
+/// Whether the row exists already: a unique constraint refused a second one.
 pub(super) fn is_repeated(error: &sqlx::Error) -> bool {
     error.as_database_error().is_some_and(|error| error.is_unique_violation())
 }
 
 pub(super) fn milliseconds(duration: Duration) -> Value<'static> {
-    // What is added to the time of day stays a number that an engine holds.
+    // Bounded, so that the sum with the current time can be stored.
     const LONGEST: u64 = 1 << 52;
     Value::from(u64::try_from(duration.as_millis()).unwrap_or(LONGEST).min(LONGEST))
 }
@@ -48,7 +48,7 @@ pub(super) async fn renew<E: Engine>(engine: &E, lease: &Lease, duration: Durati
 }
 
 pub(super) async fn release<E: Engine>(engine: &E, lease: &Lease) -> Result<LeaseAnswer> {
-    // The attempt is given back: going away in good order says nothing against the job. A cancelled one is not queued again.
+    // The attempt is not counted, as a regular shutdown is no loss. A cancelled job is not queued again.
     let row = Of::<E>::first(
         &mut *writer(engine).await?,
         concat!(
@@ -69,7 +69,7 @@ pub(super) async fn release<E: Engine>(engine: &E, lease: &Lease) -> Result<Leas
     answer(row.as_ref())
 }
 
-/// Tells those who follow a sweep that one of its runs may have ended; of a row with the column `sweep`.
+/// Signals a sweep that one of its runs may have ended; from a row with the column `sweep`.
 pub(super) fn tell_sweep<E: Engine>(engine: &E, row: Option<&impl Cells>) -> Result<()> {
     if let Some(sweep) = row.map(|row| row.id("sweep")).transpose()?.flatten() {
         engine.signals().job_changed(sweep);
@@ -77,7 +77,7 @@ pub(super) fn tell_sweep<E: Engine>(engine: &E, row: Option<&impl Cells>) -> Res
     Ok(())
 }
 
-/// Of a row with the column `cancel_requested`, which is there where the lease is held.
+/// Reads a row with the column `cancel_requested`, which exists if the lease is held.
 pub(super) fn answer(row: Option<&impl Cells>) -> Result<LeaseAnswer> {
     match row {
         Some(row) => Ok(LeaseAnswer::Held { cancel_requested: rows::flag(row, "cancel_requested")? }),

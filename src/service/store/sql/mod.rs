@@ -1,8 +1,9 @@
-//! The store in SQL, said once for both engines: [`dialect`] is all that a statement needs to know of the one it runs on.
+//! The store in SQL, common to both engines; [`dialect`] has the differences between their statements.
 //!
-//! [`claims`] is the queue, [`leases`] what fences its workers, [`turns`] its order, [`increments`] what workers append, [`jobs`] what clients see, [`followers`] and [`families`] jobs
-//! that go on from others, [`sweeps`] many jobs at once; [`store`] is the [`Store`](crate::service::store::contract::interface::Store) around them, [`rows`] reads what comes back. Called by the
-//! engines; knows nothing of theirs but [`Dialect`](dialect::Dialect) and [`Engine`](engine::Engine).
+//! [`claims`] is the queue, [`turns`] its order, [`leases`] the rights of its workers, [`increments`] what workers append,
+//! [`jobs`] the operations of clients, [`followers`] and [`families`] jobs that continue others, [`sweeps`] groups of jobs.
+//! [`store`] implements [`Store`](crate::service::store::contract::interface::Store) with them, and [`rows`] reads records.
+//! Called by the engines, of which it only knows [`Dialect`](dialect::Dialect) and [`Engine`](engine::Engine).
 
 pub(crate) mod claims;
 pub(crate) mod dialect;

@@ -1,4 +1,4 @@
-//! Rows to records.
+//! Reads records from rows.
 
 use crate::model::request::Explore;
 use crate::service::store::contract::error::Result;
@@ -8,12 +8,12 @@ use jiff::Timestamp;
 use std::time::Duration;
 use uuid::Uuid;
 
-/// The columns [`job`] reads.
+/// The columns that [`job`] reads.
 macro_rules! job_columns {
     () => {
         $crate::service::store::sql::rows::job_columns!("name, plan, report, error")
     };
-    // Those that can be large, as they are wanted.
+    // The columns that can be large, in the given form.
     ($large:literal) => {
         concat!($large, ", id, task, owner, status, stop_reason, max_increments, last_index, attempt, max_attempts, losses, counted_losses, \
          cancel_requested, created_at, started_at, ended_at, sweep, sweep_run, parent, parent_increment, parent_direction, \
@@ -27,8 +27,8 @@ macro_rules! job_columns {
 }
 pub(super) use job_columns;
 
-/// The same columns for lists, each of a bounded size: what is not shown is not read. Sweeps of before there were summaries
-/// show their plan where it is short.
+/// The same columns for lists, each of bounded size, without those that lists do not show. Sweeps stored by versions without
+/// summaries show their plan if it is short.
 macro_rules! listed_columns {
     () => {
         $crate::service::store::sql::rows::job_columns!(
@@ -67,31 +67,31 @@ pub(super) fn job(row: &impl Cells) -> Result<JobRecord> {
     })
 }
 
-/// Of a row with the column `status`.
+/// Reads the column `status` of a row.
 pub(super) fn status(row: &impl Cells) -> Result<Status> {
     let name = text(row, "status")?;
     Status::from_name(&name).ok_or_else(|| damaged(format!("status {name:?}")))
 }
 
-/// Of a row with the column `last_index`.
+/// Reads the column `last_index` of a row.
 pub(super) fn last_index(row: &impl Cells) -> Result<Option<u64>> {
     row.number("last_index")?.map(unsigned).transpose()
 }
 
-/// Of a row with the column `task`.
+/// Reads the column `task` of a row.
 pub(super) fn task(row: &impl Cells) -> Result<Task> {
     let name = text(row, "task")?;
     Task::from_name(&name).ok_or_else(|| damaged(format!("task {name:?}")))
 }
 
-/// Of a row with the columns `parent`, `parent_increment` and `parent_direction`.
+/// Reads a row with the columns `parent`, `parent_increment` and `parent_direction`.
 pub(super) fn parent(row: &impl Cells) -> Result<Option<Parent>> {
     let Some(job) = row.id("parent")? else { return Ok(None) };
     let increment = number(row, "parent_increment")?;
     Ok(Some(Parent { job, increment, direction: number(row, "parent_direction")? }))
 }
 
-/// Of a row with the columns `body` and `trail`.
+/// Reads a row with the columns `body` and `trail`.
 pub(super) fn origin(row: &impl Cells) -> Result<Origin> {
     Ok(Origin { body: text(row, "body")?, trail: row.text("trail")?.unwrap_or_default() })
 }

@@ -1,4 +1,4 @@
-//! The [`Store`] over an engine that speaks SQL.
+//! The [`Store`] over an SQL engine.
 
 use crate::service::store::contract::error::Result;
 use crate::service::store::contract::interface::Store;
@@ -17,12 +17,12 @@ use tokio::sync::watch;
 use tokio::time::timeout;
 use uuid::Uuid;
 
-/// Damage that any statement meets, or the look through everything at the start, is remembered: nothing new is taken or begun
-/// then, because what is written next to damage may make it worse. What can still be read is.
+/// Once a statement or the integrity check has found damage, modifying calls are refused, as further writes may increase the
+/// damage. Reads are still carried out.
 pub(crate) struct SqlStore<E> {
     pub engine: E,
     damaged: AtomicBool,
-    /// Workers whose last claim ended without an answer: it may have been carried out.
+    /// The workers whose last claim had no answer and may have been carried out.
     unanswered: Mutex<HashSet<String>>,
 }
 
@@ -31,7 +31,7 @@ impl<E: Engine> SqlStore<E> {
         Self { engine, damaged: AtomicBool::new(false), unanswered: Mutex::default() }
     }
 
-    /// A call that takes or begins something new.
+    /// A modifying call.
     async fn begin<T>(&self, call: impl Future<Output = Result<T>>) -> Result<T> {
         self.allow()?;
         self.call(call).await
@@ -48,7 +48,7 @@ impl<E: Engine> SqlStore<E> {
         self.within(E::PATIENCE, call).await
     }
 
-    /// A call that drops a job, which may have millions of rows, or queues many.
+    /// A call without a time limit, such as the deletion of a job with millions of rows.
     async fn at_length<T>(&self, call: impl Future<Output = Result<T>>) -> Result<T> {
         self.within(E::PATIENCE.map(|patience| 4 * patience), call).await
     }
@@ -60,7 +60,7 @@ impl<E: Engine> SqlStore<E> {
                 Err(StoreError::Unavailable(format!("no answer within {patience:?}: {late}").into()))
             }),
         };
-        // Of the database itself; a row that cannot be read is a matter of that row.
+        // Damage of the database itself, other than a row that cannot be read.
         if let Err(StoreError::Damaged(source)) = &answer
             && source.downcast_ref::<sqlx::Error>().is_some_and(|error| error.as_database_error().is_some())
         {
@@ -70,7 +70,7 @@ impl<E: Engine> SqlStore<E> {
     }
 
     fn unanswered(&self) -> MutexGuard<'_, HashSet<String>> {
-        // The set is whole at every point where its holder could panic.
+        // The set is consistent wherever a thread that holds the lock could panic.
         self.unanswered.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -96,7 +96,7 @@ impl<E: Engine> Store for SqlStore<E> {
 
     async fn cancel_sweep(&self, id: Uuid) -> Result<Vec<Uuid>> {
         let at_work = self.at_length(sweeps::mark_cancelled(&self.engine, id)).await?;
-        // What an end in between leaves behind is cancelled by whoever takes it.
+        // Runs that are left after a crash in between are cancelled by the worker that claims them.
         let mut after = Uuid::nil();
         while let Some(last) = self.call(sweeps::end_some(&self.engine, id, after)).await? {
             after = last;

@@ -1,6 +1,6 @@
-//! Sweeps: many jobs queued in one transaction, and one that stands for all of them.
+//! Sweeps: many jobs queued in one transaction, and a record for the whole.
 //!
-//! Its lines are its runs as they end; triggers store them with the end of each, whoever brings that about.
+//! The lines of a sweep are its ended runs; triggers store them with the end of each run, whatever caused the end.
 
 use crate::service::store::contract::error::Result;
 use crate::service::store::sql::dialect::{Dialect, Runs, values};
@@ -10,20 +10,20 @@ use crate::service::store::sql::{jobs, rows};
 use crate::service::store::{NewSweep, Submitted};
 use uuid::Uuid;
 
-/// Holds the sweep, under a lease that does not run out: the year 142,000 or so.
+/// The holder of every sweep, under a lease that does not expire before the year 142,000 or so.
 const HOLDER: &str = "its runs";
 const FOR_EVER: i64 = 1 << 52;
-/// Runs that one statement ends: each end changes the row of the sweep, whose versions pile up until the commit.
+/// The most runs that a statement ends: each end changes the row of the sweep, whose versions accumulate until the commit.
 const ENDED_AT_ONCE: u32 = 500;
 
 pub(super) async fn submit<E: Engine>(engine: &E, sweep: NewSweep) -> Result<Submitted> {
     let mut transaction = begin(engine).await?;
-    // Two that do not see each other's would both find room.
+    // Two concurrent submissions would both find room.
     if let Some(in_turn) = <Of<E> as Dialect>::IN_TURN {
         Of::<E>::run(&mut transaction, in_turn, values![]).await?;
     }
     let mut whole = sweep.whole;
-    // Either there is room for all of them, or none is queued.
+    // All runs are queued, or none.
     let most = whole.most_queued;
     whole.most_queued = most.saturating_sub(sweep.runs.len().saturating_sub(1) as u64);
     let submitted = jobs::insert::<Of<E>>(&mut transaction, &whole).await?;
@@ -56,7 +56,7 @@ pub(super) async fn submit<E: Engine>(engine: &E, sweep: NewSweep) -> Result<Sub
     Ok(Submitted::Created(record))
 }
 
-/// Marks a sweep and its runs, and answers those at work. The runs come before the sweep, as where they end by themselves.
+/// Marks a sweep and its runs as cancelled, and answers the running ones. The runs are locked before the sweep, as at their end.
 pub(super) async fn mark_cancelled<E: Engine>(engine: &E, id: Uuid) -> Result<Vec<Uuid>> {
     let mut transaction = begin(engine).await?;
     for statement in [
@@ -72,8 +72,8 @@ pub(super) async fn mark_cancelled<E: Engine>(engine: &E, id: Uuid) -> Result<Ve
     at_work.iter().map(|row| rows::id(row, "id")).collect()
 }
 
-/// Ends some of the runs past that one that wait, and answers the last of them. Those that others hold have been taken just now,
-/// and end as those at work do.
+/// Ends some of the waiting runs past the given one, and answers the last of them. Locked runs have just been claimed, and end
+/// like running ones.
 pub(super) async fn end_some<E: Engine>(engine: &E, id: Uuid, after: Uuid) -> Result<Option<Uuid>> {
     let end = "UPDATE jobs SET status = 'cancelled', stop_reason = 'cancelled', ended_at = {now} WHERE id IN \
                (SELECT id FROM jobs WHERE sweep = $1 AND id > $2 AND status = 'queued' AND cancel_requested <> 0 \

@@ -1,11 +1,11 @@
-//! The order of the queue: who comes after whom among jobs of one priority.
+//! The order of the queue among jobs of the same priority.
 //!
-//! Every waiting job has a turn, and the least one is claimed first, then the oldest. A job that is queued gets the turn after the
-//! last of its owner's, or that of the front of the queue where this is later: so owners are served one after the other, and
-//! whoever comes new comes at once, however much others have queued. Then, where jobs of its owner wait of which there are
-//! more of a kind (runs of a sweep before studies, studies before single jobs), it changes places with one of those: the next
-//! but one after the last of its own kind, so that one of many goes before each single one. What an owner has in all is served
-//! as often as before. All of this looks at the ends of indices alone, however long the queue is.
+//! Every waiting job has a turn number. The job with the least number is claimed first, among equals the oldest. A new job gets
+//! the number after the last one of its owner, or that of the front of the queue if this is larger: owners are served in turn,
+//! and a new owner is served at once, however many jobs others have queued. The new job then exchanges its number with a job of
+//! the same owner that belongs to a larger group (runs of sweeps before studies, studies before single jobs): the second one
+//! after the last job of its own class, so that jobs of both classes alternate. The share of the owner does not change. All
+//! statements only read the ends of indices, however long the queue is.
 
 use crate::service::store::Task;
 use crate::service::store::contract::error::Result;
@@ -14,12 +14,12 @@ use crate::service::store::sql::engine::{Engine, Of, reader, writer};
 use crate::service::store::sql::rows;
 use uuid::Uuid;
 
-/// Kinds of jobs, the fewest first.
+/// Classes of jobs by the usual size of their groups, the smallest first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Class {
     Single,
     Study,
-    /// Runs of sweeps, and what explorations queue.
+    /// Runs of sweeps, and jobs of explorations.
     Many,
 }
 
@@ -66,7 +66,7 @@ macro_rules! turn_of_class {
     };
 }
 
-/// The turn of a job that is queued now, of a priority and an owner.
+/// The turn of a new job of the given priority and owner.
 macro_rules! next_turn {
     ($priority:literal, $owner:literal) => {
         concat!(
@@ -85,8 +85,8 @@ macro_rules! next_turn {
 pub(crate) use next_turn;
 pub(crate) use turn_of_class;
 
-/// Which of an owner's jobs a new one of a lower class changes places with: `$1` the new one's id, `$2` its class, `$3` its
-/// priority, `$4` its owner. The second of those past the last of its own class, or of a class still lower.
+/// The job of an owner with which a new job of a lower class exchanges turns: `$1` id, `$2` class, `$3` priority and `$4` owner of
+/// the new job. It is the second one past the last job of the same or a lower class.
 pub(crate) const PARTNER: &str = "WITH past AS (SELECT coalesce(max(turn), -1) AS turn FROM (\
      SELECT (SELECT turn FROM jobs WHERE status = 'queued' AND priority = $3 AND coalesce(owner, '') = coalesce($4, '') \
      AND class = 0 AND id <> $1 ORDER BY turn DESC LIMIT 1) AS turn UNION ALL \
@@ -99,7 +99,7 @@ pub(crate) const PARTNER: &str = "WITH past AS (SELECT coalesce(max(turn), -1) A
      AND coalesce(owner, '') = coalesce($4, '') AND class = 2 AND turn > (SELECT turn FROM past) \
      ORDER BY turn, id LIMIT 2) AS many ORDER BY turn, id LIMIT 1 OFFSET 1";
 
-/// Puts a job that has just been queued between its owner's others, as a part of the transaction that has queued it.
+/// Moves a new job between the other jobs of its owner, in the transaction that has queued it.
 pub(crate) async fn put_between<D: Dialect>(
     connection: &mut D::Connection,
     mut id: Uuid,
@@ -113,17 +113,17 @@ pub(crate) async fn put_between<D: Dialect>(
         let (other, turn) = (rows::id(&partner, "id")?, rows::number(&partner, "turn")?);
         let later = "UPDATE jobs SET turn = (SELECT turn FROM jobs AS one WHERE one.id = $1) WHERE id = $2 AND status = 'queued'";
         if D::run(connection, later, values![id, other]).await? == 0 {
-            // Somebody has claimed it just now, and its turn is past.
+            // The other job has just been claimed.
             return Ok(());
         }
         D::run(connection, "UPDATE jobs SET turn = $2 WHERE id = $1", values![id, turn]).await?;
-        // A study that has given its turn away takes one of those of which there are more.
+        // A study that has given its turn away exchanges turns with a job of a higher class.
         (id, class) = (other, Class::numbered(rows::number(&partner, "class")?));
     }
     Ok(())
 }
 
-/// Owners whose next job is far behind the front of the queue, with how far: jobs before it have been cancelled or dropped.
+/// The owners whose next job is far behind the front of the queue, and the distance: jobs before it were cancelled or deleted.
 const BEHIND: &str = concat!(
     "WITH RECURSIVE front AS (SELECT priority, turn FROM jobs {waiting} WHERE status = 'queued' \
      ORDER BY priority DESC, turn, id LIMIT 1), \
@@ -143,7 +143,7 @@ const BEHIND: &str = concat!(
      WHERE firsts.turn > front.turn + 1"
 );
 
-/// Closes such gaps: nobody waits for what is not there any more.
+/// Closes such gaps, so that no job waits for cancelled ones.
 pub(super) async fn close_gaps<E: Engine>(engine: &E) -> Result<()> {
     let behind = Of::<E>::rows(&mut *reader(engine).await?, BEHIND, values![]).await?;
     for row in behind {

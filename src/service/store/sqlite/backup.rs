@@ -1,8 +1,8 @@
-//! A copy of a database that others may be writing to.
+//! Backups of a database while other processes write to it.
 //!
-//! `VACUUM INTO` reads in one transaction, so that the copy is of one moment, and writes no page that is not needed. Until it
-//! is whole and checked the copy has another name, one that nobody else has: nothing that is broken off is ever taken for a
-//! copy, and nothing that is there already is touched.
+//! `VACUUM INTO` reads in one transaction, so that the copy is a consistent snapshot, and writes no unused pages. Until the copy
+//! is complete and checked it has a unique temporary name: an incomplete copy cannot be mistaken for a backup, and no existing
+//! file is overwritten.
 
 use crate::service::store::StoreError;
 use crate::service::store::contract::error::Result;
@@ -15,14 +15,14 @@ use std::time::Duration;
 use uuid::Uuid;
 
 const BUSY_TIMEOUT: Duration = Duration::from_secs(30);
-/// What the name of an unfinished copy ends with.
+/// The ending of the name of an incomplete copy.
 const PARTIAL: &str = ".partial";
 
 pub(crate) async fn back_up(file: &Path, copy: &Path) -> Result<()> {
     let partial = beside(copy, &format!(".{}{PARTIAL}", Uuid::now_v7()));
     let made = write(file, &partial).await.and_then(|()| keep(&partial, copy).map_err(unwritten));
     if made.is_err() {
-        // Why it could not be made counts for more. What SQLite may have left beside it goes, too.
+        // Errors of the removal are ignored in favour of the first error. Files that SQLite has left beside the copy are removed, too.
         for other in ["", "-journal", "-wal", "-shm"] {
             let _ = fs::remove_file(beside(&partial, other));
         }
@@ -30,7 +30,7 @@ pub(crate) async fn back_up(file: &Path, copy: &Path) -> Result<()> {
     made
 }
 
-/// A name with something at its end.
+/// A path with a suffix.
 fn beside(name: &Path, end: &str) -> PathBuf {
     PathBuf::from([name.as_os_str(), end.as_ref()].join("".as_ref()))
 }
@@ -45,7 +45,7 @@ async fn write(file: &Path, partial: &Path) -> Result<()> {
         return Err(StoreError::Open("it holds no jobs of this program".into()));
     }
     let into = partial.to_str().ok_or_else(|| StoreError::Open("the copy's name is not UTF-8".into()))?;
-    // For whoever may read the original, and nobody else, from the first byte on.
+    // The permissions of the original, from the first byte on.
     let made = File::create_new(partial).and_then(|made| made.set_permissions(fs::metadata(file)?.permissions()));
     made.map_err(unwritten)?;
     sqlx::query("VACUUM INTO ?").bind(into).execute(&mut original).await.map_err(|error| match error.into() {
@@ -62,10 +62,10 @@ async fn check(copy: &mut SqliteConnection) -> Result<()> {
     if found == "ok" { Ok(()) } else { Err(StoreError::Damaged(found.into())) }
 }
 
-/// Gives the finished copy its name, so that it has it after a power loss, too.
+/// Gives the finished copy its name, durably.
 fn keep(partial: &Path, copy: &Path) -> io::Result<()> {
     File::open(partial)?.sync_all()?;
-    // A link takes nothing's place, where renaming would.
+    // A link does not replace an existing file, as a rename would.
     fs::hard_link(partial, copy)?;
     fs::remove_file(partial)?;
     let folder = copy.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));

@@ -1,4 +1,4 @@
-//! What SQLite says in its own way.
+//! SQLite's dialect of SQL.
 
 use crate::service::store::Line;
 use crate::service::store::sql::dialect::{Dialect, Runs, alternatives, speaks, values};
@@ -12,16 +12,16 @@ const ROWS_A_STATEMENT: usize = 500;
 speaks!(SqliteRow);
 
 impl Dialect for Sqlite {
-    // To the millisecond; what comes from there as a fraction is a little less or more than it.
+    // Rounded to a millisecond, as the fraction from SQLite is not exact.
     const NOW: &'static str = "CAST(round(unixepoch('now', 'subsec') * 1000) AS INTEGER)";
     const CLOCK: &'static str = Self::NOW;
     const WAITING: &'static str = "INDEXED BY jobs_waiting";
-    // One writer at a time.
+    // SQLite has one writer at a time.
     const FREE: &'static str = "";
     const THERE: &'static str = "";
     const UNSYNCED: &'static str = "";
     const IN_TURN: Option<&'static str> = None;
-    // Rows are read ahead of whoever takes them, so the bytes are counted first, which reads none of them.
+    // Rows are read ahead, so that their bytes are summed up first, from their lengths alone.
     const PAGE: &'static str = "SELECT increment_index, body FROM increments WHERE job = $1 AND increment_index > $2 \
                                 AND increment_index <= (SELECT max(increment_index) FROM (SELECT increment_index, \
                                 sum(bytes) OVER (ORDER BY increment_index ROWS UNBOUNDED PRECEDING) - bytes AS before \

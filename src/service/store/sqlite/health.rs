@@ -1,4 +1,4 @@
-//! The database file itself: damage, and room that is free in it.
+//! The database file: its integrity and its free space.
 
 use crate::service::store::StoreError;
 use crate::service::store::contract::error::Result;
@@ -6,11 +6,11 @@ use crate::service::store::sqlite::SqliteEngine;
 use sqlx::sqlite::SqlitePool;
 use std::path::{Path, PathBuf};
 
-/// As `PRAGMA auto_vacuum` names it.
+/// The value of `PRAGMA auto_vacuum`.
 const INCREMENTAL: i64 = 2;
-/// Free pages that are left for what comes next ...
+/// Free pages that are kept for later writes.
 const SPARE_PAGES: i64 = 256;
-/// ... and that are given back at a time.
+/// Free pages that are returned at a time.
 const PAGES_AT_ONCE: i64 = 1024;
 
 #[derive(Debug)]
@@ -20,7 +20,7 @@ pub(super) struct Health {
     identity: Identity,
 }
 
-/// Which file it is, whatever its name.
+/// The identity of the file, independent of its name.
 type Identity = Option<(u64, u64)>;
 
 fn identity(file: &Path) -> Identity {
@@ -49,7 +49,7 @@ impl Health {
     }
 
     /// # Errors
-    /// The file is not where it was: what is written now would be lost with it.
+    /// The file has been moved or deleted, and writes would be lost with it.
     pub fn allow(&self) -> Result<()> {
         if identity(&self.file) != self.identity {
             return Err(StoreError::Unavailable("the database's file has been removed or replaced".into()));
@@ -70,7 +70,7 @@ pub(super) async fn shrink(engine: &SqliteEngine) -> Result<bool> {
     if !engine.health.shrinks || free_pages(engine).await? <= SPARE_PAGES {
         return Ok(false);
     }
-    // One page a step: all of them have to be taken.
+    // The statement frees one page per step: all rows have to be read.
     let vacuum = sqlx::AssertSqlSafe(format!("PRAGMA incremental_vacuum({PAGES_AT_ONCE})"));
     sqlx::query(vacuum).fetch_all(&engine.writer).await?;
     Ok(free_pages(engine).await? > SPARE_PAGES)

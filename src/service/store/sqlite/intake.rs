@@ -1,7 +1,6 @@
-//! Submissions that wait for the one connection which writes are stored together: one commit, one sync for all of them.
+//! Group commit of submissions: those that wait for the writing connection are stored together, with one commit and one sync.
 //!
-//! The first that finds nobody waiting begins a task which waits for the connection; those that come meanwhile join it.
-//! Nobody is answered before the commit.
+//! The first submission starts a task that waits for the connection; later ones join it. All are answered after the commit.
 
 use crate::service::store::contract::error::Result;
 use crate::service::store::sql::jobs;
@@ -11,7 +10,7 @@ use sqlx::sqlite::{Sqlite, SqlitePool};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::sync::oneshot;
 
-/// Jobs of one commit: the others who write wait no longer for it than for a batch of increments.
+/// The most jobs in a commit, which then takes no longer than a batch of increments.
 const AT_ONCE: usize = 64;
 
 #[derive(Default, Clone)]
@@ -30,16 +29,16 @@ pub(super) async fn submit(engine: &SqliteEngine, job: NewJob) -> Result<Submitt
         waiting.len() == 1
     };
     if is_first {
-        // A task of its own: it goes on for the others where the first client hangs up.
+        // A task of its own, which continues if the first client disconnects.
         tokio::spawn(take_in(engine.writer.clone(), engine.intake.clone()));
     }
     answered.await.map_err(|lost| StoreError::Unavailable(Box::new(lost)))?
 }
 
-/// Stores all that wait, and those that come while it does.
+/// Stores all waiting submissions, and those that come meanwhile.
 async fn take_in(writer: SqlitePool, intake: Intake) {
     loop {
-        // The connection first: until it is there others may join.
+        // The connection first: until it is available others may join.
         let begun = writer.begin().await;
         let (together, more) = intake.take();
         match begun {
@@ -57,7 +56,7 @@ async fn take_in(writer: SqlitePool, intake: Intake) {
     }
 }
 
-/// One commit for all; where that fails, one for each, so that none fails for another's sake.
+/// One commit for all; if it fails, one for each, so that no submission fails because of another.
 async fn store_together(
     writer: &SqlitePool,
     mut transaction: sqlx::Transaction<'static, Sqlite>,
@@ -91,13 +90,13 @@ async fn alone(writer: &SqlitePool, job: &NewJob) -> Result<Submitted> {
 
 impl Waiting {
     fn tell(self, submitted: Result<Submitted>) {
-        // Whoever asked may have gone; the job is queued all the same.
+        // The client may have disconnected; the job is queued all the same.
         let _ = self.answer.send(submitted);
     }
 }
 
 impl Intake {
-    /// Those that are next, and whether there are more.
+    /// The next submissions, and whether there are more.
     fn take(&self) -> (Vec<Waiting>, bool) {
         let mut waiting = self.waiting();
         let together = waiting.len().min(AT_ONCE);
@@ -107,7 +106,7 @@ impl Intake {
     }
 
     fn waiting(&self) -> MutexGuard<'_, Vec<Waiting>> {
-        // The list is whole at every point where its holder could panic.
+        // The list is consistent wherever a thread that holds the lock could panic.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -1,8 +1,8 @@
-//! SQLite: one connection that writes, a pool that reads.
+//! SQLite: one connection for writes, and a pool of connections for reads.
 //!
-//! With several writers the worst claim waits an order of magnitude longer at the same throughput, so writes queue for
-//! the one connection here rather than for SQLite's lock. The log is write-ahead, and every commit is synced: what a
-//! client was told is stored survives a power loss.
+//! With several writing connections the slowest claim takes an order of magnitude longer at the same throughput; therefore
+//! writes wait for the connection here instead of for SQLite's lock. The log is write-ahead, and every commit is synced: an
+//! acknowledged write survives a power loss.
 
 pub(crate) mod backup;
 pub(crate) mod dialect;
@@ -28,7 +28,7 @@ static MIGRATIONS: sqlx::migrate::Migrator = sqlx::migrate!("./migrations/sqlite
 
 const READERS: u32 = 4;
 const BUSY_TIMEOUT: Duration = Duration::from_secs(5);
-/// Bytes that the write-ahead log keeps on the disk when it has been written back.
+/// Size to which the write-ahead log is truncated after a checkpoint, in bytes.
 const LARGEST_LOG: &str = "67108864";
 const ACQUIRE_TIMEOUT: Duration = Duration::from_secs(15);
 
@@ -42,7 +42,7 @@ pub struct SqliteEngine {
 
 impl SqliteEngine {
     pub async fn open(file: &Path) -> Result<SqlStore<Self>> {
-        // A file in any case: names such as `:memory:` mean something else to SQLite.
+        // Always a file: names such as `:memory:` have another meaning for SQLite.
         let file = &std::path::absolute(file).map_err(|error| StoreError::Open(Box::new(error)))?;
         let options = SqliteConnectOptions::new().filename(file).busy_timeout(BUSY_TIMEOUT).foreign_keys(true);
         let writer = SqlitePoolOptions::new()
@@ -50,7 +50,7 @@ impl SqliteEngine {
             .acquire_timeout(ACQUIRE_TIMEOUT)
             .idle_timeout(None)
             .max_lifetime(None)
-            // A ping before every use finds nothing in a file, and costs as much as a statement.
+            // A ping before every use is of no use for a file, and costs as much as a statement.
             .test_before_acquire(false)
             // Where SQLite itself has rolled back, as it does on a full disk, the connection still counts a transaction, and the
             // next one would only be a part of it: told as stored, and lost. Such a connection is closed.
@@ -64,7 +64,7 @@ impl SqliteEngine {
                 options
                     .clone()
                     .create_if_missing(true)
-                    // Takes effect where the database is created.
+                    // Only takes effect when the database is created.
                     .auto_vacuum(SqliteAutoVacuum::Incremental)
                     .pragma("journal_size_limit", LARGEST_LOG)
                     .journal_mode(SqliteJournalMode::Wal)
@@ -86,7 +86,7 @@ impl SqliteEngine {
     }
 }
 
-/// What SQLite's result code says, the primary one: extended ones carry more in their higher bits.
+/// Classifies a result code of SQLite by its primary code, the lower byte of an extended one.
 pub(super) fn fault(code: &str) -> fn(Source) -> StoreError {
     match code.parse::<i64>().map(|code| code & 0xff) {
         Ok(13) => StoreError::Full,
@@ -147,7 +147,7 @@ mod tests {
     use sqlx::{Row, Sqlite};
     use std::time::Duration;
 
-    /// What has been answered as stored survives a loss of power.
+    /// Acknowledged writes survive a power loss.
     #[tokio::test]
     async fn every_commit_is_synced() {
         let folder = tempfile::tempdir().expect("a folder");

@@ -1,4 +1,4 @@
-//! What of a path is drawn.
+//! Extracts the curve and its events from the increments of a path.
 
 use crate::result::increment::{Increment, PointKind};
 use crate::studies::picture::path::Against;
@@ -26,7 +26,7 @@ pub struct StageCurve {
 pub struct CurvePoint {
     /// Displacement and load factor.
     pub at: (f64, f64),
-    /// The way on from here is one of several.
+    /// The path has several continuations here.
     pub bifurcation: bool,
 }
 
@@ -37,7 +37,7 @@ pub struct Event {
     pub kind: EventKind,
     /// Displacement and load factor.
     pub at: (f64, f64),
-    /// What happens, in the path's words.
+    /// The event, as in the increment.
     pub words: Option<String>,
 }
 
@@ -72,7 +72,7 @@ impl Curve {
         self.stages.is_empty()
     }
 
-    /// Every place of the curve.
+    /// All points of the curve.
     pub fn places(&self) -> impl Iterator<Item = (f64, f64)> {
         self.stages.iter().flat_map(|stage| stage.points.iter().map(|point| point.at))
     }

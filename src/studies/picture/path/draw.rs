@@ -1,4 +1,4 @@
-//! The curve on paper: axes, lines, dots, marks, letters, and the legend beside them.
+//! Draws the curve: axes, lines, dots, marks, letters, and the legend beside them.
 
 use crate::studies::picture::axis::Axis;
 use crate::studies::picture::chart::{self, CAPTION, LONGEST, MARGIN, Side, TITLE};
@@ -13,17 +13,17 @@ use plotters::style::Color;
 /// Widths, in pixels.
 const CHART: i32 = 660;
 const LEGEND: i32 = 380;
-/// The chart is at least and at most this high; the legend may be longer.
+/// The least and the largest height of the chart; the legend may be higher.
 const LOWEST: i32 = 480;
 const HIGHEST: i32 = 900;
-/// At most this many ticks an axis.
+/// The most ticks of an axis.
 const TICKS: usize = 10;
 /// Half a letter's height, and half its width for each character, in fine units.
 const HALF_HEIGHT: i32 = 70;
 const HALF_WIDTH: i32 = 60;
-/// A letter that stands farther from its point than this is tied to it.
+/// A letter that is farther from its point than this is connected to it by a line.
 const TIED: i32 = 18 * FINE;
-/// Dots closer than this to the last one are left out, in fine units.
+/// Dots closer than this to the last one are omitted, in fine units.
 const DENSE: i32 = 20;
 
 const ZERO: RGBColor = RGBColor(170, 170, 170);
@@ -76,7 +76,7 @@ fn draw_stage(
 ) -> Drawn {
     let stroke = |bifurcation| Stroke { stage, bifurcation };
     let places: Vec<Place> = drawn.points.iter().map(|point| on_sheet(point.at)).collect();
-    // A point's flag speaks of the way on from it, and so of the line from it to the next.
+    // The flag of a point is about its continuation, and so about the line to the next point.
     let ways: Vec<(bool, [Place; 2])> = places
         .windows(2)
         .zip(&drawn.points)
@@ -100,7 +100,7 @@ fn draw_stage(
     Ok(())
 }
 
-/// Marks first: no letter may hide one.
+/// Marks first, so that no letter covers one.
 fn draw_events(sheet: &Sheet<'_>, curve: &Curve, on_sheet: &impl Fn((f64, f64)) -> Place, map: &mut Map) -> Drawn {
     for event in &curve.events {
         map.add_marker(on_sheet(event.at), MARKER * FINE);

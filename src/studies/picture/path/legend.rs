@@ -1,11 +1,11 @@
-//! What lines, marks and letters mean.
+//! The legend of lines, marks and letters.
 
 use crate::studies::picture::axis::Axis;
 use crate::studies::picture::path::curve::{Curve, Event};
 use crate::studies::picture::path::strokes::{Stroke, marker};
 use crate::studies::picture::shapes::{Drawn, FAINT_INK, FINE, INK, Lettering, Place, Sheet};
 
-/// Stages and events that are listed; the rest is counted.
+/// The most stages and events that are listed; the others are counted.
 const LISTED_STAGES: usize = 20;
 pub const LISTED_EVENTS: usize = 200;
 /// Heights of rows, in pixels.
@@ -16,7 +16,7 @@ const SAMPLE_END: i32 = 34;
 const MARK: i32 = 8;
 const LETTER: i32 = 30;
 const WORDS: i32 = 50;
-/// Characters that fit into a row, in plain and in faint lettering.
+/// Characters that fit into a row, in plain and in faint text.
 const LONGEST: usize = 48;
 const LONGEST_FAINT: usize = 56;
 

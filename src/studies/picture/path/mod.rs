@@ -1,7 +1,7 @@
 //! The picture of a path: load factor against one displacement component, its events lettered.
 //!
-//! `curve` takes from the increments what is drawn, `legend` says what the letters
-//! mean, `strokes` are lines and marks, `draw` puts it all on paper. Called by `solve` alone.
+//! `curve` extracts the curve from the increments, `legend` explains the letters, `strokes` has lines and marks, `draw` composes
+//! the picture. Called by `solve` alone.
 
 pub(crate) mod curve;
 pub(crate) mod draw;
@@ -57,7 +57,7 @@ impl std::fmt::Display for Against {
     }
 }
 
-/// The picture as SVG text: the same for the same increments, whatever machine and time they were found in.
+/// The picture as SVG text, which only depends on the increments, not on times.
 pub fn svg(model: &Model, increments: &[Increment], against: Option<Against>) -> Result<String, PlotError> {
     let against = match against {
         Some(against) => against,
@@ -70,9 +70,9 @@ pub fn svg(model: &Model, increments: &[Increment], against: Option<Against>) ->
     draw::draw(&curve).map_err(|error| PlotError::Drawing(error.to_string()))
 }
 
-/// The unsupported component that comes farthest from its start, the first one where several do.
+/// The unsupported component with the largest displacement, the first one among equals.
 fn farthest(model: &Model, increments: &[Increment]) -> Option<Against> {
-    /// By symmetry two nodes may move alike up to rounding; that must not decide between them.
+    /// By symmetry two nodes may have the same displacement up to rounding, which must not decide between them.
     const ALIKE: f64 = 1e-9;
     let is_free = |displacement: &Against| {
         let held = model.supports.get(&displacement.node);

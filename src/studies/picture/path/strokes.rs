@@ -9,17 +9,17 @@ use plotters::style::Color;
 const BIFURCATION: RGBColor = RGBColor(230, 120, 0);
 const LIMIT: RGBColor = RGBColor(190, 20, 40);
 const NONSMOOTH: RGBColor = RGBColor(120, 40, 140);
-/// Of the stages, in turn.
+/// Colours of the stages, in turn.
 const STAGES: [RGBColor; 4] =
     [RGBColor(25, 85, 150), RGBColor(70, 165, 40), RGBColor(125, 75, 30), RGBColor(90, 90, 120)];
 
 /// Half the size of a marker, in pixels.
 pub const MARKER: i32 = 5;
 
-/// How a stretch of the curve looks.
+/// The style of a part of the curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stroke {
-    /// Place of the stage among the stages.
+    /// Index of the stage.
     pub stage: usize,
     pub bifurcation: bool,
 }
@@ -30,7 +30,7 @@ impl Stroke {
         if self.bifurcation { (BIFURCATION, 36, 26) } else { (STAGES[self.stage % STAGES.len()], 14, 16) }
     }
 
-    /// Where a later stage covers an earlier one, both show.
+    /// Every second stage is dashed, so that a stage remains visible under a later one.
     fn dashed(self) -> bool {
         self.stage % 2 == 1 && !self.bifurcation
     }
@@ -51,12 +51,12 @@ impl Stroke {
     }
 }
 
-/// The line from a letter to its point, where they stand apart.
+/// The line from a letter to its point, if they are apart.
 pub fn leader(sheet: &Sheet<'_>, from: Place, to: Place) -> Drawn {
     sheet.draw(&PathElement::new(vec![from, to], FAINT_INK.stroke_width(7)))
 }
 
-/// The mark of an event: no two kinds have the same shape.
+/// The mark of an event; every kind has its own shape.
 pub fn marker(sheet: &Sheet<'_>, kind: EventKind, (x, y): Place) -> Drawn {
     let size = MARKER * FINE;
     let outline = |color: RGBColor| color.stroke_width(16);

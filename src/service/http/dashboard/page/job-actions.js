@@ -27,36 +27,21 @@ export function jobActions(job, done, failed) {
     }), { class: "danger", id: "delete" }));
 }
 
-export function studyActions(study, done, failed) {
-  const { id } = study;
+/** What can be done with a study or a sweep; `kind` is which of both, `place` the address below which it is. */
+export function findingsActions(record, kind, place, hasFindings, done, failed) {
+  const { id } = record;
   const then = doing(done, failed);
-  const hasFound = study.report !== null;
+  const file = (words, name, ending) => button(words,
+    then(() => download(`${place}/${id}/${name}.${ending}`, `${kind}-${id}.${ending}`)));
+  const rest = kind === "sweep" ? "all its jobs" : "all that it has found";
   return element("div", { class: "actions" },
-    isGoingOn(study) ? button("Cancel", then(() => call(`/v1/studies/${id}/cancel`, { method: "POST" }))) : null,
-    hasFound ? [
-      button("Table (csv)", then(() => download(`/v1/studies/${id}/table.csv`, `study-${id}.csv`))),
-      button("Table (text)", then(() => download(`/v1/studies/${id}/table.txt`, `study-${id}.txt`))),
-      button("Picture (svg)", then(() => download(`/v1/studies/${id}/picture.svg`, `study-${id}.svg`))),
+    isGoingOn(record) ? button("Cancel", then(() => call(`${place}/${id}/cancel`, { method: "POST" }))) : null,
+    hasFindings ? [
+      file("Table (csv)", "table", "csv"), file("Table (text)", "table", "txt"), file("Picture (svg)", "picture", "svg"),
     ] : [],
-    askingButton("Delete", `Delete the study “${nameOf(study)}” and all that it has found?`, then(async () => {
-      await call(`/v1/studies/${id}`, { method: "DELETE" });
-      leaveFor({ study: null });
-    }), { class: "danger", id: "delete" }));
-}
-
-export function sweepActions(sweep, hasFound, done, failed) {
-  const { id } = sweep;
-  const then = doing(done, failed);
-  return element("div", { class: "actions" },
-    isGoingOn(sweep) ? button("Cancel", then(() => call(`/v1/sweeps/${id}/cancel`, { method: "POST" }))) : null,
-    hasFound ? [
-      button("Table (csv)", then(() => download(`/v1/sweeps/${id}/table.csv`, `sweep-${id}.csv`))),
-      button("Table (text)", then(() => download(`/v1/sweeps/${id}/table.txt`, `sweep-${id}.txt`))),
-      button("Picture (svg)", then(() => download(`/v1/sweeps/${id}/picture.svg`, `sweep-${id}.svg`))),
-    ] : [],
-    askingButton("Delete", `Delete the sweep “${nameOf(sweep)}” and all its jobs?`, then(async () => {
-      await call(`/v1/sweeps/${id}`, { method: "DELETE" });
-      leaveFor({ sweep: null });
+    askingButton("Delete", `Delete the ${kind} “${nameOf(record)}” and ${rest}?`, then(async () => {
+      await call(`${place}/${id}`, { method: "DELETE" });
+      leaveFor({ [kind]: null });
     }), { class: "danger", id: "delete" }));
 }
 

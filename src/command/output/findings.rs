@@ -1,0 +1,73 @@
+//! Writes the findings of `study` and `sweep` in the selected format, and shows their progress.
+
+use crate::command::output::outcome::Failure;
+use crate::command::output::written::{one_on_standard_output, write};
+use crate::studies::picture::findings::Findings;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+
+/// The arguments for the output of findings.
+#[derive(Debug, clap::Args)]
+pub struct Written {
+    /// Write the table to this file; `-` is standard output.
+    #[arg(long, value_name = "FILE", default_value = "-")]
+    out: PathBuf,
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+    /// Draw the picture to this file, as SVG; `-` is standard output.
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Format {
+    /// Aligned columns of text.
+    Text,
+    /// A table with named columns.
+    Csv,
+    /// Everything as one JSON object.
+    Json,
+}
+
+impl Written {
+    /// Checks the output files before anything is traced.
+    ///
+    /// # Errors
+    /// Two outputs have the same file, or the folder of a file does not exist.
+    pub fn check(&self) -> Result<(), Failure> {
+        let places = [("--out", Some(self.out.as_path())), ("--plot", self.plot.as_deref())];
+        for (option, place) in places {
+            let folder = place.and_then(Path::parent).filter(|folder| !folder.as_os_str().is_empty());
+            if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+                return Err(Failure::Input(vec![format!("{option}: there is no folder {}", folder.display())]));
+            }
+        }
+        one_on_standard_output(&places)
+    }
+
+    /// # Errors
+    /// A file cannot be written, or there is nothing to draw.
+    pub fn write(&self, findings: &impl Findings) -> Result<(), Failure> {
+        let text = match self.format {
+            Format::Text => findings.text(),
+            Format::Csv => findings.csv(),
+            Format::Json => serde_json::to_string_pretty(findings).map(|text| text + "\n"),
+        };
+        write(&self.out, &text.map_err(Failure::other)?)?;
+        match &self.plot {
+            Some(file) => write(file, &findings.svg().map_err(Failure::other)?),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The progress bar, on a terminal; the table is only written at the end.
+pub fn progress_bar(paths: u64) -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{bar:40} {pos} of {len} paths, {elapsed}")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(paths).with_style(style)
+}

@@ -1,0 +1,5 @@
+//! What commands print and write, and how they end.
+
+pub(crate) mod findings;
+pub(crate) mod outcome;
+pub(crate) mod written;

@@ -1,0 +1,38 @@
+//! The built-in scenes, ready to post.
+
+use crate::check::scenes;
+use crate::model::JobRequest;
+use crate::service::http::answer::problem::Problem;
+use crate::service::http::document;
+use crate::service::http::view::scene::{SceneList, SceneSummary};
+use axum::Json;
+use axum::extract::Path;
+use axum::http::header;
+use axum::response::IntoResponse;
+
+/// List the built-in scenes.
+#[utoipa::path(
+    get, path = "/v1/scenes", tag = document::SCENES, operation_id = "list_scenes",
+    responses((status = 200, description = "Every built-in scene.", body = SceneList))
+)]
+pub async fn list() -> Json<SceneList> {
+    let scenes = scenes::ALL
+        .iter()
+        .map(|scene| SceneSummary { name: scene.name, shows: scene.shows, link: format!("/v1/scenes/{}", scene.name) })
+        .collect();
+    Json(SceneList { scenes })
+}
+
+/// The job request of a built-in scene, ready to post.
+#[utoipa::path(
+    get, path = "/v1/scenes/{name}", tag = document::SCENES, operation_id = "get_scene",
+    params(("name" = String, Path, description = "The scene's name.")),
+    responses((status = 200, description = "The job request.", body = JobRequest))
+)]
+pub async fn get(Path(name): Path<String>) -> Result<impl IntoResponse, Problem> {
+    let scene = scenes::find(&name).ok_or_else(|| {
+        let known: Vec<&str> = scenes::ALL.iter().map(|scene| scene.name).collect();
+        Problem::not_found(format_args!("scene of that name; there are {}", known.join(", ")))
+    })?;
+    Ok(([(header::CONTENT_TYPE, "application/json")], scene.request))
+}

@@ -1,0 +1,5 @@
+//! Reading requests: bodies, parameters and headers.
+
+pub mod accept;
+pub mod extract;
+pub mod parameters;

@@ -1,0 +1,148 @@
+//! Sweeps: many jobs that are queued together.
+
+use crate::model::request::sweep::Variation;
+use crate::model::{InputError, InputErrors, RunMistakes, Sweep, VariationSummary};
+use crate::service::jobs::configuration::limits::MOST_SWEEP_BYTES;
+use crate::service::jobs::queue::checks::{Check, CheckContext};
+use crate::service::jobs::queue::submission::{Prepared, not_text, queued, wrong_input};
+use crate::service::jobs::solving::solver::Before;
+use crate::service::jobs::{Caller, Jobs, JobsError, Posted};
+use crate::service::metrics::Write;
+use crate::service::store::{JobRecord, Line, NewRun, NewSweep, Task};
+use crate::studies::sweeps::{Found, Row};
+use serde_json::value::{RawValue, to_raw_value};
+
+impl Jobs {
+    /// Checks a sweep with all of its runs and answers its [`Variation`] as JSON and the number of runs; nothing is queued.
+    pub async fn validate_sweep(&self, request: impl Into<Posted>) -> Result<(String, u64), JobsError> {
+        let ((prepared, runs), _held) = self.checks.run(request.into(), Preparation::Posted).await?;
+        Ok((serde_json::to_string(&prepared.plan)?, runs.len() as u64))
+    }
+
+    pub async fn submit_sweep(
+        &self,
+        caller: &Caller,
+        request: impl Into<Posted>,
+        idempotency_key: Option<String>,
+    ) -> Result<JobRecord, JobsError> {
+        let ((prepared, runs), _held) = self.checks.run(request.into(), Preparation::Posted).await?;
+        let whole = prepared.into_job(caller, Task::Sweep, &self.settings, idempotency_key)?;
+        let sweep = NewSweep { whole, runs };
+        queued(self.metrics.work.timed(Write::Submit, self.store.submit_sweep(sweep)).await?)
+    }
+}
+
+/// The findings of a sweep, in the order of its runs; `lines` are all of its stored lines.
+///
+/// # Errors
+/// The stored plan or lines cannot be read.
+pub fn found(sweep: JobRecord, lines: &[Line]) -> serde_json::Result<Found> {
+    let variation: Variation = serde_json::from_str(&sweep.plan)?;
+    let mut rows: Vec<Row> = lines.iter().map(|line| serde_json::from_str(&line.body)).collect::<Result<_, _>>()?;
+    rows.sort_by_key(|row| row.run);
+    Ok(Found { name: sweep.name, variation, rows })
+}
+
+/// The check of a sweep, run by run.
+enum Preparation {
+    Posted(Vec<u8>),
+    Begun(Box<Begun>),
+}
+
+/// A sweep whose runs have been checked in part.
+struct Begun {
+    request: Vec<u8>,
+    sweep: Sweep,
+    runs: Vec<NewRun>,
+    /// The number of checked runs.
+    checked: u64,
+    /// Bytes of the requests and plans of the checked runs.
+    bytes: usize,
+    mistakes: RunMistakes,
+    /// The scene of the last run, which the next one may reuse.
+    before: Before,
+}
+
+impl Check for Preparation {
+    /// The sweep, and its runs.
+    type Checked = (Prepared<Box<RawValue>>, Vec<NewRun>);
+
+    fn go_on(&mut self, context: &CheckContext<'_>) -> Result<Option<Self::Checked>, JobsError> {
+        let mut begun = match std::mem::replace(self, Self::Posted(Vec::new())) {
+            Self::Posted(request) => Box::new(Begun::read(context, request)?),
+            Self::Begun(begun) => begun,
+        };
+        while begun.go_on(context)? {
+            if context.is_over_time() {
+                *self = Self::Begun(begun);
+                return Ok(None);
+            }
+        }
+        begun.end().map(Some)
+    }
+}
+
+impl Begun {
+    fn read(context: &CheckContext<'_>, request: Vec<u8>) -> Result<Self, JobsError> {
+        let sweep = Sweep::read(&request).map_err(|errors| wrong_input(&request, errors, JobsError::Input))?;
+        if sweep.runs() > context.limits.queued {
+            let most = context.limits.queued;
+            return Err(refused(format!("these are {} runs; this service queues at most {most} jobs", sweep.runs())));
+        }
+        Ok(Self {
+            request,
+            sweep,
+            runs: Vec::new(),
+            checked: 0,
+            bytes: 0,
+            mistakes: RunMistakes::default(),
+            before: Before::default(),
+        })
+    }
+
+    /// Checks the next run; answers whether further runs have to be checked.
+    fn go_on(&mut self, context: &CheckContext<'_>) -> Result<bool, JobsError> {
+        context.go_on()?;
+        let run = self.checked;
+        match prepare_run(context, &self.sweep, &mut self.before, run) {
+            Ok(new) => {
+                self.bytes += new.request.len() + new.plan.len();
+                if self.bytes > MOST_SWEEP_BYTES {
+                    return Err(refused(format!(
+                        "the requests of its runs have more than {MOST_SWEEP_BYTES} bytes in all"
+                    )));
+                }
+                self.runs.push(new);
+                self.mistakes.note(run, None);
+            }
+            Err(JobsError::Input(errors)) => self.mistakes.note(run, Some(errors)),
+            Err(other) => return Err(other),
+        }
+        self.checked += 1;
+        Ok(self.checked < self.sweep.runs() && !self.mistakes.are_enough())
+    }
+
+    fn end(self) -> Result<(Prepared<Box<RawValue>>, Vec<NewRun>), JobsError> {
+        let Self { request, sweep, runs, mistakes, .. } = self;
+        mistakes.result(&sweep).map_err(JobsError::Input)?;
+        let summary = Some(serde_json::to_string(&VariationSummary::of(&sweep.variation))?);
+        // Written here, on a blocking thread, as it can be large.
+        let plan = to_raw_value(&sweep.variation)?;
+        let (text, max_increments) = (String::from_utf8(request).map_err(not_text)?, runs.len() as u64);
+        Ok((Prepared { text, name: sweep.name, plan, summary, max_increments, explore: None }, runs))
+    }
+}
+
+fn refused(detail: String) -> JobsError {
+    JobsError::Input(InputErrors(vec![InputError::new("/sweep/replace", detail)]))
+}
+
+fn prepare_run(context: &CheckContext<'_>, sweep: &Sweep, before: &mut Before, run: u64) -> Result<NewRun, JobsError> {
+    let wrong = |errors| JobsError::Input(sweep.located(run, errors));
+    let crate::model::runs::Run { text, request } = sweep.run(run).map_err(JobsError::Input)?;
+    let max_increments = request.analysis.max_increments;
+    context.limits.check(&request.model, max_increments).map_err(wrong)?;
+    let plan = serde_json::to_string(&context.solver.plan_after(before, &request).map_err(wrong)?)?;
+    let values = serde_json::to_string(&sweep.variation.values(run))?;
+    Ok(NewRun { name: request.model.name, request: text, plan, values, max_increments })
+}

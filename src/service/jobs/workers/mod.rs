@@ -1,0 +1,7 @@
+//! The background tasks of the service: workers that run queued jobs, and the upkeep of the store.
+
+pub mod batch;
+pub mod explore;
+pub mod retention;
+pub mod worker;
+pub mod worker_pool;
