@@ -13,6 +13,7 @@ use crate::mechanics::contact::{Mode, Sliding};
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::closing_equation::ClosingEquation;
 use crate::mechanics::equations::stage_criteria::End;
+use crate::mechanics::multi_contact::contact_status::none_from_cone;
 use crate::mechanics::multi_contact::planar;
 use crate::mechanics::multi_contact::spatial::Pocket;
 use crate::mechanics::problem::loading::Loading;
@@ -246,7 +247,7 @@ impl Watch {
     /// The value at a state that is zero as far as a relative tolerance tells.
     pub fn zero_within(self, loading: Loading<'_>, state: &State, tolerance: f64, force_scale: f64) -> f64 {
         match self {
-            Self::Cone { contact, .. } => loading.none_from_cone(contact, state, tolerance, force_scale),
+            Self::Cone { contact, .. } => none_from_cone(loading, contact, state, tolerance, force_scale),
             _ => tolerance * self.scale(loading, state, force_scale),
         }
     }

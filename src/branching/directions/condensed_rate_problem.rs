@@ -18,7 +18,7 @@ use crate::mechanics::contact::vector::{Vector, add, dot, scaled};
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::multi_contact::contact_status::Standing;
-use crate::mechanics::multi_contact::rate_options::contact_options::{Changeable, Forms, Outcome};
+use crate::mechanics::multi_contact::rate_options::contact_options::{Changeable, Forms, OptionOutcome};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_forces::whole_rates;
 use crate::mechanics::problem::state::{Rate, State};
@@ -37,7 +37,7 @@ pub(crate) struct Condensed<'a> {
     changeable: Vec<Changeable>,
     problem: RateProblem,
     /// What the options of each mean.
-    outcomes: Vec<Vec<Outcome>>,
+    outcomes: Vec<Vec<OptionOutcome>>,
     _held: Taken,
 }
 
@@ -313,7 +313,7 @@ impl<'a> Condensed<'a> {
         force: f64,
     ) -> Vec<Vec<Alternative>> {
         budget::spend(self.changeable.len());
-        let of_entity = |((entry, outcomes), in_doubt): ((&Changeable, &Vec<Outcome>), &Vec<usize>)| {
+        let of_entity = |((entry, outcomes), in_doubt): ((&Changeable, &Vec<OptionOutcome>), &Vec<usize>)| {
             if turning.iter().any(|(turning, _)| entry.contacts.contains(turning)) {
                 return vec![entry.contacts.iter().map(|contact| (*contact, modes[*contact])).collect()];
             }

@@ -33,20 +33,18 @@ pub enum Standing {
 /// A distance from the friction cone (over the force scale) that may be round-off: what an event's location leaves.
 const ROUND_OFF: f64 = 1e-12;
 
-impl Loading<'_> {
-    /// The distance from a contact's cone that counts as none, for a relative tolerance: by the friction bound `μ r_n`
-    /// itself, but no less than round-off and no more than by the forces at its node.
-    pub fn none_from_cone(&self, contact: usize, state: &State, tolerance: f64, force_scale: f64) -> f64 {
-        let reaction = &state.reactions[contact];
-        let bound = (self.contacts[contact].friction * reaction.normal).abs();
-        // The forces lie between the reaction and the force scale: often that tells.
-        let least = reaction.size().min(force_scale);
-        if bound <= least && tolerance * bound >= ROUND_OFF * force_scale {
-            return tolerance * bound;
-        }
-        let forces = self.force_scale_at(contact, state, force_scale);
-        (tolerance * bound.min(forces)).max(ROUND_OFF * forces)
+/// The distance from a contact's cone that counts as none, for a relative tolerance: by the friction bound `μ r_n` itself,
+/// but no less than round-off and no more than by the forces at its node.
+pub fn none_from_cone(loading: Loading<'_>, contact: usize, state: &State, tolerance: f64, force_scale: f64) -> f64 {
+    let reaction = &state.reactions[contact];
+    let bound = (loading.contacts[contact].friction * reaction.normal).abs();
+    // The forces lie between the reaction and the force scale: often that tells.
+    let least = reaction.size().min(force_scale);
+    if bound <= least && tolerance * bound >= ROUND_OFF * force_scale {
+        return tolerance * bound;
     }
+    let forces = loading.force_scale_at(contact, state, force_scale);
+    (tolerance * bound.min(forces)).max(ROUND_OFF * forces)
 }
 
 /// Standing of every contact.
@@ -105,7 +103,7 @@ fn standing(loading: Loading<'_>, state: &State, index: usize, force_scale: f64)
         return Standing::Settled(Mode::Slip { direction: [0.0; 3] });
     }
     let bound = contact.friction * reaction.normal;
-    if bound - reaction.tangential_size() > loading.none_from_cone(index, state, ZERO, force_scale) {
+    if bound - reaction.tangential_size() > none_from_cone(loading, index, state, ZERO, force_scale) {
         return Standing::Settled(Mode::Stick);
     }
     let direction = match contact.sliding {

@@ -34,7 +34,7 @@ pub(crate) struct Changeable {
 
 /// The modes of an option.
 #[derive(Debug, Clone)]
-pub(crate) struct Outcome {
+pub(crate) struct OptionOutcome {
     pub modes: Vec<(usize, Mode)>,
 }
 
@@ -184,10 +184,10 @@ impl Changeable {
     }
 
     /// The options, holding first, and the modes of each.
-    pub fn options(&self, loading: Loading<'_>, state: &State, forms: &mut Forms<'_>) -> (Entity, Vec<Outcome>) {
+    pub fn options(&self, loading: Loading<'_>, state: &State, forms: &mut Forms<'_>) -> (Entity, Vec<OptionOutcome>) {
         let contact = self.contacts[0];
         let friction = loading.contacts[contact].friction;
-        let single = |mode: Mode| Outcome { modes: vec![(contact, mode)] };
+        let single = |mode: Mode| OptionOutcome { modes: vec![(contact, mode)] };
         let frame = &self.frames[0];
         match (self.standing, &self.velocities[..]) {
             (Standing::OnCone { direction }, _) => {
@@ -299,10 +299,10 @@ impl Changeable {
         facets: [bool; 2],
         unloaded: bool,
         forms: &mut Forms<'_>,
-    ) -> (Entity, Vec<Outcome>) {
+    ) -> (Entity, Vec<OptionOutcome>) {
         let inward = planar::sector(loading, &self.contacts, |_| Mode::Stick, state).inward;
         let gaps: Vec<usize> = self.frames.iter().map(|frame| forms.velocity(self, &frame.normal)).collect();
-        let outcome = |slipping: Option<(usize, Vector)>, others: Mode| Outcome {
+        let outcome = |slipping: Option<(usize, Vector)>, others: Mode| OptionOutcome {
             modes: self
                 .contacts
                 .iter()

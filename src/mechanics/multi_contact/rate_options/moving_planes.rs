@@ -5,7 +5,7 @@ use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled, size};
 use crate::mechanics::multi_contact::moving_planes::{Carried, STILL};
 use crate::mechanics::multi_contact::planar;
-use crate::mechanics::multi_contact::rate_options::contact_options::{Changeable, Forms, Outcome};
+use crate::mechanics::multi_contact::rate_options::contact_options::{Changeable, Forms, OptionOutcome};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::State;
 
@@ -17,14 +17,14 @@ pub fn options(
     entry: &Changeable,
     zero: f64,
     forms: &mut Forms<'_>,
-) -> (Entity, Vec<Outcome>) {
+) -> (Entity, Vec<OptionOutcome>) {
     let mut options = Vec::new();
     let mut outcomes = Vec::new();
     let force = entry.force;
     let unloaded = size(&force) <= zero;
     let mut option = |zero: Vec<usize>, nonnegative: Vec<Signed>, modes: [Mode; 2]| {
         options.push(Choice { zero, nonnegative, implied: Vec::new() });
-        outcomes.push(Outcome { modes: carried.contacts.into_iter().zip(modes).collect() });
+        outcomes.push(OptionOutcome { modes: carried.contacts.into_iter().zip(modes).collect() });
     };
     let against = |forms: &mut Forms<'_>, place: usize, direction: &Vector| {
         let contact = carried.contacts[place];

@@ -3,7 +3,7 @@
 use crate::complementarity::rates::rate_problem::{Choice, Entity, Signed};
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled};
-use crate::mechanics::multi_contact::rate_options::contact_options::{Changeable, Forms, Outcome};
+use crate::mechanics::multi_contact::rate_options::contact_options::{Changeable, Forms, OptionOutcome};
 use crate::mechanics::multi_contact::spatial::{Drive, Pocket, Slide};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::State;
@@ -17,7 +17,7 @@ pub fn options(
     unloaded: bool,
     zero: f64,
     forms: &mut Forms<'_>,
-) -> (Entity, Vec<Outcome>) {
+) -> (Entity, Vec<OptionOutcome>) {
     if pocket.is_driven {
         return driven(entry, pocket, (loading, state), unloaded, zero, forms);
     }
@@ -55,7 +55,7 @@ fn driven(
     unloaded: bool,
     zero: f64,
     forms: &mut Forms<'_>,
-) -> (Entity, Vec<Outcome>) {
+) -> (Entity, Vec<OptionOutcome>) {
     let places = 0..pocket.contacts.len();
     let gap = |place: usize| {
         let (contact, normal) = (pocket.contacts[place], pocket.frames[place].normal);
@@ -65,7 +65,7 @@ fn driven(
     let (mut options, mut outcomes) = (Vec::new(), Vec::new());
     let modes_with = |active: Option<usize>| {
         let mode = |place: usize| if active == Some(place) { Mode::Slip { direction: [0.0; 3] } } else { Mode::Free };
-        Outcome { modes: places.clone().map(|place| (pocket.contacts[place], mode(place))).collect() }
+        OptionOutcome { modes: places.clone().map(|place| (pocket.contacts[place], mode(place))).collect() }
     };
     for place in places.clone() {
         let form = pocket.face_form(place);
@@ -96,14 +96,14 @@ struct Writer<'a, 'f> {
     zero: f64,
     forms: &'a mut Forms<'f>,
     options: Vec<Choice>,
-    outcomes: Vec<Outcome>,
+    outcomes: Vec<OptionOutcome>,
 }
 
 impl Writer<'_, '_> {
     fn option(&mut self, zero: Vec<usize>, nonnegative: Vec<Signed>, mode: impl Fn(usize) -> Mode) {
         self.options.push(Choice { zero, nonnegative, implied: Vec::new() });
         let modes = self.pocket.contacts.iter().enumerate().map(|(place, contact)| (*contact, mode(place))).collect();
-        self.outcomes.push(Outcome { modes });
+        self.outcomes.push(OptionOutcome { modes });
     }
 
     /// The others open.

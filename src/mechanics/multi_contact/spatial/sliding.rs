@@ -59,7 +59,7 @@ impl Edge {
 }
 
 /// A node on its way along one obstacle or the edge of two.
-struct Sliding {
+struct PocketSlide {
     /// Places in the pocket.
     places: Vec<usize>,
     /// Zero where nothing rubs.
@@ -70,7 +70,7 @@ struct Sliding {
 
 impl Pocket {
     /// How the node slides in these modes of all contacts, if it does.
-    fn sliding(&self, modes: &[Mode]) -> Option<Sliding> {
+    fn sliding(&self, modes: &[Mode]) -> Option<PocketSlide> {
         let active = |place: &usize| modes[self.contacts[*place]].is_active();
         let places: Vec<usize> = (0..self.contacts.len()).filter(active).collect();
         let mut direction = [0.0; 3];
@@ -90,12 +90,12 @@ impl Pocket {
             }
             _ => return None,
         };
-        Some(Sliding { places, direction, forms })
+        Some(PocketSlide { places, direction, forms })
     }
 
     /// The drag on the node in these modes under a force.
     pub fn drag_in(&self, modes: &[Mode], force: &Vector) -> f64 {
-        let Some(Sliding { places, forms, .. }) = self.sliding(modes) else { return 0.0 };
+        let Some(PocketSlide { places, forms, .. }) = self.sliding(modes) else { return 0.0 };
         places.iter().zip(&forms).map(|(place, form)| self.frictions[*place] * dot(form, force)).sum()
     }
 
@@ -125,7 +125,7 @@ impl Pocket {
     /// Rates of the reactions of the obstacles along which the node slides, from that of their sum; none where it does not
     /// slide.
     pub fn rates_in(&self, modes: &[Mode], force: &Vector, rate: &Vector, motion: &Vector) -> Vec<(usize, Reaction)> {
-        let Some(Sliding { places, direction, forms }) = self.sliding(modes) else { return Vec::new() };
+        let Some(PocketSlide { places, direction, forms }) = self.sliding(modes) else { return Vec::new() };
         let normals: Vec<f64> = forms.iter().map(|form| dot(form, force)).collect();
         let turning = self.turning(&places, &direction, &normals, motion);
         let rest = turning.iter().fold(self.free_part(rate), |rest, turned| add(&rest, -1.0, &self.free_part(turned)));
@@ -155,7 +155,7 @@ impl Pocket {
 /// nothing to take over.
 pub fn taken_over(loading: Loading<'_>, corner: &Corner, modes: &[Mode], state: &State) -> Vec<(usize, Reaction)> {
     let pocket = Pocket::new(loading, &corner.contacts, state);
-    let Some(Sliding { places, direction, forms }) = pocket.sliding(modes) else { return Vec::new() };
+    let Some(PocketSlide { places, direction, forms }) = pocket.sliding(modes) else { return Vec::new() };
     let slides_alone = |place: usize| places.contains(&place);
     let had = |place: usize| state.reactions[corner.contacts[place]] != Reaction::default();
     let rough = places.iter().any(|place| pocket.frictions[*place] > 0.0);
