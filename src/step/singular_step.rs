@@ -25,7 +25,7 @@ pub(crate) fn held_straight(
     if !(step.is_finite() && step > 0.0) {
         return None;
     }
-    let corrected = newton::judged(&system, start.state.advanced(start.rate, step), start.force_scale);
+    let corrected = newton::judged(system, start.state.advanced(start.rate, step), start.force_scale);
     let error = corrected.residual;
     (error <= ACCEPTED_RESIDUAL).then(|| start.straight_on(corrected, error))
 }

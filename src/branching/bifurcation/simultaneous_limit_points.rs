@@ -112,7 +112,7 @@ struct PartMotion {
 
 /// What a part does: goes on or back, or rests.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum PartCourse {
+enum PartSense {
     On,
     Back,
     Rest,
@@ -130,17 +130,17 @@ pub(crate) fn directions(
     let parts = parts(here, modes, incoming, motions)?;
     let falls = parts.first()?.sign;
     let mut found = Branches { options: Vec::new(), degenerate: false, unexplored: 0 };
-    let ways: Vec<Vec<PartCourse>> = parts
+    let ways: Vec<Vec<PartSense>> = parts
         .iter()
         .map(|part| match (part.sign == falls, part.slides.is_empty()) {
-            (true, true) => vec![PartCourse::On, PartCourse::Back],
-            (true, false) => vec![PartCourse::On, PartCourse::Rest],
-            (false, _) => vec![PartCourse::Rest],
+            (true, true) => vec![PartSense::On, PartSense::Back],
+            (true, false) => vec![PartSense::On, PartSense::Rest],
+            (false, _) => vec![PartSense::Rest],
         })
         .collect();
     found.unexplored = count(&ways).saturating_sub(most);
     for chosen in combinations(&ways, most) {
-        if chosen.iter().all(|way| *way == PartCourse::Rest) {
+        if chosen.iter().all(|way| *way == PartSense::Rest) {
             continue;
         }
         let mut rate = incoming.clone();
@@ -148,9 +148,9 @@ pub(crate) fn directions(
         let mut chosen_modes = modes.to_vec();
         for (part, way) in parts.iter().zip(&chosen) {
             match way {
-                PartCourse::On => rate.add(&part.rate, 1.0),
-                PartCourse::Back => rate.add(&part.rate, -1.0),
-                PartCourse::Rest => part.slides.iter().for_each(|contact| chosen_modes[*contact] = Mode::Stick),
+                PartSense::On => rate.add(&part.rate, 1.0),
+                PartSense::Back => rate.add(&part.rate, -1.0),
+                PartSense::Rest => part.slides.iter().for_each(|contact| chosen_modes[*contact] = Mode::Stick),
             }
         }
         let Some(rate) = rate.normalised() else { continue };

@@ -55,7 +55,7 @@ impl<'a> Condensed<'a> {
         let velocities: usize = changeable.iter().map(|entry| entry.velocities.len()).sum();
         // The columns themselves, and the matrices of their motions and reactions.
         let held = budget::take::<f64>(2 * (velocities + 1) * of_column);
-        let columns = condensation_basis::columns(&system, &changeable, incoming)?;
+        let columns = condensation_basis::columns(system, &changeable, incoming)?;
         let normals = |contact: usize| loading.frame(contact, state).normal;
         let mut forms = Forms { columns: &columns, normals: &normals, rows: Vec::new(), is_force: Vec::new(), held };
         let (entities, outcomes) = changeable.iter().map(|entry| entry.options(loading, state, &mut forms)).unzip();

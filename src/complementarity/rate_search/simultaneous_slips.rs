@@ -271,12 +271,12 @@ impl<'a> SlipEquations<'a> {
     }
 
     fn ray(&self, pattern: &OptionPattern, weights: &DVector<f64>) -> Option<Turning> {
-        let size = ray::size(&self.problem, weights);
+        let size = ray::size(self.problem, weights);
         if !(size.is_finite() && size > 0.0) {
             return None;
         }
         let weights = weights / size;
-        let along = ray::forms_along(&self.problem, &weights);
+        let along = ray::forms_along(self.problem, &weights);
         let force = along.force_tolerance();
         let mut chosen = pattern.chosen.clone();
         let mut slips = Vec::new();

@@ -31,10 +31,10 @@ pub(crate) fn examine(search: &mut BranchAndBound<'_>, chosen: &[usize]) -> Exam
     }
     search.held.add::<usize>(chosen.len());
     search.findings.examined += search.cost;
-    match ray::line(&search.problem, chosen) {
+    match ray::line(search.problem, chosen) {
         Line::Nothing => Examined::Nothing,
         Line::Along(weights) => {
-            let along = ray::forms_along(&search.problem, &weights);
+            let along = ray::forms_along(search.problem, &weights);
             let second = along.violated(chosen);
             let along = along.reversed();
             let first = along.violated(chosen);
@@ -53,8 +53,8 @@ pub(crate) fn examine(search: &mut BranchAndBound<'_>, chosen: &[usize]) -> Exam
         }
         Line::Plane(basis) => {
             search.findings.degenerate = true;
-            for weights in ray::edges(&search.problem, chosen, &basis) {
-                let along = ray::forms_along(&search.problem, &weights);
+            for weights in ray::edges(search.problem, chosen, &basis) {
+                let along = ray::forms_along(search.problem, &weights);
                 keep(search, chosen, weights, &along);
             }
             if search.findings.planes.len() < MOST_PLANES {
@@ -115,7 +115,7 @@ pub(crate) fn examine_all(search: &mut BranchAndBound<'_>, options: &[Vec<usize>
             None => settled |= matches!(examine(search, &chosen), Examined::Rays),
             // Its line is the known one; the other sense may be feasible under this combination only.
             Some(reversed) => {
-                let along = ray::forms_along(&search.problem, &reversed);
+                let along = ray::forms_along(search.problem, &reversed);
                 if along.violated(&chosen).is_empty() {
                     keep(search, &chosen, reversed, &along);
                 }

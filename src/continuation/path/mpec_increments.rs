@@ -128,7 +128,7 @@ fn note(trace: &PathTrace<'_>, program: &IncrementProgram<'_>, searched: &Search
     let (length, force) = (plan.displacement_scale, plan.force_scale);
     let number = left.counts.len() as u64;
     for iterate in &searched.iterates {
-        let (state, contacts) = search::contacts_at(&program, &iterate.x);
+        let (state, contacts) = search::contacts_at(program, &iterate.x);
         let contacts = contacts.into_iter().filter_map(|at| {
             let (node, obstacle) = trace.names().nth(at.contact)?;
             Some(ContactIterate {
@@ -143,7 +143,7 @@ fn note(trace: &PathTrace<'_>, program: &IncrementProgram<'_>, searched: &Search
         left.iterates.push(ProgramIterate {
             program: number,
             relaxation: iterate.relaxation,
-            size: search::arc_length_ratio(&program, &iterate.x),
+            size: search::arc_length_ratio(program, &iterate.x),
             load_factor: trace.scene.stages[trace.at.stage].load_factor(state.load),
             violation: iterate.violation,
             contacts: contacts.collect(),

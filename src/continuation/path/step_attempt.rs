@@ -8,7 +8,7 @@ use crate::continuation::contact_changes::prediction::ForeseenChange;
 use crate::continuation::contact_changes::simultaneous;
 use crate::continuation::contact_changes::simultaneous::Joined;
 use crate::continuation::path::step_control;
-use crate::continuation::path_state::progress::PathPoint;
+use crate::continuation::path_state::progress::PresentPoint;
 use crate::continuation::path_state::trace::PathTrace;
 use crate::mechanics::contact::Mode;
 use crate::mechanics::problem::natural_residual;
@@ -64,7 +64,7 @@ pub(crate) struct Tries {
 }
 
 impl Tries {
-    pub fn new(here: &PathPoint, at_hand: AtHand) -> Self {
+    pub fn new(here: &PresentPoint, at_hand: AtHand) -> Self {
         let next = here.apart.map(|apart| NEXT_WITHIN * apart);
         Self { next, known: here.signature, at_hand, unresolved: 0, joined: None }
     }
@@ -179,15 +179,15 @@ fn end_of_step(
 ) -> Result<AttemptEnd, Refused> {
     let (ends, load_sign) = (&trace.scene.stages[trace.at.stage].ends, trace.at.here.load_sign);
     let may_join = sought.may_join && !sought.jumps(step);
-    let foreseen = may_join.then(|| simultaneous::join_foreseen(&start, step, ends, load_sign, work)).flatten();
+    let foreseen = may_join.then(|| simultaneous::join_foreseen(start, step, ends, load_sign, work)).flatten();
     if let Some(joined) = foreseen {
         tries.joined = Some(joined.is_some());
         // Where they cannot be taken together nothing but the first of them is to be gone to.
         return joined.map(AttemptEnd::Joined).ok_or(Refused::Apart);
     }
     let tried = attempt(trace, start, step, sought, tries, work)?;
-    if may_join && let Some(first) = simultaneous::changes_to_join(&start, &tried) {
-        let joined = simultaneous::join_changes(&start, &first, &tried, work);
+    if may_join && let Some(first) = simultaneous::changes_to_join(start, &tried) {
+        let joined = simultaneous::join_changes(start, &first, &tried, work);
         tries.joined = Some(joined.is_some());
         if let Some(joined) = joined {
             return Ok(AttemptEnd::Joined(joined));
@@ -208,7 +208,7 @@ fn attempt(
     let here = &trace.at.here;
     let (ends, load_sign) = (&trace.scene.stages[trace.at.stage].ends, here.load_sign);
     let is_straight = sought.jumps(step);
-    let joins = sought.may_join && !is_straight && simultaneous::may_join(&start);
+    let joins = sought.may_join && !is_straight && simultaneous::may_join(start);
     // Where the rates foresee the next change, it is met where they do.
     let is_open = !joins && !is_straight && sought.foreseen.is_none();
     let next = tries.next.take().filter(|next| *next < MOST_OF_STEP * step && is_open);
@@ -225,7 +225,7 @@ fn attempt(
     let foreseen = sought.jump.or(sought.foreseen).filter(|foreseen| foreseen.step == step);
     let at_hand = here.is_factorised.then(|| std::mem::take(&mut tries.at_hand));
     let met =
-        foreseen.and_then(|foreseen| prediction::meet_change(&start, foreseen, at_hand, before, ends, load_sign, work));
+        foreseen.and_then(|foreseen| prediction::meet_change(start, foreseen, at_hand, before, ends, load_sign, work));
     met.map_or_else(|| start.attempt(step, before, None, ends, load_sign, work), Ok)
 }
 

@@ -30,7 +30,7 @@ pub(crate) struct Progress {
     pub held: Arc<LoadPattern>,
     /// Which of the scene's contacts are in reach, in order: reactions and modes are theirs, one each.
     pub near: Vec<usize>,
-    pub here: PathPoint,
+    pub here: PresentPoint,
     /// Arc length that the next step tries.
     pub step: f64,
     /// When contact changes are to be taken together again.
@@ -51,7 +51,7 @@ pub(crate) struct Progress {
 
 /// The present point and how the path goes on.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(crate) struct PathPoint {
+pub(crate) struct PresentPoint {
     pub state: State,
     pub modes: Vec<Mode>,
     /// Direction in `modes`; `None` before the stage's first decision.
@@ -103,7 +103,7 @@ impl Progress {
             reached: Vec::new(),
             held: Arc::default(),
             near,
-            here: PathPoint {
+            here: PresentPoint {
                 state: State::at_rest(&scene.structure, contacts),
                 modes: vec![Mode::Free; contacts],
                 rate: None,

@@ -14,7 +14,7 @@ use smallvec::smallvec;
 use std::sync::Arc;
 
 /// What a row is made from, beside the path's totals.
-pub(crate) struct RecordSource<'a> {
+pub(crate) struct RowSource<'a> {
     pub stage: usize,
     pub loading: Loading<'a>,
     /// The loading of every contact of the scene.
@@ -48,7 +48,7 @@ pub(crate) fn status(mode: Mode) -> Status {
 }
 
 /// The present increment; its directions where there is a choice.
-pub(crate) fn increment(scene: &Scene, totals: &Totals, row: &RecordSource<'_>) -> Increment {
+pub(crate) fn increment(scene: &Scene, totals: &Totals, row: &RowSource<'_>) -> Increment {
     let plan = scene.plan();
     let (length, force) = (plan.displacement_scale, plan.force_scale);
     let energy_unit = length * force;
@@ -104,12 +104,12 @@ pub(crate) fn increment(scene: &Scene, totals: &Totals, row: &RecordSource<'_>) 
 }
 
 /// The request's contacts that have a row, in its order.
-fn reported<'a>(scene: &'a Scene, row: &RecordSource<'a>) -> impl Iterator<Item = &'a Reported> {
+fn reported<'a>(scene: &'a Scene, row: &RowSource<'a>) -> impl Iterator<Item = &'a Reported> {
     row.rows.iter().map(|index| &scene.reported[*index])
 }
 
 /// Contact rows in the user's units, and the largest violation of contact and friction (dimensionless).
-fn contact_rows(scene: &Scene, row: &RecordSource<'_>, force_scale: f64) -> (Vec<ContactState>, f64) {
+fn contact_rows(scene: &Scene, row: &RowSource<'_>, force_scale: f64) -> (Vec<ContactState>, f64) {
     let plan = scene.plan();
     let (length, force) = (plan.displacement_scale, plan.force_scale);
     let dimension = scene.structure.dimension;

@@ -5,7 +5,7 @@ use crate::branching::selection::decision::Decision;
 use crate::complementarity::rate_search::branch_and_bound::Effort;
 use crate::continuation::path_state::contact_search::{self, FarContacts, Near};
 use crate::continuation::path_state::progress::{Arriving, Listed, Phase, Progress};
-use crate::continuation::path_state::record::{self, RecordSource};
+use crate::continuation::path_state::record::{self, RowSource};
 use crate::continuation::path_state::visited_states::{ClosedContact, Visited};
 use crate::continuation::scene::Scene;
 use crate::mechanics::contact::{Mode, Reaction};
@@ -159,7 +159,7 @@ impl<'a> PathTrace<'a> {
         if let Some(reactions) = emitted.reactions {
             state.to_mut().reactions = reactions;
         }
-        let row = RecordSource {
+        let row = RowSource {
             stage: self.at.stage,
             loading: self.loading(),
             whole: self.whole_loading(),

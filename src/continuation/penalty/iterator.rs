@@ -3,7 +3,7 @@
 use crate::algebra::Factorisation;
 use crate::continuation::path_state::event_names::{describe_change, describe_start};
 use crate::continuation::path_state::progress::{Phase, StageCounts};
-use crate::continuation::path_state::record::{self, RecordSource};
+use crate::continuation::path_state::record::{self, RowSource};
 use crate::continuation::path_state::totals::{Added, Totals};
 use crate::continuation::penalty::increment::PenaltyIncrement;
 use crate::continuation::penalty::law::Penalties;
@@ -197,7 +197,7 @@ impl<'a> RegularisedPath<'a> {
         let system = self.system();
         let places: Vec<Option<usize>> = (0..self.scene.contacts.len()).map(Some).collect();
         let rows: Vec<usize> = (0..self.scene.reported.len()).collect();
-        let row = RecordSource {
+        let row = RowSource {
             stage: self.stage,
             loading: system.loading,
             whole: system.loading,

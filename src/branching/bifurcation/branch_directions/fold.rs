@@ -48,11 +48,11 @@ const DEPENDENT: f64 = 1e-6;
 pub(super) struct Fold {
     /// `f`
     pub flat: Null,
-    parts: Vec<FoldProjection>,
+    parts: Vec<FoldPart>,
 }
 
 /// What is at a fold.
-struct FoldProjection {
+struct FoldPart {
     /// `g`
     steep: Null,
     /// `(2 |σ/c|)^½`
@@ -77,7 +77,7 @@ impl Fold {
     }
 
     /// The parts with arms.
-    fn wide(&self) -> impl Iterator<Item = &FoldProjection> {
+    fn wide(&self) -> impl Iterator<Item = &FoldPart> {
         self.parts.iter().filter(|part| part.width > NO_WIDTH)
     }
 
@@ -100,7 +100,7 @@ impl Fold {
     }
 
     fn sum(&self, shares: impl Iterator<Item = f64>) -> Option<Rate> {
-        let scaled = |(part, share): (&FoldProjection, f64)| {
+        let scaled = |(part, share): (&FoldPart, f64)| {
             let mut rate = part.steep.rate.clone();
             rate.scale(share);
             rate
@@ -229,7 +229,7 @@ fn fold(point: &BranchingPoint<'_>, left: &DMatrix<f64>, mut flat: Null, steep: 
     let force = point.system.matrix(point.here.state).rows(0, left.nrows()) * &flat.values;
     let part = |((left, steep), curvature): ((DVectorView<'_, f64>, Null), &f64)| {
         let ratio = left.dot(&force) / curvature;
-        FoldProjection { steep, width: (2.0 * ratio.abs()).sqrt(), sense: -ratio.signum() }
+        FoldPart { steep, width: (2.0 * ratio.abs()).sqrt(), sense: -ratio.signum() }
     };
     let parts = left.column_iter().zip(steep).zip(&curvatures).map(part).collect();
     Fold { flat, parts }

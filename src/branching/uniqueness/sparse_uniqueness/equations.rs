@@ -21,7 +21,7 @@ pub(super) struct ChangingContact {
 
 /// What a degree of freedom has in a column of `A`, and in the row.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct FreedomCoupling {
+pub(super) struct ColumnEntry {
     pub column: usize,
     pub motion: f64,
     pub test: f64,
@@ -38,7 +38,7 @@ pub(super) struct Equations<'a> {
     pub held: Vec<Mode>,
     pub changing: Vec<ChangingContact>,
     /// Of each degree of freedom.
-    pub parts: Vec<SmallVec<[FreedomCoupling; 2]>>,
+    pub parts: Vec<SmallVec<[ColumnEntry; 2]>>,
     /// Columns of `A`.
     pub size: usize,
     /// How reactions turn with the place: diagonal entries of `A`.
@@ -85,7 +85,7 @@ impl<'a> Equations<'a> {
         }
         for freedom in &structure.freedom_of {
             if !is_closed[*freedom] {
-                equations.parts[*freedom].push(FreedomCoupling { column: equations.size, motion: 1.0, test: 1.0 });
+                equations.parts[*freedom].push(ColumnEntry { column: equations.size, motion: 1.0, test: 1.0 });
                 equations.size += 1;
             }
         }
@@ -99,8 +99,7 @@ impl<'a> Equations<'a> {
         let column = self.size;
         let mut add_column = |motion: &Vector, test: &Vector| {
             let column = self.size;
-            (0..2)
-                .for_each(|k| self.parts[first + k].push(FreedomCoupling { column, motion: motion[k], test: test[k] }));
+            (0..2).for_each(|k| self.parts[first + k].push(ColumnEntry { column, motion: motion[k], test: test[k] }));
             self.size += 1;
         };
         let along = match standing {
@@ -155,7 +154,7 @@ impl<'a> Equations<'a> {
     /// Velocities of all degrees of freedom from those of the columns.
     pub fn velocities(&self, columns: &[f64]) -> Vec<f64> {
         let velocity =
-            |parts: &SmallVec<[FreedomCoupling; 2]>| parts.iter().map(|part| part.motion * columns[part.column]).sum();
+            |parts: &SmallVec<[ColumnEntry; 2]>| parts.iter().map(|part| part.motion * columns[part.column]).sum();
         self.parts.iter().map(velocity).collect()
     }
 

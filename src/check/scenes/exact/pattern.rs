@@ -6,7 +6,7 @@ use crate::model::request::{Component, Contact, Element, Obstacle, Stage, Strain
 const COMPONENTS: [Component; 3] = [Component::X, Component::Y, Component::Z];
 
 /// A single bar, unstressed as it stands, from a node that is held to one that is free.
-pub(super) struct BarPattern<'a> {
+pub(super) struct SingleBar<'a> {
     pub held: &'a str,
     pub free: &'a str,
     pub axial_stiffness: f64,
@@ -14,7 +14,7 @@ pub(super) struct BarPattern<'a> {
 }
 
 /// The two nodes of a model with one bar between them.
-pub(super) fn one_bar(model: &Model) -> Option<BarPattern<'_>> {
+pub(super) fn one_bar(model: &Model) -> Option<SingleBar<'_>> {
     let [Element::Bar { nodes, axial_stiffness, rest_length: None, prestress, strain }] = &model.elements[..] else {
         return None;
     };
@@ -23,7 +23,7 @@ pub(super) fn one_bar(model: &Model) -> Option<BarPattern<'_>> {
     }
     let (held, free) = if is_held(model, &nodes[0]) { (&nodes[0], &nodes[1]) } else { (&nodes[1], &nodes[0]) };
     let fits = is_held(model, held) && is_free(model, free);
-    fits.then_some(BarPattern { held, free, axial_stiffness: *axial_stiffness, strain: *strain })
+    fits.then_some(SingleBar { held, free, axial_stiffness: *axial_stiffness, strain: *strain })
 }
 
 /// The stiffness matrix of a single spring between the one node of a model and the ground.

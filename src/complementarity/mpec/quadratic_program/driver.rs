@@ -44,7 +44,7 @@ pub struct QuadraticStep {
 
 /// Solves the programs of one sequence, keeping the working set from one to the next.
 pub struct StepSolver {
-    ended_with: Option<BindingBound>,
+    ended_with: Option<FinalWorkingSet>,
     line: LineSolver,
     interior: InteriorSolver,
     /// Whether rows that contradict each other on a line are relaxed.
@@ -75,7 +75,7 @@ impl Default for StepSolver {
 
 /// What bound the last program's solution.
 #[derive(Debug, Clone, PartialEq)]
-enum BindingBound {
+enum FinalWorkingSet {
     OnLine(Option<Binding>),
     With(WorkingSet),
 }
@@ -89,8 +89,8 @@ impl StepSolver {
     /// Whether anything but equalities bound the last solution.
     pub fn is_bound(&self) -> bool {
         match &self.ended_with {
-            Some(BindingBound::OnLine(binding)) => binding.is_some(),
-            Some(BindingBound::With(set)) => !set.is_empty(),
+            Some(FinalWorkingSet::OnLine(binding)) => binding.is_some(),
+            Some(FinalWorkingSet::With(set)) => !set.is_empty(),
             None => true,
         }
     }
@@ -121,9 +121,9 @@ impl StepSolver {
         let on_line = if self.interior_only { OneDimensionalOutcome::Declined } else { self.line.solve(program) };
         match on_line {
             OneDimensionalOutcome::Solved(solution, binding) => {
-                let ended = BindingBound::OnLine(binding);
+                let ended = FinalWorkingSet::OnLine(binding);
                 // Before the first program nothing is taken to bind.
-                let same_working_set = *before.as_ref().unwrap_or(&BindingBound::OnLine(None)) == ended;
+                let same_working_set = *before.as_ref().unwrap_or(&FinalWorkingSet::OnLine(None)) == ended;
                 self.ended_with = Some(ended);
                 return Ok(QuadraticStep { solution, remaining_violation: 0.0, same_working_set });
             }
@@ -133,8 +133,8 @@ impl StepSolver {
             OneDimensionalOutcome::Contradictory | OneDimensionalOutcome::Declined => {}
         }
         let mut set = match &before {
-            Some(BindingBound::With(set)) => set.clone(),
-            Some(BindingBound::OnLine(_)) | None => WorkingSet::at_rest(program, REST_MARGIN),
+            Some(FinalWorkingSet::With(set)) => set.clone(),
+            Some(FinalWorkingSet::OnLine(_)) | None => WorkingSet::at_rest(program, REST_MARGIN),
         };
         let mut solution =
             if self.interior_only { None } else { active_set::solve(program, &mut set, WORKING_SET_CHANGES) };
@@ -154,7 +154,7 @@ impl StepSolver {
             }
         }
         let Some(solution) = solution else { return self.solve_elastic(program, cancel) };
-        let ended = BindingBound::With(set);
+        let ended = FinalWorkingSet::With(set);
         let same_working_set = before.as_ref() == Some(&ended);
         self.ended_with = Some(ended);
         Ok(QuadraticStep { solution, remaining_violation: 0.0, same_working_set })
