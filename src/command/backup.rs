@@ -24,7 +24,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         )]));
     };
     if copy.exists() {
-        return Err(Failure::Input(vec![format!("{}: is there already; a new name would do", copy.display())]));
+        return Err(Failure::Input(vec![format!("{}: exists already; a new name is expected", copy.display())]));
     }
     if !database.exists() {
         return Err(Failure::Input(vec![format!("{}: there is no such database", database.display())]));

@@ -65,7 +65,7 @@ async fn serve(arguments: &Arguments, access: Access) -> Outcome {
         }
     }
     if !server.stop().await {
-        tracing::warn!("went down before everything had ended");
+        tracing::warn!("shut down before everything had ended");
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -73,7 +73,7 @@ async fn serve(arguments: &Arguments, access: Access) -> Outcome {
 /// Replaces the tokens; if the file cannot be read, the old ones remain valid.
 fn read_again(arguments: &access::Arguments, access: &Access) {
     if arguments.tokens_file.is_none() {
-        return tracing::info!("SIGHUP: there is no file of tokens to be read again");
+        return tracing::info!("SIGHUP: no file of tokens is given");
     }
     match arguments.tokens() {
         Ok(tokens) => {

@@ -41,7 +41,7 @@ async fn work(arguments: &Arguments) -> Outcome {
     ends.asked().await;
     shutdown.cancel();
     if !finish_shutdown(pool.stopped(), jobs.store()).await {
-        tracing::warn!("went down before everything had ended");
+        tracing::warn!("shut down before everything had ended");
     }
     Ok(ExitCode::SUCCESS)
 }

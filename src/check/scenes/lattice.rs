@@ -1,6 +1,6 @@
-//! A lattice arch of any size over a floor: chords of bars, posts and diagonals, clamped at both ends, pressed down a little
-//! off the crown. It snaps through, and what is below the crown lands on the floor. The cells are about square: two chords
-//! where they are coarse, more where they are fine, so that the arch is as slender whatever its unknowns.
+//! A lattice arch of any size over a floor: chords of bars, posts and diagonals, clamped at both ends, with a load slightly off
+//! the crown. The arch snaps through, and the nodes below the crown land on the floor. The cells are approximately square: the
+//! number of chords grows with the refinement, so that the slenderness does not depend on the number of unknowns.
 
 use crate::model::JobRequest;
 use serde_json::{Value, json};
@@ -19,16 +19,16 @@ pub struct LatticeArch {
     pub rise: f64,
     /// Distance of the outer chords.
     pub depth: f64,
-    /// How far the crown is above the floor.
+    /// Height of the crown above the floor.
     pub clearance: f64,
-    /// Upper nodes no further than this from where the load is, along the span, bear a part of it.
+    /// Upper nodes within this distance of the load, along the span, carry a part of the load.
     pub spread: f64,
-    /// Increments that are asked for.
+    /// The requested number of increments.
     pub increments: usize,
 }
 
 impl LatticeArch {
-    /// The lattice of about so many unknowns.
+    /// The lattice with approximately the given number of unknowns.
     pub fn of_unknowns(unknowns: usize) -> Self {
         let depth = 0.08;
         let layers_of = |panels: usize| ((0.5 * depth * panels as f64).round() as usize).max(1);
@@ -50,8 +50,8 @@ impl LatticeArch {
         }
     }
 
-    /// The same pressed over a third of its span, so that it lands flat, with so many contacts, all of which have room over
-    /// the floor.
+    /// The same lattice with a load over a third of its span, so that it lands flat, and with the given number of contacts, all
+    /// open at the start.
     pub fn landing(self, contacts: usize) -> Self {
         let contacts = contacts.min(self.panels - 1);
         let outermost = (contacts + 1) as f64 / self.panels as f64;

@@ -1,8 +1,7 @@
 //! The built-in scenes: models as JSON, ready to post.
 //!
-//! They are served, demonstrated, tested and verified from here. `pictures` holds what `arcslip solve --plot` draws of
-//! some of them; a test holds them to that. [`exact`] has the paths that are known in closed form,
-//! [`lattice`] and [`of_any_size`] make scenes from their numbers.
+//! `pictures` has the pictures that `arcslip solve --plot` draws of some of them, which a test compares. [`exact`] has the paths that
+//! are known in closed form, [`lattice`] and [`of_any_size`] generate scenes of given sizes.
 
 pub mod exact;
 pub mod lattice;
@@ -13,7 +12,7 @@ pub mod of_any_size;
 pub struct BuiltIn {
     /// Short name, as in `/v1/scenes/{name}`.
     pub name: &'static str,
-    /// What it shows, in a line.
+    /// A description in a line.
     pub shows: &'static str,
     /// The job request as JSON text.
     pub request: &'static str,
@@ -55,7 +54,7 @@ pub const ALL: &[BuiltIn] = &[
     scene!("von-mises-truss", "snap-through without contact"),
 ];
 
-/// The scene of that name.
+/// The scene of a name.
 pub fn find(name: &str) -> Option<&'static BuiltIn> {
     ALL.iter().find(|scene| scene.name == name)
 }

@@ -1,5 +1,4 @@
-//! Scenes of any size, as documents ready to be completed with an analysis: the row of snapping bars and the chain of
-//! sliders.
+//! Scenes of any size, as documents without an analysis: the row of snapping bars and the chain of sliders.
 
 use serde_json::{Map, Value, json};
 
@@ -17,7 +16,7 @@ pub fn row_of_bars(n: usize) -> Value {
     let (mut nodes, mut supports, mut forces) = (Map::new(), Map::new(), Map::new());
     let (mut elements, mut contacts) = (Vec::new(), Vec::new());
     for i in 0..n {
-        // Of one bar the quotient would be 0/0.
+        // The quotient would be 0/0 for a single bar.
         let foot = 1.5 + 0.1 * i as f64 / n.saturating_sub(1).max(1) as f64;
         nodes.insert(format!("pin{i}"), json!([3 * i, 1]));
         nodes.insert(format!("tip{i}"), json!([3.0 * i as f64 - foot, 0]));

@@ -1,4 +1,4 @@
-//! A request and its answer, and what became of it.
+//! A request with a known solution, and the result of solving it.
 
 use crate::check::measure::Judge;
 use crate::check::verify::compare::worse;
@@ -25,30 +25,30 @@ pub(crate) const AUTO: &[Method] = &[Method::Auto];
 /// Error of a path against the exact solution, dimensionless; infinite where something that has to be there is missing.
 pub(crate) type PathError = Arc<dyn Fn(&[Increment]) -> f64 + Send + Sync>;
 
-/// A request and its answer.
+/// A request and its known solution.
 #[derive(Clone)]
 pub struct Case {
     /// The scene, or the family of extreme cases.
     pub family: &'static str,
-    /// Which member of the family.
+    /// The member of the family.
     pub name: String,
     pub request: JobRequest,
     /// The methods by which it is solved.
     pub methods: &'static [Method],
-    /// Takes more than seconds.
+    /// The case takes more than a few seconds.
     pub long: bool,
     ending: ExpectedEnding,
     bar: f64,
     error: PathError,
 }
 
-/// How a case has to end.
+/// The expected end of a case.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum ExpectedEnding {
     Stops(StopReason),
-    /// Every stage ends, or the path stops before for this reason.
+    /// Every stage ends, or the path stops earlier for this reason.
     MayStop(StopReason),
-    /// Not taken; the first mistake is at this pointer.
+    /// The request is refused; the first mistake is at this pointer.
     Refused(&'static str),
 }
 
@@ -123,7 +123,7 @@ impl Case {
         self
     }
 
-    /// The case, and where its structure is linear the same in steps.
+    /// The case and, if its structure is linear, the same case in steps.
     pub(crate) fn with_steps(self) -> Vec<Self> {
         let elements = &self.request.model.elements;
         let linear = elements.iter().all(|element| matches!(element, Element::Spring { .. }));

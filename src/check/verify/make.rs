@@ -1,4 +1,4 @@
-//! Requests from a few words.
+//! A builder of requests.
 
 use crate::model::JobRequest;
 use crate::model::request::{
@@ -6,7 +6,7 @@ use crate::model::request::{
 };
 use indexmap::IndexMap;
 
-/// A request as it grows.
+/// A request under construction.
 #[derive(Debug, Clone)]
 pub struct Make(pub JobRequest);
 
@@ -37,12 +37,12 @@ fn model(dimension: usize) -> Make {
     Make(JobRequest { model, analysis: Analysis { max_increments: 20_000, ..Analysis::default() } })
 }
 
-/// A load above which a stage ends.
+/// The load above which a stage ends.
 pub fn load_above(bound: f64) -> Option<Until> {
     Some(Until { load_above: Some(bound), ..Until::default() })
 }
 
-/// A displacement at which a stage ends; `sign` tells from which side it comes.
+/// A displacement at which a stage ends; `sign` is the direction in which it is reached.
 pub fn displacement(node: &str, component: Component, bound: f64, sign: f64) -> Option<Until> {
     let (above, below) = if sign > 0.0 { (Some(bound), None) } else { (None, Some(bound)) };
     let bound = DisplacementBound { node: node.to_owned(), component, above, below };
@@ -71,7 +71,7 @@ impl Make {
         self
     }
 
-    /// Gives every bar so far this measure of strain.
+    /// Sets the measure of strain of all bars added so far.
     pub fn strain(mut self, measure: Strain) -> Self {
         for element in &mut self.0.model.elements {
             if let Element::Bar { strain, .. } = element {

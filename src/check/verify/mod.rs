@@ -1,6 +1,6 @@
-//! Scenes with known answers, each a row: what was found, against what, within which bar.
+//! Scenes with known solutions; each gives a row with the result, the solution and the tolerance.
 //!
-//! A [`Case`] is a job request with the answer derived by hand, or the named reason for which it has to stop. Each of its
+//! A [`Case`] is a job request with a solution derived by hand, or the stop reason with which its path has to end. Each of its
 //! increments is judged by [`measure`](crate::check::measure), which shares no code with the solver, and the whole path by the
 //! case itself. `published` holds the built-in scenes and published problems, `check::extreme` families of
 //! cases over decades; `make` builds requests, `compare` compares numbers. Called by `command` and by tests; knows

@@ -52,14 +52,14 @@ impl Arguments {
         let loopback = listen.ip().is_loopback();
         let policy = match (&self.tokens_file, self.open) {
             (Some(_), true) => {
-                return Err(bad("--tokens-file asks for tokens and --open for none: give one of them".to_owned()));
+                return Err(bad("--tokens-file requires tokens and --open does not: give one of them".to_owned()));
             }
             (Some(_), false) => AccessPolicy::with(self.tokens()?),
             (None, true) => AccessPolicy::Open,
             (None, false) if loopback => AccessPolicy::Loopback,
             (None, false) => {
                 return Err(bad(format!(
-                    "--listen {listen}: other machines reach that; say who may call: --tokens-file FILE \
+                    "--listen {listen}: other machines reach this address; state who may call: --tokens-file FILE \
                      (ARCSLIP_TOKENS_FILE), or --open for everyone"
                 )));
             }
@@ -96,7 +96,7 @@ impl Arguments {
     /// # Errors
     /// No file is given, or the file is invalid.
     pub fn tokens(&self) -> Result<Tokens, Failure> {
-        let file = self.tokens_file.as_deref().ok_or_else(|| bad("no file of tokens is named".to_owned()))?;
+        let file = self.tokens_file.as_deref().ok_or_else(|| bad("no file of tokens is given".to_owned()))?;
         Tokens::of_file(file).map_err(|error| bad(format!("--tokens-file: {error}")))
     }
 }

@@ -9,18 +9,18 @@ const SHORTEST_LEASE: Duration = Duration::from_millis(100);
 /// A positive duration; a day has 24 hours.
 pub fn positive(text: &str) -> Result<Duration, String> {
     let span: Span =
-        text.parse().map_err(|_| format!("{text:?} is no duration; one is written like 300ms, 10s, 2h or 7d"))?;
+        text.parse().map_err(|_| format!("{text:?} is no duration; examples are 300ms, 10s, 2h and 7d"))?;
     let length: SignedDuration =
         span.to_duration(SpanRelativeTo::days_are_24_hours()).map_err(|error| error.to_string())?;
     Duration::try_from(length)
         .ok()
         .filter(|length| !length.is_zero())
-        .ok_or_else(|| "it has to be above zero".to_owned())
+        .ok_or_else(|| "a duration above zero is expected".to_owned())
 }
 
 pub fn lease(text: &str) -> Result<Duration, String> {
     let length = positive(text)?;
-    if length < SHORTEST_LEASE { Err(format!("it has to be at least {SHORTEST_LEASE:?}")) } else { Ok(length) }
+    if length < SHORTEST_LEASE { Err(format!("at least {SHORTEST_LEASE:?} is expected")) } else { Ok(length) }
 }
 
 #[cfg(test)]

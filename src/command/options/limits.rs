@@ -73,14 +73,14 @@ fn most(text: &str, largest: usize) -> Result<usize, String> {
     text.parse()
         .ok()
         .filter(|number| *number <= largest)
-        .ok_or_else(|| format!("a whole number up to {largest} would do"))
+        .ok_or_else(|| format!("a whole number up to {largest} is expected"))
 }
 
 fn count(text: &str, largest: usize) -> Result<usize, String> {
     most(text, largest)
         .ok()
         .filter(|number| *number > 0)
-        .ok_or_else(|| format!("a whole number from 1 to {largest} would do"))
+        .ok_or_else(|| format!("a whole number from 1 to {largest} is expected"))
 }
 
 fn body(text: &str) -> Result<usize, String> {
@@ -88,7 +88,7 @@ fn body(text: &str) -> Result<usize, String> {
     usize::try_from(found)
         .ok()
         .filter(|found| *found <= MAX_TEXT_BYTES)
-        .ok_or_else(|| "at most 16MiB would do".to_owned())
+        .ok_or_else(|| "at most 16MiB is expected".to_owned())
 }
 
 fn keep(text: &str) -> Result<Keep, String> {

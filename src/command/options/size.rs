@@ -9,10 +9,10 @@ pub(crate) fn bytes(text: &str) -> Result<u64, String> {
         "MiB" => 1 << 20,
         "GiB" => 1 << 30,
         "TiB" => 1 << 40,
-        other => return Err(format!("{other:?} is no unit; B, KiB, MiB, GiB and TiB are")),
+        other => return Err(format!("{other:?} is no unit; the units are B, KiB, MiB, GiB and TiB")),
     };
     let found = digits.parse::<u64>().ok().and_then(|number| number.checked_mul(unit)).filter(|found| *found > 0);
-    found.ok_or_else(|| format!("{text:?} is no size; one is written like 1048576, 512MiB or 8GiB"))
+    found.ok_or_else(|| format!("{text:?} is no size; examples are 1048576, 512MiB and 8GiB"))
 }
 
 #[cfg(test)]

@@ -26,7 +26,8 @@ pub(super) fn analysis(analysis: &Analysis, at: &DocumentPlace, mistakes: &mut M
         let at = at.member("record");
         numbers::count(record.every, MAX_INCREMENTS, &at.member("every"), mistakes);
         if !record.directions && analysis.explore.is_some() {
-            mistakes.add(&at.member("directions"), || "`explore` follows directions, which this leaves out; give true");
+            mistakes
+                .add(&at.member("directions"), || "`explore` follows directions, which are left out here; give true");
         }
     }
     if analysis.mpec.is_some() && analysis.method != Method::Mpec {
@@ -64,7 +65,7 @@ pub(super) fn recorded(record: &Record, model: &Model, at: &DocumentPlace, mista
             let known = || suggestion(name, model.nodes.keys().map(String::as_str));
             mistakes.add(&at, || format!("there is no node {}{}", quoted(name), known()));
         } else if !seen.insert(name) {
-            mistakes.add(&at, || format!("{} stands here twice", quoted(name)));
+            mistakes.add(&at, || format!("{} occurs twice", quoted(name)));
         }
     }
     let contacts: HashSet<(&str, &str)> =
@@ -83,7 +84,7 @@ pub(super) fn recorded(record: &Record, model: &Model, at: &DocumentPlace, mista
         } else if !contacts.contains(&pair) {
             mistakes.add(&at, || format!("there is no contact of {} with {}", quoted(node), quoted(obstacle)));
         } else if !seen.insert(pair) {
-            mistakes.add(&at, || format!("{} with {} stands here twice", quoted(node), quoted(obstacle)));
+            mistakes.add(&at, || format!("{} with {} occurs twice", quoted(node), quoted(obstacle)));
         }
     }
 }

@@ -118,7 +118,7 @@ fn room(contact: &Contact, gap: &Gap, others: &[Gap], at: &DocumentPlace, mistak
         if room <= gap.tolerance.max(other.tolerance) {
             mistakes.add(at, || {
                 let pair = format!("{} and {}", quoted(other.obstacle), quoted(&contact.obstacle));
-                format!("{pair} leave {room:?} between them for {}; room is expected", quoted(&contact.node))
+                format!("{pair} leave {room:?} between them for {}; a larger gap is expected", quoted(&contact.node))
             });
         }
     }

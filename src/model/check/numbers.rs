@@ -20,9 +20,9 @@ pub(super) fn number(value: f64, at: &DocumentPlace, mistakes: &mut Mistakes) ->
             if !value.is_finite() {
                 format!("found {value}; a finite number is expected")
             } else if value.abs() > MAX_MAGNITUDE {
-                format!("found {value:e}; at most {MAX_MAGNITUDE:e} in absolute value is taken: choose other units")
+                format!("found {value:e}; at most {MAX_MAGNITUDE:e} in absolute value is accepted: choose other units")
             } else {
-                format!("found {value:e}; 0, or at least {MIN_MAGNITUDE:e} in absolute value, is taken")
+                format!("found {value:e}; 0, or at least {MIN_MAGNITUDE:e} in absolute value, is accepted")
             }
         });
     }
@@ -43,7 +43,7 @@ pub(super) fn count(value: u64, limit: u64, at: &DocumentPlace, mistakes: &mut M
     if value == 0 {
         mistakes.add(at, || "found 0; 1 or more is expected");
     } else if value > limit {
-        mistakes.add(at, || format!("found {value}; at most {limit} is taken"));
+        mistakes.add(at, || format!("found {value}; at most {limit} is accepted"));
     }
 }
 

@@ -134,7 +134,9 @@ impl<'de> DeserializeSeed<'de> for Value<'_> {
     fn deserialize<D: de::Deserializer<'de>>(self, source: D) -> Result<Json, D::Error> {
         match self.left.get().checked_sub(1) {
             Some(left) => self.left.set(left),
-            None => return Err(de::Error::custom(format!("more than {MAX_VALUES} values, the most that is taken"))),
+            None => {
+                return Err(de::Error::custom(format!("more than {MAX_VALUES} values, the largest number accepted")));
+            }
         }
         source.deserialize_any(self)
     }

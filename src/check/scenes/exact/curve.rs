@@ -13,7 +13,7 @@ pub struct Place {
     pub load: f64,
 }
 
-/// How far unbounded branches are asked for.
+/// The extent of unbounded branches.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
     /// Largest load factor in size.
@@ -30,10 +30,10 @@ type CurveFunction = Box<dyn Fn(f64) -> Place + Send + Sync>;
 pub struct Piece {
     /// The parameter where the piece begins.
     pub from: f64,
-    /// The parameter where it ends; on this side of `from` where the parameter falls.
+    /// The parameter where it ends; less than `from` if the parameter decreases.
     pub to: f64,
     at: CurveFunction,
-    /// What the path does where the piece ends, if that is an event.
+    /// The event at the end of the piece, if there is one.
     pub ends_with: Option<PointKind>,
 }
 
@@ -43,7 +43,7 @@ pub struct Stage {
     pub pieces: Vec<Piece>,
 }
 
-/// Parts of a stage in which a bound is looked for; a piece has four at least.
+/// Parts of a stage in which a bound is searched for; a piece has at least four.
 const PARTS: usize = 1000;
 
 impl Piece {
@@ -61,12 +61,12 @@ impl Piece {
         (self.at)(parameter)
     }
 
-    /// The parameter at a part of the way from 0 to 1.
+    /// The parameter at a fraction of the piece, from 0 to 1.
     pub fn parameter(&self, part: f64) -> f64 {
         self.from + part * (self.to - self.from)
     }
 
-    /// Where a quantity that is negative at first becomes zero; the parameter.
+    /// The parameter at which a quantity that is negative at first becomes zero.
     fn reaches(&self, quantity: impl Fn(&Place) -> f64, parts: usize) -> Option<f64> {
         let value = |part: f64| quantity(&self.at(self.parameter(part)));
         let mut before = 0.0;
@@ -107,7 +107,7 @@ impl Stage {
         self
     }
 
-    /// Cuts the stage where one of its bounds is met first.
+    /// Ends the stage where the first of its bounds is reached.
     pub(super) fn end_at(&mut self, model: &Model, stage: &request::Stage) {
         let Some(until) = &stage.until else { return };
         let mut bounds: Vec<Bound> = Vec::new();
@@ -134,7 +134,7 @@ impl Stage {
             let met = bounds.iter().filter_map(|bound| piece.reaches(bound, parts));
             let first = met.min_by(|a, b| (a - piece.from).abs().total_cmp(&(b - piece.from).abs()));
             if let Some(first) = first {
-                // An event at the very bound stays what it is.
+                // An event exactly at the bound is kept.
                 let kind = piece.ends_with.filter(|_| first == piece.to).unwrap_or(PointKind::End);
                 self.pieces[index].to = first;
                 self.pieces[index].ends_with = Some(kind);

@@ -1,8 +1,7 @@
 //! Exact solutions of scenes, as curves.
 //!
-//! [`recognise`] says whether the model of a request is one of a family whose whole path is known in closed form, with
-//! whatever sizes and units; a solution then gives the path stage by stage, in smooth pieces between events. Nothing
-//! here comes from the solver. The formulas are derived in each family's file.
+//! [`recognise`] recognises models of families whose whole path is known in closed form, for any sizes and units; a solution
+//! then gives the path stage by stage, in smooth pieces between events. Nothing here uses the solver. The formulas are derived in each family's file.
 //!
 //! | family | scene | of which the path is known |
 //! |---|---|---|
@@ -38,7 +37,7 @@ pub use curve::{Piece, Place, Reach, Stage};
 use crate::model::request::Selection;
 use crate::model::{JobRequest, Model};
 
-/// The exact path of a request, if it is of a family with one.
+/// The exact solution of a request, if its model belongs to a known family.
 pub struct Exact {
     solution: Box<dyn ExactSolution>,
     model: Model,

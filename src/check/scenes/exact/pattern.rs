@@ -1,11 +1,11 @@
-//! What the families look for in a model.
+//! Patterns by which families of models are recognised.
 
 use crate::model::Model;
 use crate::model::request::{Component, Contact, Element, Obstacle, Stage, Strain};
 
 const COMPONENTS: [Component; 3] = [Component::X, Component::Y, Component::Z];
 
-/// A single bar, unstressed as it stands, from a node that is held to one that is free.
+/// A single, initially unstressed bar from a supported node to a free one.
 pub(super) struct SingleBar<'a> {
     pub held: &'a str,
     pub free: &'a str,
@@ -42,7 +42,7 @@ pub(super) fn is_free(model: &Model, node: &str) -> bool {
     model.supports.get(node).is_none_or(Vec::is_empty)
 }
 
-/// The one contact of a model, of this node, with its obstacle; there is no other obstacle.
+/// The only contact of a model, which is of the given node, with the only obstacle.
 pub(super) fn one_contact<'a>(model: &'a Model, node: &str) -> Option<(&'a Contact, &'a Obstacle)> {
     let [contact] = &model.contacts[..] else { return None };
     let obstacle = model.obstacles.get(&contact.obstacle)?;
@@ -57,14 +57,14 @@ pub(super) fn is_floor_at(obstacle: &Obstacle, place: &[f64]) -> bool {
     upright && point[last] == place[last]
 }
 
-/// The force of a stage that does nothing but push this node.
+/// The force of a stage that only pushes the given node.
 pub(super) fn only_force<'a>(stage: &'a Stage, node: &str) -> Option<&'a [f64]> {
     let others = stage.forces.iter().any(|(name, force)| name != node && force.iter().any(|value| *value != 0.0));
     let moves = stage.displacements.values().chain(stage.obstacle_motion.values()).flatten().any(|value| *value != 0.0);
     if others || moves { None } else { stage.forces.get(node).map(Vec::as_slice) }
 }
 
-/// Where a node's components begin in a model's displacements.
+/// The index of the first component of a node in the displacements of a model.
 pub(super) fn freedom(model: &Model, node: &str) -> usize {
     model.nodes.get_index_of(node).unwrap_or_default() * model.dimension
 }

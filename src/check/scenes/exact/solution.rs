@@ -1,8 +1,8 @@
-//! What a path in closed form has to tell.
+//! The interface of exact solutions.
 
 use crate::check::scenes::exact::curve::{Reach, Stage};
 
-/// A scene's path in closed form.
+/// The path of a scene in closed form.
 pub trait ExactSolution: Send + Sync {
     /// The family's name.
     fn name(&self) -> &'static str;
@@ -10,6 +10,6 @@ pub trait ExactSolution: Send + Sync {
     /// The formula in a line.
     fn formula(&self) -> &'static str;
 
-    /// The path's stages, unbounded branches as far as `reach`; ends by load and displacement are not looked at.
+    /// The stages of the path, with unbounded branches up to `reach`; ends by load and displacement are ignored.
     fn stages(&self, reach: Reach) -> Vec<Stage>;
 }

@@ -1,11 +1,11 @@
 //! Zeros of functions of one variable.
 
-/// Parts in which changes of sign are looked for.
+/// Parts of the interval in which changes of sign are searched for.
 const PARTS: u32 = 2000;
-/// Halvings: more than a number has bits.
+/// Number of bisections, more than a number has bits.
 const HALVINGS: u32 = 200;
 
-/// A zero between two places of different sign, to the last bit; `to` where the sign is the same.
+/// A zero between two places of different sign, to machine precision; `to` if the signs are equal.
 pub(super) fn zero(function: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
     let negative = function(from) < 0.0;
     let (mut from, mut to) = (from, to);
@@ -19,7 +19,7 @@ pub(super) fn zero(function: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
     to
 }
 
-/// Changes of sign on the way from one place to another, the ends left out, in order.
+/// Changes of sign between two places, excluding the ends, in order.
 pub(super) fn zeros(function: impl Fn(f64) -> f64, from: f64, to: f64) -> Vec<f64> {
     let place = |part: u32| from + (to - from) * f64::from(part) / f64::from(PARTS);
     let mut found = Vec::new();

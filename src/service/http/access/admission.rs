@@ -60,7 +60,7 @@ impl Access {
         if needed == Some(Scope::Submit) && rules.origins.is_foreign(headers) {
             return Err(Problem::new(
                 Kind::Forbidden,
-                "the page that sends this is of another origin; whoever runs the service can list it (--allow-origin)",
+                "the request comes from a page of another origin; the operator of the service can allow it (--allow-origin)",
             ));
         }
         let Some(tokens) = self.tokens() else {
@@ -79,7 +79,7 @@ impl Access {
         })?;
         let token = tokens
             .find(shown)
-            .ok_or_else(|| Problem::new(Kind::Unauthorized, "this is no token of this service, or not any more"))?;
+            .ok_or_else(|| Problem::new(Kind::Unauthorized, "the token is not valid, or no longer valid"))?;
         rules.rates.of_token(&token.name).map_err(|wait| Problem::too_often("this token", wait))?;
         if !token.scopes.allow(needed) {
             let detail = format!("the token has the scopes {}; `{}` is needed", token.scopes, needed.name());

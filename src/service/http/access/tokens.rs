@@ -55,7 +55,8 @@ impl Scopes {
     /// An unknown scope, which the error names.
     pub fn read(text: &str) -> Result<Self, String> {
         let scope = |name: &str| {
-            Scope::from_name(name).ok_or_else(|| format!("{name:?} is no scope; `read`, `submit` and `admin` are"))
+            Scope::from_name(name)
+                .ok_or_else(|| format!("{name:?} is no scope; the scopes are `read`, `submit` and `admin`"))
         };
         text.split(',').map(scope).collect::<Result<_, _>>().map(Self)
     }
@@ -159,7 +160,7 @@ pub fn check_name(name: &str) -> Result<(), String> {
     if (1..=LONGEST_NAME).contains(&name.len()) && name.bytes().all(plain) {
         return Ok(());
     }
-    Err(format!("{name:?} is no name: 1 to {LONGEST_NAME} letters, digits, dots, dashes and underscores would do"))
+    Err(format!("{name:?} is no name: 1 to {LONGEST_NAME} letters, digits, dots, dashes and underscores are expected"))
 }
 
 /// A new token and its hash as it is listed in the file.

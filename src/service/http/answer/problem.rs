@@ -193,7 +193,7 @@ impl Problem {
 
     /// The rate limit of an address or token is exceeded.
     pub fn too_often(whom: &str, wait: Duration) -> Self {
-        let detail = format!("too many requests of {whom}; the next is answered in {:.3} s", wait.as_secs_f64());
+        let detail = format!("too many requests from {whom}; the next one is answered in {:.3} s", wait.as_secs_f64());
         Self { retry_after: Some(wait), ..Self::new(Kind::RateLimited, detail) }
     }
 
@@ -225,13 +225,13 @@ impl From<JobsError> for Problem {
             }
             JobsError::QueueFull(most) => Self::new(
                 Kind::QueueFull,
-                format!("at most {most} jobs may wait here, and there is no room for more now; come back later"),
+                format!("at most {most} jobs may wait, and the queue has no room for more; try again later"),
             ),
             JobsError::CheckTime(most) => Self::new(
                 Kind::CheckTime,
                 format!(
-                    "it is not checked after {:.3} s, the most that this service takes for it (--max-check-time); a smaller \
-                     model, or fewer runs at a time, would do",
+                    "the check took longer than {:.3} s, the limit of this service (--max-check-time); send a smaller \
+                     model, or fewer runs at a time",
                     most.as_secs_f64()
                 ),
             ),
@@ -242,8 +242,8 @@ impl From<JobsError> for Problem {
             JobsError::NotRetryable(job) => Self::new(
                 Kind::NotRetryable,
                 format!(
-                    "job {0} is a run of a sweep, whose row stands; its request (GET /v1/jobs/{0}/request) can be posted as a \
-                     job of its own",
+                    "job {0} is a run of a sweep, which is not queued again; its request (GET /v1/jobs/{0}/request) can be \
+                     posted as a new job",
                     job.id
                 ),
             ),
@@ -254,7 +254,7 @@ impl From<JobsError> for Problem {
             JobsError::Store(error) => error.into(),
             JobsError::Task(_) | JobsError::Write(_) => {
                 tracing::error!(%error, "a request failed");
-                Self::new(Kind::Internal, "the log has more under this answer's x-request-id")
+                Self::new(Kind::Internal, "the log of the service has details under the x-request-id of this answer")
             }
         }
     }
@@ -268,10 +268,10 @@ impl From<StoreError> for Problem {
             StoreError::Full(_) => Self::new(Kind::StorageFull, "the disk that holds the database is full"),
             StoreError::Damaged(_) => Self::new(
                 Kind::StorageDamaged,
-                "the database is damaged; nothing is taken until whoever runs the service has restored a copy of it",
+                "the database is damaged; no changes are accepted until the operator has restored a backup",
             ),
             StoreError::Open(_) | StoreError::Refused(_) => {
-                Self::new(Kind::Internal, "the log has more under this answer's x-request-id")
+                Self::new(Kind::Internal, "the log of the service has details under the x-request-id of this answer")
             }
         }
     }
@@ -279,8 +279,8 @@ impl From<StoreError> for Problem {
 
 impl From<serde_json::Error> for Problem {
     fn from(error: serde_json::Error) -> Self {
-        tracing::error!(%error, "what is stored cannot be written as JSON");
-        Self::new(Kind::Internal, "what is stored cannot be read")
+        tracing::error!(%error, "a stored record cannot be written as JSON");
+        Self::new(Kind::Internal, "the stored record cannot be read")
     }
 }
 
@@ -331,5 +331,6 @@ pub async fn every_error(request: Request, next: Next) -> Response {
 pub fn from_panic(panic: Box<dyn Any + Send + 'static>) -> Response<Body> {
     let text = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
     tracing::error!(panic = text, "a call panicked");
-    Problem::new(Kind::Internal, "the log has more under this answer's x-request-id").into_response()
+    Problem::new(Kind::Internal, "the log of the service has details under the x-request-id of this answer")
+        .into_response()
 }

@@ -29,7 +29,7 @@ pub async fn alive() -> Json<Health> {
 )]
 pub async fn ready(State(service): State<Service>) -> Result<Json<Readiness>, Problem> {
     if service.shutdown.is_cancelled() {
-        return Err(Problem::new(Kind::Unavailable, "the service is going down"));
+        return Err(Problem::new(Kind::Unavailable, "the service is shutting down"));
     }
     if !service.worker_count.is_complete() {
         return Err(Problem::new(Kind::Unavailable, "a worker has ended"));
@@ -38,7 +38,7 @@ pub async fn ready(State(service): State<Service>) -> Result<Json<Readiness>, Pr
         Ok(Ok(())) => Ok(Json(Readiness { status: "ready", workers: service.worker_count.alive() })),
         Ok(Err(error @ StoreError::Damaged(_))) => {
             tracing::error!(%error, "the database is damaged");
-            Err(Problem::new(Kind::Unavailable, "the database is damaged; a copy of it has to be restored"))
+            Err(Problem::new(Kind::Unavailable, "the database is damaged; a backup has to be restored"))
         }
         Ok(Err(error @ StoreError::Full(_))) => {
             tracing::error!(%error, "the database takes no writes");

@@ -62,7 +62,7 @@ impl<S: Send + Sync> FromRequestParts<S> for JobId {
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
         match Path::<Uuid>::from_request_parts(parts, state).await {
             Ok(Path(id)) => Ok(Self(id)),
-            Err(_) => Err(Problem::parameter("id", "an id is a UUID, as the POST that made it answers")),
+            Err(_) => Err(Problem::parameter("id", "a UUID is expected, as in the answer to the POST request")),
         }
     }
 }

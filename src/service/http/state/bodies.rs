@@ -51,7 +51,7 @@ impl Bodies {
     /// The body is larger, is incomplete, or is not received in time. Waiting for room counts, so that a slow client does not
     /// hold room for longer than that.
     pub async fn read(&self, body: Body, most: usize) -> Result<Read, Problem> {
-        let too_large = || Problem::new(Kind::BodyTooLarge, format!("at most {most} bytes are taken"));
+        let too_large = || Problem::new(Kind::BodyTooLarge, format!("at most {most} bytes are accepted"));
         // A body that is announced as too large is refused before it is sent.
         if body.size_hint().lower() > most as u64 {
             return Err(too_large());
@@ -61,7 +61,7 @@ impl Bodies {
         loop {
             let chunk = timeout_at(end, stream.next()).await.map_err(|_| late())?;
             let Some(chunk) = chunk else { return Ok(read) };
-            let chunk = chunk.map_err(|_| Problem::new(Kind::RequestFailed, "the body broke off before its end"))?;
+            let chunk = chunk.map_err(|_| Problem::new(Kind::RequestFailed, "the body is incomplete"))?;
             let bytes = read.text.len().saturating_add(chunk.len());
             if bytes > most {
                 return Err(too_large());
@@ -95,11 +95,11 @@ impl Bodies {
 }
 
 fn late() -> Problem {
-    Problem::new(Kind::RequestFailed, format!("the body did not come within {} s", WHOLE.as_secs()))
+    Problem::new(Kind::RequestFailed, format!("the body was not received within {} s", WHOLE.as_secs()))
 }
 
 fn gone_down() -> Problem {
-    Problem::new(Kind::Unavailable, "the service is going down")
+    Problem::new(Kind::Unavailable, "the service is shutting down")
 }
 
 #[cfg(test)]

@@ -86,7 +86,10 @@ impl<F: Findings> FindingsSoFar<F> {
             Ok(svg) => tag::bytes(headers, self.is_finished, [(header::CONTENT_TYPE, "image/svg+xml")], svg),
             Err(PlotError::Drawing(error)) => {
                 tracing::error!(%error, task, %id, "a picture cannot be drawn");
-                Err(Problem::new(Kind::Internal, "the log has more under this answer's x-request-id"))
+                Err(Problem::new(
+                    Kind::Internal,
+                    "the log of the service has details under the x-request-id of this answer",
+                ))
             }
             Err(PlotError::NoErrors | PlotError::Empty | PlotError::NoLimitLoads) => {
                 Err(Problem::not_found(format_args!("picture of {task} {id}: {}", F::NOT_DRAWN)))

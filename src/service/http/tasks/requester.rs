@@ -65,7 +65,7 @@ impl FromRequestParts<Service> for Requester {
     async fn from_request_parts(parts: &mut Parts, service: &Service) -> Result<Self, Problem> {
         // Admission has put the caller there before any call is reached.
         let caller = parts.extensions.get::<Caller>().cloned();
-        let caller = caller.ok_or_else(|| Problem::new(Kind::Internal, "it is not known who calls"))?;
+        let caller = caller.ok_or_else(|| Problem::new(Kind::Internal, "the caller is not known"))?;
         Ok(Self { service: service.clone(), caller })
     }
 }

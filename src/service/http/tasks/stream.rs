@@ -207,10 +207,10 @@ fn events(followed: Subscription) -> impl Stream<Item = io::Result<String>> {
                 }
                 StreamEvent::Ended(written) => last_event(id, written),
                 StreamEvent::Deleted => format!("event: deleted\ndata: {{\"id\":\"{id}\"}}\n\n"),
-                StreamEvent::Interrupted => come_back("the service goes down or its tokens have changed; come back"),
+                StreamEvent::Interrupted => come_back("the service shuts down or its tokens have changed; reconnect"),
                 StreamEvent::Failed(error) => {
                     tracing::error!(%error, job = %id, "a stream failed");
-                    come_back("the store is not available; come back")
+                    come_back("the store is not available; reconnect")
                 }
             }));
         }
@@ -252,7 +252,7 @@ fn closing_line(task: Task, written: serde_json::Result<String>) -> Option<io::R
         Task::Path => None,
         Task::Study | Task::Sweep => Some(written.map(|whole| whole + "\n").map_err(|error| {
             tracing::error!(%error, "the end cannot be written");
-            io::Error::other("what has ended cannot be read")
+            io::Error::other("the result cannot be read")
         })),
     }
 }
@@ -269,7 +269,7 @@ fn lines(followed: Subscription) -> impl Stream<Item = io::Result<String>> {
             StreamEvent::Lines(lines) => Some(Ok(lines.into_iter().map(|line| line.body + "\n").collect())),
             StreamEvent::Ended(written) => closing_line(task, written),
             StreamEvent::Deleted => broken("the job was deleted"),
-            StreamEvent::Interrupted => broken("the service goes down or its tokens have changed"),
+            StreamEvent::Interrupted => broken("the service shuts down or its tokens have changed"),
             StreamEvent::Failed(error) => {
                 tracing::error!(%error, job = %id, "a stream failed");
                 broken("the store is not available")

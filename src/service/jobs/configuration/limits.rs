@@ -77,16 +77,10 @@ impl Limits {
     pub fn sentence(&self, reached: Reached) -> String {
         match reached {
             Reached::Time => {
-                format!(
-                    "it has run for {:.3} s, the most that this service lets a job run",
-                    self.wall_time.as_secs_f64()
-                )
+                format!("the job has run for {:.3} s, the limit of this service", self.wall_time.as_secs_f64())
             }
             Reached::Storage => {
-                format!(
-                    "more than {} bytes would be stored of it, the most that this service stores",
-                    self.stored_bytes
-                )
+                format!("the job would store more than {} bytes, the limit of this service", self.stored_bytes)
             }
         }
     }

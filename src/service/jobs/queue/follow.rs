@@ -55,9 +55,7 @@ impl Jobs {
             let increment = asked.increment;
             return Err(refused(
                 "/increment",
-                format!(
-                    "increment {increment} was stored by a version that kept nothing to go on from: trace the path anew"
-                ),
+                format!("increment {increment} was stored by a version without checkpoints: trace the path anew"),
             ));
         };
         let text = self.store.request(id).await?.ok_or(JobsError::NoJob(id))?;
@@ -65,10 +63,10 @@ impl Jobs {
         let check = move |text: Vec<u8>| {
             Whole::of(move |context: &CheckContext<'_>| {
                 let request = decode::decode(&text).map_err(|errors| {
-                    refused("", format!("the job's model is no longer accepted, post it anew: {errors}"))
+                    refused("", format!("the model of the job is no longer accepted, post it anew: {errors}"))
                 })?;
                 let beginning = branches::beginning(&parent, &origin).map_err(|error| {
-                    refused("/increment", format!("what is stored there cannot be read, trace the path anew: {error}"))
+                    refused("/increment", format!("its checkpoint cannot be read, trace the path anew: {error}"))
                 })?;
                 context.go_on()?;
                 context.solver.check_beginning(&request, beginning).map_err(JobsError::Follow)
@@ -88,7 +86,7 @@ impl Jobs {
         let lines = self.store.increments(job.id, before, Page { rows: 1, bytes: 1 }).await?;
         let Some(line) = lines.first().filter(|line| line.index == increment) else {
             let stored = match job.last_index {
-                Some(last) => format!("it is not stored; those that are recorded go up to {last} so far"),
+                Some(last) => format!("it is not stored; the last recorded increment is {last} so far"),
                 None => "no increment is stored yet".to_owned(),
             };
             return Err(refused("/increment", format!("found {increment}; {stored}")));

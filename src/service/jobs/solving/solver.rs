@@ -197,7 +197,7 @@ fn led_to(
     let mut path = JudgedPath::resume(&request, &scene, checkpoint, cancel.clone()).map_err(|error| refused(&error))?;
     while path.next().is_some_and(|judged| judged.increment.index < increment) {}
     path.checkpoint().filter(|checkpoint| checkpoint.path.index() == increment).ok_or_else(|| {
-        let detail = format!("the path does not come to increment {increment} once more: trace it anew");
+        let detail = format!("the path does not reach increment {increment} again: trace it anew");
         InputErrors(vec![InputError::new("/increment", detail)])
     })
 }

@@ -231,7 +231,7 @@ fn ending(end: SolveEnd) -> Ending {
             "increment {index} was stored by another version of this program and comes out otherwise now, so that the path \
              cannot go on from there: what is stored stands; post the job anew for a path of one piece"
         )),
-        SolveEnd::Unreadable(error) => Ending::failed(format!("what is stored of the job cannot be read: {error}")),
+        SolveEnd::Unreadable(error) => Ending::failed(format!("the stored data of the job cannot be read: {error}")),
         SolveEnd::Silent => Ending::failed("the solver ended without a report"),
     }
 }

@@ -49,7 +49,7 @@ pub(super) fn options(url: &Url) -> Result<PgConnectOptions> {
     for name in query.split('&').filter_map(|pair| pair.split('=').next()).filter(|name| !name.is_empty()) {
         if !PARAMETERS.contains(&name) {
             let known = PARAMETERS.join(", ");
-            return Err(bad(format!("there is a parameter that is not known; known are {known}")));
+            return Err(bad(format!("there is an unknown parameter; known are {known}")));
         }
     }
     // The message may repeat a part of the URL.
@@ -100,10 +100,12 @@ async fn migrate(connection: &mut PgConnection) -> std::result::Result<(), Box<d
             .fetch_one(&mut *connection)
             .await?;
     if version < OLDEST_SERVER {
-        return Err(format!("the server is PostgreSQL {}; 14 or newer would do", version / 10_000).into());
+        return Err(format!("the server is PostgreSQL {}; 14 or newer is required", version / 10_000).into());
     }
     if encoding != "UTF8" {
-        return Err(format!("the database's encoding is {encoding}; one made with ENCODING 'UTF8' would do").into());
+        return Err(
+            format!("the encoding of the database is {encoding}; a database with ENCODING 'UTF8' is required").into()
+        );
     }
     let mut migrations = Migrator::with_migrations(MIGRATIONS.iter().cloned().collect());
     // Migrations of later versions only add to the schema, unless the check below says otherwise.

@@ -39,7 +39,7 @@ impl<E: Engine> SqlStore<E> {
 
     fn allow(&self) -> Result<()> {
         if self.damaged.load(Ordering::Relaxed) {
-            return Err(StoreError::Damaged("damage was met before; nothing is written".into()));
+            return Err(StoreError::Damaged("damage was found before; nothing is written".into()));
         }
         self.engine.allow()
     }

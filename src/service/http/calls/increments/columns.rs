@@ -129,7 +129,7 @@ fn members(of: &str) -> Result<Vec<Member>, Problem> {
     }
     match members.len() {
         found if found > COLUMNS => {
-            Err(Problem::parameter("of", format_args!("{found} names; at most {COLUMNS} are taken")))
+            Err(Problem::parameter("of", format_args!("{found} names; at most {COLUMNS} are accepted")))
         }
         _ => Ok(members),
     }

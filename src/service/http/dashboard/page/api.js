@@ -5,13 +5,13 @@ import { reached } from "./reach.js";
 const TOKEN = "arcslip token";
 let asks = () => {};
 
-/** What a call answered instead of what was asked for. */
+/** An error answer of a call. */
 export class Problem extends Error {
   constructor(status, told) {
     super(told.detail ?? told.title ?? `The service answered ${status}.`);
     this.status = status;
     this.title = told.title ?? "";
-    /** [{pointer, detail}] of input that is refused. */
+    /** The mistakes in refused input, as [{pointer, detail}]. */
     this.errors = told.errors ?? [];
   }
 }
@@ -23,20 +23,20 @@ export class Unreachable extends Error {
   }
 }
 
-/** Whether a call was given up because nobody waits for it any more. */
+/** Whether a call was aborted because its result is no longer needed. */
 export const isGivenUp = (problem) => problem.name === "AbortError";
 
-/** Who is told that the service asks for a token. */
+/** The listeners that are told when the service asks for a token. */
 export function onTokenAsked(listener) {
   asks = listener;
 }
 
-/** Kept as long as the tab. */
+/** The token, kept for the session of the tab. */
 export function keepToken(token) {
   sessionStorage.setItem(TOKEN, token);
 }
 
-/** The answer itself. */
+/** Calls the service; returns the response. */
 export async function call(place, { method = "GET", body, headers = {}, signal } = {}) {
   const sent = { ...headers };
   const token = sessionStorage.getItem(TOKEN);
@@ -54,12 +54,12 @@ export async function call(place, { method = "GET", body, headers = {}, signal }
   reached(true);
   if (answer.ok) return answer;
   const told = await answer.json().catch(() => ({}));
-  // Of one token that may not do this another may.
+  // Another token may have the required scope.
   if (answer.status === 401 || (answer.status === 403 && token)) asks(told.detail ?? "");
   throw new Problem(answer.status, told);
 }
 
-/** No header can hold every token that was kept. */
+/** Not every text that was stored as a token can be sent in a header. */
 function headersOf(sent) {
   try {
     return new Headers(sent);
@@ -74,7 +74,7 @@ export async function get(place, signal) {
   return (await call(place, { signal })).json();
 }
 
-/** Posts text as it stands. */
+/** Posts a text unchanged. */
 export async function post(place, text) {
   return (await call(place, { method: "POST", body: text })).json();
 }

@@ -1,4 +1,4 @@
-// Every call of the service, made from its own description when a reader opens the list.
+// The list of all calls of the service, made from its OpenAPI description when the list is opened.
 
 import { element, table } from "./dom.js";
 import { description, plain } from "./schema.js";

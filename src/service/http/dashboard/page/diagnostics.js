@@ -1,4 +1,4 @@
-// How well and how fast: errors against run time, work, events, settings.
+// Diagnostics of a path: errors, run time, work, events and settings.
 
 import { isGivenUp } from "./api.js";
 import { element, fill, table } from "./dom.js";
@@ -18,7 +18,7 @@ const WORK = [
 ];
 const RELAXATION = "last_relaxation";
 const of = (name) => `/diagnostics/${name}`;
-/** Below this it is nothing, and a logarithm has no place for it. */
+/** Values below this count as zero, which a logarithmic axis cannot show. */
 const NOTHING = 1e-20;
 const ROWS = 500;
 
@@ -37,7 +37,7 @@ export class Diagnostics {
     fill(panel, this.whole);
   }
 
-  /** As the address says. */
+  /** Opens or closes the panel as the address says. */
   open(yes) {
     this.whole.open = yes;
   }

@@ -1,11 +1,11 @@
-// Directions at the chosen increment where there is more than one, and where none is chosen at the last bifurcation: load rate,
-// dissipation, which was taken, and following another as a new job that is drawn in the same plot.
+// The directions at the chosen increment, or at the last bifurcation if none is chosen: their load rate and dissipation, and
+// which one the path takes. Another direction can be followed by a new job, which is drawn in the same plot.
 
 import { post } from "./api.js";
 import { button, element, fill, table } from "./dom.js";
 import { short } from "./words.js";
 
-/** Increments that a followed direction is given at least, where nothing else is asked for: else as many as the path has. */
+/** The default number of increments of a followed direction is that of the path, but at least this. */
 const FEWEST = 20;
 
 export class Directions {
@@ -25,7 +25,7 @@ export class Directions {
     try {
       increment = index === null ? null : await path.increment(index);
     } catch {
-      // What cannot be fetched is told of where the structure is drawn; the next choice asks again.
+      // The view of the structure reports the error; the next choice fetches the directions again.
       this.shown = "";
       this.panel.hidden = true;
       return;
@@ -37,7 +37,7 @@ export class Directions {
     else this.miss(index);
   }
 
-  /** What there is to choose between is not known. */
+  /** The directions are not known. */
   miss(index) {
     this.shown = "";
     this.panel.hidden = false;
@@ -45,7 +45,7 @@ export class Directions {
       `The directions at increment ${index} cannot be shown: the service does not give it.`));
   }
 
-  /** Nothing to choose between here; where there was says so. */
+  /** There are no directions here. */
   hide(path, index) {
     const last = path.points.findLast((one) => one.point.bifurcation && one.index < index)?.index;
     this.panel.hidden = last === undefined;
@@ -65,7 +65,7 @@ export class Directions {
       value: Math.min(path.job.progress.max_increments, Math.max(FEWEST, path.index.length)),
     });
     const follow = async (place, pressed) => {
-      // Not disabled: focus would go.
+      // Not disabled, as it would lose focus.
       if (pressed.ariaDisabled === "true") return;
       pressed.ariaDisabled = "true";
       problem.textContent = "";
@@ -78,7 +78,7 @@ export class Directions {
       pressed.ariaDisabled = "false";
     };
     const hasContacts = directions.some((direction) => direction.contacts.length > 0);
-    // What can be done stands first: on a phone the last columns are out of sight.
+    // The actions are in the first column, as the last columns may be out of sight on a small screen.
     const rows = directions.map((direction, place) => element("tr", { class: direction.taken ? "taken" : null },
       element("td", {}, String(place)),
       element("td", {}, direction.taken ? "taken" : button("Follow", (event) => follow(place, event.target), {

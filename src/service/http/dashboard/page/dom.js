@@ -1,4 +1,4 @@
-// Elements of the page, made without markup in strings: what a model or a server says is only ever text.
+// Makes elements of the page without markup in strings, so that texts of models and servers are never parsed as HTML.
 
 const isThere = (child) => child !== null && child !== undefined && child !== false;
 
@@ -16,8 +16,8 @@ export function element(name, attributes = {}, ...children) {
 
 export const byId = (id) => document.getElementById(id);
 
-/** Puts children in the place of those there were. What has focus and a `data-key` has it again in the new ones; where that is
- *  not among them any more, or had none, the first control has it. */
+/** Replaces the children of an element. If the focused one has a `data-key`, the new child with the same key gets the focus;
+ *  otherwise the first control gets it. */
 export function fill(parent, ...children) {
   const hadFocus = parent !== document.activeElement && parent.contains(document.activeElement);
   const focused = hadFocus ? document.activeElement.dataset.key : undefined;
@@ -40,7 +40,7 @@ export function button(words, act, attributes = {}) {
   return element("button", { type: "button", ...attributes, onclick: act }, words);
 }
 
-/** A button that asks, in its own place, before it acts. */
+/** A button that asks for confirmation in its place. */
 export function askingButton(words, question, act, attributes = {}) {
   const place = element("span", { class: "asking" });
   const rest = (hasFocus) => {
@@ -58,7 +58,7 @@ export function askingButton(words, question, act, attributes = {}) {
   return place;
 }
 
-/** Head and rows of a table; numbers stand to the right. A row may be an element or a list of cells. */
+/** A table with a head and rows; numbers are aligned to the right. A row may be an element or a list of cells. */
 export function table(head, rows) {
   const cell = (value) => (value instanceof Node ? element("td", {}, value)
     : element("td", typeof value === "number" ? { class: "number" } : {}, String(value ?? "–")));
@@ -67,7 +67,7 @@ export function table(head, rows) {
     element("tbody", {}, rows.map((row) => (row instanceof Node ? row : element("tr", {}, row.map(cell)))))));
 }
 
-/** Calls a function once in the next frame, however often it is asked for. */
+/** Calls a function once in the next frame, however often it is requested. */
 export function onceAFrame(work) {
   let asked = false;
   return () => {
@@ -77,11 +77,11 @@ export function onceAFrame(work) {
   };
 }
 
-/** Pauses are at least so many times as long as what is done between them. */
+/** Pauses are at least this many times as long as the work between them. */
 const REST = 3;
 
-/** Calls a function at most once in so many milliseconds, less often where it takes long, and after the last time that it was
- *  asked for. */
+/** Calls a function at most once in the given number of milliseconds, less often if it takes long, and once more after the last
+ *  request. */
 export function atMostEvery(milliseconds, work) {
   let waits = false;
   let pause = milliseconds;

@@ -1,4 +1,4 @@
-// Answers of the service saved as files.
+// Saves answers of the service as files.
 
 import { call, get } from "./api.js";
 
@@ -10,7 +10,7 @@ export async function downloadIncrements(id) {
   save(await everyIncrement(id), `increments-${id}.json`);
 }
 
-/** Every increment that is stored, as JSON, a page after the other. */
+/** All stored increments as JSON, fetched page by page. */
 async function everyIncrement(id) {
   const parts = [];
   let after = "";

@@ -1,12 +1,12 @@
-// Asks for the paths that the address names before the rest of the page has come: their numbers take longest.
+// Requests the paths in the address before the rest of the page has loaded, as their data take longest.
 
 import { PathData } from "./path-data.js";
 import { state } from "./state.js";
 
-/** Id to path, of those that nobody has taken over yet. */
+/** Id to path, for the paths that have not been handed over yet. */
 const begun = new Map();
 
-/** The path of a job, on its way: begun before, or now. */
+/** The path of a job, whose loading began earlier or begins now. */
 export function pathOnItsWay(id) {
   const path = begun.get(id) ?? new PathData(id);
   begun.delete(id);
@@ -19,7 +19,7 @@ const { jobs, run, study, sweep } = state();
 if (!run && !study && !sweep) {
   for (const id of jobs) {
     const path = pathOnItsWay(id);
-    // Whoever takes it over hears of it.
+    // The receiver of the path handles the error.
     path.loading.catch(() => {});
     begun.set(id, path);
   }

@@ -9,14 +9,14 @@ import { follow } from "./stream.js";
 import { isGoingOn, nameOf, statusWords } from "./words.js";
 
 /**
- * A subclass says how its record is read (`load`) and read again when rows have come (`come`, `refresh`), whether there are
- * findings (`hasFindings`), and how they are shown (`progressWords`, `drawFindings`).
+ * A subclass defines how its record is read (`load`) and updated with new rows (`come`, `refresh`), whether there are findings
+ * (`hasFindings`), and how they are shown (`progressWords`, `remark`, `drawFindings`).
  */
 export class FindingsView {
   /**
    * `kind`: "study" or "sweep"; `place`: the address below which its records are; `title`: what the findings are; `pause`:
-   * milliseconds between drawings while rows come in. Tells `changed()` where the lists are to be read again, `shown(title)`,
-   * `connection()` and `failed(problem)`.
+   * milliseconds between drawings while rows come in. Calls `told.changed()` when the lists have to be read again,
+   * `told.shown(title)`, `told.connection()` and `told.failed(problem)`.
    */
   constructor(section, told, { kind, place, title, pause }) {
     this.section = section;
@@ -48,7 +48,7 @@ export class FindingsView {
     this.start().catch((problem) => this.failed(problem));
   }
 
-  /** The service is back. */
+  /** The service can be reached again. */
   recover() {
     const { id } = this;
     if (!id || this.isLoaded) return;
@@ -91,7 +91,7 @@ export class FindingsView {
     await this.draw();
   }
 
-  /** Somebody has deleted the record: what is shown stays, and a notice says so. */
+  /** The record has been deleted: the view remains, with a notice. */
   async gone() {
     this.record = { ...this.record, status: "deleted" };
     this.isConnected = true;
@@ -118,7 +118,7 @@ export class FindingsView {
     if (hasFindings) await this.drawFindings();
   }
 
-  /** What is said after the status. */
+  /** The text after the status. */
   remark() {
     return "";
   }

@@ -1,4 +1,4 @@
-// Places and forces of a structure at an increment, in the model's own coordinates.
+// Positions and forces of a structure at an increment, in the coordinates of the model.
 
 const plus = (a, b, factor = 1) => a.map((value, place) => value + factor * (b[place] ?? 0));
 const times = (a, factor) => a.map((value) => value * factor);
@@ -9,13 +9,13 @@ const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a
 
 export const vector = { plus, times, dot, length, unit, cross };
 
-/** Node name to place, of the nodes that are recorded. */
+/** Node name to position, for the recorded nodes. */
 export function places(model, increment) {
   return new Map(Object.entries(model.nodes).filter(([name]) => increment.displacements[name])
     .map(([name, place]) => [name, plus(place, increment.displacements[name])]));
 }
 
-/** How far each obstacle has moved: what earlier stages reached, and the running one's pattern times its load factor. */
+/** The displacement of each obstacle: that of earlier stages, plus the pattern of the current stage times its load factor. */
 export function motions(model, increment, reached) {
   const moved = new Map();
   for (const stage of model.stages) {
@@ -29,7 +29,7 @@ export function motions(model, increment, reached) {
   return moved;
 }
 
-/** An obstacle's normal into the free side at a place, and its tangents as the reactions are written along them. */
+/** The normal of an obstacle into the free side at a position, and the tangents to which the reactions refer. */
 export function frame(obstacle, place, moved = []) {
   let normal;
   if (obstacle.kind === "plane") normal = unit(obstacle.normal);
@@ -45,7 +45,7 @@ export function frame(obstacle, place, moved = []) {
   return { normal, tangents: [first, cross(normal, first)] };
 }
 
-/** Tension of a bar, by its strain measure. */
+/** The tension of a bar for its strain measure. */
 export function tension(bar, from, to, referenceFrom, referenceTo) {
   const reference = bar.rest_length ?? length(plus(referenceTo, referenceFrom, -1));
   const stretch = length(plus(to, from, -1)) / reference;
@@ -58,7 +58,7 @@ export function tension(bar, from, to, referenceFrom, referenceTo) {
   }
 }
 
-/** From space to the plane of the picture, seen from an azimuth and an elevation (degrees). A plane's places stay. */
+/** Projects positions in space onto the picture for an azimuth and an elevation (degrees); plane positions are unchanged. */
 export function projection(dimension, { azimuth, elevation }) {
   if (dimension === 2) return (place) => place;
   const [a, e] = [azimuth, elevation].map((degrees) => (degrees * Math.PI) / 180);

@@ -1,4 +1,4 @@
-// What can be done with a job, a study or a sweep: cancel, delete, download, run again.
+// The actions on a job, a study or a sweep: cancel, delete, download, run again.
 
 import { call } from "./api.js";
 import { askingButton, button, byId, element } from "./dom.js";
@@ -6,7 +6,7 @@ import { download, downloadIncrements } from "./downloads.js";
 import { change, openModelOf, state } from "./state.js";
 import { isGoingOn, nameOf } from "./words.js";
 
-/** `done()` is called after what changes the lists, `failed(problem)` where something is refused. */
+/** Calls `done()` after an action that changes the lists, `failed(problem)` after a refused one. */
 export function jobActions(job, done, failed) {
   const { id } = job;
   const then = doing(done, failed);
@@ -14,7 +14,7 @@ export function jobActions(job, done, failed) {
     isGoingOn(job) ? button("Cancel", then(() => call(`/v1/jobs/${id}/cancel`, { method: "POST" }))) : null,
     job.status === "failed" && !job.sweep ? button("Queue again", then(async () => {
       await call(`/v1/jobs/${id}/retry`, { method: "POST" });
-      // What is shown of the path is of its end before.
+      // The view shows the state at the earlier end of the path.
       location.reload();
     })) : null,
     button("Path (csv)", then(() => download(`/v1/jobs/${id}/path.csv`, `path-${id}.csv`))),
@@ -27,7 +27,7 @@ export function jobActions(job, done, failed) {
     }), { class: "danger", id: "delete" }));
 }
 
-/** What can be done with a study or a sweep; `kind` is which of both, `place` the address below which it is. */
+/** The actions on a study or a sweep; `kind` is "study" or "sweep", `place` the address below which its records are. */
 export function findingsActions(record, kind, place, hasFindings, done, failed) {
   const { id } = record;
   const then = doing(done, failed);
@@ -45,7 +45,7 @@ export function findingsActions(record, kind, place, hasFindings, done, failed) 
     }), { class: "danger", id: "delete" }));
 }
 
-/** What had focus is gone: what is shown instead has it. */
+/** Shows another view, which gets the focus of the removed one. */
 function leaveFor(changes) {
   change(changes);
   byId("view").focus();

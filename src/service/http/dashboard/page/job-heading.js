@@ -1,4 +1,4 @@
-// What stands above the pictures of a job: its name, how far it is, why it ended, what can be done with it.
+// The heading of a job: its name, progress, stop reason and actions.
 
 import { element, fill } from "./dom.js";
 import { jobActions } from "./job-actions.js";
@@ -14,13 +14,13 @@ export class JobHeading {
     fill(place, this.summary, this.actions);
   }
 
-  /** The path is on its way. */
+  /** The path is being loaded. */
   prepare() {
     fill(this.summary, element("p", { class: "quiet" }, "Loading the path …"));
     this.draw(null);
   }
 
-  /** `others`: paths that are drawn with it. */
+  /** `others`: the other paths that are drawn. */
   show(path, others) {
     const { job } = path;
     const kept = path.index.length;
@@ -38,7 +38,7 @@ export class JobHeading {
     this.draw(job);
   }
 
-  /** What can be done is made anew only where it changes, so that focus stays on it while a path grows. */
+  /** Replaces the actions only if they change, so that they keep the focus while a path grows. */
   draw(job) {
     const key = job ? `${job.id} ${job.status}` : "";
     if (this.actions.dataset.of === key) return;

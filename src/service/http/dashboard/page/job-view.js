@@ -1,5 +1,5 @@
-// One or several jobs: their paths, the structure, directions and figures of the first. Carries what happens in one part to the
-// others.
+// The view of one or several jobs: their paths, and the structure, directions and diagnostics of the first. It passes events
+// between its parts.
 
 import { isGivenUp } from "./api.js";
 import { Diagnostics } from "./diagnostics.js";
@@ -16,9 +16,9 @@ import { isGoingOn } from "./words.js";
 
 /** Milliseconds between pictures of the structure of a path that grows: the path itself is drawn first. */
 const STRUCTURE = 300;
-/** The same for directions and figures. */
+/** Milliseconds between updates of directions and diagnostics. */
 const FIGURES = 2000;
-/** What the page measures itself: from the start of its loading to the first path on the screen. */
+/** A performance mark: the time from the start of loading to the first path on the screen. */
 const FIRST_PATH = "first path";
 
 export class JobView {
@@ -26,7 +26,7 @@ export class JobView {
    *  `connection()`. */
   constructor(told) {
     this.told = told;
-    /** Paths that are held, drawn or not: id to path. */
+    /** Id to path, for all loaded paths, drawn or not. */
     this.held = new Map();
     this.top = new JobHeading(byId("heading"), told);
     const chosen = (index) => change({ at: index });
@@ -60,7 +60,7 @@ export class JobView {
     });
   }
 
-  /** The first of the paths that are shown, once it can be drawn. */
+  /** The first of the shown paths, once it can be drawn. */
   get first() {
     const [path] = this.paths();
     return path && path.id === state().jobs[0] ? path : null;
@@ -89,13 +89,13 @@ export class JobView {
     this.diagnostics.open(state().figures);
   }
 
-  /** The page's colours have changed. */
+  /** The colours of the page have changed. */
   repaint() {
     this.structure.repaint();
     return this.draw();
   }
 
-  /** The service is back: what could not be fetched meanwhile is fetched now. */
+  /** The service can be reached again: fetches what is missing. */
   async recover() {
     if (!this.isWanted) return;
     this.hold();
@@ -107,7 +107,7 @@ export class JobView {
     return state().jobs.length > 0 && !state().run && state().study === null && state().sweep === null;
   }
 
-  /** The place of a path while that is on its way. */
+  /** A placeholder while a path is being loaded. */
   async prepare() {
     byId("job").hidden = false;
     byId("job").classList.add("loading");
@@ -130,12 +130,12 @@ export class JobView {
     this.directions.choose(first, at);
   }
 
-  /** Goes along the path by so many increments. */
+  /** Moves along the path by a number of increments. */
   step(by) {
     const { first } = this;
     if (!first?.index.length) return;
     const at = state().at ?? first.last();
-    // Where it is not among those that are kept, from the one before.
+    // If the increment is not recorded, starts from the previous one.
     const place = Math.max(0, first.index.findLastIndex((index) => index <= at));
     change({ at: first.index[Math.min(first.index.length - 1, Math.max(0, place + by))] });
   }
@@ -166,7 +166,7 @@ export class JobView {
         this.held.delete(id);
         const others = state().jobs.filter((other) => other !== id);
         if (problem.status === 404 && others.length > 0) {
-          // Those that are there are shown.
+          // The existing jobs are shown.
           this.missing = { words: `Not all jobs can be shown: ${problem.message}`, beside: others.join() };
           change({ jobs: others });
           return;
@@ -210,7 +210,7 @@ export class JobView {
     this.told.said([missing, axes.refused].filter(Boolean).join(" "));
     await this.pathPlot.draw(shown, axes, state().at);
     measureFirstPath();
-    // Each in a frame of its own: the page answers between them.
+    // Each in a frame of its own, so that the page stays responsive.
     await frame();
     await this.structure.show(first, state().at);
     await frame();
@@ -219,7 +219,7 @@ export class JobView {
     this.diagnostics.show(first);
   }
 
-  /** Lays the exact path over the computed one once that is whole; the picture does not wait for it. */
+  /** Draws the exact path over the computed one once this is complete; drawing does not wait for it. */
   async layExact(path) {
     if (isGoingOn(path.job)) return;
     const before = path.exact;
@@ -242,7 +242,7 @@ const frame = () => new Promise((resume) => requestAnimationFrame(() => setTimeo
 
 function measureFirstPath() {
   if (performance.getEntriesByName(FIRST_PATH).length > 0) return;
-  // What is done after a frame's callbacks comes after that frame is on its way to the screen.
+  // Work after the callbacks of a frame runs after the frame has been painted.
   requestAnimationFrame(() => setTimeout(() => {
     if (performance.getEntriesByName(FIRST_PATH).length === 0) performance.measure(FIRST_PATH, { start: 0 });
   }));

@@ -1,14 +1,14 @@
-// Where in a JSON text the value stands that a JSON Pointer (RFC 6901) names: the service says which value is wrong, the
-// reader wants to see the line; a setting is put in its place, and the rest of the text stays as it was written.
+// Finds the value of a JSON Pointer (RFC 6901) in a JSON text, in order to show the line of a mistake, and to set a value
+// without changing the rest of the text.
 
-/** `{line, start, end}` of the value, or of the nearest one around it that is there. */
+/** `{line, start, end}` of the value, or of the nearest existing one around it. */
 export function placeIn(text, { pointer = "", detail = "" }) {
   const told = /line (\d+)(?:,? column (\d+))?/.exec(detail);
   if (!pointer && told) {
     const line = Number(told[1]);
     const rows = text.split("\n");
     const start = rows.slice(0, line - 1).reduce((sum, row) => sum + row.length + 1, 0);
-    // The service counts characters, a text's places here are halves of some of them.
+    // The service counts characters, JavaScript UTF-16 code units.
     const characters = [...rows[line - 1] ?? ""];
     const column = Math.max(0, Number(told[2] ?? 1) - 1);
     const at = start + characters.slice(0, column).join("").length;
@@ -20,12 +20,12 @@ export function placeIn(text, { pointer = "", detail = "" }) {
     const reader = new Reader(text);
     reader.value(steps, (start, end) => { found = { start, end }; });
   } catch {
-    // A text that is no JSON has no such place; the best that was found stands.
+    // The text is no JSON: the best place found so far is used.
   }
   return { ...found, line: text.slice(0, found.start).split("\n").length };
 }
 
-/** The text with a member of its outermost object set; `undefined` takes it out where it stands. */
+/** The text with a member of its outermost object set; `undefined` removes the member. */
 export function withMember(text, name, value) {
   const places = [];
   const reader = new Reader(text);
@@ -39,7 +39,7 @@ export function withMember(text, name, value) {
   return `${before}${before.endsWith("{") ? "" : ","}\n  ${JSON.stringify(name)}: ${written}\n${text.slice(end)}`;
 }
 
-/** The text without a member of its outermost object, the rest as it was written. */
+/** The text without a member of its outermost object; the rest is unchanged. */
 export function withoutMember(text, name) {
   let start = null;
   let end = null;

@@ -1,4 +1,4 @@
-// Starts the page, and shows what the state says: a form, a study, a sweep, or jobs.
+// Starts the page, and shows the form, study, sweep or jobs of the state.
 
 import { callsList } from "./calls-list.js";
 import { button, byId, element, fill } from "./dom.js";
@@ -13,7 +13,7 @@ import { SweepView } from "./sweep-view.js";
 import { TaskLists } from "./task-lists.js";
 import { tokenPrompt } from "./token-prompt.js";
 
-/** What stands where there is no job or study to be seen, or beside them; `again` tries once more. */
+/** Shows a notice; `again`, if given, is called by its button to try again. */
 function say(words, again) {
   const place = byId("notice");
   place.hidden = !words;
@@ -71,7 +71,7 @@ onReach((isBack) => {
   connection();
   if (!isBack) return;
   lists.load();
-  // What could not be fetched meanwhile is fetched now.
+  // Fetches what could not be fetched meanwhile.
   for (const one of [runForm, studyView, sweepView, jobView]) one.recover();
 });
 onThemeChange(() => { jobView.repaint(); studyView.draw(); sweepView.draw(); });
@@ -86,6 +86,6 @@ addEventListener("keydown", (event) => {
   if (step && !state().run) jobView.step(step);
 });
 view(null);
-// Where there is something to be drawn already, that is what goes first.
+// If there is something to draw, it is drawn first.
 const ready = state().jobs.length || state().study || state().sweep ? plotlyLoaded : warmPlotlyUp;
 ready().catch((problem) => say(problem.message));

@@ -1,26 +1,26 @@
-// What a path is drawn against and what is drawn over it: the names, their words, and the controls that choose them.
+// The abscissa and ordinate of the plot of paths: names, labels, and the controls that choose them.
 
 import { choice, element, fill } from "./dom.js";
 
-/** What can be drawn over the path: [name, words]. */
+/** The ordinates: [name, label]. */
 export const ORDINATES = [
   ["load_factor", "load factor"], ["/energy/dissipated", "dissipated energy"], ["/energy/strain", "strain energy"],
   ["/energy/external_work", "external work"],
 ];
 const ARC_LENGTH = "arc_length";
 const LETTERS = "xyz";
-/** Nodes up to which each component stands in the list of choices; of more, a node is named. */
+/** With at most this many nodes all components are listed as choices; with more, a node is typed. */
 const LISTED = 100;
-/** Nodes that are proposed for what has been typed. */
+/** The number of nodes that are proposed for a typed text. */
 const PROPOSED = 40;
 
 const escaped = (name) => name.replaceAll("~", "~0").replaceAll("/", "~1").replaceAll(",", "~2");
 export const unescaped = (step) => step.replaceAll("~2", ",").replaceAll("~1", "/").replaceAll("~0", "~");
 
-/** The column of a node's displacement. */
+/** The column of a displacement of a node. */
 export const displacement = (node, component) => `/displacements/${escaped(node)}/${component}`;
 
-/** The node and the component that a column is of; null where it is of none. */
+/** The node and the component of a column; null for other columns. */
 export function ofDisplacement(name) {
   const found = /^\/displacements\/([^/]+)\/([012])$/.exec(name);
   return found ? { node: unescaped(found[1]), component: Number(found[2]) } : null;
@@ -28,7 +28,7 @@ export function ofDisplacement(name) {
 
 export const isOrdinate = (name) => ORDINATES.some(([known]) => known === name);
 
-/** Whether a path of that request has such a column to be drawn against. */
+/** Whether the path of a request has a column that can be the abscissa. */
 export function isAbscissa(name, request) {
   const of = ofDisplacement(name ?? "");
   if (!of) return name === ARC_LENGTH;
@@ -45,8 +45,8 @@ export function abscissaWords(name) {
   return of ? `displacement ${LETTERS[of.component]} of ${of.node}` : name === ARC_LENGTH ? "arc length" : name;
 }
 
-/** What of these paths is drawn against what: as chosen, where any of them has it, or else as the first has it; `refused` says
- *  so. */
+/** The axes for these paths: the chosen ones, if any path has them, or else those of the first path, in which case `refused` is
+ *  set. */
 export function axesOf(paths, { abscissa, ordinate }) {
   const refused = [];
   const taken = (chosen, isKnown, usual, words) => {
@@ -84,7 +84,7 @@ function ofFewNodes(nodes, { model }, abscissa, chosen) {
   }, [[ARC_LENGTH, "arc length"], ...options], abscissa));
 }
 
-/** A list of thousands of choices is slow to make and of no use: the node is named, with proposals. */
+/** A list of thousands of choices would be slow and of no use: the node is typed, with proposals. */
 function ofManyNodes(nodes, { model }, abscissa, chosen) {
   const known = new Set(nodes);
   const of = ofDisplacement(abscissa);

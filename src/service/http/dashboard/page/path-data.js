@@ -1,26 +1,26 @@
-// What is held of a job: the job, its request, columns of its increments, the points that are not regular, and whole
-// increments where a view has asked for them.
+// The loaded data of a job: the job, its request, columns of its increments, the points that are not regular, and complete
+// increments that a view has requested.
 
 import { get } from "./api.js";
 import { displacement, isAbscissa, isOrdinate, unescaped } from "./path-axes.js";
 import { follow } from "./stream.js";
 import { isGoingOn } from "./words.js";
 
-/** Increments that are fetched together when one of them is looked at, at most. */
+/** The most increments that are fetched together with a requested one. */
 const WHOLE = 64;
-/** Increments that are held whole, times the nodes and contacts of the model; the others are fetched again where they are
- *  looked at. */
+/** The number of complete increments that are kept, times the nodes and contacts of the model; others are fetched again when
+ *  they are needed. */
 const HELD = 500000;
-/** So many are held in any case. */
+/** The least number of complete increments that are kept. */
 const FEWEST_HELD = 256;
 const ALWAYS = ["stage", "load_factor", "arc_length"];
 
 export class PathData {
   constructor(id) {
     this.id = id;
-    /** Who is told `(what, path)`: "loaded", "grown", "ended", "connection". */
+    /** The listeners to `(event, path)`, with the events "loaded", "grown", "ended" and "connection". */
     this.told = () => {};
-    /** Resolves when what is stored has been read. */
+    /** Resolves when all stored increments have been read. */
     this.loading = null;
     this.job = null;
     this.request = null;
@@ -38,7 +38,7 @@ export class PathData {
     this.given = new AbortController();
   }
 
-  /** Reads what is stored, with those of these columns that it has, and goes on with what comes. */
+  /** Reads the stored increments, with the given columns if the job has them, then follows the stream. */
   async load(columns) {
     const place = `/v1/jobs/${this.id}`;
     const { signal } = this.given;
@@ -51,7 +51,7 @@ export class PathData {
       const page = await this.inTurn(() => this.readOn(after));
       after = page.next_after;
       const isLast = page.index.length === 0 || after === this.job.progress.last_index;
-      // What has been read is shown; a path may grow as fast as it is read.
+      // Shows what has been read, as a path may grow as fast as it is read.
       this.isLoaded = true;
       if (pages === 1 || isLast) this.told("loaded", this);
       else this.told("grown", this);
@@ -66,7 +66,7 @@ export class PathData {
     });
   }
 
-  /** Somebody has deleted the job: what is held stays. */
+  /** The job has been deleted: the loaded data are kept. */
   gone() {
     if (this.job.status === "deleted") return;
     this.problem = "This job has been deleted.";
@@ -80,14 +80,14 @@ export class PathData {
     return get(`/v1/jobs/${this.id}/columns?of=${of}${after === null ? "" : `&after=${after}`}`, this.given.signal);
   }
 
-  /** Readings of columns go one after the other: each page belongs to all of those that are held. */
+  /** Reads columns one request after another, as every page extends all loaded columns. */
   inTurn(read) {
     const done = this.turn.then(read);
     this.turn = done.catch(() => {});
     return done;
   }
 
-  /** Another page. */
+  /** Reads the next page. */
   async readOn(after) {
     const names = [...this.columns.keys()];
     const page = await this.page(names, after);
@@ -111,7 +111,7 @@ export class PathData {
     this.told("grown", this);
   }
 
-  /** Columns that are not held yet, up to what is held of the others. */
+  /** Reads columns that are not loaded yet, up to the last increment of the others. */
   need(names) {
     return names.every((name) => this.columns.has(name)) ? null : this.inTurn(() => this.readMissing(names));
   }
@@ -133,7 +133,7 @@ export class PathData {
     });
   }
 
-  /** Keeps an increment whole; the first that were kept give way. */
+  /** Keeps a complete increment, and removes the oldest ones if there are too many. */
   hold(increment) {
     const { nodes, contacts } = this.request.model;
     const size = Object.keys(nodes).length + (contacts?.length ?? 0);
@@ -143,7 +143,7 @@ export class PathData {
     }
   }
 
-  /** An increment as it is stored; null where there is none. Those around it come along. */
+  /** A complete increment; null if there is none. Its neighbours are fetched, too. */
   async increment(index) {
     if (this.whole.has(index)) return this.whole.get(index);
     // A page of large increments ends before it has as many as were asked for: the next one begins nearer to the wanted
@@ -169,12 +169,12 @@ export class PathData {
     return increments;
   }
 
-  /** Whether any increment that is held has a value of this column. */
+  /** Whether any loaded increment has a value in this column. */
   has(name) {
     return this.index.length === 0 || (this.columns.get(name) ?? []).some((value) => value !== null);
   }
 
-  /** Where an increment stands in the columns; -1 where it is not among them (not every increment need be kept). */
+  /** The position of an increment in the columns; -1 if it is not among them (not every increment need be recorded). */
   placeOf(index) {
     let [low, high] = [0, this.index.length - 1];
     while (low <= high) {
@@ -186,7 +186,7 @@ export class PathData {
     return -1;
   }
 
-  /** The path in closed form, as far as the computed one goes; null where none is known. */
+  /** The exact path over the range of the computed one; null if none is known. */
   async exactPath() {
     const span = (name) => {
       const most = (this.columns.get(name) ?? []).reduce((sum, value) => Math.max(sum, Math.abs(value ?? 0)), 0);
@@ -206,12 +206,12 @@ export class PathData {
     return this.index.at(-1) ?? null;
   }
 
-  /** Index of the last bifurcation point that has been found; null before the first. */
+  /** The index of the last bifurcation point so far; null before the first. */
   lastBifurcation() {
     return this.points.findLast(({ point }) => point.bifurcation)?.index ?? null;
   }
 
-  /** The displacement that the last stage is about: what ends it, or else what is loaded. */
+  /** The characteristic displacement of the last stage: that which ends it, or else that of the load. */
   ownAbscissa() {
     const { model } = this.request;
     const recorded = this.request.analysis?.record?.nodes;
@@ -229,7 +229,7 @@ export class PathData {
       return null;
     };
     for (const { forces, displacements, obstacle_motion: motion } of stages) {
-      // An obstacle that moves takes along what is on it.
+      // A moving obstacle displaces the nodes on it.
       const taken = (model.contacts ?? []).filter(({ obstacle }) => motion?.[obstacle])
         .map(({ node, obstacle }) => [node, motion[obstacle]]);
       const found = loaded({ ...forces, ...displacements }) ?? loaded(Object.fromEntries(taken));
@@ -238,7 +238,7 @@ export class PathData {
     return "arc_length";
   }
 
-  /** Whether there is such a column to be drawn against. */
+  /** Whether there is a column that can be the abscissa. */
   knows(abscissa) {
     return isAbscissa(abscissa, this.request);
   }
@@ -249,7 +249,7 @@ export class PathData {
   }
 }
 
-/** Place of the largest component; -1 where all are zero. */
+/** The index of the largest component; -1 if all are zero. */
 function largest(components) {
   const most = Math.max(...components.map(Math.abs));
   return most > 0 ? components.findIndex((value) => Math.abs(value) === most) : -1;

@@ -1,5 +1,5 @@
-// What stands below the plot of the paths: which line is whose, which have nothing to be drawn, and the named points of the
-// first.
+// The legend below the plot of the paths: the names of the lines, paths that cannot be drawn, and the named points of the first
+// path.
 
 import { element, fill } from "./dom.js";
 import { pathNames } from "./path-names.js";
@@ -7,7 +7,7 @@ import { dashedSwatch } from "./plot-style.js";
 import { named } from "./points.js";
 import { pointWords, short } from "./words.js";
 
-/** Named points in the list. */
+/** The most named points in the list. */
 const LISTED = 60;
 
 /** `lacks(path)`: what the path has no values of, in words, or null; `exact`: the path in closed form that is laid over, or

@@ -1,5 +1,4 @@
-// How paths that are drawn together are told apart: a colour and a dash that stay with each as long as it is drawn, and a name
-// that no other has.
+// Distinguishes paths that are drawn together: each keeps a colour and a dash as long as it is drawn, and has a unique name.
 
 import { colourOf, dashOf } from "./plot-style.js";
 import { named } from "./points.js";
@@ -8,13 +7,13 @@ import { differences, nameOf } from "./words.js";
 /** Characters at the end of a job's id, where ids of jobs queued together differ. */
 const SHORT = 6;
 
-/** Looks of paths: the first free one for each that is new, and its own for each that stays. */
+/** The styles of paths: a new path gets the first free one, and the others keep theirs. */
 export class PathLooks {
   constructor() {
     this.places = new Map();
   }
 
-  /** Ids of the paths that are drawn from now on. */
+  /** Sets the ids of the paths that are drawn from now on. */
   keep(ids) {
     for (const id of this.places.keys()) if (!ids.includes(id)) this.places.delete(id);
     const taken = new Set(this.places.values());
@@ -36,7 +35,7 @@ export class PathLooks {
   }
 }
 
-/** A name for each of the paths, with what is not the same in all of them, and the end of the id where that is not enough. */
+/** A name for each path, with the settings in which they differ, and the end of the id if these are not enough. */
 export function pathNames(paths) {
   const apart = differences(paths.map(({ request }) => request));
   const names = paths.map((path, place) => [nameOf(path.job), apart[place], branchWords(path, paths)].filter(Boolean).join(", "));
@@ -44,7 +43,7 @@ export function pathNames(paths) {
     : `${name}, job …${paths[place].id.slice(-SHORT)}`));
 }
 
-/** Where a branch leaves another path: at the point as it is named there, where that path is drawn, too. */
+/** The point at which a branch leaves another path, by its name there if that path is drawn, too. */
 function branchWords({ job: { parent } }, paths) {
   if (!parent) return "";
   const origin = paths.find(({ id }) => id === parent.job);

@@ -9,9 +9,9 @@ import { axis, CONFIGURATION, fromSheet, layout } from "./plot-style.js";
 import { named } from "./points.js";
 import { pointWords, verbatim } from "./words.js";
 
-/** Markers at every increment up to so many. */
+/** Up to this number of increments each has a marker. */
 const MARKED = 400;
-/** A frame's drawing may take this part of the time. */
+/** The largest part of the time that is spent on drawing. */
 const SHARE = 0.25;
 /** Traces of a job: its line, its named points. */
 const OF_A_JOB = 2;
@@ -34,7 +34,7 @@ export class PathPlot {
     this.listens = false;
   }
 
-  /** Axes without a path, as long as that is on its way. */
+  /** Draws axes without a path while it is being loaded. */
   async prepare() {
     this.paths = [];
     fill(this.legend);
@@ -73,7 +73,7 @@ export class PathPlot {
     namedPoints(this.list, paths[0], (index) => this.told.chosen(paths[0].id, index));
   }
 
-  /** A reader's zoom stays as long as something of what is drawn does, along the same axes. */
+  /** The zoom is kept as long as one of the drawn paths and the axes remain. */
   follow(paths, axes) {
     const stays = this.axes?.abscissa === axes.abscissa && this.axes?.ordinate === axes.ordinate
       && paths.some(({ id }) => this.paths.some((before) => before.id === id));
@@ -82,7 +82,7 @@ export class PathPlot {
     this.axes = axes;
   }
 
-  /** Jobs that are to be drawn from now on: each keeps its look as long as it is among them. */
+  /** Sets the jobs that are drawn from now on; each keeps its style as long as it is among them. */
   keep(ids) {
     this.looks.keep(ids);
   }
@@ -112,13 +112,13 @@ export class PathPlot {
     return path.columns.get(this.axes.ordinate) ?? [];
   }
 
-  /** The places of a path in the plot; one that has no abscissa has no place, and does not widen the range of the ordinate. */
+  /** The coordinates of a path in the plot; a point without an abscissa is left out and does not affect the range of the ordinate. */
   placesOf(path) {
     const [abscissa, ordinate] = [this.abscissaOf(path), this.ordinateOf(path)];
     return { x: (place) => abscissa[place], y: (place) => (abscissa[place] === null ? null : ordinate[place]) };
   }
 
-  /** From this increment on; where a stage begins the load factor does so, too, and the line is broken. */
+  /** The points from an increment on. The load factor starts again with each stage, where the line is interrupted. */
   line(path, from) {
     const line = { x: [], y: [], customdata: [] };
     const { x, y } = this.placesOf(path);
@@ -151,7 +151,7 @@ export class PathPlot {
     };
   }
 
-  /** The first path in closed form, laid over all. */
+  /** The exact solution of the first path, drawn over all paths. */
   exact() {
     const [path] = this.paths;
     const of = ofDisplacement(this.axes.abscissa);
@@ -186,12 +186,12 @@ export class PathPlot {
     this.restyleMark({});
   }
 
-  /** The structure that is looked at belongs to the marked increment. */
+  /** Highlights the marker of the increment that the structure shows. */
   pointAt(isPointedAt) {
     this.restyleMark({ "marker.size": isPointedAt ? MARK.pointedAt : MARK.plain });
   }
 
-  /** More has come of a path: drawn in the next frame, and in no more frames than leave time for the rest of the page. */
+  /** A path has grown: it is drawn in the next frame, but only in as many frames as leave time for the rest of the page. */
   grow() {
     if (this.waits) return;
     this.waits = true;
@@ -228,7 +228,7 @@ export class PathPlot {
     await Plotly.extendTraces(this.place, update, traces);
   }
 
-  /** The choice of axes is made anew only where others can be chosen, so that focus stays on it while a path grows. */
+  /** Replaces the choice of axes only if the choices change, so that it keeps the focus while a path grows. */
   controls() {
     const path = this.paths[0];
     if (!path) return;

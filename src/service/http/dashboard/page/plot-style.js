@@ -1,15 +1,15 @@
-// What all plots have in common: colours of the page, fonts, margins, how Plotly behaves.
+// The common style of all plots: colours, fonts, margins and the configuration of Plotly.
 
 import { verbatim } from "./words.js";
 
 const dark = matchMedia("(prefers-color-scheme: dark)");
 const COLOURS = ["#3486cc", "#d2691e", "#2e9a5b", "#a44fb0", "#c23b4e", "#7f7a1f", "#1f9aa3", "#7a6a5d"];
 
-/** As Plotly names them, and as a sheet's background: lengths of line and gap in turn. */
+/** Dashes: the name in Plotly, and the lengths of lines and gaps for a background in CSS. */
 const DASHES = [["solid", []], ["dash", [6, 3]], ["dot", [2, 2]], ["dashdot", [6, 2, 2, 2]]];
 
 export const colourOf = (place) => COLOURS[place % COLOURS.length];
-/** Where the colours begin anew, another dash. */
+/** The dash of a line, which changes when the colours repeat. */
 export const dashOf = (place) => DASHES[Math.floor(place / COLOURS.length) % DASHES.length][0];
 
 /** The style of a swatch with that colour and dash. */

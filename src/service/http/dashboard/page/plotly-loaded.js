@@ -1,10 +1,10 @@
-// Plotly's script is large: the page asks for it first, so that it is there when what it will draw has come.
+// Loads Plotly's script, which is large: the page requests it first, so that it is loaded before the data to be drawn.
 
 import { byId, element } from "./dom.js";
 
 let asked = null;
 
-/** Resolves once `Plotly` is there; a script that has not come is asked for anew. */
+/** Resolves once `Plotly` is loaded; after a failure the script is requested again. */
 export function plotlyLoaded() {
   asked ??= new Promise((resolve, refuse) => {
     if (window.Plotly) {
@@ -23,7 +23,7 @@ export function plotlyLoaded() {
   return asked;
 }
 
-/** Draws something out of sight while nothing else is to be done: what is drawn first takes longest. */
+/** Draws a hidden plot while the page is idle, as the first plot takes longest. */
 export async function warmPlotlyUp() {
   await plotlyLoaded();
   const idle = window.requestIdleCallback ?? setTimeout;

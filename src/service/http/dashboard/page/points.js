@@ -1,4 +1,4 @@
-// Names of the points that a reader looks for: A, B, C, ... in order of appearance, as in the figures of papers.
+// Names special points of a path: A, B, C, ... in order of appearance, as in the figures of papers.
 
 const NAMED = new Set(["smooth_limit", "nonsmooth_limit", "smooth_bifurcation", "contact_change"]);
 
@@ -11,7 +11,7 @@ export function letters(number) {
   return name;
 }
 
-/** Path to what has been found of it: `{taken, stretch, found}`. Points are only ever added to a path. */
+/** Path to its named points so far: `{taken, stretch, found}`. Points are only ever added to a path. */
 const known = new WeakMap();
 
 /**

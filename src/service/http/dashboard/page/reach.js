@@ -1,4 +1,4 @@
-// Whether the service answers: told by every call, and looked after by a light one of its own as long as it does not.
+// Whether the service can be reached: reported by every call, and polled with a small call while it cannot.
 
 const SOON = 500;
 const LATEST = 8000;
@@ -9,12 +9,12 @@ let wait = SOON;
 
 export const isReached = () => isThere;
 
-/** Who is told that the service has gone (false) or is back (true). */
+/** The listeners that are told when the service is lost (false) or reached again (true). */
 export function onReach(listener) {
   listeners.add(listener);
 }
 
-/** A call has been answered, or has not. */
+/** Reports that a call was answered or not. */
 export function reached(yes) {
   if (yes === isThere) return;
   isThere = yes;

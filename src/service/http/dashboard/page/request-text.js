@@ -1,12 +1,12 @@
-// The text of a request with the numbers of its lines, those with mistakes marked.
+// The text field of a request with line numbers and marks at mistakes.
 
 import { element, fill } from "./dom.js";
 
-/** Lines above a mistake that stay in sight. */
+/** Lines above a mistake that remain visible. */
 const ABOVE = 4;
 
 export class RequestText {
-  /** Tells `edited()`, and `pasted()` before it where all of the text is replaced by what is pasted. */
+  /** Calls `edited()` after a change, and before it `pasted()` if the whole text is replaced by pasting. */
   constructor({ edited, pasted }) {
     this.area = element("textarea", {
       id: "request", spellcheck: "false", rows: 22, "aria-label": "job request (JSON)", oninput: () => edited(),
@@ -28,10 +28,10 @@ export class RequestText {
     this.area.value = text;
   }
 
-  /** Numbers the lines; `mistakes`: a set of those that are marked. */
+  /** Numbers the lines; `mistakes` is the set of marked lines. */
   number(mistakes) {
     const many = this.value.split("\n").length;
-    // Texts between the marked ones: a line of its own for each of many lines takes the page seconds.
+    // One text node between marked lines, as an element for each of many lines would take seconds.
     const marked = [...mistakes].filter((line) => line <= many).sort((a, b) => a - b);
     const pieces = [];
     let next = 1;

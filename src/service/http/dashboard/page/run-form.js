@@ -1,5 +1,5 @@
-// A new run: a built-in scene or a model that is pasted or dropped, settings, the plan before it is queued, mistakes at their
-// place in the text.
+// The form of a new run: a built-in scene or a pasted or dropped model, settings, the plan before it is queued, and mistakes at
+// their place in the text.
 
 import { call, get, post } from "./api.js";
 import { button, choice, element, fill } from "./dom.js";
@@ -11,9 +11,9 @@ import { SettingsFields } from "./settings-fields.js";
 import { change, jobOf, state } from "./state.js";
 import { leftOutSentence, plainWords, settingsSentences } from "./words.js";
 
-/** Milliseconds without a key before the text is checked. */
+/** Milliseconds without input before the text is checked. */
 const PAUSE = 400;
-/** Settings that are shown at once. */
+/** Settings that are always visible. */
 const FIRST = ["method", "selection", "events", "max_increments", "arc_length"];
 const KINDS = [
   ["", "one path"], ["study", "a study: error against run time"], ["sweep", "a sweep: limit loads against what is varied"],
@@ -73,7 +73,7 @@ export class RunForm {
     return state().scene || (this.known?.[0].name ?? "");
   }
 
-  /** The service is back. */
+  /** The service can be reached again. */
   recover() {
     if (!this.panel.hidden) this.show();
   }
@@ -98,7 +98,7 @@ export class RunForm {
     }
   }
 
-  /** Puts a scene's request into the text, as it is written: who wrote it has put on one line what belongs together. */
+  /** Puts the request of a scene into the text, with its original layout. */
   async load(scene) {
     const { again } = state();
     const id = jobOf(scene);
@@ -107,7 +107,7 @@ export class RunForm {
     this.scenes.put(text, scene);
   }
 
-  /** A scene is chosen, or the one that there is once more: it comes anew. */
+  /** A scene has been chosen, or the current one again, which is then restored. */
   choose(scene) {
     if (!scene) return;
     this.scene = null;
@@ -135,7 +135,7 @@ export class RunForm {
     this.edited();
   }
 
-  /** A sweep has a member of its own, which nothing else takes. */
+  /** Only a sweep may have the member `sweep`. */
   sweepOrNot() {
     let request = null;
     try {
@@ -146,7 +146,7 @@ export class RunForm {
     if (!isObject(request) || this.isSweep === "sweep" in request) return;
     const before = this.text.value;
     if (!this.isSweep) this.sweep = request.sweep;
-    // Back to what it was: that text, if nothing has been changed since.
+    // Restores the earlier text if nothing has been changed since.
     const now = this.switched?.now === before ? this.switched.before
       : this.isSweep ? withMember(before, "sweep", this.sweep ?? firstSweep(request)) : withoutMember(before, "sweep");
     this.switched = { before, now };
@@ -168,7 +168,7 @@ export class RunForm {
     try {
       request = JSON.parse(this.text.value);
     } catch {
-      // The service says what is wrong; until then no field can be put into the text.
+      // The service reports the mistake; until it is corrected no field can change the text.
     }
     for (const [name, fields] of this.fields) {
       const value = isObject(request) ? request[name] ?? {} : null;
@@ -227,7 +227,7 @@ export class RunForm {
   }
 }
 
-/** What is put into a text that is to be a sweep and says nothing of it yet: the friction, or else the first stiffness. */
+/** The default sweep of a text without one: over the friction, or else over the first stiffness. */
 function firstSweep({ model }) {
   if (model?.contacts?.length) return { replace: { "/model/contacts/0/friction": [0.1, 0.2, 0.3, 0.4, 0.5] } };
   const [name, stiffness] = Object.entries(model?.elements?.[0] ?? {}).find(([key]) => key.endsWith("stiffness")) ?? [];

@@ -1,9 +1,10 @@
-// Which scene the text of a new run is from, whether it has been changed since, and the way back to what was replaced.
+// The choice of a scene for a new run: from which scene the text is, whether it has been changed, and how to restore a replaced
+// text.
 
 import { button, choice, element, fill } from "./dom.js";
 import { jobOf } from "./state.js";
 
-/** The choice that stands for the text as it is. */
+/** The choice that keeps the current text. */
 const AS_IT_IS = "";
 
 const wordsOf = (scene) => (jobOf(scene) ? "the model of a job" : scene);

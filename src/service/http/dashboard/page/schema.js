@@ -1,10 +1,10 @@
-// The service's own description (OpenAPI): calls, settings, their words and defaults, so that nothing of it is written twice.
+// The OpenAPI description of the service: calls, settings, their descriptions and defaults, so that they are not repeated here.
 
 import { get } from "./api.js";
 
 let described = null;
 
-/** The document; asked for once. */
+/** The document, requested once. */
 export async function description() {
   described ??= get("/openapi.json");
   try {
@@ -21,7 +21,8 @@ export async function analysisDefaults() {
   return Object.fromEntries(Object.entries(properties).map(([name, property]) => [name, property.default]));
 }
 
-/** A schema with what it refers to put in; of several, the one that is not null. Words and default nearest to it count. */
+/** A schema with its references resolved; of several alternatives the one that is not null. The outermost description and default
+ *  count. */
 export function resolved(document, schema) {
   let found = schema;
   let words = {};

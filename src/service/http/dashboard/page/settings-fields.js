@@ -1,5 +1,5 @@
-// Settings as fields with their words and defaults, all of them from the service's own description. They show what the text of
-// the request says, and say what is changed, so that the two never disagree.
+// Fields for settings, with descriptions and defaults from the OpenAPI description. They show the values in the text of the
+// request and report changes, so that fields and text always agree.
 
 import { choice, element } from "./dom.js";
 import { plain, resolved } from "./schema.js";
@@ -22,7 +22,7 @@ export class SettingsFields {
       rest.length ? element("details", {}, element("summary", {}, "More settings"), of(rest)) : null);
   }
 
-  /** Puts what the request says into the fields; null where it cannot be read. */
+  /** Shows the values of the request in the fields; null if it cannot be read. */
   show(value) {
     this.place.disabled = value === null;
     this.value = value ?? {};
@@ -31,7 +31,7 @@ export class SettingsFields {
     }
   }
 
-  /** Null where the field is best written in the text itself. */
+  /** A field; null for a setting that is better edited in the text. */
   member(steps, schema) {
     const name = steps.at(-1);
     if (schema.properties) {
@@ -66,7 +66,7 @@ export class SettingsFields {
       return field(input, (value) => { input.value = others.includes(value) ? value : ""; }, () => input.value || undefined);
     }
     if (types.includes("boolean") && types.includes("null")) {
-      // What holds where nothing is said may depend on other settings: the words beside it say on which.
+      // The default may depend on other settings, as the description says.
       const input = choice({}, [["", "by default"], ["true", "yes"], ["false", "no"]], "");
       return field(input, (value) => { input.value = value ?? ""; }, () => (input.value ? input.value === "true" : undefined));
     }
@@ -94,7 +94,7 @@ export class SettingsFields {
     return null;
   }
 
-  /** What is as by default is not written; an object that says nothing any more neither. */
+  /** Omits values that are equal to the default, and objects that become empty. */
   set(steps, value, put) {
     const changed = structuredClone(this.value);
     const way = [changed];

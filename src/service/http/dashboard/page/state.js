@@ -1,4 +1,4 @@
-// Everything that says which view is shown, in one place and in the address, so that a view can be sent.
+// The state that determines the view, which is also kept in the address, so that a link leads to the same view.
 //
 // jobs: ids drawn in the path plot; the first is the one whose structure and figures are shown. study, sweep: the id of one that
 // is shown in their place. abscissa and ordinate: a member of the increments or a JSON Pointer to one; null for the job's own
@@ -13,9 +13,9 @@ const EMPTY = {
 };
 /** What jobs, studies and sweeps can be filtered by. */
 export const STATUSES = ["queued", "running", "completed", "stopped", "cancelled", "failed"];
-/** In the place of a scene's name: the model of a job. */
+/** Prefix in place of the name of a scene: the model of a job. */
 const OF_A_JOB = "job:";
-/** Milliseconds between changes of the address that are no steps: browsers take no more of them than so many. */
+/** Milliseconds between changes of the address without a history entry, whose rate browsers limit. */
 const PAUSE = 250;
 const ID = /^[0-9a-f-]{36}$/i;
 const listeners = new Set();
@@ -66,7 +66,7 @@ let now = { ...EMPTY, ...ofAddress() };
 let written = -PAUSE;
 let later = null;
 
-/** Puts the state into the address: at once, or when the pause since the last time is over. */
+/** Writes the state to the address: at once, or when the pause since the last time is over. */
 function write() {
   clearTimeout(later);
   const wait = written + PAUSE - performance.now();
@@ -79,10 +79,10 @@ function write() {
 }
 
 export const state = () => now;
-/** Whether both show the same, their form, filter and chosen point aside. */
+/** Whether both states show the same view, apart from form, filter and chosen point. */
 export const isSameView = (a, b) => a.jobs.join() === b.jobs.join() && a.run === b.run && a.study === b.study && a.sweep === b.sweep;
 
-/** Changes the view; listeners get the view before. Another job or form is a step to go back from, an increment is not. */
+/** Changes the state; listeners get the previous one. Another job or form makes a history entry, an increment does not. */
 export function change(changes) {
   const before = now;
   now = { ...now, ...changes };
@@ -111,10 +111,10 @@ export function openSweep(id) {
   change({ jobs: [], study: null, sweep: id, at: null, abscissa: null, ordinate: null, run: false });
 }
 
-/** The job whose model is asked for in a scene's place; null for a scene. */
+/** The job whose model is requested in place of a scene; null for a scene. */
 export const jobOf = (scene) => (scene.startsWith(OF_A_JOB) ? scene.slice(OF_A_JOB.length) : null);
 
-/** Shows the model of a job in the form, whatever stands there. */
+/** Shows the model of a job in the form, replacing its content. */
 export function openModelOf(id) {
   change({ run: true, scene: `${OF_A_JOB}${id}`, as: "", again: now.again + 1 });
 }

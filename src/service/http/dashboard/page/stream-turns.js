@@ -1,6 +1,6 @@
-// Which streams hold a connection: a browser opens six to a host, for all of its tabs together, and every other call needs one of
-// them. So a page holds two for its streams and passes them round while more are wanted, and none while nobody sees it; a stream
-// that goes on later begins after the last index that came.
+// Shares connections between streams. A browser opens six connections to a host, for all of its tabs together, which other calls
+// need, too. A page therefore uses two for its streams, in turns if there are more streams, and none while it is hidden; a stream
+// that continues later resumes after the last index received.
 
 const HELD_AT_ONCE = 2;
 /** Milliseconds that a stream keeps its connection while others wait for one. */
@@ -10,8 +10,8 @@ const waiting = [];
 const holders = new Set();
 let timer = null;
 
-/** Resolves when a connection may be held, to the function that says that it is not any more; `giveBack()` is called when others
- *  should have it. */
+/** Resolves when a connection may be used, to a function that releases it; `giveBack()` is called when another stream needs the
+ *  connection. */
 export function turn(giveBack) {
   return new Promise((resume) => {
     waiting.push(() => {

@@ -1,24 +1,24 @@
-// Follows a job, a study or a sweep over server-sent events read by fetch (an EventSource sends no token): resumes after the last
-// index that came, without gap or repeat, whatever ends the connection.
+// Follows a job, a study or a sweep over server-sent events, read with fetch (an EventSource sends no token). After a lost
+// connection the stream resumes after the last index received, without gap or repeat.
 
 import { call, Problem } from "./api.js";
 import { turn } from "./stream-turns.js";
 
 const SOON = 500;
 const LATEST = 8000;
-/** The service says that it is there every 15 s. */
+/** The service sends a keep-alive every 15 s. */
 const SILENCE = 40000;
 
 /**
- * `place`: of the job, study or sweep. `after`: the last index that is held, or null. Tells `come(list)` of increments or rows,
- * `end(job)`, `deleted()`, `connected(yes)`. Answers a function that gives the stream up.
+ * `place`: the address of the job, study or sweep. `after`: the last index received, or null. Calls `come(list)` with increments
+ * or rows, `end(job)`, `deleted()` and `connected(yes)`. Returns a function that ends the stream.
  */
 export function follow(place, after, { come, end, deleted, connected }) {
   let given = new AbortController();
   let isOver = false;
   let last = after;
   let wait = SOON;
-  /** The connection was given up for others, and not lost. */
+  /** The connection was released for other streams, and not lost. */
   let hasPassedOn = false;
 
   async function once() {

@@ -7,19 +7,19 @@ import { StructureTraces } from "./structure-traces.js";
 import { short } from "./words.js";
 
 const { plus, times, length, unit, dot } = vector;
-/** Classes of force that bars are coloured by, to each side of zero. */
+/** Classes of force by which bars are coloured, on each side of zero. */
 const CLASSES = 4;
 export const TENSION = ["#f0b7a8", "#e08770", "#cc5540", "#a62a1d"];
 export const COMPRESSION = ["#b3cdea", "#7fabdb", "#4a86c8", "#2560a8"];
-/** Forces below this part of the largest axial stiffness are zero but for rounding. */
+/** Forces below this part of the largest axial stiffness count as zero. */
 const ROUNDING = 1e-12;
-/** Arrows and cones, as a part of the structure's extent. */
+/** Length of arrows and cones, relative to the extent of the structure. */
 const ARROW = 0.22;
 const CONE = 0.16;
 const SLIP = 0.12;
-/** Contacts up to which each has its cone. */
+/** With at most this many contacts each has its cone. */
 const CONES = 60;
-/** Corners of what is drawn for a circle. */
+/** Corners of the polygon that represents a circle. */
 const ROUND = 48;
 /** Half the side of the piece of a plane that is drawn in space, as a part of the extent. */
 const SHEET = 0.62;
@@ -58,7 +58,7 @@ class Drawing {
       const ends = item.nodes.map((name) => now.get(name));
       const before = item.nodes.map((name) => model.nodes[name]);
       if (ends.includes(undefined)) {
-        // Where it is now is not recorded.
+        // Its current position is not recorded.
         traces.lines("undeformed", before.length > 1 ? [before] : [], { color: fromSheet("--faint"), width: 1.5, dash: "dot" });
         continue;
       }

@@ -1,4 +1,4 @@
-// What the picture of a structure holds: the undeformed structure, obstacles that are not much larger, and every place shown
+// The extent of the picture of a structure: the undeformed structure, obstacles that are not much larger, and all positions shown
 // so far, so that the picture does not jump from increment to increment.
 
 import { vector } from "./geometry.js";
@@ -30,7 +30,7 @@ export class StructureExtent {
     }
   }
 
-  /** Of the box around all of it. */
+  /** The size of the bounding box. */
   get corners() {
     const both = (corner, low, axis) => [[...corner, low], [...corner, this.high[axis]]];
     return this.low.reduce((found, low, axis) => found.flatMap((corner) => both(corner, low, axis)), [[]]);

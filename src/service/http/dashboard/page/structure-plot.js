@@ -11,11 +11,11 @@ import { kindWords, short } from "./words.js";
 
 /** Milliseconds between increments that are played. */
 const PACE = 60;
-/** Increments that are played of a path, however long. */
+/** The most increments of a path that are played. */
 const PLAYED = 300;
 /** The half of the picture's side in a plane, as a part of the structure's extent. */
 const HALF = 0.62;
-/** What is left around a structure in space, for arrows and cones, and around pieces of planes. */
+/** Margins around a structure in space, for arrows and cones, and around pieces of planes. */
 const AROUND = 0.12;
 const EDGE = 0.02;
 
@@ -98,7 +98,7 @@ export class StructurePlot {
     if (this.asked) return;
     this.asked = true;
     try {
-      // While one is fetched others may be wanted: the last of them is drawn.
+      // While an increment is fetched others may be chosen: the last of them is drawn.
       while (this.shown?.index !== this.wanted || this.isStale) {
         const found = await path.increment(this.wanted);
         if (path !== this.path) break;
@@ -118,11 +118,11 @@ export class StructurePlot {
     } finally {
       this.asked = false;
     }
-    // Another path has been asked for meanwhile.
+    // Another path has been chosen meanwhile.
     if (path !== this.path && this.path) await this.choose(this.at);
   }
 
-  /** In the page's colours as they are now. */
+  /** Draws again with the current colours of the page. */
   repaint() {
     if (this.path) this.controls();
     this.again();
@@ -193,7 +193,7 @@ export class StructurePlot {
   }
 }
 
-/** A structure before its first increment. */
+/** The structure before the first increment. */
 function atRest(model) {
   const still = Object.keys(model.nodes).map((name) => [name, Array(model.dimension).fill(0)]);
   return {
@@ -202,7 +202,7 @@ function atRest(model) {
   };
 }
 
-/** What a request has left out of its increments is not drawn, and that is said. */
+/** A notice about the parts of the structure that are not recorded, and so not drawn. */
 function leftOut(model, shown) {
   const all = Object.keys(model.nodes).length;
   const nodes = Object.keys(shown.displacements).length;
@@ -211,7 +211,7 @@ function leftOut(model, shown) {
 
 const classes = (colours) => `background:linear-gradient(to right, ${colours.join(", ")})`;
 
-/** What load factor each stage came to so far. */
+/** The load factor that each stage has reached so far. */
 function reached(path) {
   const stages = path.columns.get("stage");
   const loads = path.columns.get("load_factor");

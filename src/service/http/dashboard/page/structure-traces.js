@@ -1,13 +1,13 @@
-// Plotly traces of a picture of a structure: what is drawn alike is one of them.
+// The Plotly traces of the picture of a structure, one for all parts with the same style.
 
 import { fromSheet } from "./plot-style.js";
 import { short, verbatim } from "./words.js";
 
-/** Nodes from which on they are drawn small. */
+/** From this number on nodes are drawn small. */
 const MANY = 200;
 
 export class StructureTraces {
-  /** `flat` takes a place to the plane of the picture. */
+  /** `flat` projects a position onto the picture. */
   constructor(flat) {
     this.flat = flat;
     this.all = [];

@@ -1,11 +1,11 @@
-// From where a structure in space is seen: turned by dragging over its picture, or by two sliders.
+// The viewing angles of a structure in space, changed by dragging or by two sliders.
 
 import { element, fill } from "./dom.js";
 
 const ANGLES = { azimuth: 180, elevation: 90 };
-/** Azimuth and elevation where none are asked for. */
+/** The default azimuth and elevation. */
 const USUAL = [-60, 25];
-/** Degrees that dragging over a pixel turns. */
+/** Degrees per pixel of dragging. */
 const TURN = 0.5;
 
 const seenFrom = (turn) => {
@@ -25,7 +25,7 @@ export class StructureTurn {
     this.byDragging();
   }
 
-  /** Whether there is anything to be turned. */
+  /** Whether the structure can be turned. */
   allow(isInSpace) {
     this.isInSpace = isInSpace;
     this.place.classList.toggle("turns", isInSpace);

@@ -1,4 +1,4 @@
-// A list of jobs or of studies, newest first, a page at a time; read again while something of it goes on.
+// A list of jobs, studies or sweeps, newest first, page by page; it is read again while one of them has not ended.
 
 import { get } from "./api.js";
 import { button, element, fill } from "./dom.js";
@@ -6,11 +6,11 @@ import { state } from "./state.js";
 import { isGoingOn } from "./words.js";
 
 const PAGE = 40;
-/** As many as the service answers at once. */
+/** The most entries of a page of the service. */
 const LARGEST_PAGE = 200;
 /** Milliseconds between readings. */
 const AGAIN = 3000;
-/** So many times as seldom where nothing goes on. */
+/** Factor of this interval if all have ended. */
 const QUIET = 4;
 
 export class TaskList {
@@ -27,14 +27,14 @@ export class TaskList {
     setInterval(() => {
       const isBusy = this.problem || this.tasks?.some(isGoingOn);
       rests = isBusy ? 0 : rests + 1;
-      // What others queue appears, too, if later.
+      // Jobs that others queue appear, too, but later.
       if (!document.hidden && (isBusy || rests % QUIET === 0)) this.load();
     }, AGAIN);
   }
 
   async load(cursor = null) {
     const { status } = state();
-    // Older ones that have been asked for are read again with the others.
+    // Older ones that have been requested are read again with the others.
     const wanted = cursor ? PAGE : Math.max(PAGE, this.tasks?.length ?? 0);
     const found = [];
     let from = cursor;

@@ -1,9 +1,9 @@
-// Asks for the token where the service takes nobody without one.
+// Asks for the token if the service requires one.
 
 import { keepToken, onTokenAsked } from "./api.js";
 import { button, element, fill } from "./dom.js";
 
-/** What a header can hold. */
+/** The characters that a header may have. */
 const WRITTEN = /^[!-~]+$/;
 
 export function tokenPrompt(place) {

@@ -1,4 +1,4 @@
-// What the service says in symbols, in sentences.
+// Texts for the symbols of the interface.
 
 const STOPPED = {
   stages_completed: "Every stage reached its end.",
@@ -19,16 +19,16 @@ const KINDS = {
   smooth_bifurcation: "bifurcation point", contact_change: "contact change", bifurcation: "bifurcation point", end: "end",
 };
 
-/** What a job, a study or a sweep is called. */
+/** The name of a job, a study or a sweep. */
 export const nameOf = ({ name }) => name || "(no name)";
-/** A text of a user's where Plotly would read markup and templates in it. */
+/** A text of a user, escaped so that Plotly reads no markup or templates in it. */
 export const verbatim = (text) => String(text).replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;")
   .replaceAll("%{", "%\u200b{");
-/** A name of the interface as words. */
+/** A name of the interface as plain words. */
 export const plainWords = (name) => String(name).replaceAll("_", " ");
 export const statusWords = (status) => STATUS[status] ?? status;
 export const kindWords = (kind) => KINDS[kind] ?? plainWords(kind);
-/** A named point: what it is, and whether the path could go another way there. */
+/** The description of a named point: its kind, and whether it is a bifurcation. */
 export const pointWords = ({ kind, bifurcation }) =>
   `${kindWords(kind)}${bifurcation && !kind.includes("bifurcation") ? " and bifurcation" : ""}`;
 export const isGoingOn = (job) => job.status === "queued" || job.status === "running";
@@ -42,7 +42,7 @@ export function stopSentence(job) {
 
 export const leftOutSentence = ({ what, why }) => `${what}, because ${why}.`;
 
-/** Settings as they are, the defaults said as such. */
+/** The settings, with the defaults marked. */
 export function settingsSentences(request, plan, defaults) {
   const given = request.analysis ?? {};
   const of = (from, otherwise, name) => {
@@ -63,7 +63,7 @@ export function settingsSentences(request, plan, defaults) {
   ].filter(Boolean);
 }
 
-/** Of each request, in words, what is not the same in all of them: what tells paths apart that are drawn together. */
+/** For each request, the settings in which the requests differ, as text. */
 export function differences(requests) {
   const settings = requests.map(({ model, analysis = {} }) => ({
     friction: [...new Set((model.contacts ?? []).map(({ friction }) => friction))].join(" and ") || "none",
