@@ -6,7 +6,7 @@ use crate::command::output::outcome::{Failure, Outcome};
 use crate::model::request::Method;
 use crate::model::{StudyRequest, decode};
 use crate::resources::cancel::CancelFlag;
-use crate::studies::error_against_time::{self, Run};
+use crate::studies::error_against_time::{self, StudyRun};
 use std::ops::ControlFlow;
 use std::process::ExitCode;
 
@@ -61,7 +61,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let plan = error_against_time::plan(&request).map_err(input::refused)?;
     let progress = findings::progress_bar(plan.runs);
     progress.tick();
-    let accept = &mut |run: &Run| {
+    let accept = &mut |run: &StudyRun| {
         progress.set_position(run.index + 1);
         ControlFlow::Continue(())
     };

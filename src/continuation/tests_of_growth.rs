@@ -7,12 +7,12 @@
 use crate::continuation::path::iterator::Path;
 use crate::continuation::scene::{AdditionalParts, Scene};
 use crate::mechanics::contact::kinematics::{CoupledKinematics, Kinematics};
-use crate::mechanics::contact::obstacle::Obstacle;
+use crate::mechanics::contact::obstacle::RigidSurface;
 use crate::mechanics::contact::vector::Vector;
-use crate::mechanics::contact::{Contact, Sliding};
+use crate::mechanics::contact::{ContactPair, Sliding};
 use crate::mechanics::problem::state::State;
 use crate::mechanics::structure::Structure;
-use crate::mechanics::structure::elements::Element;
+use crate::mechanics::structure::elements::FiniteElement;
 use crate::model::request::JobRequest;
 use crate::resources::cancel::CancelFlag;
 use crate::result::increment::{Increment, PointKind, Status};
@@ -70,7 +70,7 @@ impl Lever {
     }
 }
 
-impl Element for Lever {
+impl FiniteElement for Lever {
     fn nodes(&self) -> &[usize] {
         &self.nodes
     }
@@ -110,13 +110,13 @@ impl Element for Lever {
         for which in 0..2 {
             let (stretch, arm, _) = self.end(which, q);
             let (at, k, swept) = (3 * (which + 1), self.stiffness, turned(arm));
-            for c in 0..2 {
+            for (c, swept) in swept.into_iter().enumerate() {
                 for (row, column, sign) in [(at, at, 1.0), (0, 0, 1.0), (at, 0, -1.0), (0, at, -1.0)] {
                     add(row + c, column + c, sign * k);
                 }
                 for (row, sign) in [(at + c, -1.0), (c, 1.0)] {
-                    add(row, 2, sign * k * swept[c]);
-                    add(2, row, sign * k * swept[c]);
+                    add(row, 2, sign * k * swept);
+                    add(2, row, sign * k * swept);
                 }
             }
             add(2, 2, k * dot(swept, swept) + k * dot(stretch, arm));
@@ -270,10 +270,10 @@ fn request(method: &str, extra: usize) -> JobRequest {
 fn scene(method: &str, extra: usize) -> Scene {
     let lever = Lever { nodes: [0, 1, 2], arms: ARMS, stiffness: LEVER, bending: BENDING };
     let kinematics = NodeOnRail { nodes: [2, 3, 4], places: RAIL };
-    let contact = Contact {
+    let contact = ContactPair {
         initial_gap: kinematics.rail(&[0.0; 6]).across,
         kinematics: Kinematics::Coupled(Arc::new(kinematics)),
-        obstacle: Obstacle::Plane { normal: [0.0, 1.0, 0.0] },
+        obstacle: RigidSurface::Plane { normal: [0.0, 1.0, 0.0] },
         friction: FRICTION,
         sliding: Sliding::Line { across: [0.0, 0.0, 1.0] },
     };

@@ -3,7 +3,7 @@
 use crate::model::input::error::{InputError, InputErrors};
 use crate::model::input::limits::{MAX_NAME_BYTES, MAX_SWEEP_RUNS};
 use crate::model::request::JobRequest;
-use crate::model::request::sweep::{Combine, Parameter, Variation};
+use crate::model::request::sweep::{Combine, SweepParameter, Variation};
 use crate::model::template::{Template, item};
 use crate::model::{check, decode};
 use serde_json::Value;
@@ -45,7 +45,7 @@ impl Sweep {
             if let Err(detail) = can_hold(&base, &pointer) {
                 mistakes.push(InputError::new(place_of(&pointer), detail));
             }
-            parameters.push(Parameter { pointer, values: values.cloned().unwrap_or_default() });
+            parameters.push(SweepParameter { pointer, values: values.cloned().unwrap_or_default() });
         }
         mistakes.extend(within_another(&parameters));
         let runs = match count(form.combine, &parameters) {
@@ -98,7 +98,7 @@ impl Sweep {
     pub fn located(&self, run: u64, errors: InputErrors) -> InputErrors {
         let (parameters, choices) = (&self.variation.parameters, self.variation.choices(run));
         let located = errors.0.into_iter().map(|error| {
-            let about = |parameter: &&Parameter| {
+            let about = |parameter: &&SweepParameter| {
                 is_within(&error.pointer, &parameter.pointer) || is_within(&parameter.pointer, &error.pointer)
             };
             // A mistake of a whole object may be due to any of its values.
@@ -126,7 +126,7 @@ fn is_within(pointer: &str, other: &str) -> bool {
     pointer.strip_prefix(other).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
 }
 
-fn within_another(parameters: &[Parameter]) -> Option<InputError> {
+fn within_another(parameters: &[SweepParameter]) -> Option<InputError> {
     parameters.iter().enumerate().find_map(|(place, one)| {
         let others = parameters.iter().enumerate().filter(|(other, _)| *other != place);
         let outer = others.map(|(_, other)| other).find(|other| is_within(&one.pointer, &other.pointer))?;
@@ -135,7 +135,7 @@ fn within_another(parameters: &[Parameter]) -> Option<InputError> {
     })
 }
 
-fn count(combine: Combine, parameters: &[Parameter]) -> Result<u64, InputError> {
+fn count(combine: Combine, parameters: &[SweepParameter]) -> Result<u64, InputError> {
     if let Some(empty) = parameters.iter().find(|parameter| parameter.values.is_empty()) {
         return Err(InputError::new(place_of(&empty.pointer), "there is no value; at least one is expected"));
     }

@@ -11,7 +11,7 @@ fn request(study: Value) -> Value {
     request
 }
 
-fn read(request: &Value) -> Result<error_against_time::Plan, InputErrors> {
+fn read(request: &Value) -> Result<error_against_time::StudyPlan, InputErrors> {
     error_against_time::plan(&decode::study(request.to_string().as_bytes())?)
 }
 

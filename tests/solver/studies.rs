@@ -5,7 +5,7 @@ use arcslip::model::request::Method;
 use arcslip::model::request::study::{ReferenceChoice, Study, StudyRequest};
 use arcslip::resources::cancel::CancelFlag;
 use arcslip::result::stop_reason::StopReason;
-use arcslip::studies::error_against_time::{self, ReferenceKind, Report, Run, StudyRow};
+use arcslip::studies::error_against_time::{self, ReferenceKind, StudyReport, StudyRow, StudyRun};
 use std::ops::ControlFlow;
 
 fn request(name: &str, study: Study) -> StudyRequest {
@@ -17,7 +17,7 @@ fn over(arc_lengths: &[f64], methods: &[Method]) -> Study {
     Study { arc_lengths: Some(arc_lengths.to_vec()), methods: Some(methods.to_vec()), repeats: 1, ..Study::default() }
 }
 
-fn run(request: &StudyRequest) -> Report {
+fn run(request: &StudyRequest) -> StudyReport {
     let report =
         error_against_time::run(request, Vec::new(), &CancelFlag::default(), &mut |_| ControlFlow::Continue(()));
     let report = report.unwrap_or_else(|errors| panic!("{errors}")).expect("a report");
@@ -25,11 +25,11 @@ fn run(request: &StudyRequest) -> Report {
     report
 }
 
-fn rows(report: &Report, method: Method) -> Vec<&StudyRow> {
+fn rows(report: &StudyReport, method: Method) -> Vec<&StudyRow> {
     report.rows.iter().filter(|row| row.method == method).collect()
 }
 
-fn order(report: &Report, method: Method) -> Option<f64> {
+fn order(report: &StudyReport, method: Method) -> Option<f64> {
     report.orders.iter().find(|order| order.method == method).expect("the method's order").order
 }
 
@@ -125,8 +125,8 @@ fn scenes_with_exact_paths_lie_on_them() {
 #[test]
 fn a_study_that_was_broken_off_goes_on_to_the_same_rows() {
     let request = request("klarbring", Study { repeats: 2, ..over(&[0.2, 0.1], &[Method::Auto, Method::Regularised]) });
-    let mut runs: Vec<Run> = Vec::new();
-    let until = |bound: usize, runs: &mut Vec<Run>| {
+    let mut runs: Vec<StudyRun> = Vec::new();
+    let until = |bound: usize, runs: &mut Vec<StudyRun>| {
         let done = runs.clone();
         error_against_time::run(&request, done, &CancelFlag::default(), &mut |run| {
             runs.push(run.clone());
@@ -141,7 +141,7 @@ fn a_study_that_was_broken_off_goes_on_to_the_same_rows() {
     assert!(runs.iter().enumerate().all(|(index, run)| run.index == index as u64));
     assert!(report.complete && report.rows.iter().all(|row| row.time.expect("a time").repeats == 2));
     let whole = run(&request);
-    let timeless = |report: &Report| -> Vec<StudyRow> {
+    let timeless = |report: &StudyReport| -> Vec<StudyRow> {
         report.rows.iter().map(|row| StudyRow { time: None, ..row.clone() }).collect()
     };
     assert_eq!(timeless(&report), timeless(&whole));
@@ -177,5 +177,5 @@ fn tables_have_a_line_a_row() {
     let text = error_against_time::table::text(&report).expect("text");
     assert!(text.contains("exact solution, Klarbring's node"));
     let json = serde_json::to_string(&report).expect("JSON");
-    assert_eq!(serde_json::from_str::<Report>(&json).expect("the same"), report);
+    assert_eq!(serde_json::from_str::<StudyReport>(&json).expect("the same"), report);
 }

@@ -75,7 +75,7 @@ pub const LIMITS: [Limit; 8] = [
         what: "type names that the solver defines more than once",
         measure: |measures| measures.repeated_types.len(),
         aim: 0,
-        at_most: 11,
+        at_most: 0,
         why: "A name stands for one concept, so that a reader can look it up.",
     },
     Limit {

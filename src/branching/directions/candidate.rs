@@ -2,7 +2,7 @@
 
 use crate::algebra::null_space;
 use crate::mechanics::contact::vector::{Vector, add, size};
-use crate::mechanics::contact::{Contact, Mode};
+use crate::mechanics::contact::{ContactPair, Mode};
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::scaled_rows::RANK;
 use crate::mechanics::multi_contact::contact_status::Standing;
@@ -59,7 +59,7 @@ pub(crate) const SAME: f64 = 1e-7;
 
 /// The modes in which every contact that can change is held.
 pub(crate) fn held_modes(loading: Loading<'_>, standings: &[Standing]) -> Vec<Mode> {
-    let held = |(standing, contact): (&Standing, &Contact)| match standing {
+    let held = |(standing, contact): (&Standing, &ContactPair)| match standing {
         Standing::Settled(mode) => *mode,
         Standing::OnCone { .. } | Standing::Cornered { .. } => Mode::Stick,
         Standing::Touching if contact.tangents() > 0 => Mode::Stick,

@@ -11,7 +11,7 @@
 use crate::continuation::path_state::progress::Progress;
 use crate::continuation::scene::Scene;
 use crate::continuation::scene::recorded_rows::{REACH, fastest};
-use crate::mechanics::contact::Contact;
+use crate::mechanics::contact::ContactPair;
 use crate::mechanics::problem::loading::{LoadPattern, Loading};
 use crate::mechanics::problem::node_forces::Corner;
 use std::cmp::Ordering;
@@ -23,7 +23,7 @@ const ROUNDING: f64 = 1e-9;
 /// The contacts in reach, with the loading as it concerns them.
 #[derive(Debug, Clone)]
 pub(crate) struct Near {
-    contacts: Vec<Contact>,
+    contacts: Vec<ContactPair>,
     corners: Vec<Corner>,
     pattern: LoadPattern,
     held: LoadPattern,

@@ -109,8 +109,8 @@ fn times(matrix: &Matrix, values: &Vector) -> Vector {
 #[cfg(test)]
 mod tests {
     use super::{Frame, Penalties, PenaltyResponse, dot, respond};
-    use crate::mechanics::contact::obstacle::Obstacle;
-    use crate::mechanics::contact::{Contact, Sliding};
+    use crate::mechanics::contact::obstacle::RigidSurface;
+    use crate::mechanics::contact::{ContactPair, Sliding};
     use crate::result::increment::Status;
 
     const PENALTIES: Penalties = Penalties { normal: 300.0, tangential: 70.0 };
@@ -119,11 +119,11 @@ mod tests {
     fn frame(place: &[f64; 3], ball: bool) -> Frame {
         let (obstacle, initial_gap, relative) = if ball {
             let offset = [0.0, 0.0, 2.0];
-            (Obstacle::Ball { offset, side: 1.0 }, 0.0, [place[0], place[1], place[2] - 2.0])
+            (RigidSurface::Ball { offset, side: 1.0 }, 0.0, [place[0], place[1], place[2] - 2.0])
         } else {
-            (Obstacle::Plane { normal: [0.0, 0.0, 1.0] }, 0.0, *place)
+            (RigidSurface::Plane { normal: [0.0, 0.0, 1.0] }, 0.0, *place)
         };
-        Contact {
+        ContactPair {
             kinematics: crate::mechanics::contact::kinematics::Kinematics::Node(0),
             obstacle,
             initial_gap,

@@ -2,14 +2,14 @@
 
 use crate::continuation::scene::{Reported, StageLoad};
 use crate::mechanics::contact::kinematics::Kinematics;
-use crate::mechanics::contact::obstacle::Obstacle;
+use crate::mechanics::contact::obstacle::RigidSurface;
 use crate::mechanics::contact::vector::{Vector, size};
-use crate::mechanics::contact::{Contact, Sliding};
+use crate::mechanics::contact::{ContactPair, Sliding};
 use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::loading::LoadPattern;
 use crate::mechanics::problem::node_forces::Corner;
 use crate::mechanics::structure::Structure;
-use crate::mechanics::structure::elements::Element;
+use crate::mechanics::structure::elements::FiniteElement;
 use crate::mechanics::structure::elements::bar::Bar;
 use crate::mechanics::structure::elements::spring::Spring;
 use crate::model::input::limits::PENETRATION_TOLERANCE;
@@ -41,7 +41,7 @@ pub(super) fn build_structure(
     let elements = model
         .elements
         .iter()
-        .map(|element| -> Arc<dyn Element> {
+        .map(|element| -> Arc<dyn FiniteElement> {
             match element {
                 request::Element::Bar { nodes, axial_stiffness, rest_length, prestress, strain } => {
                     let nodes = [numbers[nodes[0].as_str()], numbers[nodes[1].as_str()]];
@@ -81,7 +81,7 @@ pub(super) fn build_structure(
 
 /// The contacts that are solved for, and those of the request.
 pub(super) struct Contacts {
-    pub contacts: Vec<Contact>,
+    pub contacts: Vec<ContactPair>,
     pub contact_names: Vec<(Arc<str>, Arc<str>)>,
     pub reported: Vec<Reported>,
     pub corners: Vec<Corner>,
@@ -97,7 +97,7 @@ pub(super) fn build_contacts(
     structure: &Structure,
     left_out: &mut Vec<LeftOut>,
 ) -> Contacts {
-    let mut contacts: Vec<Contact> = Vec::new();
+    let mut contacts: Vec<ContactPair> = Vec::new();
     let mut contact_names: Vec<(Arc<str>, Arc<str>)> = Vec::new();
     let mut reported: Vec<Reported> = Vec::new();
     // Which contacts of the request each one stands for.
@@ -189,12 +189,13 @@ fn ordered(value: f64) -> u64 {
 }
 
 /// Whether two contacts are one: the same node before the same surface.
-fn coincide(first: &Contact, second: &Contact) -> bool {
+fn coincide(first: &ContactPair, second: &ContactPair) -> bool {
     let near = |a: &Vector, b: &Vector| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= COINCIDENT);
     let surfaces = match (&first.obstacle, &second.obstacle) {
-        (Obstacle::Plane { normal: a }, Obstacle::Plane { normal: b }) => near(a, b),
-        (Obstacle::Ball { offset: a, side: x }, Obstacle::Ball { offset: b, side: y }) => near(a, b) && x == y,
-        (Obstacle::Plane { .. }, Obstacle::Ball { .. }) | (Obstacle::Ball { .. }, Obstacle::Plane { .. }) => false,
+        (RigidSurface::Plane { normal: a }, RigidSurface::Plane { normal: b }) => near(a, b),
+        (RigidSurface::Ball { offset: a, side: x }, RigidSurface::Ball { offset: b, side: y }) => near(a, b) && x == y,
+        (RigidSurface::Plane { .. }, RigidSurface::Ball { .. })
+        | (RigidSurface::Ball { .. }, RigidSurface::Plane { .. }) => false,
     };
     first.kinematics.node() == second.kinematics.node()
         && surfaces
@@ -207,7 +208,7 @@ fn build_contact(
     node: usize,
     length: f64,
     structure: &Structure,
-) -> Contact {
+) -> ContactPair {
     let dimension = model.dimension;
     let place = &model.nodes[&contact.node];
     // What is within the round-off of the coordinates is contact.
@@ -225,7 +226,7 @@ fn build_contact(
                 Side::Inside => -1.0,
             };
             let gap = side * (size(&offset) * length - radius);
-            (Obstacle::Ball { offset, side }, snapped(gap, reach(center).max(*radius)))
+            (RigidSurface::Ball { offset, side }, snapped(gap, reach(center).max(*radius)))
         }
         request::Obstacle::Plane { point, normal } => {
             let largest = normal.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
@@ -233,12 +234,12 @@ fn build_contact(
             let mut unit = [0.0; 3];
             normal.iter().enumerate().for_each(|(k, value)| unit[k] = value / size);
             let gap: f64 = (0..dimension).map(|k| (place[k] - point[k]) * unit[k]).sum();
-            (Obstacle::Plane { normal: unit }, snapped(gap, reach(point)))
+            (RigidSurface::Plane { normal: unit }, snapped(gap, reach(point)))
         }
     };
     let sliding = sliding(structure, node);
     let friction = if sliding.directions() == 0 { 0.0 } else { contact.friction };
-    Contact { kinematics: Kinematics::Node(node), obstacle, initial_gap, friction, sliding }
+    ContactPair { kinematics: Kinematics::Node(node), obstacle, initial_gap, friction, sliding }
 }
 
 /// In which directions a node can slide, by its supports.

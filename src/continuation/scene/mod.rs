@@ -16,12 +16,12 @@ pub(crate) mod plan;
 pub(crate) mod recorded_rows;
 pub(crate) mod scales;
 
-use crate::mechanics::contact::Contact;
+use crate::mechanics::contact::ContactPair;
 use crate::mechanics::equations::stage_criteria::End;
 use crate::mechanics::problem::loading::LoadPattern;
 use crate::mechanics::problem::node_forces::Corner;
 use crate::mechanics::structure::Structure;
-use crate::mechanics::structure::elements::Element;
+use crate::mechanics::structure::elements::FiniteElement;
 use crate::model::request::{Analysis, JobRequest};
 use crate::model::{InputError, InputErrors};
 use crate::resources::budget::{self, Breach, Budget, Taken};
@@ -37,7 +37,7 @@ use std::sync::Arc;
 pub struct Scene {
     pub(crate) structure: Structure,
     /// Contacts that are solved for; coincident ones of a node are one of them.
-    pub(crate) contacts: Vec<Contact>,
+    pub(crate) contacts: Vec<ContactPair>,
     /// Names of their nodes and obstacles.
     pub(crate) contact_names: Vec<(Arc<str>, Arc<str>)>,
     /// The contacts of the request, in its order.
@@ -58,9 +58,9 @@ pub struct Scene {
 /// Elements and contacts that a request has no words for, dimensionless by the scales of the request's own.
 #[derive(Debug, Default)]
 pub(crate) struct AdditionalParts {
-    pub elements: Vec<Arc<dyn Element>>,
+    pub elements: Vec<Arc<dyn FiniteElement>>,
     /// Each with the names of its node and its obstacle.
-    pub contacts: Vec<(&'static str, &'static str, Contact)>,
+    pub contacts: Vec<(&'static str, &'static str, ContactPair)>,
 }
 
 /// A contact of the request and its part of the one that is solved for.

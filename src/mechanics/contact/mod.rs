@@ -15,15 +15,15 @@ pub mod vector;
 
 pub use frame::{Frame, Sliding, tangents_in_space};
 use kinematics::Kinematics;
-use obstacle::Obstacle;
+use obstacle::RigidSurface;
 use serde::{Deserialize, Serialize};
 use vector::{Vector, size};
 
 /// One node, or what several nodes move, against one obstacle.
 #[derive(Debug, Clone)]
-pub struct Contact {
+pub struct ContactPair {
     pub kinematics: Kinematics,
-    pub obstacle: Obstacle,
+    pub obstacle: RigidSurface,
     /// Gap of the undeformed structure; kept apart so that a place far from the origin costs no digits.
     pub initial_gap: f64,
     /// Coulomb's coefficient; 0 where friction can do nothing.
@@ -108,7 +108,7 @@ impl Reaction {
     }
 }
 
-impl Contact {
+impl ContactPair {
     /// Signed distance from the obstacle, positive on the free side; `relative` is how far the contact has moved, less its
     /// obstacle's displacement, in the obstacle's axes.
     #[inline(always)]

@@ -4,7 +4,7 @@ use crate::mechanics::contact::vector::{Vector, add, dot, size, unit};
 
 /// A rigid obstacle as one contact sees it.
 #[derive(Debug, Clone)]
-pub enum Obstacle {
+pub enum RigidSurface {
     /// A half-space with unit `normal` into the free side.
     Plane { normal: Vector },
     /// A circle or sphere.
@@ -16,7 +16,7 @@ pub enum Obstacle {
     },
 }
 
-impl Obstacle {
+impl RigidSurface {
     /// Change of the distance from the undeformed place, unit normal into the free side, and curvature `κ`: the normal
     /// turns by `dn = κ (dx - n (n·dx))`.
     ///

@@ -333,6 +333,7 @@ mod tests {
     use super::*;
     use crate::continuation::scene::Scene;
     use crate::mechanics::equations::closing_equation::PrescribedValue;
+    use crate::step::corrector::newton;
 
     /// A node on a spring that sticks to the top of a ball. A guess has it slid off, with its force along and across the
     /// normal there.
@@ -361,7 +362,7 @@ mod tests {
         (guess.load, guess.displacement[0]) = (1.0, 1e-3);
         let force = scaled(&[loading.pattern.forces[0], loading.pattern.forces[1], 0.0], -1.0);
         guess.reactions[0] = Reaction::of(&force, &loading.frame(0, &guess).normal);
-        let found = system.correct(guess, &PrescribedValue::Load(1.0), 1.0).expect("a point").state;
+        let found = newton::correct(&system, guess, &PrescribedValue::Load(1.0), 1.0).expect("a point").state;
         let normal = loading.frame(0, &found).normal;
         let whole = add(&found.reactions[0].tangential, found.reactions[0].normal, &normal);
         assert_eq!(found.displacement, anchor.displacement);

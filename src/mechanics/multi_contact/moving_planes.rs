@@ -14,7 +14,7 @@
 //! Where it sticks to one of them while it is carried, equilibrium does not tell the reactions apart, and they are those
 //! of least norm, as in other corners.
 
-use crate::mechanics::contact::obstacle::Obstacle;
+use crate::mechanics::contact::obstacle::RigidSurface;
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled, size, unit};
 use crate::mechanics::contact::{Frame, Mode, Reaction};
 use crate::mechanics::multi_contact::reaction_split;
@@ -43,7 +43,7 @@ impl Carried {
     pub fn of(loading: Loading<'_>, contacts: &[usize], state: &State) -> Option<Self> {
         let contacts = <[usize; 2]>::try_from(contacts).ok()?;
         let shifts = contacts.map(|contact| loading.pattern.shifts[contact]);
-        let is_plane = |contact: &usize| matches!(loading.contacts[*contact].obstacle, Obstacle::Plane { .. });
+        let is_plane = |contact: &usize| matches!(loading.contacts[*contact].obstacle, RigidSurface::Plane { .. });
         let is_free = |contact: &usize| loading.contacts[*contact].sliding.directions() == 1;
         let is_rough = contacts.iter().any(|contact| loading.contacts[*contact].tangents() > 0);
         let here = loading.structure.dimension == 2 && shifts[0] != shifts[1] && is_rough;

@@ -1,6 +1,6 @@
 //! The motion of a contact by the degrees of freedom of the structure, and its forces on them.
 
-use crate::mechanics::contact::Contact;
+use crate::mechanics::contact::ContactPair;
 use crate::mechanics::contact::kinematics::{CoupledKinematics, Kinematics};
 use crate::mechanics::contact::vector::{Vector, add, dot};
 use crate::mechanics::structure::Structure;
@@ -24,7 +24,7 @@ fn gathered(
 
 /// `m(u)`: how far a contact has moved, in the axes of its obstacle.
 #[inline(always)]
-pub fn moved(structure: &Structure, contact: &Contact, displacement: &[f64]) -> Vector {
+pub fn moved(structure: &Structure, contact: &ContactPair, displacement: &[f64]) -> Vector {
     match &contact.kinematics {
         Kinematics::Node(node) => structure.translation_at(*node, displacement),
         Kinematics::Coupled(coupled) => coupled.place(&gathered(structure, coupled.as_ref(), displacement).1),
@@ -33,7 +33,7 @@ pub fn moved(structure: &Structure, contact: &Contact, displacement: &[f64]) -> 
 
 /// `B(u) u̇`: how fast it moves.
 #[inline(always)]
-pub fn velocity(structure: &Structure, contact: &Contact, displacement: &[f64], rate: &[f64]) -> Vector {
+pub fn velocity(structure: &Structure, contact: &ContactPair, displacement: &[f64], rate: &[f64]) -> Vector {
     match &contact.kinematics {
         Kinematics::Node(node) => structure.translation_at(*node, rate),
         Kinematics::Coupled(_) => {
@@ -48,7 +48,7 @@ pub fn velocity(structure: &Structure, contact: &Contact, displacement: &[f64], 
 #[inline(always)]
 pub fn each_column(
     structure: &Structure,
-    contact: &Contact,
+    contact: &ContactPair,
     displacement: &[f64],
     mut each: impl FnMut(usize, &Vector),
 ) {
@@ -69,7 +69,7 @@ pub fn each_column(
 #[inline(always)]
 pub fn add_force(
     structure: &Structure,
-    contact: &Contact,
+    contact: &ContactPair,
     displacement: &[f64],
     force: &Vector,
     factor: f64,
@@ -81,7 +81,7 @@ pub fn add_force(
 /// Calls `add(row, column, value)` with the entries of `∂(Bᵀ r)/∂u` at a constant force; none of a single node.
 pub fn each_curvature(
     structure: &Structure,
-    contact: &Contact,
+    contact: &ContactPair,
     displacement: &[f64],
     force: &Vector,
     mut add: impl FnMut(usize, usize, f64),

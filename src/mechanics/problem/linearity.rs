@@ -1,12 +1,12 @@
 //! Whether nothing bends the path: linear elements, planes, and slip along lines.
 
-use crate::mechanics::contact::obstacle::Obstacle;
-use crate::mechanics::contact::{Contact, Sliding};
+use crate::mechanics::contact::obstacle::RigidSurface;
+use crate::mechanics::contact::{ContactPair, Sliding};
 use crate::mechanics::problem::loading::Loading;
 
 /// Whether nothing about a contact bends a path of linear elements.
-pub(crate) fn is_straight(contact: &Contact) -> bool {
-    let plane = matches!(contact.obstacle, Obstacle::Plane { .. });
+pub(crate) fn is_straight(contact: &ContactPair) -> bool {
+    let plane = matches!(contact.obstacle, RigidSurface::Plane { .. });
     plane && (contact.friction == 0.0 || contact.sliding != Sliding::Plane)
 }
 

@@ -1,7 +1,7 @@
 //! The structure under a load pattern, with what earlier stages hold.
 
 use crate::mechanics::contact::vector::{Vector, add, scaled};
-use crate::mechanics::contact::{Contact, Frame, Reaction};
+use crate::mechanics::contact::{ContactPair, Frame, Reaction};
 use crate::mechanics::problem::contact_motion;
 use crate::mechanics::problem::node_forces::Corner;
 use crate::mechanics::problem::state::{Rate, State};
@@ -46,7 +46,7 @@ impl LoadPattern {
 #[derive(Clone, Copy)]
 pub struct Loading<'a> {
     pub structure: &'a Structure,
-    pub contacts: &'a [Contact],
+    pub contacts: &'a [ContactPair],
     /// Nodes with several contacts.
     pub corners: &'a [Corner],
     /// Multiplied by the load factor.

@@ -1,11 +1,11 @@
 //! From the degrees of freedom of the structure to those of an element, and back.
 
-use crate::mechanics::structure::elements::{Element, Stretching};
+use crate::mechanics::structure::elements::{FiniteElement, Stretching};
 
 /// An element and the degrees of freedom that it joins, in its own order.
 #[derive(Clone, Copy)]
 pub struct ElementAt<'a> {
-    pub element: &'a dyn Element,
+    pub element: &'a dyn FiniteElement,
     pub freedoms: &'a [usize],
 }
 

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Dimensionless throughout (`scene` divides by the scales). Knows nothing of contacts, loads or paths. Each kind of
-//! element is a file of its own behind [`elements::Element`]; [`numbering`] alone knows which degrees of freedom a node has.
+//! element is a file of its own behind [`elements::FiniteElement`]; [`numbering`] alone knows which degrees of freedom a node has.
 
 pub mod assembly;
 pub mod elements;
@@ -13,7 +13,7 @@ pub mod numbering;
 pub mod sparsity;
 
 use assembly::{ElementAt, ElementBuffer};
-use elements::{Element, Stretching};
+use elements::{FiniteElement, Stretching};
 use nalgebra::DMatrix;
 use numbering::Numbering;
 use sparsity::Layout;
@@ -39,7 +39,7 @@ pub struct Structure {
     pub unknown_of: Vec<Option<usize>>,
     /// The degree of freedom of each unknown.
     pub freedom_of: Vec<usize>,
-    elements: Vec<Arc<dyn Element>>,
+    elements: Vec<Arc<dyn FiniteElement>>,
     /// The degrees of freedom of each element, one after the other, and where those of each begin.
     element_freedoms: Vec<usize>,
     first_freedom: Vec<usize>,
@@ -54,7 +54,12 @@ pub struct Structure {
 impl Structure {
     /// A structure whose nodes have the rotations that their elements have. A support holds a degree of freedom of a node:
     /// its number among the node's.
-    pub fn new(dimension: usize, nodes: usize, supports: &[(usize, usize)], elements: Vec<Arc<dyn Element>>) -> Self {
+    pub fn new(
+        dimension: usize,
+        nodes: usize,
+        supports: &[(usize, usize)],
+        elements: Vec<Arc<dyn FiniteElement>>,
+    ) -> Self {
         Self::like(None, dimension, nodes, supports, elements)
     }
 
@@ -65,7 +70,7 @@ impl Structure {
         dimension: usize,
         nodes: usize,
         supports: &[(usize, usize)],
-        elements: Vec<Arc<dyn Element>>,
+        elements: Vec<Arc<dyn FiniteElement>>,
     ) -> Self {
         let mut rotations = vec![0; nodes];
         for element in &elements {
@@ -103,14 +108,14 @@ impl Structure {
     }
 
     /// The same nodes and supports, with more elements.
-    pub fn with_elements(&self, more: impl IntoIterator<Item = Arc<dyn Element>>) -> Self {
+    pub fn with_elements(&self, more: impl IntoIterator<Item = Arc<dyn FiniteElement>>) -> Self {
         let held = (0..self.freedoms()).filter(|freedom| self.unknown_of[*freedom].is_none());
         let supports: Vec<(usize, usize)> = held.map(|freedom| self.numbering.node_of(freedom)).collect();
         let elements = self.elements.iter().cloned().chain(more).collect();
         Self::new(self.dimension, self.numbering.nodes(), &supports, elements)
     }
 
-    fn set_elements(&mut self, elements: Vec<Arc<dyn Element>>) {
+    fn set_elements(&mut self, elements: Vec<Arc<dyn FiniteElement>>) {
         let mut first_at = vec![0; self.numbering.nodes() + 1];
         elements.iter().flat_map(|element| element.nodes()).for_each(|node| first_at[node + 1] += 1);
         (1..first_at.len()).for_each(|node| first_at[node] += first_at[node - 1]);

@@ -44,7 +44,7 @@ pub enum Combine {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[cfg_attr(feature = "server", schema(as = SweepParameter))]
-pub struct Parameter {
+pub struct SweepParameter {
     /// JSON pointer into the request.
     pub pointer: String,
     pub values: Vec<Value>,
@@ -55,7 +55,7 @@ pub struct Parameter {
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct Variation {
     /// In the order of the request.
-    pub parameters: Vec<Parameter>,
+    pub parameters: Vec<SweepParameter>,
     pub combine: Combine,
 }
 

@@ -88,13 +88,13 @@ fn bytes(value: &Value, room: usize) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::request::sweep::Parameter;
+    use crate::model::request::sweep::SweepParameter;
     use serde_json::json;
 
     fn variation(parameters: usize, values: Value) -> Variation {
         let values = values.as_array().cloned().unwrap_or_default();
         let parameter =
-            |place| Parameter { pointer: format!("/model/contacts/{place}/friction"), values: values.clone() };
+            |place| SweepParameter { pointer: format!("/model/contacts/{place}/friction"), values: values.clone() };
         Variation { parameters: (0..parameters).map(parameter).collect(), combine: Combine::List }
     }
 

@@ -92,19 +92,6 @@ pub(crate) fn correct_with(
     iteration.finish(serving)
 }
 
-#[cfg(test)]
-impl ModeSystem<'_> {
-    /// See [`correct`].
-    pub(crate) fn correct(
-        &self,
-        guess: State,
-        closing: &dyn ClosingEquation,
-        force_scale: f64,
-    ) -> Result<Corrected, Failure> {
-        correct(self, guess, closing, force_scale)
-    }
-}
-
 /// Newton's method under way.
 struct NewtonIteration<'a, 'b> {
     system: &'a ModeSystem<'b>,

@@ -71,7 +71,7 @@ fn kkt_holds(name: &str, forward: impl Fn(&Scene) -> Rate) {
 fn towards_the_load(scene: &Scene) -> Rate {
     let pattern = scene.stages[0].pattern.forces.clone();
     // A guess of slip, so that the start names the branch.
-    let pressed = |contact: &crate::mechanics::contact::Contact| crate::mechanics::contact::Reaction {
+    let pressed = |contact: &crate::mechanics::contact::ContactPair| crate::mechanics::contact::Reaction {
         normal: 0.4,
         tangential: [-0.4 * contact.friction, 0.0, 0.0],
     };

@@ -2,12 +2,12 @@
 
 use crate::complementarity::mpec::{Problem, SparseRows};
 use crate::mechanics::contact::kinematics::Kinematics;
-use crate::mechanics::contact::obstacle::Obstacle;
-use crate::mechanics::contact::{Contact, Reaction, Sliding, tangents_in_space};
+use crate::mechanics::contact::obstacle::RigidSurface;
+use crate::mechanics::contact::{ContactPair, Reaction, Sliding, tangents_in_space};
 use crate::mechanics::problem::loading::LoadPattern;
 use crate::mechanics::problem::state::dot;
 use crate::mechanics::structure::Structure;
-use crate::mechanics::structure::elements::Element;
+use crate::mechanics::structure::elements::FiniteElement;
 use crate::mechanics::structure::elements::bar::Bar;
 use crate::mechanics::structure::elements::spring::Spring;
 use crate::model::request::Strain;
@@ -37,7 +37,7 @@ pub(super) fn forces(forces: Vec<f64>, contacts: usize) -> LoadPattern {
 /// One bar from a pin to a tip near the floor `z >= 0`; the tip is pushed by `pattern`.
 struct OneBar {
     structure: Structure,
-    contacts: Vec<Contact>,
+    contacts: Vec<ContactPair>,
     pattern: LoadPattern,
     held: LoadPattern,
 }
@@ -55,10 +55,10 @@ impl OneBar {
             strain: Strain::Engineering,
         };
         let supports = [(0, 0), (0, 1), (0, 2)];
-        let floor = Obstacle::Plane { normal: [0.0, 0.0, 1.0] };
+        let floor = RigidSurface::Plane { normal: [0.0, 0.0, 1.0] };
         Self {
             structure: Structure::new(3, 2, &supports, vec![Arc::new(bar)]),
-            contacts: vec![Contact {
+            contacts: vec![ContactPair {
                 kinematics: Kinematics::Node(1),
                 obstacle: floor,
                 initial_gap: tip[2],
@@ -74,7 +74,8 @@ impl OneBar {
     fn with_spring(mut self, stiffness: f64) -> Self {
         let mut matrix = [[0.0; 3]; 3];
         (0..3).for_each(|k| matrix[k][k] = stiffness);
-        self.structure = self.structure.with_elements([Arc::new(Spring::to_ground(1, matrix)) as Arc<dyn Element>]);
+        self.structure =
+            self.structure.with_elements([Arc::new(Spring::to_ground(1, matrix)) as Arc<dyn FiniteElement>]);
         self
     }
 

@@ -3,11 +3,11 @@
 //! at the load `(m + 1) μ W`, all of them move along the pull.
 
 use crate::mechanics::contact::kinematics::Kinematics;
-use crate::mechanics::contact::obstacle::Obstacle;
-use crate::mechanics::contact::{Contact, Reaction, Sliding};
+use crate::mechanics::contact::obstacle::RigidSurface;
+use crate::mechanics::contact::{ContactPair, Reaction, Sliding};
 use crate::mechanics::problem::loading::LoadPattern;
 use crate::mechanics::structure::Structure;
-use crate::mechanics::structure::elements::Element;
+use crate::mechanics::structure::elements::FiniteElement;
 use crate::mechanics::structure::elements::spring::Spring;
 use crate::step::increment_mpec::tests_in_space::{forces, in_plane, on_floor};
 use crate::step::increment_mpec::*;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 struct Chain {
     structure: Structure,
-    contacts: Vec<Contact>,
+    contacts: Vec<ContactPair>,
     pattern: LoadPattern,
     held: LoadPattern,
     pull: [f64; 2],
@@ -31,10 +31,10 @@ impl Chain {
         let pull = [angle.cos(), angle.sin()];
         let mut matrix = [[0.0; 3]; 3];
         (0..3).for_each(|k| matrix[k][k] = stiffness);
-        let tie = |block: usize| -> Arc<dyn Element> { Arc::new(Spring::between([block, block + 1], matrix)) };
+        let tie = |block: usize| -> Arc<dyn FiniteElement> { Arc::new(Spring::between([block, block + 1], matrix)) };
         let structure = Structure::new(3, blocks, &[], (0..blocks - 1).map(tie).collect());
-        let floor = Obstacle::Plane { normal: [0.0, 0.0, 1.0] };
-        let contact = |node| Contact {
+        let floor = RigidSurface::Plane { normal: [0.0, 0.0, 1.0] };
+        let contact = |node| ContactPair {
             kinematics: Kinematics::Node(node),
             obstacle: floor.clone(),
             initial_gap: 0.0,

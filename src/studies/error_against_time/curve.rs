@@ -53,9 +53,9 @@ impl Curve {
     }
 
     /// The curve of a stage in closed form.
-    pub fn exact(number: usize, stage: exact::Stage, scales: &TraceScales) -> Self {
+    pub fn exact(number: usize, stage: exact::CurveStage, scales: &TraceScales) -> Self {
         let parts = (VERTICES / stage.pieces.len().max(1)).max(2);
-        let scaled = |place: exact::Place| scales.point(number, place.displacements.into_iter(), place.load);
+        let scaled = |place: exact::CurvePlace| scales.point(number, place.displacements.into_iter(), place.load);
         let (mut vertices, mut segments, mut events) = (Vec::new(), Vec::new(), Vec::new());
         for (index, piece) in stage.pieces.iter().enumerate() {
             if index > 0 {

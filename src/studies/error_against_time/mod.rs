@@ -56,8 +56,8 @@ mod tests_of_uncertainty;
 pub(crate) mod trace;
 
 pub use events::EventsFound;
-pub use plan::{Plan, plan};
+pub use plan::{StudyPlan, plan};
 pub use reference::{Reference, ReferenceKind};
-pub use report::{MethodOrder, Report};
-pub use row::{Run, StudyRow, Time};
+pub use report::{MethodOrder, StudyReport};
+pub use row::{StudyRow, StudyRun, Time};
 pub use run::run;

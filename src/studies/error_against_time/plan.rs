@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[cfg_attr(feature = "server", schema(as = StudyPlan))]
-pub struct Plan {
+pub struct StudyPlan {
     pub parameter: Parameter,
     /// From coarse to fine.
     pub values: Vec<f64>,
@@ -33,7 +33,7 @@ pub struct Plan {
 ///
 /// # Errors
 /// All mistakes of the study, or else of the first job that has some.
-pub fn plan(request: &StudyRequest) -> Result<Plan, InputErrors> {
+pub fn plan(request: &StudyRequest) -> Result<StudyPlan, InputErrors> {
     check::study(request)?;
     let (parameter, values) = request.study.ladder();
     let methods = request.study.methods();
@@ -47,7 +47,7 @@ pub fn plan(request: &StudyRequest) -> Result<Plan, InputErrors> {
     let fine_scene = Scene::new(&fine)?;
     let exact = exact_of(request, &fine)?;
     let rows = (methods.len() * values.len()) as u64;
-    Ok(Plan {
+    Ok(StudyPlan {
         parameter,
         values: values.to_vec(),
         methods: methods.to_vec(),
@@ -60,7 +60,7 @@ pub fn plan(request: &StudyRequest) -> Result<Plan, InputErrors> {
     })
 }
 
-impl Plan {
+impl StudyPlan {
     /// Method and value of a row.
     pub(super) fn row(&self, row: u64) -> (Method, f64) {
         let (row, rungs) = (row as usize, self.values.len());

@@ -2,16 +2,16 @@
 
 use crate::model::request::Method;
 use crate::model::request::study::Parameter;
-use crate::studies::error_against_time::plan::Plan;
+use crate::studies::error_against_time::plan::StudyPlan;
 use crate::studies::error_against_time::reference::Reference;
-use crate::studies::error_against_time::row::{Run, StudyRow, slope};
+use crate::studies::error_against_time::row::{StudyRow, StudyRun, slope};
 use serde::{Deserialize, Serialize};
 
 /// What a study has found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[cfg_attr(feature = "server", schema(as = StudyReport))]
-pub struct Report {
+pub struct StudyReport {
     /// The model's own name.
     pub name: Option<String>,
     pub parameter: Parameter,
@@ -30,9 +30,9 @@ pub struct MethodOrder {
     pub order: Option<f64>,
 }
 
-impl Report {
+impl StudyReport {
     /// The findings of a study, given its last runs so far, as many as there are rows, or all. `None` before the first run.
-    pub fn of_runs(name: Option<String>, plan: &Plan, runs: &[Run]) -> Option<Self> {
+    pub fn of_runs(name: Option<String>, plan: &StudyPlan, runs: &[StudyRun]) -> Option<Self> {
         let last = runs.last()?;
         let mut rows: Vec<StudyRow> = Vec::new();
         for run in runs.iter().rev() {

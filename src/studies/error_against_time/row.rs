@@ -67,7 +67,7 @@ impl Time {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 #[cfg_attr(feature = "server", schema(as = StudyRun))]
-pub struct Run {
+pub struct StudyRun {
     /// From 0, over the whole study.
     pub index: u64,
     /// 0 for the first time each path is traced, which is not timed.

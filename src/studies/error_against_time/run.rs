@@ -7,10 +7,10 @@ use crate::model::request::Method;
 use crate::model::request::study::{Parameter, StudyRequest};
 use crate::resources::cancel::CancelFlag;
 use crate::result::stop_reason::StopReason;
-use crate::studies::error_against_time::plan::{Plan, plan};
+use crate::studies::error_against_time::plan::{StudyPlan, plan};
 use crate::studies::error_against_time::reference::Standard;
-use crate::studies::error_against_time::report::Report;
-use crate::studies::error_against_time::row::{Run, StudyRow, Time, order};
+use crate::studies::error_against_time::report::StudyReport;
+use crate::studies::error_against_time::row::{StudyRow, StudyRun, Time, order};
 use crate::studies::error_against_time::trace::StudyTrace;
 use std::ops::ControlFlow;
 
@@ -23,10 +23,10 @@ use std::ops::ControlFlow;
 /// As for [`plan`].
 pub fn run(
     request: &StudyRequest,
-    done: Vec<Run>,
+    done: Vec<StudyRun>,
     cancel: &CancelFlag,
-    accept: &mut dyn FnMut(&Run) -> ControlFlow<()>,
-) -> Result<Option<Report>, InputErrors> {
+    accept: &mut dyn FnMut(&StudyRun) -> ControlFlow<()>,
+) -> Result<Option<StudyReport>, InputErrors> {
     let plan = plan(request)?;
     let Some(standard) = Standard::new(request, cancel)? else { return Ok(None) };
     let mut found = StudyInProgress { plan: &plan, rows: Vec::new(), times: vec![Vec::new(); plan.rows as usize] };
@@ -47,7 +47,7 @@ pub fn run(
             return Ok(Some(found.report(request, standard, false)));
         };
         let reference = standard.reference.clone();
-        let run = found.complete(Run { index, round, elapsed_s, row, reference });
+        let run = found.complete(StudyRun { index, round, elapsed_s, row, reference });
         found.take(&run);
         if accept(&run).is_break() {
             return Ok(None);
@@ -58,7 +58,7 @@ pub fn run(
 
 /// The findings so far.
 struct StudyInProgress<'a> {
-    plan: &'a Plan,
+    plan: &'a StudyPlan,
     rows: Vec<StudyRow>,
     times: Vec<Vec<f64>>,
 }
@@ -69,7 +69,7 @@ impl StudyInProgress<'_> {
     }
 
     /// Adds the values that depend on the other runs: order and times.
-    fn complete(&self, mut run: Run) -> Run {
+    fn complete(&self, mut run: StudyRun) -> StudyRun {
         let row = run.row.row as usize;
         if run.round == 0 {
             let by_step = self.plan.parameter == Parameter::ArcLength;
@@ -84,7 +84,7 @@ impl StudyInProgress<'_> {
         run
     }
 
-    fn take(&mut self, run: &Run) {
+    fn take(&mut self, run: &StudyRun) {
         let row = run.row.row as usize;
         if run.round == 0 {
             self.rows.push(run.row.clone());
@@ -94,8 +94,8 @@ impl StudyInProgress<'_> {
         }
     }
 
-    fn report(self, request: &StudyRequest, standard: Standard, complete: bool) -> Report {
-        Report::new(request.model.name.clone(), self.plan.parameter, standard.reference, self.rows, complete)
+    fn report(self, request: &StudyRequest, standard: Standard, complete: bool) -> StudyReport {
+        StudyReport::new(request.model.name.clone(), self.plan.parameter, standard.reference, self.rows, complete)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::output::columns::{name_of, push_columns};
 use crate::output::csv::CsvRow;
-use crate::studies::error_against_time::report::Report;
+use crate::studies::error_against_time::report::StudyReport;
 use crate::studies::error_against_time::row::StudyRow;
 use std::fmt::Write;
 
@@ -39,7 +39,7 @@ const COLUMNS: [&str; 26] = [
 ///
 /// # Errors
 /// None in practice: names of the contract that cannot be written are a defect.
-pub fn csv(report: &Report) -> serde_json::Result<String> {
+pub fn csv(report: &StudyReport) -> serde_json::Result<String> {
     let mut header = CsvRow::default();
     COLUMNS.iter().for_each(|name| header.raw(name));
     let mut text = header.end();
@@ -49,7 +49,7 @@ pub fn csv(report: &Report) -> serde_json::Result<String> {
     Ok(text)
 }
 
-fn csv_row(report: &Report, row: &StudyRow) -> serde_json::Result<String> {
+fn csv_row(report: &StudyReport, row: &StudyRow) -> serde_json::Result<String> {
     let mut line = CsvRow::default();
     let count = |line: &mut CsvRow, count: u64| line.raw(&count.to_string());
     count(&mut line, row.row);
@@ -83,7 +83,7 @@ fn csv_row(report: &Report, row: &StudyRow) -> serde_json::Result<String> {
 ///
 /// # Errors
 /// As for [`csv`].
-pub fn text(report: &Report) -> serde_json::Result<String> {
+pub fn text(report: &StudyReport) -> serde_json::Result<String> {
     let mut text = String::new();
     // Writing to a string does not fail.
     let _ = writeln!(text, "{}", report.name.as_deref().unwrap_or("study"));

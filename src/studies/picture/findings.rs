@@ -1,6 +1,6 @@
 //! The findings of studies and sweeps as tables and pictures; called by `command` and `http`.
 
-use crate::studies::error_against_time::Report;
+use crate::studies::error_against_time::StudyReport;
 use crate::studies::error_against_time::table;
 use crate::studies::picture::{PlotError, study, sweep};
 use crate::studies::sweeps::Found;
@@ -30,7 +30,7 @@ pub trait Findings: Serialize {
     fn svg(&self) -> Result<String, PlotError>;
 }
 
-impl Findings for Report {
+impl Findings for StudyReport {
     const NOT_DRAWN: &'static str = "no path of it has an error yet";
 
     fn csv(&self) -> serde_json::Result<String> {

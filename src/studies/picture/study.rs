@@ -3,7 +3,7 @@
 
 use crate::model::request::Method;
 use crate::model::request::study::Parameter;
-use crate::studies::error_against_time::{Report, StudyRow};
+use crate::studies::error_against_time::{StudyReport, StudyRow};
 use crate::studies::picture::PlotError;
 use crate::studies::picture::labels::Map;
 use crate::studies::picture::shapes::{self, Drawn, FAINT_INK, FINE, INK, Lettering, PAPER, Place, Sheet};
@@ -46,7 +46,7 @@ enum Against {
 
 impl Against {
     /// Time, if all rows with an error have one.
-    fn of(report: &Report) -> Self {
+    fn of(report: &StudyReport) -> Self {
         let timed = report.rows.iter().filter(|row| row.path_error.is_some()).all(|row| row.time.is_some());
         if timed { Self::Time } else { Self::Setting(report.parameter) }
     }
@@ -90,7 +90,7 @@ impl Dot {
 }
 
 /// The picture as SVG text; times differ from run to run, and so does the picture.
-pub fn svg(report: &Report) -> Result<String, PlotError> {
+pub fn svg(report: &StudyReport) -> Result<String, PlotError> {
     let against = Against::of(report);
     let lines: Vec<(Method, Vec<Dot>)> = report
         .by_method()
@@ -163,7 +163,7 @@ impl Scale {
 }
 
 /// Title, axes and the range of unresolved errors.
-fn frame(sheet: &Sheet<'_>, report: &Report, against: Against, (across, errors): (&Scale, &Scale)) -> Drawn {
+fn frame(sheet: &Sheet<'_>, report: &StudyReport, against: Against, (across, errors): (&Scale, &Scale)) -> Drawn {
     let (left, right) = (across.pixels.0 * FINE, across.pixels.1 * FINE);
     let (bottom, top) = (errors.pixels.0 * FINE, errors.pixels.1 * FINE);
     let middle = (left + right) / 2;
@@ -238,7 +238,7 @@ fn curve(sheet: &Sheet<'_>, method: Method, dots: &[Dot], scales: (&Scale, &Scal
     Ok(())
 }
 
-fn legend(sheet: &Sheet<'_>, report: &Report, against: Against, left: i32) -> Drawn {
+fn legend(sheet: &Sheet<'_>, report: &StudyReport, against: Against, left: i32) -> Drawn {
     let mut top = CAPTION;
     let mut write = |words: &str, lettering: Lettering, indent: i32| {
         let place = ((left + indent) * FINE, (top + ROW / 2) * FINE);

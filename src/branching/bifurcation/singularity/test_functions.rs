@@ -22,7 +22,7 @@
 
 use crate::algebra::sparse::{Bordered, held_inertia};
 use crate::algebra::{Determinant, Inertia, SystemFactorisation, determinant, inertia, null_space};
-use crate::mechanics::contact::{Contact, Mode};
+use crate::mechanics::contact::{ContactPair, Mode};
 use crate::mechanics::equations::scaled_rows::{RANK, scaled_rows};
 use crate::mechanics::equations::{Kind, ModeSystem};
 use crate::mechanics::problem::loading::Loading;
@@ -69,7 +69,7 @@ const FURTHER_ON_SPARSE: [f64; 1] = [1e-2];
 
 /// Whether some contact slips with friction.
 fn slips(loading: Loading<'_>, modes: &[Mode]) -> bool {
-    let slips = |(mode, contact): (&Mode, &Contact)| matches!(mode, Mode::Slip { .. }) && contact.tangents() > 0;
+    let slips = |(mode, contact): (&Mode, &ContactPair)| matches!(mode, Mode::Slip { .. }) && contact.tangents() > 0;
     modes.iter().zip(loading.contacts).any(slips)
 }
 
@@ -107,7 +107,7 @@ fn counted_modes<'s>(
     if !slips(loading, modes) {
         return Some((modes.to_vec(), start));
     }
-    let held = |(mode, contact): (&Mode, &Contact)| {
+    let held = |(mode, contact): (&Mode, &ContactPair)| {
         if mode.is_active() && contact.tangents() > 0 { Mode::Stick } else { *mode }
     };
     Some((modes.iter().zip(loading.contacts).map(held).collect(), state))

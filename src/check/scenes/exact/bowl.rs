@@ -6,7 +6,7 @@
 //! s q = k R sin φ + (P + k R (1 - cos φ)) tan(φ + arctan μ)
 //! ```
 
-use crate::check::scenes::exact::curve::{Piece, Place, Reach, Stage};
+use crate::check::scenes::exact::curve::{CurvePlace, CurveStage, Piece, Reach};
 use crate::check::scenes::exact::pattern;
 use crate::check::scenes::exact::solution::ExactSolution;
 use crate::check::scenes::exact::zeros::zero;
@@ -68,11 +68,11 @@ impl ExactSolution for Bowl {
         "s q = k R sin + (P + k R (1 - cos)) tan(angle + arctan mu) of the angle from the bottom"
     }
 
-    fn stages(&self, reach: Reach) -> Vec<Stage> {
+    fn stages(&self, reach: Reach) -> Vec<CurveStage> {
         let Self { stiffness, friction, radius, scale, .. } = *self;
         let load = move |angle: f64| scale * bowl_load(stiffness, friction, angle);
-        let still = |load: f64| Place { displacements: vec![0.0, 0.0], load };
-        let slides = move |angle: f64| Place {
+        let still = |load: f64| CurvePlace { displacements: vec![0.0, 0.0], load };
+        let slides = move |angle: f64| CurvePlace {
             displacements: vec![radius * angle.sin(), radius * 2.0 * (0.5 * angle).sin().powi(2)],
             load: load(angle),
         };
@@ -83,6 +83,9 @@ impl ExactSolution for Bowl {
             pieces.insert(0, Piece::new(0.0, scale * friction, still).ending(PointKind::ContactChange));
         }
         let pressed = vec![Piece::new(0.0, self.pressed_to, still).ending(PointKind::End)];
-        vec![Stage { name: self.stages[0].clone(), pieces: pressed }, Stage { name: self.stages[1].clone(), pieces }]
+        vec![
+            CurveStage { name: self.stages[0].clone(), pieces: pressed },
+            CurveStage { name: self.stages[1].clone(), pieces },
+        ]
     }
 }

@@ -7,7 +7,7 @@ use crate::result::increment::PointKind;
 
 /// A point of a path, in the user's units.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Place {
+pub struct CurvePlace {
     /// `dimension` components a node, in the model's order (length).
     pub displacements: Vec<f64>,
     pub load: f64,
@@ -23,8 +23,8 @@ pub struct Reach {
 }
 
 /// Negative before the bound, 0 at it.
-type Bound = Box<dyn Fn(&Place) -> f64>;
-type CurveFunction = Box<dyn Fn(f64) -> Place + Send + Sync>;
+type Bound = Box<dyn Fn(&CurvePlace) -> f64>;
+type CurveFunction = Box<dyn Fn(f64) -> CurvePlace + Send + Sync>;
 
 /// A smooth stretch of a path.
 pub struct Piece {
@@ -38,7 +38,7 @@ pub struct Piece {
 }
 
 /// A stage of a path.
-pub struct Stage {
+pub struct CurveStage {
     pub name: String,
     pub pieces: Vec<Piece>,
 }
@@ -47,7 +47,7 @@ pub struct Stage {
 const PARTS: usize = 1000;
 
 impl Piece {
-    pub fn new(from: f64, to: f64, at: impl Fn(f64) -> Place + Send + Sync + 'static) -> Self {
+    pub fn new(from: f64, to: f64, at: impl Fn(f64) -> CurvePlace + Send + Sync + 'static) -> Self {
         Self { from, to, at: Box::new(at), ends_with: None }
     }
 
@@ -57,7 +57,7 @@ impl Piece {
     }
 
     /// The point at a parameter between `from` and `to`.
-    pub fn at(&self, parameter: f64) -> Place {
+    pub fn at(&self, parameter: f64) -> CurvePlace {
         (self.at)(parameter)
     }
 
@@ -67,7 +67,7 @@ impl Piece {
     }
 
     /// The parameter at which a quantity that is negative at first becomes zero.
-    fn reaches(&self, quantity: impl Fn(&Place) -> f64, parts: usize) -> Option<f64> {
+    fn reaches(&self, quantity: impl Fn(&CurvePlace) -> f64, parts: usize) -> Option<f64> {
         let value = |part: f64| quantity(&self.at(self.parameter(part)));
         let mut before = 0.0;
         for part in 1..=parts {
@@ -81,13 +81,13 @@ impl Piece {
     }
 }
 
-impl Stage {
+impl CurveStage {
     /// A curve cut into pieces where its load turns: `slope` is the load's derivative by the parameter.
     pub(super) fn turning(
         name: &str,
         (from, to): (f64, f64),
         slope: impl Fn(f64) -> f64,
-        at: impl Fn(f64) -> Place + Clone + Send + Sync + 'static,
+        at: impl Fn(f64) -> CurvePlace + Clone + Send + Sync + 'static,
     ) -> Self {
         let mut pieces = Vec::new();
         let mut begins = from;

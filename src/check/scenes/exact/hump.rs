@@ -7,7 +7,7 @@
 //! P (1 - H cos φ)/L + s sin φ + r_n = 0,     P H sin φ/L + s cos φ = μ r_n
 //! ```
 
-use crate::check::scenes::exact::curve::{Place, Reach, Stage};
+use crate::check::scenes::exact::curve::{CurvePlace, CurveStage, Reach};
 use crate::check::scenes::exact::pattern;
 use crate::check::scenes::exact::solution::ExactSolution;
 use crate::model::Model;
@@ -111,15 +111,15 @@ impl ExactSolution for OverHump {
         "s f = -P/L (H sin + mu (R - H cos))/(cos + mu sin) of the angle from the top"
     }
 
-    fn stages(&self, _reach: Reach) -> Vec<Stage> {
+    fn stages(&self, _reach: Reach) -> Vec<CurveStage> {
         let Self { hump, radius, scale, tip, .. } = *self;
         let at = move |angle: f64| {
             let mut displacements = vec![0.0; 4];
             displacements[tip] = radius * (angle.sin() - hump.start.sin());
             displacements[tip + 1] = radius * (angle.cos() - hump.start.cos());
-            Place { displacements, load: scale * hump.load(angle) }
+            CurvePlace { displacements, load: scale * hump.load(angle) }
         };
         let range = (hump.start, -hump.start);
-        vec![Stage::turning(&self.stage, range, |angle| hump.slope(angle), at).ending(PointKind::End)]
+        vec![CurveStage::turning(&self.stage, range, |angle| hump.slope(angle), at).ending(PointKind::End)]
     }
 }

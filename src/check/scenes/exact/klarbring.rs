@@ -4,7 +4,7 @@
 //! Stuck up to `s q = μ p`; slipping at `u_x = x` with `r_n = p - b x` and `s q = a x + μ (p - b x)`, against the load
 //! where `μ > a/b`; free from `x = p/b` on, `u = K⁻¹ (s q e_x - p e_y)`.
 
-use crate::check::scenes::exact::curve::{Piece, Place, Reach, Stage};
+use crate::check::scenes::exact::curve::{CurvePlace, CurveStage, Piece, Reach};
 use crate::check::scenes::exact::pattern;
 use crate::check::scenes::exact::solution::ExactSolution;
 use crate::model::Model;
@@ -58,10 +58,10 @@ impl ExactSolution for KlarbringScene {
         "stuck to s q = mu p; s q = a x + mu (p - b x) to x = p/b; then K u = (s q, -p)"
     }
 
-    fn stages(&self, reach: Reach) -> Vec<Stage> {
+    fn stages(&self, reach: Reach) -> Vec<CurveStage> {
         let ([a, b, c], friction, pull) = (self.stiffness, self.friction, self.pull);
         let held = self.press * self.pressed_to;
-        let still = |load: f64| Place { displacements: vec![0.0, 0.0], load };
+        let still = |load: f64| CurvePlace { displacements: vec![0.0, 0.0], load };
         let slips = friction * held / pull;
         let leaves = held / b;
         let corner = if a < friction * b { PointKind::NonsmoothLimit } else { PointKind::ContactChange };
@@ -72,18 +72,18 @@ impl ExactSolution for KlarbringScene {
             let determinant = a * c - b * b;
             let x = (c * load * pull - b * held) / determinant;
             let y = (b * load * pull - a * held) / determinant;
-            Place { displacements: vec![x, y], load }
+            CurvePlace { displacements: vec![x, y], load }
         };
         vec![
-            Stage {
+            CurveStage {
                 name: self.stages[0].clone(),
                 pieces: vec![Piece::new(0.0, self.pressed_to, still).ending(PointKind::End)],
             },
-            Stage {
+            CurveStage {
                 name: self.stages[1].clone(),
                 pieces: vec![
                     Piece::new(0.0, slips, still).ending(corner),
-                    Piece::new(0.0, leaves, move |x| Place {
+                    Piece::new(0.0, leaves, move |x| CurvePlace {
                         displacements: vec![x, 0.0],
                         load: (a * x + friction * (held - b * x)) / pull,
                     })

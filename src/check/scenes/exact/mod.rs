@@ -32,7 +32,7 @@ pub mod von_mises;
 pub(crate) mod zeros;
 
 use crate::check::scenes::exact::solution::ExactSolution;
-pub use curve::{Piece, Place, Reach, Stage};
+pub use curve::{CurvePlace, CurveStage, Piece, Reach};
 
 use crate::model::request::Selection;
 use crate::model::{JobRequest, Model};
@@ -54,7 +54,7 @@ impl Exact {
 
     /// The path's stages, each ended where its `until` names a load or a displacement; unbounded branches go as far as
     /// `reach`.
-    pub fn stages(&self, reach: Reach) -> Vec<Stage> {
+    pub fn stages(&self, reach: Reach) -> Vec<CurveStage> {
         let mut stages = self.solution.stages(reach);
         for (stage, loads) in stages.iter_mut().zip(&self.model.stages) {
             stage.end_at(&self.model, loads);

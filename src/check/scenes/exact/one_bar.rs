@@ -9,7 +9,7 @@
 //!
 //! between `x = -a` and `a`, where the bar is unstressed, nothing presses the tip and the path ends in a mechanism.
 
-use crate::check::scenes::exact::curve::{Place, Reach, Stage};
+use crate::check::scenes::exact::curve::{CurvePlace, CurveStage, Reach};
 use crate::check::scenes::exact::pattern;
 use crate::check::scenes::exact::solution::ExactSolution;
 use crate::model::Model;
@@ -90,14 +90,14 @@ impl ExactSolution for OneBarScene {
         "s f = P (mu h - x)/L, P = EA (1 - L/L0)"
     }
 
-    fn stages(&self, _reach: Reach) -> Vec<Stage> {
+    fn stages(&self, _reach: Reach) -> Vec<CurveStage> {
         let truss = self.clone();
         let at = move |x: f64| {
             let mut displacements = vec![0.0; truss.freedoms];
             displacements[truss.tip] = truss.side * (x + truss.offset);
-            Place { displacements, load: truss.load(x) }
+            CurvePlace { displacements, load: truss.load(x) }
         };
         let range = (-self.offset, self.offset);
-        vec![Stage::turning(&self.stage, range, |x| self.slope(x), at).ending(PointKind::End)]
+        vec![CurveStage::turning(&self.stage, range, |x| self.slope(x), at).ending(PointKind::End)]
     }
 }

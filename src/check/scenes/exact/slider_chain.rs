@@ -3,7 +3,7 @@
 //! With springs `k_j` from block `j` to `j + 1` and `q_j = Σ_{i <= j} μ_i W_i`: block `m` begins to slip at `s p = q_m`,
 //! and until the last one does `u_j - u_{j+1} = max(0, s p - q_j)/k_j`.
 
-use crate::check::scenes::exact::curve::{Piece, Place, Reach, Stage};
+use crate::check::scenes::exact::curve::{CurvePlace, CurveStage, Piece, Reach};
 use crate::check::scenes::exact::pattern;
 use crate::check::scenes::exact::solution::ExactSolution;
 use crate::model::Model;
@@ -70,14 +70,14 @@ impl SliderChain {
         })
     }
 
-    fn place(&self, load: f64) -> Place {
+    fn place(&self, load: f64) -> CurvePlace {
         let mut displacements = vec![0.0; self.freedoms];
         let mut moved = 0.0;
         for block in (0..self.stiffness.len()).rev() {
             moved += (load * self.pull - self.holds[block]).max(0.0) / self.stiffness[block];
             displacements[self.along[block]] = moved;
         }
-        Place { displacements, load }
+        CurvePlace { displacements, load }
     }
 }
 
@@ -90,9 +90,9 @@ impl ExactSolution for SliderChain {
         "u_j - u_j+1 = max(0, s p - q_j)/k_j, q_j = sum of mu W up to block j"
     }
 
-    fn stages(&self, _reach: Reach) -> Vec<Stage> {
+    fn stages(&self, _reach: Reach) -> Vec<CurveStage> {
         let freedoms = self.freedoms;
-        let still = move |load: f64| Place { displacements: vec![0.0; freedoms], load };
+        let still = move |load: f64| CurvePlace { displacements: vec![0.0; freedoms], load };
         let mut pieces = Vec::with_capacity(self.holds.len());
         let mut begins = 0.0;
         for (block, hold) in self.holds.iter().enumerate() {
@@ -103,6 +103,9 @@ impl ExactSolution for SliderChain {
             begins = ends;
         }
         let weighed = vec![Piece::new(0.0, self.pressed_to, still).ending(PointKind::End)];
-        vec![Stage { name: self.stages[0].clone(), pieces: weighed }, Stage { name: self.stages[1].clone(), pieces }]
+        vec![
+            CurveStage { name: self.stages[0].clone(), pieces: weighed },
+            CurveStage { name: self.stages[1].clone(), pieces },
+        ]
     }
 }

@@ -1,6 +1,6 @@
 //! The interface of exact solutions.
 
-use crate::check::scenes::exact::curve::{Reach, Stage};
+use crate::check::scenes::exact::curve::{CurveStage, Reach};
 
 /// The path of a scene in closed form.
 pub trait ExactSolution: Send + Sync {
@@ -11,5 +11,5 @@ pub trait ExactSolution: Send + Sync {
     fn formula(&self) -> &'static str;
 
     /// The stages of the path, with unbounded branches up to `reach`; ends by load and displacement are ignored.
-    fn stages(&self, reach: Reach) -> Vec<Stage>;
+    fn stages(&self, reach: Reach) -> Vec<CurveStage>;
 }

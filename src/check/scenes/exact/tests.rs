@@ -1,7 +1,7 @@
 //! Each family knows its built-in scene, and no other scene is taken for one.
 
 use crate::check::scenes;
-use crate::check::scenes::exact::{Exact, Place, Reach, recognise};
+use crate::check::scenes::exact::{CurvePlace, Exact, Reach, recognise};
 use crate::model::JobRequest;
 use crate::model::decode::decode;
 use crate::result::increment::PointKind;
@@ -18,7 +18,7 @@ fn exact(name: &str) -> Exact {
 const REACH: Reach = Reach { load: 5.0, displacement: 10.0 };
 
 /// The events of a stage: kind and place.
-fn events(exact: &Exact, stage: usize) -> Vec<(PointKind, Place)> {
+fn events(exact: &Exact, stage: usize) -> Vec<(PointKind, CurvePlace)> {
     let pieces = exact.stages(REACH).swap_remove(stage).pieces;
     pieces.iter().filter_map(|piece| Some((piece.ends_with?, piece.at(piece.to)))).collect()
 }

@@ -8,7 +8,7 @@
 //! x - x0 = [sqrt(c² - w²) - c arcosh(c/w)] from b to w,     s f = EA (1/L - 1/L0) (sqrt(c² - w²) - x)
 //! ```
 
-use crate::check::scenes::exact::curve::{Place, Reach, Stage};
+use crate::check::scenes::exact::curve::{CurvePlace, CurveStage, Reach};
 use crate::check::scenes::exact::pattern;
 use crate::check::scenes::exact::solution::ExactSolution;
 use crate::model::Model;
@@ -133,19 +133,19 @@ impl ExactSolution for CurvingSlip {
         "x - x0 = [sqrt(c^2 - w^2) - c arcosh(c/w)], c = mu h, w = b - y"
     }
 
-    fn stages(&self, _reach: Reach) -> Vec<Stage> {
+    fn stages(&self, _reach: Reach) -> Vec<CurveStage> {
         let Self { track, scale, sides, tip, .. } = *self;
         let at = move |w: f64| {
             let (x, y) = (track.track(w), track.offset - w);
             let mut displacements = vec![0.0; 6];
             displacements[tip] = sides[0] * (x - track.start);
             displacements[tip + 1] = sides[1] * y;
-            Place { displacements, load: scale * track.load(x, y) }
+            CurvePlace { displacements, load: scale * track.load(x, y) }
         };
         let compression = |w: f64| track.compression_by_length(track.track(w), track.offset - w);
         let unstressed =
             crate::check::scenes::exact::zeros::zeros(compression, track.offset, track.cone()).first().copied();
-        let stage = |to| Stage::turning(&self.stage, (track.offset, to), |w| track.slope(w), at);
+        let stage = |to| CurveStage::turning(&self.stage, (track.offset, to), |w| track.slope(w), at);
         vec![match unstressed {
             Some(to) => stage(to).ending(PointKind::End),
             None => stage(track.cone()),

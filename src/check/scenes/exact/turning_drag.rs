@@ -4,7 +4,7 @@
 //! drag's direction `e`, and for the angle `ψ` between them `ρ ψ̇ = -sin ψ`, so that after a drag of `d`
 //! `tan(ψ/2) = tan(ψ0/2) exp(-d/ρ)`.
 
-use crate::check::scenes::exact::curve::{Piece, Place, Reach, Stage};
+use crate::check::scenes::exact::curve::{CurvePlace, CurveStage, Piece, Reach};
 use crate::check::scenes::exact::pattern;
 use crate::check::scenes::exact::solution::ExactSolution;
 use crate::model::Model;
@@ -70,14 +70,14 @@ impl ExactSolution for TurningDrag {
         "tan(psi/2) = tan(psi0/2) exp(-d/rho), rho = mu P/k, psi between spring and drag"
     }
 
-    fn stages(&self, reach: Reach) -> Vec<Stage> {
+    fn stages(&self, reach: Reach) -> Vec<CurveStage> {
         let Self { radius, drags: [(first, angle), (second, turned)], dragged_to, .. } = *self;
         let (sine, cosine) = angle.sin_cos();
-        let turn = move |along: f64, across: f64, load: f64| Place {
+        let turn = move |along: f64, across: f64, load: f64| CurvePlace {
             displacements: vec![along * cosine - across * sine, along * sine + across * cosine, 0.0],
             load,
         };
-        let still = |load: f64| Place { displacements: vec![0.0; 3], load };
+        let still = |load: f64| CurvePlace { displacements: vec![0.0; 3], load };
         let begins = radius / first;
         let far = 2.0 * reach.load.max(radius / second);
         let pieces = [
@@ -91,6 +91,6 @@ impl ExactSolution for TurningDrag {
                 turn(along, across, load)
             })],
         ];
-        self.stages.iter().zip(pieces).map(|(name, pieces)| Stage { name: name.clone(), pieces }).collect()
+        self.stages.iter().zip(pieces).map(|(name, pieces)| CurveStage { name: name.clone(), pieces }).collect()
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! With `y = h - v` after a travel `v`, `L² = b² + y²`, `λ = L/L0` and a bar's force `N(λ)`: `s p = -2 N y/L`.
 
-use crate::check::scenes::exact::curve::{Place, Reach, Stage};
+use crate::check::scenes::exact::curve::{CurvePlace, CurveStage, Reach};
 use crate::check::scenes::exact::pattern;
 use crate::check::scenes::exact::solution::ExactSolution;
 use crate::model::Model;
@@ -108,15 +108,15 @@ impl ExactSolution for VonMisesScene {
         "s p = -2 N (h - v)/L"
     }
 
-    fn stages(&self, reach: Reach) -> Vec<Stage> {
+    fn stages(&self, reach: Reach) -> Vec<CurveStage> {
         let truss = self.clone();
         let at = move |travel: f64| {
             let mut displacements = vec![0.0; truss.freedoms];
             displacements[truss.apex + 1] = -travel;
-            Place { displacements, load: truss.load(travel) }
+            CurvePlace { displacements, load: truss.load(travel) }
         };
         // Past both limits in any case.
         let far = (2.0 * reach.displacement).max(3.0 * self.height);
-        vec![Stage::turning(&self.stage, (0.0, far), |travel| self.slope(travel), at)]
+        vec![CurveStage::turning(&self.stage, (0.0, far), |travel| self.slope(travel), at)]
     }
 }

@@ -19,7 +19,7 @@
 
 pub(crate) mod equations;
 
-use crate::mechanics::contact::Contact;
+use crate::mechanics::contact::ContactPair;
 use crate::mechanics::contact::vector::{Vector, add, dot};
 use crate::mechanics::problem::contact_motion;
 use crate::mechanics::problem::loading::LoadPattern;
@@ -47,7 +47,7 @@ const MOST_CLOSINGS: usize = 2;
 
 /// The stiffness of the elements that resist a stage's pattern, as an axial stiffness, dimensionless; `None` where
 /// nothing that can move resists it.
-pub(super) fn resisting(structure: &Structure, contacts: &[Contact], pattern: &LoadPattern) -> Option<f64> {
+pub(super) fn resisting(structure: &Structure, contacts: &[ContactPair], pattern: &LoadPattern) -> Option<f64> {
     let held = contacts.iter().map(|contact| contact.gap(&[0.0; 3]) <= CLOSED).collect();
     let still = vec![0.0; structure.freedoms()];
     let mut response = StiffnessEstimate {
@@ -114,7 +114,7 @@ struct Motion {
 
 struct StiffnessEstimate<'a> {
     structure: &'a Structure,
-    contacts: &'a [Contact],
+    contacts: &'a [ContactPair],
     pattern: &'a LoadPattern,
     /// Of each node.
     stiffness_at: Vec<f64>,

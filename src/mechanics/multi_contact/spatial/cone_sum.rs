@@ -166,15 +166,15 @@ impl Pocket {
 mod tests {
     use super::*;
     use crate::mechanics::contact::least_norm_reactions::least_reactions;
-    use crate::mechanics::contact::obstacle::Obstacle;
-    use crate::mechanics::contact::{Contact, Frame, Sliding};
+    use crate::mechanics::contact::obstacle::RigidSurface;
+    use crate::mechanics::contact::{ContactPair, Frame, Sliding};
 
     const SPACE: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
     fn pocket(planes: &[(Vector, f64)]) -> Pocket {
-        let contact = |normal: Vector, friction: f64| Contact {
+        let contact = |normal: Vector, friction: f64| ContactPair {
             kinematics: crate::mechanics::contact::kinematics::Kinematics::Node(0),
-            obstacle: Obstacle::Plane { normal },
+            obstacle: RigidSurface::Plane { normal },
             initial_gap: 0.0,
             friction,
             sliding: Sliding::Plane,

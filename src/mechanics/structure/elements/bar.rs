@@ -11,7 +11,7 @@
 //! `N = ∂W/∂L` is the axial force in the deformed direction `d`; the tangent is `N' d dᵀ + (N/L)(I - d dᵀ)`.
 //! (Crisfield, *Non-linear Finite Element Analysis of Solids and Structures* 1, Wiley 1991, chapter 3.)
 
-use crate::mechanics::structure::elements::{Element, Stretching};
+use crate::mechanics::structure::elements::{FiniteElement, Stretching};
 use serde::{Deserialize, Serialize};
 
 #[derive(Debug, Clone)]
@@ -114,7 +114,7 @@ impl Bar {
     }
 }
 
-impl Element for Bar {
+impl FiniteElement for Bar {
     fn nodes(&self) -> &[usize] {
         &self.nodes
     }

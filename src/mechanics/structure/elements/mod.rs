@@ -9,7 +9,7 @@ use std::fmt::Debug;
 ///
 /// `displacement` and `force` hold the element's own degrees of freedom, node by node: the translations of a node, then as
 /// many of its rotations as [`rotations`](Self::rotations) says. `stiffness` is square in them, row by row.
-pub trait Element: Debug + Send + Sync {
+pub trait FiniteElement: Debug + Send + Sync {
     /// The nodes that the element joins.
     fn nodes(&self) -> &[usize];
 

@@ -1,7 +1,7 @@
 //! A constant symmetric stiffness matrix between a node and the ground, or between two nodes: `f = K Δu`,
 //! `W = ½ Δuᵀ K Δu`. It does not follow rotation.
 
-use crate::mechanics::structure::elements::{Element, Stretching};
+use crate::mechanics::structure::elements::{FiniteElement, Stretching};
 use nalgebra::DMatrix;
 use smallvec::SmallVec;
 
@@ -43,7 +43,7 @@ impl Spring {
     }
 }
 
-impl Element for Spring {
+impl FiniteElement for Spring {
     fn nodes(&self) -> &[usize] {
         &self.nodes
     }

@@ -17,7 +17,7 @@ use crate::service::http::view::study::{Study, StudyList, StudyWithReport, addre
 use crate::service::jobs::queue::studies;
 use crate::service::jobs::{Caller, JobsError, Posted};
 use crate::service::store::{JobRecord, Task};
-use crate::studies::error_against_time::{Plan, Report, Run};
+use crate::studies::error_against_time::{StudyPlan, StudyReport, StudyRun};
 use axum::Json;
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
@@ -43,10 +43,10 @@ impl Resource for Study {
 }
 
 impl WithFindings for Study {
-    type Findings = Report;
+    type Findings = StudyReport;
 
     /// A problem before the first path has been traced.
-    async fn stored_findings(target: &Target<Self>) -> Result<StoredFindings<Report>, Problem> {
+    async fn stored_findings(target: &Target<Self>) -> Result<StoredFindings<StudyReport>, Problem> {
         let (id, study) = (target.id, target.find().await?);
         let lines =
             if study.report.is_some() { Vec::new() } else { target.service.jobs.lines_of_study(&study).await? };
@@ -73,7 +73,7 @@ impl WithFindings for Study {
     request_body = StudyRequest,
     responses(
         (status = 202, description = "Queued, or queued before under the same idempotency key.", body = Study),
-        (status = 200, description = "With `validate=true`: what would be done.", body = Plan),
+        (status = 200, description = "With `validate=true`: what would be done.", body = StudyPlan),
     )
 )]
 pub async fn submit(submission: Submission<Study>) -> Result<Response, Problem> {
@@ -126,7 +126,7 @@ pub async fn get(target: Target<Study>) -> Result<Response, Problem> {
     params(("Last-Event-ID" = Option<u64>, Header, description = "Index of the last row received.")),
     responses((status = 200, description = "Paths in order of their index.", content(
         (ServerEvent = "text/event-stream"),
-        (Run = "application/x-ndjson")
+        (StudyRun = "application/x-ndjson")
     )))
 )]
 pub async fn stream(target: Target<Study>) -> Result<Response, Problem> {

@@ -2,7 +2,7 @@
 
 use crate::service::http::view::submitted::Submitted;
 use crate::service::store::JobRecord;
-use crate::studies::error_against_time::{Plan, Report};
+use crate::studies::error_against_time::{StudyPlan, StudyReport};
 use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
 use utoipa::ToSchema;
@@ -15,7 +15,7 @@ pub struct Study {
     #[serde(flatten)]
     pub submitted: Submitted,
     pub progress: StudyProgress,
-    #[schema(value_type = Plan)]
+    #[schema(value_type = StudyPlan)]
     pub plan: Box<RawValue>,
     pub links: StudyLinks,
 }
@@ -26,7 +26,7 @@ pub struct StudyWithReport {
     #[serde(flatten)]
     pub study: Study,
     /// Null before the first path.
-    #[schema(value_type = Option<Report>)]
+    #[schema(value_type = Option<StudyReport>)]
     pub report: Option<Box<RawValue>>,
 }
 
@@ -89,7 +89,7 @@ impl TryFrom<JobRecord> for StudyWithReport {
 
 impl StudyWithReport {
     /// With the report as it is now.
-    pub fn so_far(record: JobRecord, report: Option<&Report>) -> Result<Self, serde_json::Error> {
+    pub fn so_far(record: JobRecord, report: Option<&StudyReport>) -> Result<Self, serde_json::Error> {
         Ok(Self { study: record.try_into()?, report: report.map(to_raw_value).transpose()? })
     }
 }

@@ -1,7 +1,7 @@
 //! Sweeps as they are answered.
 
 use crate::model::VariationSummary;
-use crate::model::request::sweep::{Combine, Parameter};
+use crate::model::request::sweep::{Combine, SweepParameter};
 use crate::service::http::view::submitted::Submitted;
 use crate::service::store::JobRecord;
 use crate::studies::sweeps::Row;
@@ -25,7 +25,7 @@ pub struct Sweep {
 #[derive(Debug, Serialize, Deserialize, ToSchema)]
 pub struct Variation {
     /// In the order of the request.
-    #[schema(value_type = Vec<Parameter>)]
+    #[schema(value_type = Vec<SweepParameter>)]
     parameters: Box<RawValue>,
     combine: Combine,
 }

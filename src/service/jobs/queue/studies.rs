@@ -6,11 +6,11 @@ use crate::service::jobs::queue::submission::{self, Prepared, not_text, queued, 
 use crate::service::jobs::{Caller, Jobs, JobsError, Posted};
 use crate::service::metrics::Write;
 use crate::service::store::{JobRecord, Line, Task};
-use crate::studies::error_against_time::{Plan, Report, Run};
+use crate::studies::error_against_time::{StudyPlan, StudyReport, StudyRun};
 
 impl Jobs {
     /// The plan of a study; nothing is queued.
-    pub async fn validate_study(&self, request: impl Into<Posted>) -> Result<Plan, JobsError> {
+    pub async fn validate_study(&self, request: impl Into<Posted>) -> Result<StudyPlan, JobsError> {
         Ok(submission::prepared(&self.checks, request.into(), prepare).await?.0.plan)
     }
 
@@ -30,7 +30,7 @@ impl Jobs {
     /// # Errors
     /// The store fails, or the stored plan cannot be read.
     pub async fn lines_of_study(&self, study: &JobRecord) -> Result<Vec<Line>, JobsError> {
-        let plan: Plan = serde_json::from_str(&study.plan)?;
+        let plan: StudyPlan = serde_json::from_str(&study.plan)?;
         // The last lines, as many as there are rows, contain the latest run of every row.
         let after = study.last_index.and_then(|last| last.checked_sub(plan.rows));
         Ok(self.lines(study.id, after, usize::MAX).await?)
@@ -41,13 +41,13 @@ impl Jobs {
 ///
 /// # Errors
 /// The stored plan or lines cannot be read.
-pub fn found(study: &JobRecord, lines: &[Line]) -> serde_json::Result<Option<Report>> {
-    let plan: Plan = serde_json::from_str(&study.plan)?;
-    let runs: Vec<Run> = lines.iter().map(|line| serde_json::from_str(&line.body)).collect::<Result<_, _>>()?;
-    Ok(Report::of_runs(study.name.clone(), &plan, &runs))
+pub fn found(study: &JobRecord, lines: &[Line]) -> serde_json::Result<Option<StudyReport>> {
+    let plan: StudyPlan = serde_json::from_str(&study.plan)?;
+    let runs: Vec<StudyRun> = lines.iter().map(|line| serde_json::from_str(&line.body)).collect::<Result<_, _>>()?;
+    Ok(StudyReport::of_runs(study.name.clone(), &plan, &runs))
 }
 
-fn prepare(context: &CheckContext<'_>, request: Vec<u8>) -> Result<Prepared<Plan>, JobsError> {
+fn prepare(context: &CheckContext<'_>, request: Vec<u8>) -> Result<Prepared<StudyPlan>, JobsError> {
     let decoded = decode::study(&request).map_err(|errors| wrong_input(&request, errors, JobsError::Input))?;
     context.limits.check(&decoded.model, decoded.analysis.max_increments).map_err(JobsError::Input)?;
     context.go_on()?;

@@ -14,7 +14,7 @@ use crate::service::jobs::solving::increment_recorder::IncrementRecorder;
 use crate::service::jobs::solving::solve_output::{SolveEnd, SolveOutput};
 use crate::service::jobs::solving::solver::{ResumeError, Solver};
 use crate::service::store::{Claim, Line, Task};
-use crate::studies::error_against_time::Run;
+use crate::studies::error_against_time::StudyRun;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use tokio::sync::{mpsc, oneshot};
@@ -122,7 +122,7 @@ fn study(
         Ok(request) => request,
         Err(errors) => return SolveEnd::Refused(errors),
     };
-    let done: Vec<Run> = match stored.iter().map(|line| serde_json::from_str(&line.body)).collect() {
+    let done: Vec<StudyRun> = match stored.iter().map(|line| serde_json::from_str(&line.body)).collect() {
         Ok(done) => done,
         Err(error) => return SolveEnd::Unreadable(error.to_string()),
     };

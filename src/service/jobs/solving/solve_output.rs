@@ -19,7 +19,7 @@ pub enum SolveEnd {
     /// The stored beginning of the job, or its stored lines, cannot be read.
     Unreadable(String),
     /// A study has ended, completed or cancelled.
-    Studied(error_against_time::Report),
+    Studied(error_against_time::StudyReport),
     /// Cancelled before there was a report.
     Cancelled,
     /// The solve would have exceeded a bound before there was a path with a report.

@@ -6,7 +6,7 @@ use crate::continuation::scene::Scene;
 use crate::model::{InputError, InputErrors, JobRequest, StudyRequest};
 use crate::resources::cancel::CancelFlag;
 use crate::result::plan::Plan;
-use crate::studies::error_against_time::{self, Run};
+use crate::studies::error_against_time::{self, StudyRun};
 use std::ops::ControlFlow;
 
 /// The beginning of a path that follows a direction of another path.
@@ -79,7 +79,7 @@ pub trait Solver: Send + Sync + 'static {
     ) -> Result<Option<JudgedReport>, ResumeError>;
 
     /// Checks a study and answers its plan.
-    fn plan_study(&self, request: &StudyRequest) -> Result<error_against_time::Plan, InputErrors> {
+    fn plan_study(&self, request: &StudyRequest) -> Result<error_against_time::StudyPlan, InputErrors> {
         error_against_time::plan(request)
     }
 
@@ -87,10 +87,10 @@ pub trait Solver: Send + Sync + 'static {
     fn study(
         &self,
         request: &StudyRequest,
-        done: Vec<Run>,
+        done: Vec<StudyRun>,
         cancel: &CancelFlag,
-        accept: &mut dyn FnMut(&Run) -> ControlFlow<()>,
-    ) -> Result<Option<error_against_time::Report>, InputErrors> {
+        accept: &mut dyn FnMut(&StudyRun) -> ControlFlow<()>,
+    ) -> Result<Option<error_against_time::StudyReport>, InputErrors> {
         error_against_time::run(request, done, cancel, accept)
     }
 }

@@ -236,7 +236,7 @@ fn ending(end: SolveEnd) -> Ending {
     }
 }
 
-fn studied(report: &error_against_time::Report) -> serde_json::Result<Ending> {
+fn studied(report: &error_against_time::StudyReport) -> serde_json::Result<Ending> {
     let text = Some(serde_json::to_string(report)?);
     let completed = Ending { status: Status::Completed, stop_reason: None, report: text.clone(), error: None };
     Ok(if report.complete { completed } else { cancelled(text) })

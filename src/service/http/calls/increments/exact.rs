@@ -1,7 +1,7 @@
 //! The path of a job in closed form, where its model belongs to a family with an exact solution, for plots over the computed
 //! path.
 
-use crate::check::scenes::exact::{self, Place, Reach};
+use crate::check::scenes::exact::{self, CurvePlace, Reach};
 use crate::model::JobRequest;
 use crate::service::http::answer::problem::Problem;
 use crate::service::http::answer::tag;
@@ -100,9 +100,9 @@ fn positive(name: &str, given: Option<f64>) -> Result<f64, Problem> {
     }
 }
 
-fn sampled(request: &JobRequest, stage: &exact::Stage) -> ExactStage {
+fn sampled(request: &JobRequest, stage: &exact::CurveStage) -> ExactStage {
     let pieces = stage.pieces.iter();
-    let places: Vec<Place> = pieces
+    let places: Vec<CurvePlace> = pieces
         .flat_map(|piece| (0..=POINTS).map(|point| piece.at(piece.parameter(point as f64 / POINTS as f64))))
         .filter(|place| place.load.is_finite() && place.displacements.iter().all(|component| component.is_finite()))
         .collect();
