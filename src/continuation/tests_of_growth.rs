@@ -6,6 +6,7 @@
 
 use crate::continuation::path::iterator::Path;
 use crate::continuation::scene::{AdditionalParts, Scene};
+use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::kinematics::{CoupledKinematics, Kinematics};
 use crate::mechanics::contact::obstacle::RigidSurface;
 use crate::mechanics::contact::vector::Vector;
@@ -274,7 +275,7 @@ fn scene(method: &str, extra: usize) -> Scene {
         initial_gap: kinematics.rail(&[0.0; 6]).across,
         kinematics: Kinematics::Coupled(Arc::new(kinematics)),
         obstacle: RigidSurface::Plane { normal: [0.0, 1.0, 0.0] },
-        friction: FRICTION,
+        friction: CoulombFriction::new(FRICTION),
         sliding: Sliding::Line { across: [0.0, 0.0, 1.0] },
     };
     let parts = AdditionalParts { elements: vec![Arc::new(lever)], contacts: vec![("right", "rail", contact)] };

@@ -125,7 +125,7 @@ impl Watch {
                 } else {
                     side * dot(&reaction.tangential, &loading.frame(contact, state).tangents[0])
                 };
-                loading.contacts[contact].friction * reaction.normal + traction
+                loading.contacts[contact].friction.bound(reaction.normal) + traction
             }
             Self::Sliding(contact) => {
                 dot(&direction(loading, modes, contact, state), &loading.relative_rate(contact, state, rate))
@@ -168,7 +168,7 @@ impl Watch {
                 } else {
                     side * dot(&change.tangential, &loading.frame(contact, state).tangents[0])
                 };
-                Some(loading.contacts[contact].friction * change.normal + traction)
+                Some(loading.contacts[contact].friction.bound(change.normal) + traction)
             }
             Self::Slide { corner } | Self::Hold { corner } | Self::Return { corner } => {
                 let pocket = pocket(loading, corner, modes, state);

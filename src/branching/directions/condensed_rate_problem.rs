@@ -121,7 +121,7 @@ impl<'a> Condensed<'a> {
             .filter(|entry| self.changeable[*entry].may_turn(self.loading))
             .filter_map(|entry| {
                 let contact = self.changeable[entry].contacts[0];
-                Touch::of(&self.problem, entry, self.loading.contacts[contact].friction)
+                Touch::of(&self.problem, entry, self.loading.contacts[contact].friction.coefficient)
             })
             .collect();
         let mut turning: Vec<Turning> = Vec::new();
@@ -279,7 +279,7 @@ impl<'a> Condensed<'a> {
                     Mode::Slip { direction } if entry.contacts.len() == 1 => {
                         // Exactly on the cone along the direction; what is across it turns the direction.
                         let friction = self.loading.contacts[*contact].friction;
-                        let drag = -friction * reaction.normal - dot(&reaction.tangential, direction);
+                        let drag = -friction.bound(reaction.normal) - dot(&reaction.tangential, direction);
                         reaction.tangential = add(&reaction.tangential, drag, direction);
                     }
                     Mode::Free | Mode::Stick | Mode::Slip { .. } => {}

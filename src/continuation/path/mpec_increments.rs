@@ -214,7 +214,7 @@ fn is_at_edge(
     if one.is_active() != other.is_active() {
         return loading.gap(contact, state).abs() <= EDGE * step && reaction.size() <= EDGE * forces;
     }
-    let cone = loading.contacts[contact].friction * reaction.normal - reaction.tangential_size();
+    let cone = loading.contacts[contact].friction.margin(reaction);
     match (one, other) {
         (Mode::Slip { .. }, Mode::Slip { .. }) => reaction.tangential_size() <= EDGE * forces,
         _ => cone.abs() <= EDGE * forces,

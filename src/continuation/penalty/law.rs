@@ -1,5 +1,6 @@
 //! One contact: penalty reaction, return mapping of friction, and the derivative of both.
 
+use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::vector::{Vector, add, dot, size};
 use crate::mechanics::contact::{Frame, Reaction};
 use crate::result::increment::Status;
@@ -41,7 +42,13 @@ impl Default for PenaltyResponse {
 
 /// The response at a frame, where the increment began with the tangential reaction `before` and the node has moved by
 /// `moved` since. A gap of exactly zero is closed: a path may start there.
-pub fn respond(penalties: Penalties, friction: f64, frame: &Frame, before: &Vector, moved: &Vector) -> PenaltyResponse {
+pub fn respond(
+    penalties: Penalties,
+    friction: CoulombFriction,
+    frame: &Frame,
+    before: &Vector,
+    moved: &Vector,
+) -> PenaltyResponse {
     if frame.gap > 0.0 {
         return PenaltyResponse::default();
     }
@@ -56,7 +63,7 @@ pub fn respond(penalties: Penalties, friction: f64, frame: &Frame, before: &Vect
     };
     response.stiffness = matrix(normal_part);
     response.force = vector(|k| normal * n[k]);
-    if friction == 0.0 {
+    if !friction.is_rough() {
         response.slip = times(&project, moved);
         return response;
     }
@@ -69,7 +76,7 @@ pub fn respond(penalties: Penalties, friction: f64, frame: &Frame, before: &Vect
         -penalties.tangential * project[row][column]
             - frame.curvature * (along_normal * project[row][column] + n[row] * trial[column])
     });
-    let bound = friction * normal;
+    let bound = friction.bound(normal);
     let slope = if size <= bound {
         response.status = Status::Stick;
         response.reaction.tangential = trial;
@@ -81,7 +88,7 @@ pub fn respond(penalties: Penalties, friction: f64, frame: &Frame, before: &Vect
         response.slip = vector(|k| (bound - size) / penalties.tangential * direction[k]);
         matrix(|row, column| {
             let turned: f64 = (0..3).map(|k| turning[row][k] * trial_slope[k][column]).sum();
-            bound / size * turned - friction * penalties.normal * direction[row] * n[column]
+            bound / size * turned - friction.bound(penalties.normal) * direction[row] * n[column]
         })
     };
     response.force = vector(|k| normal * n[k] + response.reaction.tangential[k]);
@@ -113,6 +120,7 @@ mod tests {
     use crate::mechanics::contact::{ContactPair, Sliding};
     use crate::result::increment::Status;
 
+    const FRICTION: CoulombFriction = CoulombFriction { coefficient: 0.4 };
     const PENALTIES: Penalties = Penalties { normal: 300.0, tangential: 70.0 };
 
     /// A ball of radius 2 around the origin, or the plane z = 0.
@@ -127,7 +135,7 @@ mod tests {
             kinematics: crate::mechanics::contact::kinematics::Kinematics::Node(0),
             obstacle,
             initial_gap,
-            friction: 0.4,
+            friction: FRICTION,
             sliding: Sliding::Plane,
         }
         .frame(&relative)
@@ -136,7 +144,7 @@ mod tests {
     fn response(place: &[f64; 3], start: &[f64; 3], ball: bool) -> PenaltyResponse {
         let before = if ball { [0.02, 0.03, -0.01] } else { [0.02, 0.03, 0.0] };
         let moved = std::array::from_fn(|k| place[k] - start[k]);
-        respond(PENALTIES, 0.4, &frame(place, ball), &before, &moved)
+        respond(PENALTIES, FRICTION, &frame(place, ball), &before, &moved)
     }
 
     /// Central differences of the force against the stiffness, sticking and slipping, flat and curved.
@@ -187,7 +195,7 @@ mod tests {
     fn an_open_contact_does_nothing_and_forgets() {
         let open = response(&[0.05, 0.03, 1e-9], &[0.0, 0.0, -0.01], false);
         assert_eq!((open.status, open.force, open.reaction.tangential), (Status::Free, [0.0; 3], [0.0; 3]));
-        let closed = respond(PENALTIES, 0.4, &frame(&[0.0; 3], false), &[0.0; 3], &[0.0; 3]);
+        let closed = respond(PENALTIES, FRICTION, &frame(&[0.0; 3], false), &[0.0; 3], &[0.0; 3]);
         assert_eq!(closed.status, Status::Stick);
         assert_eq!(closed.stiffness[2][2], PENALTIES.normal);
     }

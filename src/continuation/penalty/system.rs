@@ -3,6 +3,7 @@
 use crate::algebra::null_space;
 use crate::continuation::penalty::law::{Penalties, PenaltyResponse, respond};
 use crate::mechanics::contact::Reaction;
+use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::vector::{Vector, add, dot};
 use crate::mechanics::problem::contact_motion;
 use crate::mechanics::problem::loading::Loading;
@@ -60,7 +61,7 @@ impl PenaltySystem<'_> {
         for (index, (contact, before)) in self.loading.contacts.iter().zip(&from.contacts).enumerate() {
             let relative = self.loading.relative(index, state);
             let moved = add(&relative, -1.0, &self.loading.relative(index, &from.state));
-            let friction = if contact.tangents() == 0 { 0.0 } else { contact.friction };
+            let friction = if contact.tangents() == 0 { CoulombFriction::SMOOTH } else { contact.friction };
             let response =
                 respond(self.penalties, friction, &contact.frame(&relative), &before.reaction.tangential, &moved);
             force_scale = force_scale.max(response.reaction.normal);

@@ -1,6 +1,7 @@
 //! From the request's names and units to numbers without.
 
 use crate::continuation::scene::{Reported, StageLoad};
+use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::kinematics::Kinematics;
 use crate::mechanics::contact::obstacle::RigidSurface;
 use crate::mechanics::contact::vector::{Vector, size};
@@ -109,7 +110,7 @@ pub(super) fn build_contacts(
         budget::spend(1);
         let node_number = numbers[contact.node.as_str()];
         let built = build_contact(model, contact, node_number, length, structure);
-        if built.friction == 0.0 && contact.friction > 0.0 {
+        if !built.friction.is_rough() && contact.friction > 0.0 {
             left_out.push(LeftOut {
                 what: format!("friction of {} on {}", contact.node, contact.obstacle),
                 why: "the node's supports leave it no motion along the obstacle".to_owned(),
@@ -156,7 +157,7 @@ pub(super) fn build_contacts(
             (one.normal_share, one.tangential_share, one.shared) = (1.0 / number, part, true);
         }
         if contact.sliding.directions() > 0 {
-            contact.friction = total / number;
+            contact.friction = CoulombFriction::new(total / number);
         }
     }
     // In the order of the contacts, so that the numbering does not depend on a hash.
@@ -238,7 +239,8 @@ fn build_contact(
         }
     };
     let sliding = sliding(structure, node);
-    let friction = if sliding.directions() == 0 { 0.0 } else { contact.friction };
+    let coefficient = if sliding.directions() == 0 { 0.0 } else { contact.friction };
+    let friction = CoulombFriction::new(coefficient);
     ContactPair { kinematics: Kinematics::Node(node), obstacle, initial_gap, friction, sliding }
 }
 

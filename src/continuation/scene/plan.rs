@@ -17,7 +17,7 @@ pub(crate) fn left_out(scene: &Scene) -> Vec<LeftOut> {
     let (contacts, analysis) = (&scene.contacts, &scene.analysis);
     let mut left_out = Vec::new();
     let mut leave = |what: &str, why: &str| left_out.push(LeftOut { what: what.to_owned(), why: why.to_owned() });
-    let frictionless = contacts.iter().all(|contact| contact.friction == 0.0);
+    let frictionless = !contacts.iter().any(|contact| contact.friction.is_rough());
     if contacts.is_empty() {
         leave("contact unknowns, directions and complementarity programs", "the scene has no contacts");
     } else if frictionless {

@@ -10,13 +10,14 @@
 //! function `½ Σ |P_i(y)|² - R·y`, found by Newton's method (R. T. Rockafellar, *Convex Analysis*, Princeton 1970, §31;
 //! projection on the circular cone: H. H. Bauschke, *Projection algorithms and monotone operators*, 1996, thm 3.3.6).
 
+use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled, size};
 
 /// A friction cone: axis (unit normal) and coefficient.
 #[derive(Debug, Clone, Copy)]
 pub struct Cone {
     pub normal: Vector,
-    pub friction: f64,
+    pub friction: CoulombFriction,
     /// The only line along which there is friction; without one the cone is circular.
     pub line: Option<Vector>,
 }
@@ -45,15 +46,15 @@ impl Cone {
         let across = tangential(force);
         let radius = size(&across);
         let direction = if radius > 0.0 { scaled(&across, 1.0 / radius) } else { [0.0; 3] };
-        let place = if radius <= friction * along {
+        let place = if radius <= friction.bound(along) {
             Place::Inside
-        } else if friction * radius <= -along {
+        } else if friction.bound(radius) <= -along {
             Place::Apex
         } else {
             Place::Surface
         };
-        let ray = add(&normal, friction, &direction);
-        let norm = 1.0 + friction * friction;
+        let ray = add(&normal, friction.coefficient, &direction);
+        let norm = friction.force_direction_squared();
         let inside = move |vector: &Vector| match line {
             Some(_) => add(&tangential(vector), dot(vector, &normal), &normal),
             None => *vector,
@@ -61,7 +62,7 @@ impl Cone {
         let projected = match place {
             Place::Inside => inside(force),
             Place::Apex => [0.0; 3],
-            Place::Surface => scaled(&ray, (along + friction * radius) / norm),
+            Place::Surface => scaled(&ray, (along + friction.bound(radius)) / norm),
         };
         let derivative = move |change: &Vector| match place {
             Place::Inside => inside(change),
@@ -70,7 +71,7 @@ impl Cone {
                 let stretched = scaled(&ray, dot(change, &ray) / norm);
                 let tangential = tangential(change);
                 let turning = add(&tangential, -dot(&tangential, &direction), &direction);
-                let turn = friction * (along + friction * radius) / (norm * radius);
+                let turn = friction.bound(along + friction.bound(radius)) / (norm * radius);
                 add(&stretched, turn, &turning)
             }
         };
@@ -179,9 +180,9 @@ mod tests {
     #[test]
     fn a_guided_node_shares_what_it_is_free_to_follow() {
         // Guided along y between y and (1, 1)/√2: parts in proportion to what of the normals is free.
-        let floor = Cone { normal: [0.0, 1.0, 0.0], friction: 0.0, line: None };
+        let floor = Cone { normal: [0.0, 1.0, 0.0], friction: CoulombFriction::new(0.0), line: None };
         let half = 0.5_f64.sqrt();
-        let flank = Cone { normal: [half, half, 0.0], friction: 0.0, line: None };
+        let flank = Cone { normal: [half, half, 0.0], friction: CoulombFriction::new(0.0), line: None };
         let parts = least_reactions(&[floor, flank], &SPACE[1..2], &[0.0, 3.0, 0.0]).unwrap();
         assert!((parts[0][1] - 2.0).abs() < 1e-12 && (dot(&parts[1], &flank.normal) - 2.0 * half).abs() < 1e-12);
     }
@@ -189,8 +190,8 @@ mod tests {
     #[test]
     fn a_corner_shares_a_force() {
         // Floor and wall, frictionless: each takes its own part.
-        let floor = Cone { normal: [0.0, 1.0, 0.0], friction: 0.0, line: None };
-        let wall = Cone { normal: [1.0, 0.0, 0.0], friction: 0.0, line: None };
+        let floor = Cone { normal: [0.0, 1.0, 0.0], friction: CoulombFriction::new(0.0), line: None };
+        let wall = Cone { normal: [1.0, 0.0, 0.0], friction: CoulombFriction::new(0.0), line: None };
         let parts = least_reactions(&[floor, wall], &SPACE, &[2.0, 3.0, 0.0]).unwrap();
         assert!((parts[0][1] - 3.0).abs() < 1e-12 && (parts[1][0] - 2.0).abs() < 1e-12);
         assert!(least_reactions(&[floor, wall], &SPACE, &[-1.0, 3.0, 0.0]).is_none());
@@ -198,7 +199,7 @@ mod tests {
 
     #[test]
     fn coincident_obstacles_share_equally() {
-        let floor = Cone { normal: [0.0, 0.0, 1.0], friction: 0.5, line: None };
+        let floor = Cone { normal: [0.0, 0.0, 1.0], friction: CoulombFriction::new(0.5), line: None };
         let parts = least_reactions(&[floor, floor], &SPACE, &[0.3, 0.2, 1.0]).unwrap();
         for part in parts {
             assert!((part[0] - 0.15).abs() < 1e-12 && (part[2] - 0.5).abs() < 1e-12);
@@ -207,8 +208,8 @@ mod tests {
 
     #[test]
     fn the_least_reactions_satisfy_the_conditions_of_optimality() {
-        let floor = Cone { normal: [0.0, 1.0, 0.0], friction: 0.3, line: None };
-        let wall = Cone { normal: [0.8, 0.6, 0.0], friction: 0.2, line: None };
+        let floor = Cone { normal: [0.0, 1.0, 0.0], friction: CoulombFriction::new(0.3), line: None };
+        let wall = Cone { normal: [0.8, 0.6, 0.0], friction: CoulombFriction::new(0.2), line: None };
         let force = [0.6, 1.9, 0.0];
         let parts = least_reactions(&[floor, wall], &SPACE, &force).unwrap();
         let sum = add(&parts[0], 1.0, &parts[1]);
@@ -232,8 +233,10 @@ mod tests {
     #[test]
     fn two_cones_that_are_all_of_space_share_any_force() {
         let unit = |vector: [f64; 3]| scaled(&vector, 1.0 / size(&vector));
-        let first = Cone { normal: unit([-0.2297, 0.7365, -0.6362]), friction: 1.265, line: None };
-        let second = Cone { normal: unit([0.5639, -0.8116, -0.1529]), friction: 0.201, line: None };
+        let first =
+            Cone { normal: unit([-0.2297, 0.7365, -0.6362]), friction: CoulombFriction::new(1.265), line: None };
+        let second =
+            Cone { normal: unit([0.5639, -0.8116, -0.1529]), friction: CoulombFriction::new(0.201), line: None };
         for k in 0..2000 {
             let angle = f64::from(k) * 2.399_963_229_728_653;
             let height = 1.0 - (2.0 * f64::from(k) + 1.0) / 2000.0;

@@ -7,12 +7,14 @@
 //! Dimensionless. Tractions and slips are vectors in space, so that they mean the same wherever on a curved obstacle
 //! the node is; in 2D the third component is 0. Knows nothing of structures and paths.
 
+pub mod coulomb;
 pub(crate) mod frame;
 pub mod kinematics;
 pub mod least_norm_reactions;
 pub mod obstacle;
 pub mod vector;
 
+use coulomb::CoulombFriction;
 pub use frame::{Frame, Sliding, tangents_in_space};
 use kinematics::Kinematics;
 use obstacle::RigidSurface;
@@ -26,8 +28,7 @@ pub struct ContactPair {
     pub obstacle: RigidSurface,
     /// Gap of the undeformed structure; kept apart so that a place far from the origin costs no digits.
     pub initial_gap: f64,
-    /// Coulomb's coefficient; 0 where friction can do nothing.
-    pub friction: f64,
+    pub friction: CoulombFriction,
     pub sliding: Sliding,
 }
 
@@ -126,6 +127,6 @@ impl ContactPair {
     /// Number of tangential reactions: 0 without friction.
     #[inline(always)]
     pub fn tangents(&self) -> usize {
-        if self.friction > 0.0 { self.sliding.directions() } else { 0 }
+        if self.friction.is_rough() { self.sliding.directions() } else { 0 }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::algebra::dense::assembly::Sink;
 use crate::algebra::sparse::Bordered;
-use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled};
+use crate::mechanics::contact::vector::{Vector, cross, dot, scaled};
 use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role, Track, slip_integration};
 use crate::mechanics::problem::contact_motion;
 use crate::mechanics::problem::node_forces::force;
@@ -143,7 +143,7 @@ impl ModeSystem<'_> {
         let friction = self.loading.contacts[contact].friction;
         let normal = iterate.state.reactions[contact].normal;
         let direction = self.direction(contact, &frame, iterate);
-        self.put_force(contact, state, column, &add(&frame.normal, -friction, &direction), matrix);
+        self.put_force(contact, state, column, &friction.force_direction(&frame.normal, &direction), matrix);
         self.put_motion(contact, state, row, &frame.normal, matrix);
         self.add_curvature(contact, state, matrix);
         if let Role::Plane { track } = self.roles[contact] {
@@ -157,7 +157,7 @@ impl ModeSystem<'_> {
                 }
                 Kind::Increment => {
                     // Where the node is hardly pressed a turn changes nothing, and the equations would be singular.
-                    let pressed = friction * normal;
+                    let pressed = friction.bound(normal);
                     let pressed = if pressed.abs() < LEAST_PRESSED { LEAST_PRESSED } else { pressed };
                     self.put_force(contact, state, column + 1, &scaled(&across, -pressed), matrix);
                     let chord = self.chord(contact, &iterate.state);
@@ -175,7 +175,7 @@ impl ModeSystem<'_> {
         // The reaction turns with the place on the obstacle.
         let change_with = |motion: &Vector| {
             let drag = self.direction_change(contact, iterate, &direction, motion);
-            scaled(&add(&frame.normal_change(motion), -friction, &drag), normal)
+            scaled(&friction.force_direction(&frame.normal_change(motion), &drag), normal)
         };
         self.loading.each_column(contact, state, |freedom, motion| {
             let change = change_with(motion);

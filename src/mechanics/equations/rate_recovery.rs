@@ -1,7 +1,7 @@
 //! Solutions of the equations taken apart: rates, corrections and the path's direction.
 
 use crate::algebra::SystemFactorisation;
-use crate::mechanics::contact::vector::{add, cross, scaled};
+use crate::mechanics::contact::vector::{add, cross};
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::equations::solution::Corrected;
 use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role, slip_integration};
@@ -72,9 +72,9 @@ impl ModeSystem<'_> {
                 Role::Line { .. } | Role::Edge { .. } | Role::Plane { .. } => {
                     let frame = self.loading.frame(contact, &iterate.state);
                     let friction = self.loading.contacts[contact].friction;
-                    let pressed = friction * iterate.state.reactions[contact].normal;
+                    let pressed = friction.bound(iterate.state.reactions[contact].normal);
                     let direction = self.direction(contact, &frame, iterate);
-                    let mut tangential = scaled(&direction, -friction * values[column]);
+                    let mut tangential = friction.traction(values[column], &direction);
                     if matches!(role, Role::Plane { .. }) {
                         let across = cross(&frame.normal, &direction);
                         let per_turn = if kind == Kind::Rates { 1.0 } else { pressed };

@@ -106,8 +106,9 @@ impl ModeSystem<'_> {
                 Role::Line { .. } | Role::Edge { .. } | Role::Plane { .. } => {
                     let frame = self.loading.frame(contact, &iterate.state);
                     let direction = self.direction(contact, &frame, iterate);
-                    let drag = -self.loading.contacts[contact].friction * iterate.state.reactions[contact].normal;
-                    iterate.state.reactions[contact].tangential = scaled(&direction, drag);
+                    let friction = self.loading.contacts[contact].friction;
+                    let reaction = &mut iterate.state.reactions[contact];
+                    reaction.tangential = friction.traction(reaction.normal, &direction);
                 }
             }
         }

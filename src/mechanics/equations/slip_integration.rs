@@ -195,7 +195,7 @@ pub(crate) fn turn_rate(
 ) -> Option<f64> {
     let frame = loading.frame(contact, state);
     let speed = dot(direction, &loading.relative_rate(contact, state, rate));
-    let pressed = loading.contacts[contact].friction * state.reactions[contact].normal;
+    let pressed = loading.contacts[contact].friction.bound(state.reactions[contact].normal);
     if speed <= SMALLEST || pressed <= SMALLEST * rate.reactions[contact].size() {
         return None;
     }
@@ -215,10 +215,10 @@ pub(crate) fn settling(
     let frame = loading.frame(contact, state);
     let friction = loading.contacts[contact].friction;
     let speed = dot(direction, &loading.relative_rate(contact, state, rate));
-    let pressed = friction * state.reactions[contact].normal;
+    let pressed = friction.bound(state.reactions[contact].normal);
     let across = cross(&frame.normal, direction);
     let turn = -dot(&rate.reactions[contact].tangential, &across);
-    let drawn = stiffness * speed + friction * rate.reactions[contact].normal;
+    let drawn = stiffness * speed + friction.bound(rate.reactions[contact].normal);
     // Past the end of contact there is no friction to follow anything.
     if speed <= SMALLEST || drawn <= 0.0 || pressed <= 0.0 {
         return None;

@@ -37,7 +37,7 @@ const ROUND_OFF: f64 = 1e-12;
 /// but no less than round-off and no more than by the forces at its node.
 pub fn none_from_cone(loading: Loading<'_>, contact: usize, state: &State, tolerance: f64, force_scale: f64) -> f64 {
     let reaction = &state.reactions[contact];
-    let bound = (loading.contacts[contact].friction * reaction.normal).abs();
+    let bound = loading.contacts[contact].friction.bound(reaction.normal).abs();
     // The forces lie between the reaction and the force scale: often that tells.
     let least = reaction.size().min(force_scale);
     if bound <= least && tolerance * bound >= ROUND_OFF * force_scale {
@@ -102,7 +102,7 @@ fn standing(loading: Loading<'_>, state: &State, index: usize, force_scale: f64)
     if contact.tangents() == 0 {
         return Standing::Settled(Mode::Slip { direction: [0.0; 3] });
     }
-    let bound = contact.friction * reaction.normal;
+    let bound = contact.friction.bound(reaction.normal);
     if bound - reaction.tangential_size() > none_from_cone(loading, index, state, ZERO, force_scale) {
         return Standing::Settled(Mode::Stick);
     }

@@ -14,6 +14,7 @@
 //! Where it sticks to one of them while it is carried, equilibrium does not tell the reactions apart, and they are those
 //! of least norm, as in other corners.
 
+use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::obstacle::RigidSurface;
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled, size, unit};
 use crate::mechanics::contact::{Frame, Mode, Reaction};
@@ -26,7 +27,7 @@ use crate::mechanics::problem::state::{Rate, State};
 pub struct Carried {
     pub(super) contacts: [usize; 2],
     pub(super) frames: [Frame; 2],
-    pub(super) frictions: [f64; 2],
+    pub(super) frictions: [CoulombFriction; 2],
     /// Velocities of the planes per load factor.
     pub(super) shifts: [Vector; 2],
     /// Velocity of the carried node per load factor.
@@ -68,7 +69,7 @@ impl Carried {
         [0, 1].map(|place| {
             let tangent = self.frames[place].tangents[0];
             let along = dot(&tangent, &add(&self.velocity, -1.0, &self.shifts[place]));
-            if self.frictions[place] == 0.0 {
+            if !self.frictions[place].is_rough() {
                 Mode::Slip { direction: [0.0; 3] }
             } else if along.abs() <= STILL * largest {
                 Mode::Stick
@@ -79,7 +80,7 @@ impl Carried {
     }
 
     pub(super) fn ray(&self, place: usize, direction: &Vector) -> Vector {
-        unit(&add(&self.frames[place].normal, -self.frictions[place], direction))
+        unit(&self.frictions[place].force_direction(&self.frames[place].normal, direction))
     }
 
     /// Reactions (or their rates) in these modes that make up a force (or its rate), one a contact.

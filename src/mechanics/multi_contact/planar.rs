@@ -9,6 +9,7 @@
 //! space, and they may move against each other.
 //! The reactions that are reported are those of least norm (`contact::share`).
 
+use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::vector::{Vector, add, scaled, unit};
 use crate::mechanics::contact::{Frame, Mode};
 use crate::mechanics::problem::loading::Loading;
@@ -25,9 +26,9 @@ pub struct Sector {
 }
 
 /// The two rays of a contact's cone in 2D, clockwise last.
-pub fn rays(frame: &Frame, friction: f64) -> [Vector; 2] {
+pub fn rays(frame: &Frame, friction: CoulombFriction) -> [Vector; 2] {
     let tangent = [frame.normal[1], -frame.normal[0], 0.0];
-    [add(&frame.normal, -friction, &tangent), add(&frame.normal, friction, &tangent)]
+    [friction.force_direction(&frame.normal, &tangent), add(&frame.normal, friction.coefficient, &tangent)]
 }
 
 pub(crate) fn turn(a: &Vector, b: &Vector) -> f64 {
@@ -38,7 +39,7 @@ pub(crate) fn turn(a: &Vector, b: &Vector) -> f64 {
 pub(crate) fn rays_in(loading: Loading<'_>, contact: usize, mode: Mode, state: &State) -> Vec<Vector> {
     let (frame, friction) = (loading.frame(contact, state), loading.contacts[contact].friction);
     match mode {
-        Mode::Slip { direction } => vec![unit(&add(&frame.normal, -friction, &direction))],
+        Mode::Slip { direction } => vec![unit(&friction.force_direction(&frame.normal, &direction))],
         Mode::Stick | Mode::Free => rays(&frame, friction).iter().map(unit).collect(),
     }
 }

@@ -1,5 +1,6 @@
 //! How contacts share the force on the node that they hold: the reactions of least norm.
 
+use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::least_norm_reactions::{Cone, least_reactions};
 use crate::mechanics::contact::vector::{Vector, add, dot, unit};
 use crate::mechanics::contact::{Frame, Mode};
@@ -65,8 +66,8 @@ pub fn share(loading: Loading<'_>, corners: &[Corner], modes: &[Mode], state: &m
             .map(|(contact, frame)| match modes[*contact] {
                 // One ray is left of the cone.
                 Mode::Slip { direction } => {
-                    let ray = add(&frame.normal, -loading.contacts[*contact].friction, &direction);
-                    Cone { normal: unit(&ray), friction: 0.0, line: None }
+                    let ray = loading.contacts[*contact].friction.force_direction(&frame.normal, &direction);
+                    Cone { normal: unit(&ray), friction: CoulombFriction::SMOOTH, line: None }
                 }
                 Mode::Stick | Mode::Free => {
                     Cone { normal: frame.normal, friction: loading.contacts[*contact].friction, line: None }

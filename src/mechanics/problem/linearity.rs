@@ -7,7 +7,7 @@ use crate::mechanics::problem::loading::Loading;
 /// Whether nothing about a contact bends a path of linear elements.
 pub(crate) fn is_straight(contact: &ContactPair) -> bool {
     let plane = matches!(contact.obstacle, RigidSurface::Plane { .. });
-    plane && (contact.friction == 0.0 || contact.sliding != Sliding::Plane)
+    plane && (!contact.friction.is_rough() || contact.sliding != Sliding::Plane)
 }
 
 /// Whether every direction of first order holds exactly over some way: nothing bends it.

@@ -18,13 +18,13 @@ pub fn violation(loading: Loading<'_>, state: &State, force_scale: f64) -> f64 {
         let friction = loading.contacts[index].friction;
         let traction = reaction.tangential_size();
         // The forces at the node are at most the force scale: often they need not be known.
-        let obeys = reaction.normal >= 0.0 && traction <= friction * reaction.normal;
+        let obeys = reaction.normal >= 0.0 && traction <= friction.bound(reaction.normal);
         if obeys && gap <= reaction.normal / force_scale.max(NO_FORCE) {
             return gap.abs();
         }
         let scaled = 1.0 / loading.force_scale_at(index, state, force_scale).max(NO_FORCE);
         let normal = reaction.normal * scaled;
-        let cone = traction * scaled - friction * normal;
+        let cone = traction * scaled - friction.bound(normal);
         (-gap).max(-normal).max(gap.min(normal).abs()).max(cone)
     };
     state.reactions.iter().enumerate().map(of_contact).fold(0.0, f64::max)

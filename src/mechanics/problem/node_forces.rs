@@ -1,5 +1,6 @@
 //! The forces of all contacts on one node, and where the node is free.
 
+use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::vector::{Vector, add, scaled, size};
 use crate::mechanics::contact::{Frame, Mode, Reaction, Sliding};
 use crate::mechanics::problem::contact_motion::AXES;
@@ -90,13 +91,13 @@ pub fn total_force(loading: Loading<'_>, contacts: impl Iterator<Item = usize>, 
 
 /// Normal and tangential parts of a force in the cone of a contact. With much friction the normal part may be lost in the
 /// rounding of the whole: it is then what the cone makes of the tangential one.
-pub fn taken_apart(force: &Vector, frame: &Frame, friction: f64) -> Reaction {
-    if friction == 0.0 {
+pub fn taken_apart(force: &Vector, frame: &Frame, friction: CoulombFriction) -> Reaction {
+    if !friction.is_rough() {
         return Reaction::along(force, &frame.normal);
     }
     let Reaction { normal, tangential } = Reaction::of(force, &frame.normal);
     // A little more, so that the cone holds in spite of rounding, however large the force.
-    let least = size(&tangential) / friction * (1.0 + 4.0 * f64::EPSILON);
+    let least = size(&tangential) / friction.coefficient * (1.0 + 4.0 * f64::EPSILON);
     let is_round_off = least - normal <= FLAT * size(force);
     Reaction { normal: if is_round_off { normal.max(least) } else { normal }, tangential }
 }

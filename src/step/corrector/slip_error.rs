@@ -53,7 +53,7 @@ pub fn drift(
                 let direction = iterate.directions[contact];
                 let chord = system.chord(contact, &end.corrected.state);
                 let rule = Rule::new(&frame, begun, turn, &direction, &chord);
-                let pressed = system.loading.contacts[contact].friction * system.anchor.reactions[contact].normal;
+                let pressed = system.loading.contacts[contact].friction.bound(system.anchor.reactions[contact].normal);
                 let turned = before.filter(|_| pressed > 0.0).map_or(0.0, |before| {
                     let across = cross(&begun.normal, &begun.direction);
                     -dot(&before.reactions[contact].tangential, &across) / pressed

@@ -237,7 +237,8 @@ fn members(
         let slip_rates = ends.map(|(rate, _)| program.motion(entry, rate)[0]);
         let slipped: f64 = entry.parts().map(|(part, side)| side * x[part]).iter().sum();
         for (_, side) in entry.parts() {
-            let off_cone = |normal: f64, traction: f64| (friction * normal + side * traction) / (1.0 + friction);
+            let off_cone =
+                |normal: f64, traction: f64| (friction.bound(normal) + side * traction) / (1.0 + friction.coefficient);
             let ends = (off_cone(pressed, entry.traction[0]), off_cone(x[entry.normal()], x[entry.tangential(0)]));
             let rates = [0, 1].map(|k| off_cone(pressed_rates[k], traction_rates[k]));
             members.push([

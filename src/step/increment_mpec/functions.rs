@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// Contacts with friction.
 fn rough<'a>(program: &'a IncrementProgram<'_>) -> impl Iterator<Item = &'a InReach> {
-    program.reach.iter().filter(|entry| entry.friction > 0.0)
+    program.reach.iter().filter(|entry| entry.friction.is_rough())
 }
 
 /// Contacts with friction whose cone is a second-order one.
@@ -185,9 +185,9 @@ impl Problem for IncrementProgram<'_> {
             second[pair] = x[entry.normal()];
             pair += 1;
             if entry.tangents == 1 {
-                let bound = entry.friction * x[entry.normal()];
+                let bound = entry.friction.bound(x[entry.normal()]);
                 for (part, side) in entry.parts() {
-                    first[pair] = (bound + side * x[entry.tangential(0)]) / (1.0 + entry.friction);
+                    first[pair] = (bound + side * x[entry.tangential(0)]) / (1.0 + entry.friction.coefficient);
                     second[pair] = x[part];
                     pair += 1;
                 }
@@ -209,8 +209,8 @@ impl Problem for IncrementProgram<'_> {
             pair += 1;
             if entry.tangents == 1 {
                 for (part, side) in entry.parts() {
-                    first[(pair, entry.normal())] = entry.friction / (1.0 + entry.friction);
-                    first[(pair, entry.tangential(0))] = side / (1.0 + entry.friction);
+                    first[(pair, entry.normal())] = entry.friction.coefficient / (1.0 + entry.friction.coefficient);
+                    first[(pair, entry.tangential(0))] = side / (1.0 + entry.friction.coefficient);
                     second[(pair, part)] = 1.0;
                     pair += 1;
                 }
@@ -229,10 +229,10 @@ impl Problem for IncrementProgram<'_> {
     fn cone_jacobians(&self, _x: &DVector<f64>, first: &mut DMatrix<f64>, second: &mut DMatrix<f64>) {
         for (place, entry) in coned(self).enumerate() {
             let row = 3 * place;
-            first[(row, entry.normal())] = entry.friction / (1.0 + entry.friction);
+            first[(row, entry.normal())] = entry.friction.coefficient / (1.0 + entry.friction.coefficient);
             second[(row, entry.bound())] = 1.0;
             for k in 0..2 {
-                first[(row + 1 + k, entry.tangential(k))] = 1.0 / (1.0 + entry.friction);
+                first[(row + 1 + k, entry.tangential(k))] = 1.0 / (1.0 + entry.friction.coefficient);
                 second[(row + 1 + k, entry.slip(k))] = 1.0;
             }
         }

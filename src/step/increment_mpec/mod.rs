@@ -39,6 +39,7 @@ mod tests_of_certificate;
 mod tests_of_chains;
 
 use crate::complementarity::mpec::{self, Finish, PairActivity, ProgramSolution, Settings, StationarityKind};
+use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled};
 use crate::mechanics::contact::{Frame, Mode};
 use crate::mechanics::equations::slip_integration::Start;
@@ -86,7 +87,7 @@ pub struct IncrementProgram<'a> {
 struct InReach {
     contact: usize,
     first: usize,
-    friction: f64,
+    friction: CoulombFriction,
     /// Number of tangents with friction: 0, 1 (a polyhedral cone) or 2 (a circular one).
     tangents: usize,
     /// Frame at the start of the increment, along which slip is counted.
@@ -121,8 +122,11 @@ impl InReach {
 
     /// In 3D: `(μ ρ_n, ρ_t)/(1 + μ)` and `(λ, a)/S`.
     fn cone_members(&self, x: &DVector<f64>) -> ([f64; 3], [f64; 3]) {
-        let of_force = [self.friction * x[self.normal()], x[self.tangential(0)], x[self.tangential(1)]];
-        (of_force.map(|value| value / (1.0 + self.friction)), [x[self.bound()], x[self.slip(0)], x[self.slip(1)]])
+        let of_force = [self.friction.bound(x[self.normal()]), x[self.tangential(0)], x[self.tangential(1)]];
+        (
+            of_force.map(|value| value / (1.0 + self.friction.coefficient)),
+            [x[self.bound()], x[self.slip(0)], x[self.slip(1)]],
+        )
     }
 }
 
@@ -192,7 +196,7 @@ impl<'a> IncrementProgram<'a> {
                 continue;
             }
             let tangents = data.tangents();
-            let friction = if tangents > 0 { data.friction } else { 0.0 };
+            let friction = if tangents > 0 { data.friction } else { CoulombFriction::SMOOTH };
             let traction = tangent_components::components(&frame, &base.reactions[contact].tangential);
             let traction = traction.map(|component| component / force);
             reach.push(InReach { contact, first: next, friction, tangents, frame, traction });
@@ -259,7 +263,7 @@ impl<'a> IncrementProgram<'a> {
         for entry in &self.reach {
             let (reaction, change) = (self.base.reactions[entry.contact], rate.reactions[entry.contact]);
             x[entry.normal()] = (reaction.normal + self.step * change.normal) / self.force;
-            if entry.friction == 0.0 {
+            if !entry.friction.is_rough() {
                 continue;
             }
             let components = |vector: &Vector| tangent_components::components(&entry.frame, vector);

@@ -73,7 +73,7 @@ pub fn contacts_at(program: &IncrementProgram<'_>, variables: &DVector<f64>) -> 
             contact: entry.contact,
             gap: program.loading.gap(entry.contact, &state),
             normal: reaction.normal,
-            within_cone: entry.friction * reaction.normal - reaction.tangential_size(),
+            within_cone: entry.friction.margin(&reaction),
             slip: program.step * slip,
         }
     };

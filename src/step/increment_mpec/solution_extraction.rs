@@ -94,7 +94,7 @@ pub(super) fn end_state(program: &IncrementProgram<'_>, x: &DVector<f64>) -> Sta
     state.reactions.fill(Reaction::default());
     for entry in &program.reach {
         let mut tangential = [0.0; 2];
-        if entry.friction > 0.0 {
+        if entry.friction.is_rough() {
             for (k, component) in tangential.iter_mut().enumerate().take(entry.tangents) {
                 *component = x[entry.tangential(k)] * program.force;
             }

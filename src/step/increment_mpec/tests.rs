@@ -73,7 +73,7 @@ fn towards_the_load(scene: &Scene) -> Rate {
     // A guess of slip, so that the start names the branch.
     let pressed = |contact: &crate::mechanics::contact::ContactPair| crate::mechanics::contact::Reaction {
         normal: 0.4,
-        tangential: [-0.4 * contact.friction, 0.0, 0.0],
+        tangential: [-0.4 * contact.friction.coefficient, 0.0, 0.0],
     };
     let reactions = scene.contacts.iter().map(pressed).collect();
     Rate { displacement: pattern, load: 0.3, reactions }

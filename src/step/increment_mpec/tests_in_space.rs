@@ -1,6 +1,7 @@
 //! The increment in space, where friction is a second-order cone.
 
 use crate::complementarity::mpec::{Problem, SparseRows};
+use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::kinematics::Kinematics;
 use crate::mechanics::contact::obstacle::RigidSurface;
 use crate::mechanics::contact::{ContactPair, Reaction, Sliding, tangents_in_space};
@@ -62,7 +63,7 @@ impl OneBar {
                 kinematics: Kinematics::Node(1),
                 obstacle: floor,
                 initial_gap: tip[2],
-                friction,
+                friction: CoulombFriction::new(friction),
                 sliding: Sliding::Plane,
             }],
             pattern: forces([0.0; 3].into_iter().chain(pattern).collect(), 1),
@@ -143,7 +144,7 @@ fn off_balance(scene: &OneBar, base: &State, end: &State, step: f64) -> f64 {
         (0..3).map(|c| tangents[k][c] * (end.displacement[3 + c] - base.displacement[3 + c])).sum()
     });
     let size = slip[0].hypot(slip[1]);
-    let strength = contact.friction * reaction.normal;
+    let strength = contact.friction.bound(reaction.normal);
     for k in 0..2 {
         worst = worst.max((traction[k] + strength * slip[k] / size).abs());
     }

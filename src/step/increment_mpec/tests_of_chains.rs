@@ -2,6 +2,7 @@
 //! in all directions, each pressed, the first one pulled along the floor. Everything is known: block m + 1 starts to slip
 //! at the load `(m + 1) μ W`, all of them move along the pull.
 
+use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::kinematics::Kinematics;
 use crate::mechanics::contact::obstacle::RigidSurface;
 use crate::mechanics::contact::{ContactPair, Reaction, Sliding};
@@ -38,7 +39,7 @@ impl Chain {
             kinematics: Kinematics::Node(node),
             obstacle: floor.clone(),
             initial_gap: 0.0,
-            friction,
+            friction: CoulombFriction::new(friction),
             sliding: Sliding::Plane,
         };
         let mut pattern = vec![0.0; 3 * blocks];

@@ -138,8 +138,7 @@ impl BranchingPoint<'_> {
         let load_sign = if first == 0.0 { later.map_or(0.0, sign_of) } else { first };
         let slides = |(contact, mode): (usize, &Mode)| match mode {
             Mode::Slip { direction } => {
-                loading.contacts[contact].friction
-                    * state.reactions[contact].normal
+                loading.contacts[contact].friction.bound(state.reactions[contact].normal)
                     * dot(direction, &loading.relative_rate(contact, state, &rate))
             }
             Mode::Free | Mode::Stick => 0.0,
@@ -208,7 +207,7 @@ impl BranchingPoint<'_> {
             let options = match standing {
                 Standing::Settled(_) | Standing::Cornered { .. } => continue,
                 Standing::OnCone { direction } => {
-                    let slack = friction * change.normal + dot(direction, &change.tangential);
+                    let slack = friction.slack(change, direction);
                     let along = dot(direction, &motion);
                     let slip = Mode::Slip { direction: *direction };
                     [(Mode::Stick, [along, 0.0], [0.0, slack]), (slip, [0.0, slack], [along, 0.0])]
@@ -217,7 +216,7 @@ impl BranchingPoint<'_> {
                     let opening = dot(&normal, &motion);
                     let (closed, still, slack) = if loading.contacts[contact].tangents() > 0 {
                         let along = add(&motion, -opening, &normal);
-                        (Mode::Stick, dot(&along, &along).sqrt(), friction * change.normal - change.tangential_size())
+                        (Mode::Stick, dot(&along, &along).sqrt(), friction.margin(change))
                     } else {
                         (Mode::Slip { direction: [0.0; 3] }, 0.0, change.normal)
                     };

@@ -27,7 +27,7 @@ use crate::branching::directions::candidate::is_mechanism;
 use crate::branching::directions::choice::{DirectionChoice, Rules, mark_retrace, potential_rate, sign_of};
 use crate::complementarity::rates::p_matrix::is_definite;
 use crate::complementarity::rates::parametric_lcp::slip_or_stick;
-use crate::mechanics::contact::vector::{Vector, add, dot};
+use crate::mechanics::contact::vector::{Vector, dot};
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::multi_contact::contact_status::Standing;
 use crate::mechanics::problem::loading::Loading;
@@ -221,8 +221,12 @@ impl<'a> ReducedUnknowns<'a> {
         let count = match standing {
             Standing::OnCone { direction } => {
                 let friction = self.loading.contacts[contact].friction;
-                along[0] = (*direction, add(direction, friction, &frame.normal));
-                self.turning.push((first, first, -frame.curvature * normal_reaction * (1.0 + friction * friction)));
+                along[0] = (*direction, friction.slack_form(&frame.normal, direction));
+                self.turning.push((
+                    first,
+                    first,
+                    -frame.curvature * normal_reaction * friction.force_direction_squared(),
+                ));
                 self.slips.push(Slip { contact, direction: *direction });
                 1
             }
@@ -346,7 +350,7 @@ impl<'a> ReducedUnknowns<'a> {
         // How fast a contact's force goes into its cone.
         let inward = |slip: &Slip| {
             let reaction = &rate.reactions[slip.contact];
-            loading.contacts[slip.contact].friction * reaction.normal + dot(&slip.direction, &reaction.tangential)
+            loading.contacts[slip.contact].friction.slack(reaction, &slip.direction)
         };
         let sense = 1.0_f64.copysign(self.slips.first().map_or(1.0, inward));
         let least = MARGIN * largest.max(f64::MIN_POSITIVE);

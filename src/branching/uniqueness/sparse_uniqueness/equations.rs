@@ -1,7 +1,7 @@
 //! The rate equations of contacts that can change, by their entries.
 
 use crate::algebra::sparse::factors::cholesky::Triangle;
-use crate::mechanics::contact::vector::{Vector, add, scaled};
+use crate::mechanics::contact::vector::{Vector, scaled};
 use crate::mechanics::contact::{Frame, Mode};
 use crate::mechanics::multi_contact::contact_status::Standing;
 use crate::mechanics::problem::loading::Loading;
@@ -114,10 +114,10 @@ impl<'a> Equations<'a> {
             }
             Standing::Cornered { .. } => return None,
         };
-        add_column(&along, &add(&along, data.friction, &frame.normal));
+        add_column(&along, &data.friction.slack_form(&frame.normal, &along));
         let turning = -frame.curvature * self.state.reactions[contact].normal;
         if turning != 0.0 {
-            self.turning.push((column, turning * (1.0 + data.friction * data.friction)));
+            self.turning.push((column, turning * data.friction.force_direction_squared()));
         }
         if matches!(standing, Standing::OnCone { .. }) {
             self.changing.push(ChangingContact { contact, direction: Some(along), frame, column });

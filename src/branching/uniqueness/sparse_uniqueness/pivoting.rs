@@ -204,7 +204,7 @@ fn margin(equations: &Equations<'_>, one: &ChangingContact, mode: Mode, rate: &R
     let tolerance = if matches!(mode, Mode::Stick) || data.tangents() == 0 { force } else { WEAK };
     let (margin, other) = match (mode, one.direction) {
         (Mode::Stick, Some(direction)) => {
-            let left = data.friction * reaction.normal + dot(&direction, &reaction.tangential);
+            let left = data.friction.slack(reaction, &direction);
             (left, Mode::Slip { direction })
         }
         (Mode::Slip { .. }, Some(direction)) => (speed(equations, one, &direction, rate), Mode::Stick),
@@ -212,7 +212,7 @@ fn margin(equations: &Equations<'_>, one: &ChangingContact, mode: Mode, rate: &R
             let traction = dot(&reaction.tangential, &one.frame.tangents[0]);
             let against = scaled(&one.frame.tangents[0], if traction > 0.0 { -1.0 } else { 1.0 });
             let other = if reaction.normal < 0.0 { Mode::Free } else { Mode::Slip { direction: against } };
-            (data.friction * reaction.normal - traction.abs(), other)
+            (data.friction.bound(reaction.normal) - traction.abs(), other)
         }
         (Mode::Slip { .. }, None) if data.tangents() == 0 => (reaction.normal, Mode::Free),
         (Mode::Slip { direction }, None) => {

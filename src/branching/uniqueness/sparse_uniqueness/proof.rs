@@ -100,7 +100,7 @@ pub(super) fn proof(equations: &Equations<'_>, incoming: Option<&Rate>) -> Optio
         }
     };
     let is_rough =
-        |one: &ChangingContact| one.direction.is_none() && equations.loading.contacts[one.contact].friction > 0.0;
+        |one: &ChangingContact| one.direction.is_none() && equations.loading.contacts[one.contact].friction.is_rough();
     if equations.changing.iter().any(is_rough) {
         take_touching(equations, &inverse, null.as_deref(), &mut lower)?;
     } else if null.is_none() {
@@ -116,7 +116,7 @@ pub(super) fn proof(equations: &Equations<'_>, incoming: Option<&Rate>) -> Optio
 /// That the symmetric part is definite across the load.
 fn proof_by_power(equations: &Equations<'_>, lower: Triangle, incoming: &Rate) -> Option<Proof> {
     let is_smooth =
-        |one: &ChangingContact| one.direction.is_some() || equations.loading.contacts[one.contact].friction == 0.0;
+        |one: &ChangingContact| one.direction.is_some() || !equations.loading.contacts[one.contact].friction.is_rough();
     if equations.loading.pattern.moves_boundary() || !equations.changing.iter().all(is_smooth) {
         return None;
     }
@@ -204,7 +204,7 @@ fn take_touching(
         [entries[0].0, entries[1].0].map(|column| values[column])
     };
     for (one, row) in equations.changing.iter().zip(&rows) {
-        let friction = equations.loading.contacts[one.contact].friction;
+        let friction = equations.loading.contacts[one.contact].friction.coefficient;
         if one.direction.is_some() || friction == 0.0 || row.iter().all(|(_, value)| *value == 0.0) {
             continue;
         }
@@ -300,7 +300,7 @@ pub(super) fn has_none(equations: &Equations<'_>, sign: f64, proof: &Proof) -> b
             let opens = |one: &ChangingContact| match one.direction {
                 Some(_) => sense * null[one.column] >= -WEAK,
                 None => {
-                    let friction = equations.loading.contacts[one.contact].friction;
+                    let friction = equations.loading.contacts[one.contact].friction.coefficient;
                     sense * null[one.column + 1] >= friction * null[one.column].abs() - WEAK
                 }
             };

@@ -3,6 +3,7 @@
 
 use crate::complementarity::rate_search::slip_onset_direction::Touch;
 use crate::complementarity::rates::rate_problem::{Choice, Entity, Signed, Touching};
+use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled, size, unit};
 use crate::mechanics::contact::{Frame, Mode, Reaction, Sliding};
 use crate::mechanics::multi_contact::contact_status::Standing;
@@ -180,7 +181,7 @@ impl Changeable {
             return true;
         }
         let reaction = &rate.reactions[contact];
-        loading.contacts[contact].friction * reaction.normal - reaction.tangential_size() >= -tolerance
+        loading.contacts[contact].friction.margin(reaction) >= -tolerance
     }
 
     /// The options, holding first, and the modes of each.
@@ -193,9 +194,9 @@ impl Changeable {
             (Standing::OnCone { direction }, _) => {
                 let along = forms.velocity(self, &direction);
                 // μ ṙ_n + d·ṙ_t; the reaction turns with the place on a curved obstacle.
-                let mut slack = forms.force_rate(self, &add(&direction, friction, &frame.normal));
+                let mut slack = forms.force_rate(self, &friction.slack_form(&frame.normal, &direction));
                 let (column, _) = self.velocities[0];
-                slack[column] -= frame.curvature * self.reaction.normal * (1.0 + friction * friction);
+                slack[column] -= frame.curvature * self.reaction.normal * friction.force_direction_squared();
                 let slack = forms.force(slack);
                 (Entity::complementary(slack, along), vec![single(Mode::Stick), single(Mode::Slip { direction })])
             }
@@ -246,7 +247,8 @@ impl Changeable {
         let (Some(pocket), Standing::Cornered { unloaded: true, .. }) = (&self.pocket, self.standing) else {
             return Vec::new();
         };
-        let rough = (0..self.contacts.len()).filter(|place| pocket.free.len() == 3 && pocket.frictions[*place] > 0.0);
+        let rough =
+            (0..self.contacts.len()).filter(|place| pocket.free.len() == 3 && pocket.frictions[*place].is_rough());
         let touch = |place: usize| {
             let frame = &self.frames[place];
             let along = [frame.normal, frame.tangents[0], frame.tangents[1]];
@@ -255,7 +257,7 @@ impl Changeable {
                 entity,
                 velocities: along.map(|direction| forms.velocity(self, &direction)),
                 forces: along.map(|direction| forms.force_along(self, &direction)),
-                friction: pocket.frictions[place],
+                friction: pocket.frictions[place].coefficient,
                 opening: others.map(|other| forms.velocity(self, &self.frames[other].normal)).collect(),
             };
             (self.contacts[place], touch)
@@ -277,7 +279,7 @@ impl Changeable {
         })
     }
 
-    fn touching_on_a_line(&self, friction: f64, forms: &mut Forms<'_>) -> Entity {
+    fn touching_on_a_line(&self, friction: CoulombFriction, forms: &mut Forms<'_>) -> Entity {
         let (normal, tangent) = (self.frames[0].normal, self.frames[0].tangents[0]);
         Entity::touching(Touching {
             gap: forms.velocity(self, &normal),
@@ -285,8 +287,8 @@ impl Changeable {
             pressing: forms.force_along(self, &normal),
             traction: forms.force_along(self, &tangent),
             cone: [
-                forms.force_along(self, &add(&tangent, friction, &normal)),
-                forms.force_along(self, &add(&scaled(&tangent, -1.0), friction, &normal)),
+                forms.force_along(self, &friction.slack_form(&normal, &tangent)),
+                forms.force_along(self, &friction.slack_form(&normal, &scaled(&tangent, -1.0))),
             ],
         })
     }
@@ -323,7 +325,7 @@ impl Changeable {
         for (place, (contact, frame)) in self.contacts.iter().zip(&self.frames).enumerate() {
             let friction = loading.contacts[*contact].friction;
             let tangent = frame.tangents[0];
-            let senses: &[f64] = if friction > 0.0 { &[1.0, -1.0] } else { &[0.0] };
+            let senses: &[f64] = if friction.is_rough() { &[1.0, -1.0] } else { &[0.0] };
             for &sense in senses {
                 let ray = unit(&rays(frame, friction)[usize::from(sense < 0.0)]);
                 let on_bound = inward

@@ -58,7 +58,7 @@ pub fn options(
         let other = 1 - place;
         let opens = Signed::plus(gaps[other]);
         let (normal, tangent) = (carried.frames[place].normal, carried.frames[place].tangents[0]);
-        let rough = carried.frictions[place] > 0.0;
+        let rough = carried.frictions[place].is_rough();
         let parting = dot(&carried.frames[other].normal, &add(&carried.shifts[place], -1.0, &carried.shifts[other]));
         // Where the other does not open the node is carried.
         let parts = parting.abs() > STILL * size(&carried.shifts[place]).max(size(&carried.shifts[other]));

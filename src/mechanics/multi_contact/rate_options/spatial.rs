@@ -2,7 +2,7 @@
 
 use crate::complementarity::rates::rate_problem::{Choice, Entity, Signed};
 use crate::mechanics::contact::Mode;
-use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled};
+use crate::mechanics::contact::vector::{Vector, cross, dot, scaled};
 use crate::mechanics::multi_contact::rate_options::contact_options::{Changeable, Forms, OptionOutcome};
 use crate::mechanics::multi_contact::spatial::{Drive, Pocket, Slide};
 use crate::mechanics::problem::loading::Loading;
@@ -32,7 +32,7 @@ pub fn options(
     for (slide, drive) in slides {
         match (slide, drive) {
             (Slide::Edge { places, direction }, drive) => writer.edge(places, direction, drive),
-            (Slide::Face { place }, _) if pocket.frictions[place] == 0.0 => writer.smooth_face(place, drive),
+            (Slide::Face { place }, _) if !pocket.frictions[place].is_rough() => writer.smooth_face(place, drive),
             (Slide::Face { place }, Some(drive)) => writer.face(place, &drive),
             (Slide::Face { place }, None) if pocket.free.len() == 2 => writer.guided_face(place),
             // Its direction is unknown.
@@ -145,7 +145,7 @@ impl Writer<'_, '_> {
         }
         let frictions = self.pocket.frictions.clone();
         self.option(zero, nonnegative, |place| {
-            let rubs = if frictions[place] > 0.0 { direction } else { [0.0; 3] };
+            let rubs = if frictions[place].is_rough() { direction } else { [0.0; 3] };
             if places.contains(&place) { Mode::Slip { direction: rubs } } else { Mode::Free }
         });
     }
@@ -153,7 +153,7 @@ impl Writer<'_, '_> {
     fn face(&mut self, place: usize, drive: &Drive) {
         let (pocket, direction) = (self.pocket, drive.direction);
         let friction = pocket.frictions[place];
-        let slack = add(&direction, friction, &pocket.face_form(place));
+        let slack = friction.slack_form(&pocket.face_form(place), &direction);
         let mut zero = vec![self.normal_of(place), self.off(&slack, &[place], &direction, &drive.normals[..1])];
         if pocket.free.len() == 3 {
             let across = cross(&pocket.frames[place].normal, &direction);
@@ -172,7 +172,7 @@ impl Writer<'_, '_> {
         let normal = pocket.face_form(place);
         for sense in [1.0, -1.0] {
             let direction = scaled(&pocket.frames[place].tangents[0], sense);
-            let slack = add(&direction, pocket.frictions[place], &normal);
+            let slack = pocket.frictions[place].slack_form(&normal, &direction);
             let zero = vec![self.normal_of(place), self.forms.force_along(self.entry, &slack)];
             let mut nonnegative = self.gaps(&[place]);
             nonnegative.push(Signed::plus(self.along(&direction)));

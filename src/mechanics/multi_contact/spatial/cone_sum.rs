@@ -16,6 +16,7 @@
 //!
 //! with the obstacles whose circles it lies on: at the end of what is held these alone bear the force.
 
+use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled, size, unit};
 use crate::mechanics::multi_contact::spatial::{AT_BOUND, FLAT, Pocket, along};
 
@@ -64,7 +65,9 @@ impl Pocket {
 
     /// Sines of the angles of friction, of as much of the cones as the node is free to feel.
     fn sines(&self) -> Vec<f64> {
-        let sine = |(normal, friction): (&Vector, &f64)| friction / friction.hypot(size(normal));
+        let sine = |(normal, friction): (&Vector, &CoulombFriction)| {
+            friction.coefficient / friction.coefficient.hypot(size(normal))
+        };
         self.normals.iter().zip(&self.frictions).map(sine).collect()
     }
 
@@ -135,7 +138,7 @@ impl Pocket {
         let ray = |place: usize| {
             let normal = &self.normals[place];
             let direction = unit(&add(&inward, -dot(&inward, normal), normal));
-            add(normal, -self.frictions[place], &direction)
+            self.frictions[place].force_direction(normal, &direction)
         };
         let rays: Vec<(usize, Vector)> =
             (0..self.contacts.len()).filter(bears).map(|place| (place, ray(place))).collect();
@@ -176,7 +179,7 @@ mod tests {
             kinematics: crate::mechanics::contact::kinematics::Kinematics::Node(0),
             obstacle: RigidSurface::Plane { normal },
             initial_gap: 0.0,
-            friction,
+            friction: CoulombFriction::new(friction),
             sliding: Sliding::Plane,
         };
         let frame = |(normal, friction): &(Vector, f64)| contact(*normal, *friction).frame(&[0.0; 3]);
@@ -185,7 +188,7 @@ mod tests {
             contacts: (0..planes.len()).collect(),
             normals: frames.iter().map(|frame| frame.normal).collect(),
             frames,
-            frictions: planes.iter().map(|(_, friction)| *friction).collect(),
+            frictions: planes.iter().map(|(_, friction)| CoulombFriction::new(*friction)).collect(),
             free: SPACE.to_vec(),
             is_driven: false,
         }

@@ -28,6 +28,7 @@
 pub(crate) mod cone_sum;
 pub(crate) mod sliding;
 
+use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::problem::node_forces::free_directions;
 pub use sliding::{Edge, beside, taken_over};
 
@@ -43,7 +44,7 @@ use crate::resources::budget;
 pub struct Pocket {
     pub contacts: Vec<usize>,
     pub frames: Vec<Frame>,
-    pub frictions: Vec<f64>,
+    pub frictions: Vec<CoulombFriction>,
     /// The normals as far as the node is free.
     normals: Vec<Vector>,
     /// Orthonormal directions in which the node is free.
@@ -90,7 +91,7 @@ impl Pocket {
         let frames: Vec<Frame> = contacts.iter().map(|contact| loading.frame(*contact, state)).collect();
         let friction = |contact: &usize| {
             let data = &loading.contacts[*contact];
-            if data.tangents() > 0 { data.friction } else { 0.0 }
+            if data.tangents() > 0 { data.friction } else { CoulombFriction::SMOOTH }
         };
         let frictions = contacts.iter().map(friction).collect();
         let normals = frames.iter().map(|frame| along(&free, &frame.normal)).collect();
@@ -122,7 +123,7 @@ impl Pocket {
             let edge = unit(&across);
             let on_edge = |place: &usize| dot(&unit(&self.normals[*place]), &edge).abs() <= INDEPENDENT;
             let of_edge = || (0..self.contacts.len()).filter(on_edge);
-            let rough = of_edge().any(|place| self.frictions[place] > 0.0);
+            let rough = of_edge().any(|place| self.frictions[place].is_rough());
             size(&across) > INDEPENDENT && (self.free.len() < 3 || !rough || of_edge().count() == 2)
         })
     }
@@ -172,7 +173,8 @@ impl Pocket {
     /// The linear form of a force that drives a node along an edge against its friction.
     pub fn edge_drive(&self, places: [usize; 2], direction: &Vector) -> Vector {
         let forms = self.edge_forms(places, direction);
-        let drag = add(&scaled(&forms[0], self.frictions[places[0]]), self.frictions[places[1]], &forms[1]);
+        let [first, second] = places.map(|place| self.frictions[place].coefficient);
+        let drag = add(&scaled(&forms[0], first), second, &forms[1]);
         scaled(&add(direction, 1.0, &drag), -1.0)
     }
 
@@ -195,7 +197,7 @@ impl Pocket {
                 let normal = dot(&self.face_form(place), force);
                 let across = add(force, -normal, &self.normals[place]);
                 let driving = size(&across);
-                let excess = driving - self.frictions[place] * normal;
+                let excess = driving - self.frictions[place].bound(normal);
                 let direction = if driving > zero { scaled(&across, -1.0 / driving) } else { [0.0; 3] };
                 let fits = normal >= -zero && self.opens(&direction, &[place]);
                 fits.then_some(Drive { direction, normals: [normal, 0.0], excess })
@@ -229,7 +231,7 @@ impl Pocket {
             Some((_, drive)) if -drive.excess > size(force) => dot(&unit(force), rate),
             Some((Slide::Edge { places, direction }, _)) => -dot(&self.edge_drive(places, &direction), rate),
             Some((Slide::Face { place }, drive)) => {
-                dot(&add(&drive.direction, self.frictions[place], &self.face_form(place)), rate)
+                dot(&self.frictions[place].slack_form(&self.face_form(place), &drive.direction), rate)
             }
             None => dot(&unit(force), rate),
         }
@@ -282,7 +284,7 @@ impl Pocket {
             Slide::Face { place } => {
                 let normal = dot(&self.face_form(place), force);
                 let driving = size(&add(force, -normal, &self.normals[place]));
-                let excess = driving - self.frictions[place] * normal;
+                let excess = driving - self.frictions[place].bound(normal);
                 (driving <= zero).then_some(Drive { direction: [0.0; 3], normals: [normal, 0.0], excess })
             }
         }
@@ -311,12 +313,12 @@ impl Pocket {
             Slide::Face { place } => {
                 let normal = dot(&self.face_form(place), rate);
                 let across = add(rate, -normal, &self.normals[place]);
-                if self.frictions[place] == 0.0 {
+                if !self.frictions[place].is_rough() {
                     let direction = scaled(&unit(&across), -1.0);
                     return self.opens(&direction, &[place]).then(|| size(&across));
                 }
                 let fits = self.turns_off(place, &drive.direction).iter().all(|form| dot(form, rate) >= -small);
-                fits.then(|| -self.frictions[place] * normal - dot(&drive.direction, rate))
+                fits.then(|| -self.frictions[place].bound(normal) - dot(&drive.direction, rate))
             }
         };
         ready.iter().filter_map(drives).map(|excess| -excess).fold(size(rate), f64::min)
@@ -334,7 +336,7 @@ impl Pocket {
 
     /// The cones of the obstacles as their reactions are shared.
     fn cones(&self) -> Vec<Cone> {
-        let of = |(frame, friction): (&Frame, &f64)| Cone {
+        let of = |(frame, friction): (&Frame, &CoulombFriction)| Cone {
             normal: frame.normal,
             friction: *friction,
             line: (self.free.len() == 2).then_some(frame.tangents[0]),
@@ -385,7 +387,8 @@ impl Pocket {
             Slide::Edge { places, .. } => places.to_vec(),
             Slide::Face { place } => vec![place],
         };
-        let drag: f64 = places.iter().zip(drive.normals).map(|(place, normal)| self.frictions[*place] * normal).sum();
+        let drag: f64 =
+            places.iter().zip(drive.normals).map(|(place, normal)| self.frictions[*place].bound(normal)).sum();
         let driving = -dot(&drive.direction, force);
         if driving > drag + FLAT * size(force) {
             return None;
@@ -393,7 +396,7 @@ impl Pocket {
         let part = if drag > 0.0 { (driving / drag).min(1.0) } else { 0.0 };
         let mut parts = vec![[0.0; 3]; self.contacts.len()];
         for (place, normal) in places.into_iter().zip(drive.normals) {
-            let ray = add(&self.frames[place].normal, -part * self.frictions[place], &drive.direction);
+            let ray = add(&self.frames[place].normal, -part * self.frictions[place].coefficient, &drive.direction);
             parts[place] = scaled(&ray, normal.max(0.0));
         }
         Some(parts)

@@ -96,7 +96,7 @@ impl Pocket {
     /// The drag on the node in these modes under a force.
     pub fn drag_in(&self, modes: &[Mode], force: &Vector) -> f64 {
         let Some(PocketSlide { places, forms, .. }) = self.sliding(modes) else { return 0.0 };
-        places.iter().zip(&forms).map(|(place, form)| self.frictions[*place] * dot(form, force)).sum()
+        places.iter().zip(&forms).map(|(place, form)| self.frictions[*place].bound(dot(form, force))).sum()
     }
 
     /// How the forces of the obstacles along which the node slides turn with a motion, present normal reactions given.
@@ -117,7 +117,7 @@ impl Pocket {
             _ => [0.0; 3],
         };
         let of = |(place, normal): (&usize, &f64)| {
-            scaled(&add(&turned(*place), -self.frictions[*place], &direction_turned), *normal)
+            scaled(&self.frictions[*place].force_direction(&turned(*place), &direction_turned), *normal)
         };
         places.iter().zip(normals).map(of).collect()
     }
@@ -134,7 +134,7 @@ impl Pocket {
         for (k, place) in places.iter().enumerate() {
             let normal_turned = scaled(&self.frames[*place].normal_change(motion), normals[k]);
             let tangential = add(&turning[k], -1.0, &normal_turned);
-            let drag = -self.frictions[*place] * growing[k];
+            let drag = -self.frictions[*place].bound(growing[k]);
             let tangential = add(&tangential, drag, &direction);
             parts.push((self.contacts[*place], Reaction { normal: growing[k], tangential }));
         }
@@ -143,7 +143,7 @@ impl Pocket {
             let normal = &self.frames[places[0]].normal;
             let pressed = scaled(&self.normals[places[0]], only.normal);
             let across = add(&add(&rest, -1.0, &pressed), -dot(&rest, &direction), &direction);
-            if self.frictions[places[0]] > 0.0 {
+            if self.frictions[places[0]].is_rough() {
                 only.tangential = add(&only.tangential, 1.0, &add(&across, -dot(&across, normal), normal));
             }
         }
@@ -158,7 +158,7 @@ pub fn taken_over(loading: Loading<'_>, corner: &Corner, modes: &[Mode], state: 
     let Some(PocketSlide { places, direction, forms }) = pocket.sliding(modes) else { return Vec::new() };
     let slides_alone = |place: usize| places.contains(&place);
     let had = |place: usize| state.reactions[corner.contacts[place]] != Reaction::default();
-    let rough = places.iter().any(|place| pocket.frictions[*place] > 0.0);
+    let rough = places.iter().any(|place| pocket.frictions[*place].is_rough());
     let takes_over = (0..corner.contacts.len()).any(|place| had(place) && !slides_alone(place));
     if !takes_over && (!rough || places.len() == 1) {
         return Vec::new();
@@ -168,12 +168,12 @@ pub fn taken_over(loading: Loading<'_>, corner: &Corner, modes: &[Mode], state: 
     let mut parts = Vec::new();
     for (place, form) in places.iter().zip(&forms) {
         let normal = dot(form, &force);
-        let tangential = scaled(&direction, -pocket.frictions[*place] * normal);
+        let tangential = pocket.frictions[*place].traction(normal, &direction);
         rest = add(&add(&rest, -normal, &pocket.normals[*place]), -1.0, &tangential);
         parts.push((*place, Reaction { normal, tangential }));
     }
     // What is left is what the location of the event left over; the sum stays.
-    if let Some((_, part)) = parts.iter_mut().find(|(place, _)| pocket.frictions[*place] > 0.0) {
+    if let Some((_, part)) = parts.iter_mut().find(|(place, _)| pocket.frictions[*place].is_rough()) {
         part.tangential = add(&part.tangential, 1.0, &rest);
     }
     parts.into_iter().map(|(place, part)| (corner.contacts[place], part)).collect()
