@@ -1,14 +1,14 @@
 //! The mechanics: structure, contact, loads, and the equations of one contact mode.
 //!
-//! | room | what it holds |
+//! | module | contents |
 //! |---|---|
 //! | [`structure`] | unknowns, elements, internal forces and tangent |
 //! | [`contact`] | a node against an obstacle: gap, frame, reaction, modes |
 //! | [`problem`] | states and rates, the structure under its loads, energies, the laws of contact as a residual |
-//! | [`multi_contact`] | nodes that several obstacles hold at once |
+//! | [`multi_contact`] | nodes in contact with several obstacles at once |
 //! | `equations` | the equations of one contact mode, their matrix, and the equation that closes them |
 //!
-//! Dimensionless throughout. Knows neither the JSON contract nor paths.
+//! All quantities are dimensionless. The module knows neither the JSON contract nor paths.
 
 pub mod contact;
 pub(crate) mod equations;

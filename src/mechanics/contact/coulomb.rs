@@ -4,8 +4,8 @@
 //! |r_t| <= μ r_n;      where a contact slips along d (a unit tangent):  r_t = -μ r_n d,  so that r = r_n (n - μ d)
 //! ```
 //!
-//! Everything that the law says of forces stands here. Who needs it asks for the bound, the direction of the force of a slip,
-//! or how far a force is from the cone, and does not read `μ`.
+//! All consequences of the law for forces are in this module. Other modules ask for the friction bound, the direction
+//! of the force of a slip, or the distance of a force from the cone, and do not evaluate the law themselves.
 
 use crate::mechanics::contact::Reaction;
 use crate::mechanics::contact::vector::{Vector, add, dot, scaled};
@@ -13,7 +13,7 @@ use crate::mechanics::contact::vector::{Vector, add, dot, scaled};
 /// The friction of a contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CoulombFriction {
-    /// `μ >= 0`; 0 where friction can do nothing.
+    /// The coefficient `μ >= 0`; 0 where friction has no effect.
     pub coefficient: f64,
 }
 
@@ -31,43 +31,45 @@ impl CoulombFriction {
         self.coefficient > 0.0
     }
 
-    /// `μ r_n`: the largest traction under a pressure; its rate under a rate of pressure.
+    /// The bound `μ r_n` on the traction under a normal reaction; for the rate of a normal reaction, the rate of the
+    /// bound.
     #[inline(always)]
     pub fn bound(self, normal: f64) -> f64 {
         self.coefficient * normal
     }
 
-    /// `-μ r_n d`: the traction of a contact that slips.
+    /// The traction `-μ r_n d` of a slipping contact.
     #[inline(always)]
     pub fn traction(self, normal: f64, direction: &Vector) -> Vector {
         scaled(direction, -self.coefficient * normal)
     }
 
-    /// `n - μ d`: along this a slipping contact presses on its node.
+    /// The direction `n - μ d` of the force of a slipping contact on its node.
     #[inline(always)]
     pub fn force_direction(self, normal: &Vector, direction: &Vector) -> Vector {
         add(normal, -self.coefficient, direction)
     }
 
-    /// `d + μ n`: the product with a force is `μ r_n + d·r_t`, how far the force is within the cone against a slip along `d`.
+    /// The vector `d + μ n`, whose product with a force is `μ r_n + d·r_t`: the slack of the force against slip along
+    /// `d`.
     #[inline(always)]
     pub fn slack_form(self, normal: &Vector, direction: &Vector) -> Vector {
         add(direction, self.coefficient, normal)
     }
 
-    /// `μ r_n + d·r_t`: how far a reaction (or its rate) is within the cone against a slip along `d`.
+    /// The slack `μ r_n + d·r_t` of a reaction (or its rate) against slip along `d`; not negative within the cone.
     #[inline(always)]
     pub fn slack(self, reaction: &Reaction, direction: &Vector) -> f64 {
         self.bound(reaction.normal) + dot(direction, &reaction.tangential)
     }
 
-    /// `μ r_n - |r_t|`: how far a reaction is within the cone.
+    /// The margin `μ r_n - |r_t|` of a reaction; not negative within the cone.
     #[inline(always)]
     pub fn margin(self, reaction: &Reaction) -> f64 {
         self.bound(reaction.normal) - reaction.tangential_size()
     }
 
-    /// `|n - μ d|² = 1 + μ²`
+    /// The square `|n - μ d|² = 1 + μ²`.
     #[inline(always)]
     pub fn force_direction_squared(self) -> f64 {
         1.0 + self.coefficient * self.coefficient

@@ -1,14 +1,14 @@
-//! The frame of a contact at a place: gap, normal, tangents, and how they turn.
+//! The frame of a contact: gap, normal and tangents, and their change with the position.
 
 use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled, size, unit};
 
-/// In which directions a closed contact can slide.
+/// The directions in which a closed contact can slide.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sliding {
-    /// The node's supports leave it none.
+    /// None: the supports of the node leave no tangential motion.
     None,
-    /// Along the line perpendicular to the normal and to `across` (unit): everything in 2D, where `across` is the third
-    /// axis; a node in 3D with one component supported.
+    /// Along the line perpendicular to the normal and to the unit vector `across`: in 2D, where `across` is the third
+    /// axis, and in 3D for a node with one supported component.
     Line { across: Vector },
     /// Along any tangent.
     Plane,
@@ -25,14 +25,14 @@ impl Sliding {
     }
 }
 
-/// Gap, unit normal into the free side and tangents.
+/// The gap, the unit normal into the free side and the tangents of a contact.
 #[derive(Debug, Clone, Copy)]
 pub struct Frame {
     pub gap: f64,
     pub normal: Vector,
-    /// Orthonormal; as many as there are directions of sliding, the rest zero.
+    /// Orthonormal tangents, as many as there are directions of sliding; the others are zero.
     pub tangents: [Vector; 2],
-    /// `dn = κ (dx - n (n·dx))`; 0 for planes.
+    /// The curvature `κ` in `dn = κ (dx - n (n·dx))`; 0 for planes.
     pub curvature: f64,
     sliding: Sliding,
 }
@@ -42,7 +42,7 @@ impl Frame {
     pub(super) fn new(gap: f64, normal: Vector, curvature: f64, sliding: Sliding) -> Self {
         let tangents = match sliding {
             Sliding::None => [[0.0; 3]; 2],
-            // In 2D the normal turned clockwise, exactly.
+            // In 2D the tangent is the normal turned clockwise by a right angle, without rounding.
             Sliding::Line { across } if across == [0.0, 0.0, 1.0] && normal[2] == 0.0 => {
                 [[normal[1], -normal[0], 0.0], [0.0; 3]]
             }
@@ -52,12 +52,12 @@ impl Frame {
         Self { gap, normal, tangents, curvature, sliding }
     }
 
-    /// Change of the normal with a motion.
+    /// The change of the normal with a motion.
     pub fn normal_change(&self, motion: &Vector) -> Vector {
         scaled(&add(motion, -dot(motion, &self.normal), &self.normal), self.curvature)
     }
 
-    /// Change of the first tangent with a motion, where sliding is along a line.
+    /// The change of the first tangent with a motion, where sliding is along a line.
     pub fn tangent_change(&self, motion: &Vector) -> Vector {
         let Sliding::Line { across } = self.sliding else { return [0.0; 3] };
         if self.curvature == 0.0 {
@@ -69,8 +69,9 @@ impl Frame {
     }
 }
 
-/// Orthonormal tangents of a normal in space: the coordinate axis least aligned with the normal (the first of them, so
-/// that the choice is reproducible), made perpendicular to it, and `n` times that.
+/// Orthonormal tangents to a normal in space: the coordinate axis least aligned with the normal (the first such axis,
+/// so that the choice is reproducible), made perpendicular to the normal, and the cross product of `n` with this
+/// tangent.
 pub fn tangents_in_space(normal: &Vector) -> [Vector; 2] {
     let mut axis = 0;
     for k in 1..3 {

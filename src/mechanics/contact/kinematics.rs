@@ -1,22 +1,22 @@
-//! How a contact moves with the structure.
+//! The motion of a contact with the structure.
 //!
 //! ```text
 //! x = m(u)        ẋ = B(u) u̇        forces on the structure: Bᵀ r,   their derivative at constant r: Σ_k r_k ∂²m_k/∂u²
 //! ```
 //!
-//! `x` is the place of the contact in the axes of its obstacle, measured from where it is undeformed; obstacle, gap, normal
-//! and friction are all in these axes. Of a node in front of a rigid obstacle `x` is the node's displacement and `B` the
-//! identity. Of a node in front of a surface of another body the axes go with that body, and `B` has columns for the nodes
-//! of both.
+//! `x` is the position of the contact in the axes of its obstacle, relative to the undeformed position; obstacle, gap,
+//! normal and friction refer to these axes. For a node in front of a rigid obstacle `x` is the displacement of the node
+//! and `B` the identity. For a node in front of a surface of another body the axes move with this body, and `B` has
+//! columns for the nodes of both.
 
 use crate::mechanics::contact::vector::Vector;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// What moves a contact.
+/// The kinematics of a contact: the nodes that move it, and how.
 #[derive(Debug, Clone)]
 pub enum Kinematics {
-    /// A node, each of its translations with weight 1.
+    /// A single node; each of its translations has weight 1.
     Node(usize),
     /// Several nodes together.
     Coupled(Arc<dyn CoupledKinematics>),
@@ -24,25 +24,25 @@ pub enum Kinematics {
 
 /// The motion of a contact that several nodes move together. All quantities are dimensionless.
 ///
-/// `displacement` holds the degrees of freedom of its nodes, node by node: the translations of a node, then as many of its
-/// rotations as [`rotations`](Self::rotations) says. The reactions are work-conjugate to `x`.
+/// `displacement` holds the degrees of freedom of these nodes, node by node: the translations of a node, then as many
+/// of its rotations as [`rotations`](Self::rotations) says. The reactions are work-conjugate to `x`.
 pub trait CoupledKinematics: Debug + Send + Sync {
     /// The nodes that move the contact, each once.
     fn nodes(&self) -> &[usize];
 
-    /// How many rotations of each of its nodes move the contact.
+    /// The number of rotations of each node that move the contact.
     fn rotations(&self) -> usize {
         0
     }
 
-    /// `m(u)`: zero where nothing is displaced.
+    /// The position `m(u)` of the contact; zero at zero displacement.
     fn place(&self, displacement: &[f64]) -> Vector;
 
-    /// Writes the columns of `B(u)`, one a degree of freedom.
+    /// Writes the columns of `B(u)`, one per degree of freedom.
     fn write_columns(&self, displacement: &[f64], columns: &mut [Vector]);
 
-    /// A bound on how far the gap can change by unit motion of the degrees of freedom, wherever they are; infinite where
-    /// none is known: then the contact is taken as in reach all along.
+    /// A bound on the change of the gap under a unit motion of the degrees of freedom, valid at all displacements;
+    /// infinite where no bound is known: the contact then always counts as within reach.
     fn fastest(&self) -> f64 {
         f64::INFINITY
     }
@@ -60,7 +60,7 @@ impl Kinematics {
         }
     }
 
-    /// A bound on how far the gap can change by unit motion of the degrees of freedom.
+    /// A bound on the change of the gap under a unit motion of the degrees of freedom.
     pub fn fastest(&self) -> f64 {
         match self {
             Self::Node(_) => 1.0,
@@ -68,7 +68,7 @@ impl Kinematics {
         }
     }
 
-    /// The node, where it is only one.
+    /// The node, if a single node moves the contact.
     #[inline(always)]
     pub fn node(&self) -> Option<usize> {
         match self {

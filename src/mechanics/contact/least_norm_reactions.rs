@@ -1,12 +1,12 @@
-//! How the force on a node is shared by several obstacles: the reactions of least norm.
+//! The reactions of least norm, by which several obstacles share the force on a node.
 //!
 //! ```text
 //! min ½ Σ |r_i|²   s.t.   Σ r_i = R,   r_i in the friction cone K_i
 //! ```
 //!
-//! Where a node is held by several obstacles at once, equilibrium gives only the sum of their reactions, of a guided node
-//! only what it is free to follow. The least ones
-//! are `r_i = P_i(y)`, projections on the cones of one vector `y` with `Σ P_i(y) = R`: the minimiser of the convex
+//! Where several obstacles hold a node at once, equilibrium determines only the sum of their reactions; for a guided
+//! node, only the components of the sum along which the node is free. The reactions of least norm are `r_i = P_i(y)`,
+//! the projections on the cones of one vector `y` with `Σ P_i(y) = R`. This vector is the minimiser of the convex
 //! function `½ Σ |P_i(y)|² - R·y`, found by Newton's method (R. T. Rockafellar, *Convex Analysis*, Princeton 1970, §31;
 //! projection on the circular cone: H. H. Bauschke, *Projection algorithms and monotone operators*, 1996, thm 3.3.6).
 
@@ -18,24 +18,24 @@ use crate::mechanics::contact::vector::{Vector, add, dot, scaled, size};
 pub struct Cone {
     pub normal: Vector,
     pub friction: CoulombFriction,
-    /// The only line along which there is friction; without one the cone is circular.
+    /// The line along which alone friction acts; without it the cone is circular.
     pub line: Option<Vector>,
 }
 
-/// Newton iterations; a few are usual, since the function is piecewise quadratic in 2D.
+/// Largest number of Newton iterations; a few are usual, since the function is piecewise quadratic in 2D.
 const ITERATIONS: usize = 200;
-/// The sum that is left over may be this large, over the largest of the force and the reactions: between cones that are
-/// nearly opposite these are far larger than the force.
+/// Largest residual of the sum of the reactions, over the largest of the force and the reactions: between nearly
+/// opposite cones the reactions are far larger than the force.
 const LEFT_OVER: f64 = 1e-12;
-/// Part of the identity that makes Newton's matrix regular, over what is left over.
+/// Multiple of the identity that regularises Newton's matrix, over the residual.
 const REGULAR: f64 = 1e-3;
-/// The function falls by at least this part of what its slope promises.
+/// Sufficient decrease: the function falls by at least this fraction of the decrease that its slope predicts.
 const SUFFICIENT: f64 = 1e-4;
-/// Part of a step below which it is not shortened.
+/// Fraction of the Newton step below which the line search gives up.
 const SHORTEST: f64 = 1e-15;
 
 impl Cone {
-    /// The nearest force of the cone, and the derivative of that applied to a vector.
+    /// The projection of a force on the cone, and the derivative of the projection applied to a vector.
     fn project(&self, force: &Vector) -> (Vector, impl Fn(&Vector) -> Vector + use<>) {
         let Self { normal, friction, line } = *self;
         let along = dot(force, &normal);
@@ -86,8 +86,8 @@ enum Place {
     Apex,
 }
 
-/// The reactions of least norm that make up a force as far as orthonormal directions `free` hold it; `None` where the
-/// cones together do not hold it.
+/// Returns the reactions of least norm whose sum, projected on the orthonormal directions `free`, is `force`; `None`
+/// where no reactions within the cones have this sum.
 pub fn least_reactions(cones: &[Cone], free: &[Vector], force: &Vector) -> Option<Vec<Vector>> {
     let scale = size(force);
     if scale == 0.0 {
@@ -114,11 +114,11 @@ struct Dual<'a> {
     force: Vector,
 }
 
-/// A place with what is there.
+/// A point `y` with the value and the gradient of the function.
 struct At {
     place: Vector,
     value: f64,
-    /// Sum of the projections less the force: the gradient.
+    /// The gradient: the sum of the projections less the force.
     gradient: Vector,
     left_over: f64,
 }
@@ -140,9 +140,10 @@ impl Dual<'_> {
         At { place, value, gradient, left_over: size(&gradient) }
     }
 
-    /// Newton's step with a part of the identity that falls with the gradient, so that it is bounded wherever the second
-    /// derivative is singular and as good as Newton's in the end, shortened until the function falls (D. Li, M. Fukushima,
-    /// L. Qi, N. Yamashita, Comput. Optim. Appl. 28 (2004) 131). `None` where rounding lets it fall no more.
+    /// A regularised Newton step with line search. The multiple of the identity is proportional to the gradient: the
+    /// step stays bounded where the second derivative is singular, and near the minimum it converges as fast as
+    /// Newton's. It is shortened until the function decreases sufficiently (D. Li, M. Fukushima, L. Qi, N. Yamashita,
+    /// Comput. Optim. Appl. 28 (2004) 131). `None` where rounding prevents a further decrease.
     fn step(&self, at: &At) -> Option<At> {
         let mut matrix = nalgebra::Matrix3::identity() * (REGULAR * at.left_over).max(f64::EPSILON);
         for cone in self.cones {
@@ -161,7 +162,7 @@ impl Dual<'_> {
         while length > SHORTEST {
             let next = self.at(add(&at.place, -length, &step));
             let falls = next.value <= at.value - SUFFICIENT * length * slope;
-            // Near the end values differ by less than their rounding.
+            // Near the minimum the values differ by less than their rounding.
             if (falls && next.left_over < f64::INFINITY) || next.left_over <= 0.5 * at.left_over {
                 return Some(next);
             }
@@ -179,7 +180,8 @@ mod tests {
 
     #[test]
     fn a_guided_node_shares_what_it_is_free_to_follow() {
-        // Guided along y between y and (1, 1)/√2: parts in proportion to what of the normals is free.
+        // Guided along y between the normals y and (1, 1)/√2: the parts are proportional to the free components of the
+        // normals.
         let floor = Cone { normal: [0.0, 1.0, 0.0], friction: CoulombFriction::new(0.0), line: None };
         let half = 0.5_f64.sqrt();
         let flank = Cone { normal: [half, half, 0.0], friction: CoulombFriction::new(0.0), line: None };
@@ -229,7 +231,8 @@ mod tests {
         }
     }
 
-    /// Two cones that together are all of space, one of them narrow: plain Newton's method does not settle everywhere.
+    /// Two cones whose sum is all of space, one of them narrow: plain Newton's method does not converge for every
+    /// force.
     #[test]
     fn two_cones_that_are_all_of_space_share_any_force() {
         let unit = |vector: [f64; 3]| scaled(&vector, 1.0 / size(&vector));

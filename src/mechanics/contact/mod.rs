@@ -4,8 +4,8 @@
 //! 0 <= g(u) ⊥ r_n >= 0,      |r_t| <= μ r_n,      Δu_t = -α r_t,  α >= 0
 //! ```
 //!
-//! Dimensionless. Tractions and slips are vectors in space, so that they mean the same wherever on a curved obstacle
-//! the node is; in 2D the third component is 0. Knows nothing of structures and paths.
+//! All quantities are dimensionless. Tractions and slips are vectors in space, so that they keep their meaning wherever
+//! the node is on a curved obstacle; in 2D the third component is 0. The module knows nothing of structures and paths.
 
 pub mod coulomb;
 pub(crate) mod frame;
@@ -21,25 +21,25 @@ use obstacle::RigidSurface;
 use serde::{Deserialize, Serialize};
 use vector::{Vector, size};
 
-/// One node, or what several nodes move, against one obstacle.
+/// A contact: one node, or a point that several nodes move, against one obstacle.
 #[derive(Debug, Clone)]
 pub struct ContactPair {
     pub kinematics: Kinematics,
     pub obstacle: RigidSurface,
-    /// Gap of the undeformed structure; kept apart so that a place far from the origin costs no digits.
+    /// Gap of the undeformed structure; stored separately, so that a position far from the origin costs no digits.
     pub initial_gap: f64,
     pub friction: CoulombFriction,
     pub sliding: Sliding,
 }
 
-/// What a contact does along a stretch of the path.
+/// The mode of a contact along a section of the path.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Mode {
-    /// Apart: no reaction.
+    /// Open: no reaction.
     Free,
-    /// Held: no motion against the obstacle.
+    /// Sticking: no motion relative to the obstacle.
     Stick,
-    /// Sliding along `direction` (unit tangent at the present place, or zero without friction) with
+    /// Slipping along `direction` (unit tangent at the present position, or zero without friction) with
     /// `r_t = -μ r_n direction`.
     Slip { direction: Vector },
 }
@@ -49,8 +49,8 @@ impl Mode {
         self != Self::Free
     }
 
-    /// Whether two modes are the same stretch's: along a line, slip the same way; in a plane, slip whose direction
-    /// differs by less than a right angle, since it turns as the node goes.
+    /// Whether two modes can belong to the same section of the path: they are equal, or both slip in directions that
+    /// differ by less than a right angle, since in a plane the direction turns as the node moves.
     pub fn continues(self, other: Self) -> bool {
         match (self, other) {
             (Self::Slip { direction: a }, Self::Slip { direction: b }) => a == b || vector::dot(&a, &b) > 0.0,
@@ -59,7 +59,7 @@ impl Mode {
     }
 }
 
-/// Whether all modes of two lists continue each other.
+/// Whether every mode of one list continues the corresponding mode of the other.
 pub fn all_continue(first: &[Mode], second: &[Mode]) -> bool {
     first.len() == second.len() && first.iter().zip(second).all(|(a, b)| a.continues(*b))
 }
@@ -73,13 +73,13 @@ pub struct Reaction {
 }
 
 impl Reaction {
-    /// A force taken apart along a normal and across it.
+    /// The normal and tangential parts of a force.
     pub fn of(force: &Vector, normal: &Vector) -> Self {
         let along = vector::dot(force, normal);
         Self { normal: along, tangential: vector::add(force, -along, normal) }
     }
 
-    /// The same where what is across the normal is rounding: there is no friction.
+    /// The normal part of a force alone: without friction the tangential part is round-off.
     pub fn along(force: &Vector, normal: &Vector) -> Self {
         Self { normal: vector::dot(force, normal), tangential: [0.0; 3] }
     }
@@ -95,14 +95,14 @@ impl Reaction {
         self.normal.abs().max(self.tangential_size())
     }
 
-    /// Adds a multiple of another.
+    /// Adds a multiple of another reaction.
     #[inline(always)]
     pub fn add(&mut self, factor: f64, other: &Self) {
         self.normal += factor * other.normal;
         self.tangential = vector::add(&self.tangential, factor, &other.tangential);
     }
 
-    /// The largest difference of normal parts and components.
+    /// The largest absolute difference of the normal parts and of the tangential components.
     pub fn difference(&self, other: &Self) -> f64 {
         let tangential = vector::add(&self.tangential, -1.0, &other.tangential);
         tangential.iter().fold((self.normal - other.normal).abs(), |largest, value| largest.max(value.abs()))
@@ -110,14 +110,14 @@ impl Reaction {
 }
 
 impl ContactPair {
-    /// Signed distance from the obstacle, positive on the free side; `relative` is how far the contact has moved, less its
-    /// obstacle's displacement, in the obstacle's axes.
+    /// Signed distance from the obstacle, positive on the free side; `relative` is the displacement of the contact less
+    /// that of its obstacle, in the obstacle's axes.
     #[inline(always)]
     pub fn gap(&self, relative: &Vector) -> f64 {
         self.initial_gap + self.obstacle.distance(relative).0
     }
 
-    /// Gap, normal and tangents.
+    /// The frame: gap, normal and tangents.
     #[inline(always)]
     pub fn frame(&self, relative: &Vector) -> Frame {
         let (change, normal, curvature) = self.obstacle.distance(relative);

@@ -1,15 +1,15 @@
-//! Obstacles: how far a node is from them, and which way.
+//! Obstacles: the distance of a node from an obstacle, and its direction.
 
 use crate::mechanics::contact::vector::{Vector, add, dot, size, unit};
 
-/// A rigid obstacle as one contact sees it.
+/// The surface of a rigid obstacle, relative to one contact.
 #[derive(Debug, Clone)]
 pub enum RigidSurface {
     /// A half-space with unit `normal` into the free side.
     Plane { normal: Vector },
     /// A circle or sphere.
     Ball {
-        /// The undeformed node's place, measured from the centre.
+        /// The position of the undeformed node, relative to the centre.
         offset: Vector,
         /// 1 where nodes are free outside, -1 where they are free inside.
         side: f64,
@@ -17,8 +17,8 @@ pub enum RigidSurface {
 }
 
 impl RigidSurface {
-    /// Change of the distance from the undeformed place, unit normal into the free side, and curvature `κ`: the normal
-    /// turns by `dn = κ (dx - n (n·dx))`.
+    /// The change of the distance since the undeformed position, the unit normal into the free side, and the curvature
+    /// `κ`: the normal turns by `dn = κ (dx - n (n·dx))`.
     ///
     /// `relative` is the node's displacement less the obstacle's.
     #[inline(always)]
@@ -28,7 +28,7 @@ impl RigidSurface {
             Self::Ball { offset, side } => {
                 let place = add(offset, 1.0, relative);
                 let (radius, before) = (size(&place), size(offset));
-                // The difference of the radii without the cancellation.
+                // The difference of the radii, without cancellation.
                 let change = (2.0 * dot(offset, relative) + dot(relative, relative)) / (radius + before);
                 let outward = unit(&place);
                 let normal = [side * outward[0], side * outward[1], side * outward[2]];

@@ -40,7 +40,7 @@ pub fn unit(a: &Vector) -> Vector {
     if size > 0.0 { [a[0] / size, a[1] / size, a[2] / size] } else { [0.0; 3] }
 }
 
-/// The direction that opposes a traction; `otherwise` where there is none.
+/// The unit vector opposite to a traction; `otherwise` for zero traction.
 pub(crate) fn direction_of(traction: &Vector, otherwise: &Vector) -> Vector {
     let length = size(traction);
     if length > 0.0 { scaled(traction, -1.0 / length) } else { *otherwise }
