@@ -1,52 +1,52 @@
-//! The equation that closes those of a mode: where on the branch a point is to be.
+//! The closing equation of a mode: it selects the point on the branch.
 //!
 //! ```text
-//! c(u, s) = 0        arc length: ‖(Δu, Δs)‖ - S      a held load: s - value      a held displacement: u_i - value
+//! c(u, s) = 0        arc length: ‖(Δu, Δs)‖ - S    prescribed load: s - value     prescribed displacement: u_i - value
 //! ```
 //!
-//! Arc length after E. Riks, Int. J. Solids Struct. 15 (1979) 529, doi:10.1016/0020-7683(79)90081-7. An event function is
-//! another such equation (`step::event_functions`).
+//! Arc length after E. Riks, Int. J. Solids Struct. 15 (1979) 529, doi:10.1016/0020-7683(79)90081-7. An event function
+//! is another closing equation (`step::event_functions`).
 
 use crate::algebra::dense::assembly::Sink;
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::problem::state::{Rate, State};
 
-/// One equation for one point; all quantities are dimensionless.
+/// The closing equation of a point; all quantities are dimensionless.
 pub trait ClosingEquation {
-    /// `c` at a state.
+    /// The value of `c` at a state.
     fn value(&self, system: &ModeSystem<'_>, state: &State) -> f64;
 
     /// Writes the gradient of `c` at a state into the last row of the matrix of a mode.
     fn write_gradient(&self, system: &ModeSystem<'_>, state: &State, matrix: &mut dyn Sink);
 
-    /// Whether a zero of `c` may be the point that is sought.
+    /// Whether a zero of `c` may be the required point.
     fn accepts(&self, _state: &State) -> bool {
         true
     }
 
-    /// How much `c` changes along a rate, where that is not what the last row says: the gradient may have entries at forces
+    /// The derivative of `c` along a rate, where the last row does not give it: the gradient may have entries at forces
     /// that the factorisation eliminates.
     fn slope_beside_row(&self, _system: &ModeSystem<'_>, _state: &State, _rate: &Rate) -> Option<f64> {
         None
     }
 
-    /// Whether [`slope_beside_row`](Self::slope_beside_row) takes the place of the last row.
+    /// Whether [`slope_beside_row`](Self::slope_beside_row) replaces the last row.
     fn has_slope_beside_row(&self) -> bool {
         false
     }
 
-    /// The arc length at which the point lies, where it is known.
+    /// The arc length of the point, where it is known.
     fn arc_length(&self) -> Option<f64> {
         None
     }
 
-    /// The arc length of a straight way from a state along a rate to the zero of `c`, where it is known.
+    /// The arc length of the straight line from a state along a rate to the zero of `c`, where it is known.
     fn straight_way(&self, _state: &State, _rate: &Rate) -> Option<f64> {
         None
     }
 }
 
-/// `‖(Δu, Δs)‖ = step` from a state, on the side of the predictor.
+/// The arc-length equation `‖(Δu, Δs)‖ = step` from a state, on the side of the predictor.
 #[derive(Debug, Clone, Copy)]
 pub struct ArcLengthEquation<'a> {
     pub from: &'a State,
@@ -78,7 +78,7 @@ impl ClosingEquation for ArcLengthEquation<'_> {
     }
 }
 
-/// A load or a displacement that is given.
+/// A prescribed load factor or displacement.
 #[derive(Debug, Clone, Copy)]
 pub enum PrescribedValue {
     /// `s = value`

@@ -1,14 +1,16 @@
-//! Motions that the equations of a mode leave open, held where they are.
+//! The motions that the equations of a mode leave undetermined, and the deflation that suppresses them.
 //!
-//! A slider that sticks at a fold of what hangs on it leaves a motion `φ` of that open, with a left null vector `ψ`, whatever
-//! the rest of the structure does. Newton's method and the path's direction are then by
+//! A slider that sticks at a limit point of the structure attached to it leaves a motion `φ` of this structure
+//! undetermined, with a left null vector `ψ`, whatever the rest of the structure does. Newton's method and the path's
+//! direction are then computed with
 //!
 //! ```text
 //! A' = A + Σ_j ψ_j φ_jᵀ,
 //! ```
 //!
-//! which is regular beside the path's own direction. As `ψ_jᵀ A = 0`, a correction has of `φ_j` what is left over in `ψ_j`:
-//! nothing where the equations can be met with the motion held. Where they cannot, what is left over says so.
+//! which is regular when bordered by the path's direction. As `ψ_jᵀ A = 0`, the component of a correction along `φ_j`
+//! equals the component of the residual along `ψ_j`: zero where the equations can be satisfied with the motion
+//! suppressed. Where they cannot, this component of the residual remains and shows it.
 
 use crate::algebra::dense::assembly::Sink;
 use crate::algebra::{nearest_null_space, null_space_as_scaled};
@@ -17,10 +19,11 @@ use crate::mechanics::equations::scaled_rows::{RANK, scaled_rows};
 use crate::mechanics::problem::state::{Rate, State};
 use nalgebra::{DMatrix, DVector};
 
-/// Motions (of unit size) of which no more than this is left beside the path and the others are none.
+/// Size of the remainder of a unit motion, orthogonalised against the path's direction and the other motions, that
+/// counts as none.
 const NO_MOTION: f64 = 1e-8;
 
-/// A motion that is held.
+/// A suppressed motion.
 pub(super) struct Still {
     /// `ψ`
     column: DVector<f64>,
@@ -29,8 +32,8 @@ pub(super) struct Still {
 }
 
 impl ModeSystem<'_> {
-    /// Holds the motions that the equations leave open at a state, those across the path's direction; `false` where there
-    /// are none.
+    /// Suppresses the motions across the path's direction that the equations leave undetermined at a state; returns
+    /// `false` where there are none.
     pub(crate) fn hold_still(&mut self, state: &State, direction: &Rate) -> bool {
         if self.has_tracks() || !self.loading.structure.allows_dense() {
             return false;
@@ -39,7 +42,7 @@ impl ModeSystem<'_> {
         !self.still.is_empty()
     }
 
-    /// Whether the equations leave as many motions open at another state as are held.
+    /// Whether the equations leave as many motions undetermined at another state as are suppressed.
     pub(crate) fn is_still_open(&self, state: &State) -> bool {
         let plain = ModeSystem::new(self.loading, self.modes, self.anchor);
         let (matrix, _) = scaled_rows(&plain, self.loading, state);
@@ -60,7 +63,7 @@ impl ModeSystem<'_> {
         Some(across.iter().zip(left.column_iter()).map(still).collect())
     }
 
-    /// Orthonormal motions of a null space, across the path's direction in it.
+    /// Orthonormal motions of a null space, orthogonal to the path's direction in it.
     fn across(&self, state: &State, direction: &Rate, basis: &DMatrix<f64>) -> Option<Vec<Rate>> {
         let unit = |values| self.rate_from(state, &values).normalised();
         let mut rest = basis.column_iter().map(|column| unit(column.into_owned())).collect::<Option<Vec<Rate>>>()?;
@@ -68,7 +71,7 @@ impl ModeSystem<'_> {
         let mut across = Vec::with_capacity(rest.len());
         while rest.len() > 1 {
             for rate in &mut rest {
-                // Once more for what rounding left.
+                // Twice, to remove the round-off of the first pass.
                 for other in known.iter().chain(&known) {
                     rate.add(other, -rate.product(other));
                 }
@@ -85,7 +88,7 @@ impl ModeSystem<'_> {
         Some(across)
     }
 
-    /// Adds what holds them.
+    /// Adds `Σ_j ψ_j φ_jᵀ` to the matrix.
     pub(super) fn add_still(&self, matrix: &mut DMatrix<f64>) {
         for Still { column, row } in &self.still {
             for (place, share) in row.iter().enumerate().filter(|(_, share)| **share != 0.0) {
@@ -94,7 +97,7 @@ impl ModeSystem<'_> {
         }
     }
 
-    /// Whether some motion is held.
+    /// Whether any motion is suppressed.
     pub(super) fn holds_still(&self) -> bool {
         !self.still.is_empty()
     }

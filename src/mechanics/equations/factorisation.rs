@@ -1,4 +1,4 @@
-//! Factorisations of the equations, and what contacts hold at their nodes in them.
+//! Factorisations of the equations, and the constraints of the contacts at their nodes.
 
 use crate::algebra::dense::assembly::Sink;
 use crate::algebra::sparse::{Holding, Holdings, SparseFactorisation};
@@ -9,16 +9,16 @@ use crate::mechanics::problem::state::Rate;
 use crate::mechanics::structure::elements::Stretching;
 use std::sync::Arc;
 
-/// Smallest pivot over the largest below which digits are worth the larger system that saves them.
+/// Ratio of the smallest to the largest pivot below which the digits lost are worth the larger system that saves them.
 const SPREAD: f64 = 1e-4;
-/// The same where small pivots were raised and came back as borders: what is left of them is little more than this.
+/// The same ratio where small pivots were raised and corrected by borders: the pivots that remain are little larger.
 const SPREAD_AT_LEAST: f64 = 1e-5;
-/// Unknowns up to which they are saved so.
+/// Largest number of unknowns for which digits are saved in this way.
 const MOST_APART: usize = 200;
 
 impl ModeSystem<'_> {
-    /// What the closed contacts hold at each node, in the order of the nodes. Those that several nodes move are no one
-    /// node's: their rows border the matrix.
+    /// The constraints of the closed contacts at each node, in the order of the nodes. A contact that several nodes
+    /// move belongs to no single node: its rows border the matrix.
     pub(crate) fn holdings(&self) -> &Holdings {
         self.holdings.get_or_init(|| {
             let closed = |contact: &usize| !matches!(self.roles[*contact], Role::Free | Role::HeldBy);
@@ -32,7 +32,7 @@ impl ModeSystem<'_> {
         })
     }
 
-    /// What closed contacts hold at their node, each given with it.
+    /// The constraints of closed contacts at their node; each contact is given with the node.
     fn holding(&self, contacts: &[(usize, usize)]) -> Holding {
         let structure = self.loading.structure;
         let unknowns = structure.unknowns();
@@ -52,9 +52,9 @@ impl ModeSystem<'_> {
         holding
     }
 
-    /// Factorises the equations at an iterate with a last row that the caller puts in. Where stiff and soft parts meet, so
-    /// that their sum would cost too many digits, the stiff ones are kept apart (in dense matrices; for many unknowns
-    /// solutions are refined instead).
+    /// Factorises the equations at an iterate; the caller puts in the last row. Where stiff and soft parts meet, so
+    /// that adding them up would cost too many digits, the stiff parts are kept apart (in dense matrices; for many
+    /// unknowns solutions are refined instead).
     pub(crate) fn factorise(
         &self,
         iterate: &Iterate,
@@ -95,12 +95,13 @@ impl ModeSystem<'_> {
         Factorisation::stiffened(apart, &stiffeners).or(Some(plain)).map(SystemFactorisation::Dense)
     }
 
-    /// Whether a sparse factorisation is as good as one that keeps stiff and soft parts apart, or has to do.
+    /// Whether a sparse factorisation is as accurate as one that keeps stiff and soft parts apart, or must do for many
+    /// unknowns.
     pub(crate) fn is_kept(&self, factorisation: &SparseFactorisation) -> bool {
         factorisation.spread() >= SPREAD_AT_LEAST || self.loading.structure.unknowns() > MOST_APART
     }
 
-    /// The same with stiff and soft parts added up.
+    /// Factorises the equations with stiff and soft parts added up.
     pub(crate) fn factorise_as_it_is(
         &self,
         iterate: &Iterate,

@@ -9,23 +9,23 @@ use crate::mechanics::problem::node_forces::force;
 use crate::mechanics::problem::state::{Rate, State};
 use nalgebra::DMatrix;
 
-/// Where the elements' resistance to being stretched is.
+/// Whether the stretching stiffness of the elements is within the matrix or kept apart.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Stretch {
     Within,
     Apart,
 }
 
-/// Friction force (dimensionless) below which Newton's matrix takes it as this.
+/// Lower bound on the friction force (dimensionless) in Newton's matrix.
 const LEAST_PRESSED: f64 = 1e-10;
 
 impl ModeSystem<'_> {
-    /// All rows but the last of the rate equations at a state, which is left zero for the bordering equation.
+    /// The matrix of the rate equations at a state; the last row is left zero for the bordering equation.
     pub fn matrix(&self, state: &State) -> DMatrix<f64> {
         self.assemble(&self.iterate(state.clone()), Kind::Rates)
     }
 
-    /// All rows but the last.
+    /// The dense matrix of the equations; the last row is left zero.
     pub(crate) fn assemble(&self, iterate: &Iterate, kind: Kind) -> DMatrix<f64> {
         self.assemble_parts(iterate, kind, Stretch::Within)
     }
@@ -50,7 +50,7 @@ impl ModeSystem<'_> {
         matrix
     }
 
-    /// The columns of the load and of the contacts, and the contacts' rows.
+    /// Adds the columns of the load factor and of the contacts, and the rows of the contacts.
     fn add_loads_and_contacts(&self, iterate: &Iterate, kind: Kind, matrix: &mut impl Sink) {
         let structure = self.loading.structure;
         for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
@@ -67,7 +67,8 @@ impl ModeSystem<'_> {
         }
     }
 
-    /// All rows but the last, sparse; `None` for a structure whose matrices are dense, and where motions are held.
+    /// The sparse matrix of the equations, with the last row left zero; `None` for a structure whose matrices are
+    /// dense, and where motions are suppressed.
     pub(crate) fn assemble_sparse(&self, iterate: &Iterate, kind: Kind) -> Option<Bordered> {
         let structure = self.loading.structure;
         let layout = structure.layout().filter(|_| !self.holds_still())?;
@@ -89,7 +90,7 @@ impl ModeSystem<'_> {
         Some(matrix)
     }
 
-    /// A row `vector·(relative motion)` at a state.
+    /// Adds a row `vector·(relative motion)` at a state.
     fn put_motion(&self, contact: usize, state: &State, row: usize, vector: &Vector, matrix: &mut impl Sink) {
         let structure = self.loading.structure;
         let load = structure.unknowns();
@@ -100,7 +101,7 @@ impl ModeSystem<'_> {
         matrix.add(row, load, -dot(vector, &self.loading.pattern.shifts[contact]));
     }
 
-    /// A column of equilibrium: the negative of a contact's force at a state.
+    /// Adds a column of the equilibrium equations: the negative of a contact's force at a state.
     fn put_force(&self, contact: usize, state: &State, column: usize, force: &Vector, matrix: &mut impl Sink) {
         let structure = self.loading.structure;
         self.loading.each_column(contact, state, |freedom, motion| {
@@ -110,7 +111,8 @@ impl ModeSystem<'_> {
         });
     }
 
-    /// How the columns of a contact's force turn with the nodes that move it, at a constant force.
+    /// Adds the change of a contact's force columns with the displacements of the nodes that move it, at a constant
+    /// force.
     fn add_curvature(&self, contact: usize, state: &State, matrix: &mut impl Sink) {
         let structure = self.loading.structure;
         let data = &self.loading.contacts[contact];
@@ -151,12 +153,14 @@ impl ModeSystem<'_> {
             let across = cross(&frame.normal, &direction);
             match kind {
                 Kind::Rates => {
-                    // The unknown is μ r_n times the turn, so that a node that is hardly pressed makes nothing singular.
+                    // The unknown is μ r_n times the turn, so that a small normal reaction does not make the matrix
+                    // singular.
                     self.put_force(contact, state, column + 1, &scaled(&across, -1.0), matrix);
                     self.put_motion(contact, state, row + 1, &across, matrix);
                 }
                 Kind::Increment => {
-                    // Where the node is hardly pressed a turn changes nothing, and the equations would be singular.
+                    // Where the normal reaction vanishes, a turn would change nothing and the equations would be
+                    // singular.
                     let pressed = friction.bound(normal);
                     let pressed = if pressed.abs() < LEAST_PRESSED { LEAST_PRESSED } else { pressed };
                     self.put_force(contact, state, column + 1, &scaled(&across, -pressed), matrix);
@@ -172,7 +176,7 @@ impl ModeSystem<'_> {
         if frame.curvature == 0.0 && !turns {
             return;
         }
-        // The reaction turns with the place on the obstacle.
+        // The reaction turns with the position on the obstacle.
         let change_with = |motion: &Vector| {
             let drag = self.direction_change(contact, iterate, &direction, motion);
             scaled(&friction.force_direction(&frame.normal_change(motion), &drag), normal)
@@ -191,12 +195,12 @@ impl ModeSystem<'_> {
         self.put_force(contact, state, structure.unknowns(), &shifted, matrix);
     }
 
-    /// Puts the bordering row of a rate into a matrix.
+    /// Adds the bordering row of a rate to a matrix, as its last row.
     pub fn border(&self, matrix: &mut (impl Sink + ?Sized), rate: &Rate) {
         self.border_along(matrix, |freedom| rate.displacement[freedom], rate.load);
     }
 
-    /// The same of the rate of each degree of freedom and of the load.
+    /// Adds the bordering row with given entries for the degrees of freedom and for the load.
     pub(super) fn border_along(
         &self,
         matrix: &mut (impl Sink + ?Sized),
@@ -206,7 +210,7 @@ impl ModeSystem<'_> {
         self.border_row(self.size - 1, matrix, of_freedom, of_load);
     }
 
-    /// The same in any row.
+    /// Adds a bordering row in any row of a matrix.
     pub(crate) fn border_row(
         &self,
         row: usize,
@@ -219,7 +223,7 @@ impl ModeSystem<'_> {
         for (unknown, freedom) in structure.freedom_of.iter().enumerate() {
             matrix.add(row, unknown, of_freedom(*freedom));
         }
-        // Supports that move with the load are part of the arc.
+        // Supports that move with the load contribute to the arc length.
         let supports = self.loading.pattern.supports.iter().enumerate();
         let supports: f64 = supports.map(|(freedom, motion)| motion * of_freedom(freedom)).sum();
         matrix.add(row, load, of_load + supports);

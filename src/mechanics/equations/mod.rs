@@ -5,12 +5,12 @@
 //! g_i(u, s) = 0                                              closed contacts (or the gap below 1e-10 at which one closed)
 //! t·(x_i - x_i⁰) = 0                                         sticking contacts, unknown r_t
 //! r_t = -μ r_n d                                             slipping contacts, d a tangent, or along an edge
-//! c(u, s) = 0                                                arc length, or a held load or displacement
+//! c(u, s) = 0                                                arc length, or a prescribed load or displacement
 //! ```
 //!
-//! `x_i` is the node's place relative to its obstacle. Along a line `d` is known; in a plane it is an unknown with the
-//! equation of `slip_integration`. Unknowns are `(u, s)`, then for each closed contact `r_n` and what its mode adds; the matrix is
-//! square, and regular at smooth limit points because `c` borders it
+//! `x_i` is the position of the node relative to its obstacle. For slip along a line `d` is known; for slip in a plane
+//! `d` is an unknown with the equation of `slip_integration`. The unknowns are `(u, s)`, then for each closed contact
+//! `r_n` and the unknowns of its mode; the matrix is square, and regular at smooth limit points because `c` borders it
 //! (E. Riks, Int. J. Solids Struct. 15 (1979) 529, doi:10.1016/0020-7683(79)90081-7).
 
 pub mod closing_equation;
@@ -38,49 +38,51 @@ use crate::mechanics::problem::state::State;
 use smallvec::SmallVec;
 use std::cell::OnceCell;
 
-/// What a contact contributes to the equations.
+/// The contribution of a contact to the equations.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Role {
     Free,
-    /// Closed, no traction.
+    /// Closed, without traction.
     Frictionless,
-    /// Slip along the frame's first tangent, in the sense of the sign.
+    /// Slip along the frame's first tangent or against it, by the sign.
     Line {
         sign: f64,
     },
-    /// Slip along the edge with the obstacle of another contact of the node, in the sense of the sign: see `edge`.
+    /// Slip along the edge with the obstacle of another contact of the node, in the direction of [`Edge`] or against
+    /// it, by the sign.
     Edge {
         beside: usize,
         sign: f64,
     },
-    /// Slip along any tangent, on a track with an equation of its own: which of the system's.
+    /// Slip along any tangent, on a track with an equation of its own; `track` is its index in the system.
     Plane {
         track: usize,
     },
     Stick,
-    /// Holds its node together with other contacts, and has the whole force in its unknowns.
+    /// Holds its node together with other contacts; its unknowns are the total force on the node.
     Held,
-    /// Holds its node together with one that is `Held`; adds nothing.
+    /// Holds its node together with a contact that is `Held`; adds nothing.
     HeldBy,
 }
 
-/// Where the track of a slip in a plane starts, and how it turns.
+/// The start of the track of a slip in a plane, and its turn.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Track {
     pub start: Start,
     pub turn: Turn,
 }
 
-/// Which equation the track of a slip in a plane has.
+/// The kind of equation of the track of a slip in a plane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// Of rates: the node goes along the direction.
+    /// Equation of the rates: the node moves along the direction.
     Rates,
-    /// Of the increment: its chord lies between the directions at both ends.
+    /// Equation of the increment: its chord lies between the directions at both ends.
     Increment,
 }
 
-/// A state on the way to convergence, with the directions of slip (one a contact; empty where none is unknown).
+/// An iterate on the way to convergence: a state with the directions of slip (one per contact; empty where none is
+/// unknown).
 #[derive(Debug, Clone)]
 pub(crate) struct Iterate {
     pub state: State,
@@ -88,7 +90,7 @@ pub(crate) struct Iterate {
 }
 
 impl Iterate {
-    /// Becomes another one of the same equations, in the memory that it has.
+    /// Copies another iterate of the same equations, without new memory.
     pub fn set_to(&mut self, other: &Self) {
         self.state.set_to(&other.state);
         self.directions.clone_from(&other.directions);
@@ -98,16 +100,16 @@ impl Iterate {
 /// Up to three orthonormal directions.
 pub(crate) type Directions = SmallVec<[Vector; 3]>;
 
-/// The directions of all contacts, one after the other, and where those of each begin.
+/// The directions of all contacts, one after the other, and the index of the first of each contact.
 struct HeldDirections {
     starts: Vec<u32>,
     directions: Vec<Vector>,
 }
 
-/// One mode's equations.
+/// The equations of one contact mode.
 pub struct ModeSystem<'a> {
     pub(crate) loading: Loading<'a>,
-    /// Where sticking contacts hold their nodes and slips start.
+    /// The state in which sticking contacts hold their nodes and slips start.
     pub(crate) anchor: &'a State,
     pub(crate) roles: Vec<Role>,
     pub(crate) tracks: Vec<Track>,
@@ -115,18 +117,18 @@ pub struct ModeSystem<'a> {
     /// First row and column of each closed contact.
     first_of: SmallVec<[usize; 4]>,
     pub(crate) size: usize,
-    /// What is asked for is a step that can as well be shorter.
+    /// Whether a step shorter than the required one serves as well.
     pub(crate) may_be_shorter: bool,
-    /// Motions that are held: see `deflation`.
+    /// Suppressed motions: see `deflation`.
     still: Vec<deflation::Still>,
-    /// Made when first needed.
+    /// Computed when first needed.
     holdings: OnceCell<Holdings>,
-    /// See [`Self::held_directions`]; made when first needed.
+    /// See [`Self::held_directions`]; computed when first needed.
     held: OnceCell<HeldDirections>,
 }
 
 impl<'a> ModeSystem<'a> {
-    /// `anchor` is the state in which the modes begin.
+    /// The equations of `modes`; `anchor` is the state in which the modes begin.
     pub fn new(loading: Loading<'a>, modes: &'a [Mode], anchor: &'a State) -> Self {
         let mut next = loading.structure.unknowns() + 1;
         let mut first_of = SmallVec::with_capacity(modes.len());
@@ -193,18 +195,19 @@ impl<'a> ModeSystem<'a> {
         !self.tracks.is_empty()
     }
 
-    /// Column of a closed contact's normal reaction; its other unknowns follow. Its rows are one less.
+    /// The column of a closed contact's normal reaction; its other unknowns follow. The rows of a contact have indices
+    /// smaller by one.
     pub fn column_of(&self, contact: usize) -> usize {
         self.first_of[contact]
     }
 
-    /// Row of a closed contact's normal equation; its others follow.
+    /// The row of a closed contact's normal equation; its other equations follow.
     pub fn row_of(&self, contact: usize) -> usize {
         self.first_of[contact] - 1
     }
 
-    /// A state with the directions of slip that the modes give; where contacts hold a node together, the first of them
-    /// has the whole force.
+    /// The iterate of a state, with the directions of slip that the modes give; where contacts hold a node together,
+    /// the first of them takes the total force.
     pub(crate) fn iterate(&self, mut state: State) -> Iterate {
         for corner in self.loading.corners {
             let mut holding = corner.holding(self.modes);
@@ -234,9 +237,10 @@ impl<'a> ModeSystem<'a> {
         Iterate { state, directions }
     }
 
-    /// A sticking node that a guess has elsewhere on a curved obstacle goes back to its place, where the normal is another:
-    /// its force is taken apart along that one. Corrections of its traction are across it. So what the guess leaves of the
-    /// traction along it would stay, in equilibrium, but neither as pressure nor as friction.
+    /// Resolves the force of a sticking contact in the frame at the anchor. A guess may have moved the sticking node on
+    /// a curved obstacle; the correction puts the node back to its position at the anchor, where the normal is
+    /// different. Corrections of the traction are perpendicular to the normal there. A component of the guessed
+    /// traction along this normal would therefore remain: in equilibrium, but neither pressure nor friction.
     fn hold_in_frame(&self, contact: usize, state: &mut State) {
         let held = self.loading.frame(contact, self.anchor);
         if held.curvature == 0.0 {
@@ -249,18 +253,18 @@ impl<'a> ModeSystem<'a> {
         }
     }
 
-    /// A converged point.
+    /// The iterate of a converged point.
     pub(crate) fn iterate_of(&self, corrected: &Corrected) -> Iterate {
         Iterate { directions: corrected.directions.clone(), ..self.iterate(corrected.state.clone()) }
     }
 
-    /// Where several contacts hold a node together, their reactions become those of least norm.
+    /// Replaces the reactions of contacts that hold a node together by those of least norm.
     pub(crate) fn share(&self, state: &mut State) {
         reaction_split::share(self.loading, self.loading.corners, self.modes, state);
     }
 
-    /// Orthonormal directions in which a sticking contact holds its node, along which it has a force: the normal and the
-    /// tangents with friction; where it holds the node together with others, all in which the node is free.
+    /// The orthonormal directions in which a sticking contact holds its node and has a reaction: the normal and the
+    /// tangents with friction; where contacts hold the node together, all directions in which the node is free.
     pub(crate) fn held_directions(&self, contact: usize) -> &[Vector] {
         let held = self.held.get_or_init(|| {
             let count = self.roles.len();
@@ -297,7 +301,7 @@ impl<'a> ModeSystem<'a> {
         }
     }
 
-    /// Motion relative to the obstacle since the anchor.
+    /// The motion relative to the obstacle since the anchor.
     pub(crate) fn chord(&self, contact: usize, state: &State) -> Vector {
         add(&self.loading.relative(contact, state), -1.0, &self.loading.relative(contact, self.anchor))
     }
@@ -314,7 +318,7 @@ impl<'a> ModeSystem<'a> {
         }
     }
 
-    /// How a slip's direction turns with the place on the obstacle, its own turn apart.
+    /// The change of a slip's direction with the position on the obstacle, apart from the turn that is an unknown.
     fn direction_change(&self, contact: usize, iterate: &Iterate, direction: &Vector, motion: &Vector) -> Vector {
         let frame = self.loading.frame(contact, &iterate.state);
         match self.roles[contact] {
@@ -335,8 +339,8 @@ mod tests {
     use crate::mechanics::equations::closing_equation::PrescribedValue;
     use crate::step::corrector::newton;
 
-    /// A node on a spring that sticks to the top of a ball. A guess has it slid off, with its force along and across the
-    /// normal there.
+    /// A node on a spring sticks to the top of a ball. The guess has slid off, with the force resolved along and across
+    /// the normal there.
     #[test]
     fn a_stuck_node_keeps_its_force_across_its_own_normal() {
         let request = crate::model::decode::decode(

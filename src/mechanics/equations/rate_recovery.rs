@@ -1,4 +1,4 @@
-//! Solutions of the equations taken apart: rates, corrections and the path's direction.
+//! Rates, corrections and the path's direction from solutions of the equations.
 
 use crate::algebra::SystemFactorisation;
 use crate::mechanics::contact::vector::{add, cross};
@@ -9,19 +9,19 @@ use crate::mechanics::problem::state::{Rate, State};
 use nalgebra::DVector;
 
 impl ModeSystem<'_> {
-    /// Takes a vector of unknowns apart, at a state.
+    /// The rate of a vector of unknowns at a state.
     pub fn rate_from(&self, state: &State, values: &DVector<f64>) -> Rate {
         self.rate_at(&self.iterate(state.clone()), values, Kind::Rates)
     }
 
-    /// `kind` is that of the equations whose solution the values are.
+    /// The rate of a solution at an iterate; `kind` is that of the equations solved.
     pub(crate) fn rate_at(&self, iterate: &Iterate, values: &DVector<f64>, kind: Kind) -> Rate {
         let mut rate = self.no_rate();
         self.rate_into(iterate, values, kind, &mut rate);
         rate
     }
 
-    /// `‖(u̇, ṡ)‖` of a vector of unknowns.
+    /// The norm `‖(u̇, ṡ)‖` of a vector of unknowns.
     pub(crate) fn length_of(&self, values: &DVector<f64>) -> f64 {
         let structure = self.loading.structure;
         let load = values[structure.unknowns()];
@@ -34,13 +34,13 @@ impl ModeSystem<'_> {
         (squared + load * load).sqrt()
     }
 
-    /// Zero, of these contacts and degrees of freedom.
+    /// The zero rate, with these contacts and degrees of freedom.
     pub(crate) fn no_rate(&self) -> Rate {
         let displacement = vec![0.0; self.loading.structure.freedoms()];
         Rate { displacement, load: 0.0, reactions: vec![Reaction::default(); self.roles.len()] }
     }
 
-    /// The same in memory that is there, where free contacts have no reaction.
+    /// Writes the rate of a solution into `rate`, in which free contacts must have no reaction.
     pub(crate) fn rate_into(&self, iterate: &Iterate, values: &DVector<f64>, kind: Kind, rate: &mut Rate) {
         let structure = self.loading.structure;
         let load = values[structure.unknowns()];
@@ -58,7 +58,7 @@ impl ModeSystem<'_> {
                 Role::Stick | Role::Held => {
                     let normal = self.loading.frame(contact, self.anchor).normal;
                     let directions = self.held_directions(contact);
-                    // In the frame of the contact the first is the normal.
+                    // In the frame of the contact the first direction is the normal.
                     let is_normal = directions[0] == normal;
                     let others = directions.iter().enumerate().skip(usize::from(is_normal));
                     let rest = others.fold([0.0; 3], |sum, (k, direction)| add(&sum, values[column + k], direction));
@@ -91,7 +91,7 @@ impl ModeSystem<'_> {
         }
     }
 
-    /// Goes on by minus a Newton correction, which is also written to `correction` (see [`Self::no_rate`]).
+    /// Subtracts a Newton correction from an iterate, and writes it to `correction` (see [`Self::no_rate`]).
     pub(crate) fn correct_by(&self, iterate: &mut Iterate, values: &DVector<f64>, correction: &mut Rate) {
         self.rate_into(iterate, values, Kind::Increment, correction);
         let Iterate { state, directions } = iterate;
@@ -109,13 +109,13 @@ impl ModeSystem<'_> {
         self.make_consistent(iterate);
     }
 
-    /// The same of an iterate by value.
+    /// The iterate after a Newton correction.
     pub(crate) fn corrected_by(&self, mut iterate: Iterate, values: &DVector<f64>) -> Iterate {
         self.correct_by(&mut iterate, values, &mut self.no_rate());
         iterate
     }
 
-    /// The modes at an iterate: directions of slip as they are there.
+    /// The modes with the directions of slip at an iterate.
     pub(crate) fn modes_at(&self, iterate: &Iterate) -> Vec<Mode> {
         let at = |(contact, mode): (usize, &Mode)| match self.roles[contact] {
             Role::Line { .. } | Role::Edge { .. } | Role::Plane { .. } => {
@@ -149,13 +149,13 @@ impl ModeSystem<'_> {
         values
     }
 
-    /// The same in memory that is there.
+    /// Writes this right-hand side into `values`.
     pub(crate) fn border_into(&self, values: &mut DVector<f64>) {
         values.fill(0.0);
         values[self.size - 1] = 1.0;
     }
 
-    /// A solution of the rate equations, of unit arc length.
+    /// The rate of a solution of the rate equations, scaled to unit arc length.
     pub(crate) fn direction_from(&self, iterate: &Iterate, values: &DVector<f64>) -> Option<Rate> {
         self.rate_at(iterate, values, Kind::Rates).normalised()
     }

@@ -1,4 +1,4 @@
-//! What is left over of the equations, and states that fulfil exactly what can be.
+//! The residual of the equations, and states that satisfy exactly the equations for which this is possible.
 
 use crate::mechanics::contact::Reaction;
 use crate::mechanics::contact::vector::{add, dot, scaled};
@@ -7,11 +7,11 @@ use crate::mechanics::problem::natural_residual::ZERO;
 use crate::mechanics::problem::state::State;
 use nalgebra::DVector;
 
-/// A gap (dimensionless) up to this size is what rounding leaves of none.
+/// A gap (dimensionless) up to this size is the round-off of zero.
 const ROUNDING: f64 = 1e-13;
 
 impl ModeSystem<'_> {
-    /// Equilibrium and contact equations; returns the largest equilibrium residual and the force scale.
+    /// Writes the residuals of equilibrium and contact; returns the largest equilibrium residual and the force scale.
     pub(crate) fn residual(&self, iterate: &Iterate, values: &mut DVector<f64>, force: &mut [f64]) -> (f64, f64) {
         let structure = self.loading.structure;
         let state = &iterate.state;
@@ -34,7 +34,7 @@ impl ModeSystem<'_> {
             self.loading.each_column(contact, state, |freedom, column| force[freedom] -= dot(column, &whole));
             let row = self.row_of(contact);
             match role {
-                // A sticking node is put in its place exactly: see `place_exactly`.
+                // A sticking node is placed exactly: see `place_exactly`.
                 Role::Stick if self.loading.contacts[contact].kinematics.node().is_none() => {
                     let chord = self.chord(contact, state);
                     for (k, direction) in self.held_directions(contact).iter().enumerate() {
@@ -62,14 +62,14 @@ impl ModeSystem<'_> {
         (largest, scale)
     }
 
-    /// The gap that a contact keeps which closed where that was as good as none: where several touch at almost one place the
-    /// path goes on from there without a jump, however short the way to the next is.
+    /// The gap that a contact keeps after it has closed at a gap that counts as zero: where several contacts close at
+    /// almost one point, the path then continues without a jump, however short the way to the next closing is.
     fn left_open(&self, contact: usize) -> f64 {
         let gap = self.loading.gap(contact, self.anchor);
         if gap > ROUNDING && gap <= ZERO { gap } else { 0.0 }
     }
 
-    /// Supports and sticking nodes are where they have to be.
+    /// Puts supports and sticking nodes exactly into their positions.
     pub(super) fn place_exactly(&self, state: &mut State) {
         self.loading.place_supports(state);
         let structure = self.loading.structure;

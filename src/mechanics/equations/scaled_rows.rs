@@ -1,12 +1,13 @@
-//! The rows of the equations over the largest entry that any element has in them, and the rank of what is left.
+//! The rows of the equations, scaled by the largest entry of any element, and the tolerance on their rank.
 
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::State;
 use nalgebra::{DMatrix, DVector};
 
-/// The mode's equations without the last, each row over the largest entry that any element has in it: where the
-/// elements' stiffnesses cancel, at a singular point, what is left over stays small. With the sizes of the rows.
+/// Returns the equations of the mode without the last, each row divided by the largest entry that any element has in
+/// it, and the divisors of the rows. Where the stiffnesses of the elements cancel, at a singular point, the remainder
+/// stays small in these rows.
 pub fn scaled_rows(system: &ModeSystem<'_>, loading: Loading<'_>, state: &State) -> (DMatrix<f64>, DVector<f64>) {
     let structure = loading.structure;
     let rows = system.size() - 1;

@@ -1,87 +1,91 @@
 //! The track of a node that slips along any tangent.
 //!
-//! The direction `d` opposes the traction and turns as the node goes. Along the track, of length `h` in an increment, let
-//! `θ` be the angle of `d` and `κ = dθ/dh` its turn. The chord of the increment has the angle
+//! The direction `d` opposes the traction and turns as the node moves. Along the track, of length `h` in an increment,
+//! let `θ` be the angle of `d` and `κ = dθ/dh` its turn. The chord of the increment has the angle
 //!
 //! ```text
 //! ½ (θ₀ + θ₁) + h (κ₀ - κ₁)/12   [ + h⁴ (θ'''' - κ² κ')/720 ]
 //! ```
 //!
-//! (Euler and Maclaurin's formula; the last term is left out and estimated.) Without the second term it is the
-//! trapezoidal rule in the form "the chord bisects the directions at its ends", of second order. `κ₁` is known only
-//! when the increment is: the increment is solved with the trapezoidal rule first and with the correction then, which
-//! makes it of fourth order (deferred correction: L. Fox, Proc. R. Soc. A 190 (1947) 31; V. Pereyra, Numer. Math. 8
-//! (1966) 376, doi:10.1007/BF02162981). Where a node starts to slip without being pressed, `κ₀` is not defined by the
-//! rates; the angle is then `(θ₀ + 2 θ₁)/3 - h κ₁/6 [ + h³ θ'''/72 ]`, for that one increment. On a curved obstacle directions are carried along the geodesic.
+//! (Euler–Maclaurin formula; the last term is omitted and estimated.) Without the second term this is the trapezoidal
+//! rule in the form "the chord bisects the directions at its ends", of second order. `κ₁` is known only once the
+//! increment is solved: the increment is solved first with the trapezoidal rule and then with the correction, which
+//! gives fourth order (deferred correction: L. Fox, Proc. R. Soc. A 190 (1947) 31; V. Pereyra, Numer. Math. 8 (1966)
+//! 376, doi:10.1007/BF02162981). Where a node starts to slip at zero normal reaction, the rates do not define `κ₀`; for
+//! this one increment the angle is `(θ₀ + 2 θ₁)/3 - h κ₁/6 [ + h³ θ'''/72 ]`. On a curved obstacle directions are
+//! transported along the geodesic.
 //!
-//! A node that is hardly pressed goes where the structure takes it, and its direction follows: with the stiffness `K`
-//! across the slip
+//! A node with a small normal reaction moves as the structure drives it, and the direction of its slip settles towards
+//! the direction `θ*` of this motion: with the stiffness `K` across the slip
 //!
 //! ```text
 //! κ = λ (θ* - θ),    μ r_n κ ḣ = (K ḣ + μ ṙ_n)(θ* - θ),    λ = (K ḣ + μ ṙ_n)/(μ r_n ḣ)
 //! ```
 //!
 //! so that `z = λ h` grows without bound as the reaction vanishes. Over such an increment a rule has to be L-stable and
-//! cannot take `κ₁` from a solve before. The second rule is that of the Padé approximant (1, 2), which is L-stable
-//! (E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, Springer 1996, chapter IV.3); with `κ₁` linear in
-//! `θ₁` as above it is solved until it holds at the end of the increment itself. It takes over as `z` grows.
+//! cannot take `κ₁` from a previous solve. The second rule is that of the Padé approximant (1, 2), which is L-stable
+//! (E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, Springer 1996, chapter IV.3); with `κ₁` linear
+//! in `θ₁` as above, the increment is solved repeatedly until the rule holds at its end. The second rule takes over as
+//! `z` grows.
 
 use crate::mechanics::contact::Frame;
 use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled, size, unit};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 
-/// Where a slip starts: its direction and the obstacle's normal there.
+/// The start of a slip: its direction and the obstacle's normal there.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Start {
     pub direction: Vector,
     pub normal: Vector,
 }
 
-/// Turn of the direction per length of track at both ends of the increment, where known.
+/// The turn of the direction per length of track at both ends of the increment, where known.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Turn {
     pub at_start: Option<f64>,
     pub at_end: Option<f64>,
-    /// How the turn at the end depends on the direction there, where the node is hardly pressed.
+    /// The dependence of the turn at the end on the direction there, where the normal reaction is small.
     pub settling: Option<Settling>,
 }
 
-/// A direction that goes over to another one: `κ = -λ (θ - θ*)` near the direction that was found last.
+/// The settling of a direction: `κ = -λ (θ - θ*)` near the direction of the last solve.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Settling {
-    /// Angle from the direction at the start to that found last.
+    /// Angle from the direction at the start to that of the last solve.
     pub angle: f64,
     /// `z = λ h`, positive.
     pub quickness: f64,
-    /// `θ* - θ`
+    /// The angle `θ* - θ` at the direction of the last solve.
     pub ahead: f64,
 }
 
 /// The track's equation at an iterate.
 pub(crate) struct Rule {
-    /// What is left over of it.
+    /// The residual of the equation.
     pub left_over: f64,
-    /// Derivative of the equation by the node's motion, a tangent.
+    /// Derivative of the equation with respect to the node's motion: a tangent vector.
     pub across: Vector,
-    /// Derivative of the equation by the turn of the direction at the end.
+    /// Derivative of the equation with respect to the turn of the direction at the end.
     pub by_turn: f64,
-    /// The same by the turn at the start.
+    /// Derivative of the equation with respect to the turn of the direction at the start.
     pub by_first_turn: f64,
-    /// What multiplies the distance by which the chord's end is off the track.
+    /// The factor in the equation of the distance between the end of the chord and the track.
     pub factor: f64,
 }
 
-/// Values of `z` from which the second rule has a share, and from which it is the only one.
+/// Values of `z` above which the second rule has a weight, and above which it is used alone.
 const SETTLING: [f64; 2] = [2.0, 6.0];
-/// A larger `z` makes no difference.
+/// Upper bound on `z`; larger values make no difference.
 const QUICKEST: f64 = 1e8;
 
-/// Speeds (of unit arc length) and reactions (over the largest) below this give a direction no turn.
+/// Speeds (at unit arc length) and friction bounds (over the rate of the reaction) up to this define no turn of a
+/// direction.
 const SMALLEST: f64 = 1e-9;
 
 impl Start {
-    /// The direction carried along the geodesic to where the normal is another: turned with it by the smallest rotation.
+    /// The direction transported along the geodesic to a point with another normal: rotated by the smallest rotation
+    /// between the two normals.
     pub fn carried_to(&self, normal: &Vector) -> Vector {
         let across = dot(&self.direction, normal);
         if across == 0.0 {
@@ -93,8 +97,8 @@ impl Start {
 }
 
 impl Turn {
-    /// The angle (radians) by which the turns at the ends move the chord away from the bisector of the directions, over
-    /// a track of this length.
+    /// The angle (radians) between the bisector of the end directions and the chord, as the turns at the ends of a
+    /// track of this length make it.
     pub fn correction(&self, length: f64) -> f64 {
         match (self.at_start, self.at_end) {
             (Some(first), Some(last)) => length * (first - last) / 12.0,
@@ -104,14 +108,15 @@ impl Turn {
 }
 
 impl Settling {
-    /// The share of the second rule in the equation.
+    /// The weight of the second rule in the equation.
     pub fn share(&self) -> f64 {
         ((self.quickness - SETTLING[0]) / (SETTLING[1] - SETTLING[0])).clamp(0.0, 1.0)
     }
 }
 
 impl Rule {
-    /// `rate_recovery` is that at the end, `chord` the motion relative to the obstacle.
+    /// The rule of an increment; `frame` and `direction` are those at its end, `chord` the motion relative to the
+    /// obstacle.
     pub fn new(frame: &Frame, start: &Start, turn: &Turn, direction: &Vector, chord: &Vector) -> Self {
         let carried = start.carried_to(&frame.normal);
         if let Some(settling) = turn.settling.filter(|settling| settling.share() > 0.0) {
@@ -133,8 +138,9 @@ impl Rule {
         Self { left_over: dot(&across, chord), across, by_turn: -half, by_first_turn: -half, factor: 1.0 }
     }
 
-    /// With angles from the first direction, `φ` that of the chord and `h κ₁ = ω z (θ* - θ₁) + (1 - ω) (h κ₁)⁰`, the
-    /// equation is `h (φ - φ_rule)/(∂φ_rule/∂θ₁) = 0`: where `z` is large it says `θ₁ = θ*`.
+    /// The rule of a direction that settles. With angles measured from the direction at the start, `φ` the angle of the
+    /// chord and `h κ₁ = ω z (θ* - θ₁) + (1 - ω) (h κ₁)⁰`, the equation is `h (φ - φ_rule)/(∂φ_rule/∂θ₁) = 0`: for
+    /// large `z` it becomes `θ₁ = θ*`.
     fn settling(
         frame: &Frame,
         carried: &Vector,
@@ -149,7 +155,7 @@ impl Rule {
         let last = angle(&frame.normal, carried, direction);
         let share = if turn.at_start.is_some() { settling.share() } else { 1.0 };
         let quickness = settling.quickness.min(QUICKEST);
-        // `h κ₁` at the direction found last is `z` times what was ahead of it.
+        // `h κ₁` at the direction of the last solve is `z` times the angle `θ* - θ` there.
         let slope = settling.share() * quickness;
         let turned = quickness * settling.ahead - slope * (last - settling.angle);
         let first = (1.0 - share) * (0.5 * last + (turn.at_start.unwrap_or(0.0) * arc - turned) / 12.0);
@@ -172,20 +178,20 @@ pub(crate) fn angle(normal: &Vector, from: &Vector, to: &Vector) -> f64 {
     dot(&cross(from, to), normal).atan2(dot(from, to))
 }
 
-/// Length of the arc over a chord whose end directions differ.
+/// The length of an arc, from its chord and the directions at its ends.
 pub(crate) fn arc(chord: f64, first: &Vector, last: &Vector) -> f64 {
     let turn = size(&add(last, -1.0, first));
     chord * (1.0 + turn * turn / 24.0)
 }
 
-/// A direction turned by an angle (radians, small) and brought into the tangent plane of a frame.
+/// A direction rotated by an angle (radians, small) and projected into the tangent plane of a frame.
 pub(crate) fn turned(frame: &Frame, direction: &Vector, angle: f64) -> Vector {
     let rotated = add(direction, angle, &cross(&frame.normal, direction));
     unit(&add(&rotated, -dot(&rotated, &frame.normal), &frame.normal))
 }
 
-/// Turn of a slip's direction per length of track, from the path's direction; `None` where the node does not move or is
-/// not pressed.
+/// The turn of a slip's direction per length of track, from the path's direction; `None` where the node does not move
+/// or has no normal reaction.
 pub(crate) fn turn_rate(
     loading: Loading<'_>,
     contact: usize,
@@ -204,7 +210,8 @@ pub(crate) fn turn_rate(
     Some(turn / speed)
 }
 
-/// How a direction settles over a chord; `None` where the node does not move, or turns away from `θ*`. `stiffness` is `K`.
+/// The settling of a direction over a chord; `None` where the node does not move, or the direction turns away from
+/// `θ*`. `stiffness` is `K`.
 pub(crate) fn settling(
     loading: Loading<'_>,
     contact: usize,
@@ -219,7 +226,7 @@ pub(crate) fn settling(
     let across = cross(&frame.normal, direction);
     let turn = -dot(&rate.reactions[contact].tangential, &across);
     let drawn = stiffness * speed + friction.bound(rate.reactions[contact].normal);
-    // Past the end of contact there is no friction to follow anything.
+    // Without a normal reaction there is no friction to give a direction.
     if speed <= SMALLEST || drawn <= 0.0 || pressed <= 0.0 {
         return None;
     }

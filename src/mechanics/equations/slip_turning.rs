@@ -1,4 +1,4 @@
-//! How fast slips in planes turn, and by how much they have.
+//! The turns of slips in planes: their rates and their angles.
 
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::size;
@@ -8,8 +8,8 @@ use crate::mechanics::equations::{ModeSystem, Role};
 use crate::mechanics::problem::state::Rate;
 
 impl ModeSystem<'_> {
-    /// Sets how fast the slips in planes turn at the start, by the path's direction there, and for another solve at the
-    /// end. Whether some direction settles there is returned.
+    /// Sets the turns of the slips in planes at the start, from the path's direction there, and for another solve at
+    /// the end. Returns whether any direction settles at the end.
     pub fn set_turns(&mut self, start: &Rate, end: &Corrected, tangent: &Tangent) -> bool {
         let mut settles = false;
         for index in 0..self.roles.len() {
@@ -29,8 +29,8 @@ impl ModeSystem<'_> {
         settles
     }
 
-    /// The largest angle (radians) by which the direction of a slip in a plane differs from that of another point, or
-    /// from that at the start; a node that is not pressed has none.
+    /// The largest angle (radians) between the direction of a slip in a plane and that at another point, or that at the
+    /// start; contacts without normal reaction are left out.
     pub fn largest_turn(&self, corrected: &Corrected, other: Option<&Corrected>) -> f64 {
         let of = |(index, role): (usize, &Role)| {
             let (Role::Plane { track }, Mode::Slip { direction }) = (role, corrected.modes[index]) else {
@@ -50,7 +50,7 @@ impl ModeSystem<'_> {
         self.roles.iter().enumerate().map(of).fold(0.0, f64::max)
     }
 
-    /// The largest angle (radians) by which turns move the chord of a track that does not settle.
+    /// The largest angle (radians) by which turns deflect the chord of a track that does not settle.
     pub fn largest_correction(&self, corrected: &Corrected) -> f64 {
         let of = |(index, role): (usize, &Role)| {
             let Role::Plane { track } = role else { return 0.0 };

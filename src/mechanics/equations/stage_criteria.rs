@@ -1,9 +1,9 @@
-//! The ways in which a stage ends.
+//! The criteria that end a stage.
 
 use crate::mechanics::equations::closing_equation::PrescribedValue;
 use crate::mechanics::problem::state::State;
 
-/// One way in which a stage ends.
+/// One criterion that ends a stage.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum End {
     /// `sign (s - bound) >= 0`
@@ -23,12 +23,12 @@ pub(crate) enum End {
 }
 
 impl End {
-    /// Whether it is a bound of the load or of a displacement, not a count.
+    /// Whether the criterion is a bound on the load or on a displacement, not a count.
     pub fn is_bound(self) -> bool {
         matches!(self, Self::Load { .. } | Self::Displacement { .. })
     }
 
-    /// The equation of a bound; `None` of a count.
+    /// The closing equation of a bound; `None` for a count.
     pub fn held(self) -> Option<PrescribedValue> {
         match self {
             Self::Load { bound, .. } => Some(PrescribedValue::Load(bound)),
@@ -37,7 +37,7 @@ impl End {
         }
     }
 
-    /// Whether a state meets a bound without even round-off.
+    /// Whether a state meets a bound exactly, without round-off.
     pub fn is_met_exactly(self, state: &State) -> bool {
         match self {
             Self::Load { bound, .. } => state.load == bound,
@@ -46,7 +46,7 @@ impl End {
         }
     }
 
-    /// Puts a state that meets a bound to round-off exactly there.
+    /// Puts a state that meets a bound up to round-off exactly on the bound.
     pub fn make_exact(self, state: &mut State) {
         match self {
             Self::Load { bound, .. } => state.load = bound,
