@@ -1,4 +1,4 @@
-//! Which contacts could change at a point, and between what.
+//! The status of the contacts at a point: which contacts can change their mode, and to which modes.
 
 use crate::mechanics::contact::vector::{Vector, direction_of, dot, scaled, size};
 use crate::mechanics::contact::{Mode, Sliding};
@@ -10,35 +10,35 @@ use crate::mechanics::problem::natural_residual::ZERO;
 use crate::mechanics::problem::node_forces;
 use crate::mechanics::problem::state::State;
 
-/// How a contact stands at a point.
+/// The status of a contact at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Standing {
-    /// Strictly inside its mode: that mode is the only one near by.
+    /// Strictly within its mode: no other mode is possible nearby.
     Settled(Mode),
-    /// Pressed, with the traction on the cone: it sticks, or slips along `direction`.
+    /// Closed, with the traction on the friction cone: the contact sticks, or slips along `direction`.
     OnCone { direction: Vector },
-    /// At zero gap with zero reaction: anything may follow.
+    /// At zero gap with zero reaction: every mode is possible.
     Touching,
-    /// One of several closed contacts of a node whose force lies on a bound of what holds it, or is zero: the node may
-    /// slide along one of them or leave.
+    /// One of several closed contacts of a node whose total force is zero or on a bound of the forces that hold the
+    /// node: the node may slide along one of the obstacles or leave.
     Cornered {
-        /// In the plane: which of the two bounds.
+        /// In the plane: on which of the two bounds the force lies.
         facets: [bool; 2],
         unloaded: bool,
-        /// A force up to this size is none.
+        /// Forces up to this size count as zero.
         zero: f64,
     },
 }
 
-/// A distance from the friction cone (over the force scale) that may be round-off: what an event's location leaves.
+/// Distance from the friction cone (over the force scale) that may be round-off of the location of an event.
 const ROUND_OFF: f64 = 1e-12;
 
-/// The distance from a contact's cone that counts as none, for a relative tolerance: by the friction bound `μ r_n` itself,
-/// but no less than round-off and no more than by the forces at its node.
+/// The distance from the friction cone of a contact that counts as zero, for a relative tolerance: relative to the
+/// friction bound `μ r_n` itself, but at least round-off, and at most relative to the forces at the node.
 pub fn none_from_cone(loading: Loading<'_>, contact: usize, state: &State, tolerance: f64, force_scale: f64) -> f64 {
     let reaction = &state.reactions[contact];
     let bound = loading.contacts[contact].friction.bound(reaction.normal).abs();
-    // The forces lie between the reaction and the force scale: often that tells.
+    // The forces at the node lie between the reaction and the force scale, which often decides.
     let least = reaction.size().min(force_scale);
     if bound <= least && tolerance * bound >= ROUND_OFF * force_scale {
         return tolerance * bound;
@@ -47,7 +47,7 @@ pub fn none_from_cone(loading: Loading<'_>, contact: usize, state: &State, toler
     (tolerance * bound.min(forces)).max(ROUND_OFF * forces)
 }
 
-/// Standing of every contact.
+/// The status of every contact.
 pub fn standings(loading: Loading<'_>, state: &State, force_scale: f64) -> Vec<Standing> {
     let mut standings: Vec<Standing> =
         (0..loading.contacts.len()).map(|contact| standing(loading, state, contact, force_scale)).collect();

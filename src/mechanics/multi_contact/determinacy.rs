@@ -1,4 +1,5 @@
-//! Whether equilibrium tells the reactions of several contacts of a node apart, and whether the bounds of their hold are known.
+//! Whether equilibrium determines the reactions of several contacts of a node, and whether the bounds on the forces
+//! that hold the node are known.
 
 use crate::mechanics::contact::vector::{Vector, add, dot, size, unit};
 use crate::mechanics::multi_contact::moving_planes::Carried;
@@ -7,12 +8,12 @@ use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_forces::{free_directions, is_driven, is_in_plane, move_apart};
 use crate::mechanics::problem::state::State;
 
-/// A normal is independent of others where more than this part of it (sine of an angle) is across them.
+/// A normal is independent of others where its component perpendicular to them (sine of an angle) exceeds this.
 pub(crate) const INDEPENDENT: f64 = 1e-6;
 
-/// Whether a node is closed against several obstacles in a way whose bounds are not known: where it is driven against
-/// them or they move against each other, with friction or with more reactions than equilibrium tells apart; and where more
-/// obstacles than an edge has bear a slide.
+/// Whether a node is in contact with several obstacles such that the bounds on the forces that hold it are not known:
+/// where the node is driven against the obstacles or they move against each other, with friction or with more reactions
+/// than equilibrium determines; and where more than the two obstacles of an edge carry a slide.
 pub fn is_not_available(loading: Loading<'_>, state: &State) -> bool {
     loading.corners.iter().any(|corner| {
         let closed = corner.closed(loading, state);
@@ -26,15 +27,15 @@ pub fn is_not_available(loading: Loading<'_>, state: &State) -> bool {
     })
 }
 
-/// Whether closed contacts of a node are best taken one by one: its equilibrium gives all reactions, and in the plane no
-/// hold together is at rest.
+/// Whether closed contacts of a node are treated one by one: equilibrium determines all their reactions, and in the
+/// plane their obstacles move against each other.
 pub fn stand_alone(loading: Loading<'_>, closed: &[usize], state: &State) -> bool {
     let apart = loading.structure.dimension == 3 || move_apart(loading, closed);
     apart && are_determinate(loading, closed, state)
 }
 
-/// Whether the reactions of some contacts of a node follow from its equilibrium: none has friction, and their normals
-/// are independent as far as the node is free to move.
+/// Whether equilibrium determines the reactions of some contacts of a node: no contact has friction, and the normals,
+/// projected on the free directions of the node, are independent.
 pub(crate) fn are_determinate(loading: Loading<'_>, contacts: &[usize], state: &State) -> bool {
     let mut basis: Vec<Vector> = Vec::new();
     contacts.iter().all(|contact| {

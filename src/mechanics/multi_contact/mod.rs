@@ -1,14 +1,14 @@
-//! Nodes that several obstacles hold at once.
+//! Nodes in contact with several obstacles at once.
 //!
-//! | file or room | what it holds |
+//! | module | contents |
 //! |---|---|
 //! | `planar` | the sum of friction cones in the plane |
 //! | `spatial` | nodes that are free in space, or guided by supports |
 //! | `moving_planes` | a node in the plane between two planes that move against each other |
-//! | `reaction_split` | the reactions of least norm that make up a node's force |
-//! | `determinacy` | whether equilibrium tells the reactions apart |
-//! | `contact_status` | which contacts can change at a point, and between what |
-//! | `rate_options` | what contacts may do next, as options of the rate problem |
+//! | `reaction_split` | the reactions of least norm with a given sum |
+//! | `determinacy` | whether equilibrium determines the reactions |
+//! | `contact_status` | which contacts can change at a point, and to which modes |
+//! | `rate_options` | the possible modes of contacts that can change, as options of the rate problem |
 
 pub(crate) mod contact_status;
 pub(crate) mod determinacy;

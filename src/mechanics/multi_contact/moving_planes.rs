@@ -1,8 +1,9 @@
-//! A node in the plane between two planes that the running stage moves against each other.
+//! A node in the plane between two planes that the current stage moves against each other.
 //!
-//! With the velocities `c_i` of the planes per load factor, a node that stays closed against both goes with
-//! `v = ṡ V`, `n_i·V = n_i·c_i`: it is carried. Along each plane it then slips with `ṡ (V - c_i)`, or sticks to that which
-//! moves with it. Its force `R` lies in the sum of their cones, of which a slip leaves one ray:
+//! With the velocities `c_i` of the planes per load factor, a node that stays closed against both planes moves with
+//! `v = ṡ V`, `n_i·V = n_i·c_i`: it is carried. Along each plane the node then slips with `ṡ (V - c_i)`, or sticks to
+//! the plane that moves with it. The force `R` on the node lies in the sum of the friction cones; a slip reduces a cone
+//! to one ray:
 //!
 //! ```text
 //! carried, either sign of ṡ    R = Σ r_i,  r_i on the ray n_i - μ_i d_i, or in the cone where it sticks
@@ -11,8 +12,8 @@
 //! apart                        R = 0
 //! ```
 //!
-//! Where it sticks to one of them while it is carried, equilibrium does not tell the reactions apart, and they are those
-//! of least norm, as in other corners.
+//! Where the node sticks to one of the planes while it is carried, equilibrium does not determine the reactions: they
+//! are those of least norm, as at other nodes with several contacts.
 
 use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::obstacle::RigidSurface;
@@ -23,7 +24,7 @@ use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_forces::Corner;
 use crate::mechanics::problem::state::{Rate, State};
 
-/// Two planes and a node.
+/// A node between two planes that move against each other.
 pub struct Carried {
     pub(super) contacts: [usize; 2],
     pub(super) frames: [Frame; 2],
@@ -34,13 +35,14 @@ pub struct Carried {
     pub(super) velocity: Vector,
 }
 
-/// Velocities (per load factor) below this part of the planes' are none.
+/// Velocities (per load factor) below this fraction of those of the planes count as zero.
 pub(super) const STILL: f64 = 1e-12;
-/// Sine of the angle between normals that tell the node's place.
+/// Smallest sine of the angle between normals that determine the position of the node.
 const INDEPENDENT: f64 = 1e-6;
 
 impl Carried {
-    /// `None` where it is another kind of corner; smooth planes alone need no more than their two normal reactions.
+    /// The node of two contacts between moving planes; `None` for contacts of another kind, and for two smooth planes,
+    /// whose normal reactions equilibrium determines.
     pub fn of(loading: Loading<'_>, contacts: &[usize], state: &State) -> Option<Self> {
         let contacts = <[usize; 2]>::try_from(contacts).ok()?;
         let shifts = contacts.map(|contact| loading.pattern.shifts[contact]);
@@ -63,7 +65,7 @@ impl Carried {
         Some(Self { contacts, frames, frictions, shifts, velocity })
     }
 
-    /// What the contacts do while the node is carried, by the sign of the load rate.
+    /// The modes of the contacts while the node is carried, by the sign of the load rate.
     pub(super) fn modes(&self, sign: f64) -> [Mode; 2] {
         let largest = size(&self.shifts[0]).max(size(&self.shifts[1]));
         [0, 1].map(|place| {
@@ -83,7 +85,7 @@ impl Carried {
         unit(&self.frictions[place].force_direction(&self.frames[place].normal, direction))
     }
 
-    /// Reactions (or their rates) in these modes that make up a force (or its rate), one a contact.
+    /// The reactions (or their rates) in these modes whose sum is a force (or its rate), one per contact.
     pub fn reactions(&self, loading: Loading<'_>, modes: &[Mode], force: &Vector, state: &State) -> [Reaction; 2] {
         let own = self.contacts.map(|contact| modes[contact]);
         let whole = |place: usize| Reaction::of(force, &self.frames[place].normal);
@@ -109,7 +111,8 @@ impl Carried {
         }
     }
 
-    /// Rates of the reactions from that of their sum; of a node that sticks to one plane that one has it all.
+    /// The rates of the reactions from the rate of their sum; where the node sticks to a plane, the contact with this
+    /// plane takes the whole rate.
     pub fn rates(&self, loading: Loading<'_>, modes: &[Mode], rate: &Vector, state: &State) -> [(usize, Reaction); 2] {
         let own = self.contacts.map(|contact| modes[contact]);
         let [first, second] = self.contacts;
@@ -126,7 +129,7 @@ impl Carried {
         [(first, a), (second, b)]
     }
 
-    /// Rate of the dissipation under a force.
+    /// The rate of dissipation under a force on the node.
     pub fn dissipation(&self, loading: Loading<'_>, modes: &[Mode], force: &Vector, state: &State, rate: &Rate) -> f64 {
         let reactions = self.reactions(loading, modes, force, state);
         let of = |(contact, reaction): (&usize, &Reaction)| match modes[*contact] {

@@ -1,4 +1,4 @@
-//! How contacts share the force on the node that they hold: the reactions of least norm.
+//! The reactions of least norm, by which contacts share the force on the node that they hold.
 
 use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::least_norm_reactions::{Cone, least_reactions};
@@ -10,8 +10,8 @@ use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_forces::{Corner, FLAT, free_directions, is_in_plane, taken_apart, total_force};
 use crate::mechanics::problem::state::State;
 
-/// Whether two lists of modes continue each other. Where two contacts press a node in 2D it is held, whatever is said of
-/// the slip that none of them can have; so it is in space where they do not slip as one.
+/// Whether two lists of modes continue each other. In 2D two active contacts hold their node, so that neither can slip
+/// and their modes are not compared; nor are they in space, unless the contacts slip in one motion.
 pub fn agree(loading: Loading<'_>, first: &[Mode], second: &[Mode]) -> bool {
     let held = |modes: &[Mode], corner: &Corner| {
         let active: Vec<Mode> =
@@ -27,10 +27,10 @@ pub fn agree(loading: Loading<'_>, first: &[Mode], second: &[Mode]) -> bool {
     (0..first.len()).filter(free_of_corners).all(|contact| first[contact].continues(second[contact]))
 }
 
-/// Cosine of the angle between slips that are those of one motion.
+/// Smallest cosine of the angle between slips that belong to one motion.
 pub(crate) const ONE_MOTION: f64 = 1.0 - 1e-6;
 
-/// Whether active contacts of a node in space slip along one line: their node slides along an edge.
+/// Whether the active contacts of a node in space slip along one line, so that the node slides along an edge.
 pub(crate) fn slip_as_one(active: &[Mode]) -> bool {
     let slips: Vec<Vector> = active
         .iter()
@@ -43,7 +43,7 @@ pub(crate) fn slip_as_one(active: &[Mode]) -> bool {
     slips.len() == active.len() && slips.len() == 2 && rough.windows(2).all(|pair| dot(pair[0], pair[1]) >= ONE_MOTION)
 }
 
-/// Puts the reactions of least norm in the place of those of the first holding contact, which has the whole force.
+/// Replaces the reaction of the first holding contact, which has the total force, by reactions of least norm of all.
 pub fn share(loading: Loading<'_>, corners: &[Corner], modes: &[Mode], state: &mut State) {
     for corner in corners {
         let holding: Vec<usize> = corner.holding(modes).collect();
@@ -64,7 +64,7 @@ pub fn share(loading: Loading<'_>, corners: &[Corner], modes: &[Mode], state: &m
             .iter()
             .zip(&frames)
             .map(|(contact, frame)| match modes[*contact] {
-                // One ray is left of the cone.
+                // A slip reduces the cone to one ray.
                 Mode::Slip { direction } => {
                     let ray = loading.contacts[*contact].friction.force_direction(&frame.normal, &direction);
                     Cone { normal: unit(&ray), friction: CoulombFriction::SMOOTH, line: None }
@@ -75,10 +75,10 @@ pub fn share(loading: Loading<'_>, corners: &[Corner], modes: &[Mode], state: &m
             })
             .collect();
         let free = free_directions(loading, holding[0]);
-        // Just at a bound of the cones together the least reactions may not be found: two rays make up the force.
+        // On a bound of the sum of the cones the reactions of least norm may not be found: two rays carry the force.
         let parts =
             least_reactions(&cones, &free, &force).or_else(|| along_rays(loading, &holding, modes, &force, state));
-        // Outside the cones the event that ends the mode was passed; the point is not kept.
+        // Outside the sum of the cones the event that ends the mode has been passed; the point is discarded.
         let Some(parts) = parts else { continue };
         for ((contact, frame), part) in holding.iter().zip(&frames).zip(parts) {
             state.reactions[*contact] = taken_apart(&part, frame, loading.contacts[*contact].friction);
@@ -108,7 +108,7 @@ pub(crate) fn along_rays(
             if determinant.abs() <= FLAT {
                 continue;
             }
-            // However close the rays are, the parts make up the force: the one takes what the other leaves.
+            // The part along `a` takes the remainder, so that the sum is the force however close the rays are.
             let y = turn(a, force) / determinant;
             let x = dot(a, &add(force, -y, b));
             let round_off = -FLAT * dot(force, force).sqrt();

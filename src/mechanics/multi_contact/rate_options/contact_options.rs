@@ -1,5 +1,5 @@
-//! A contact that can change, or the contacts of a corner that change together: its velocities, and what it may do next
-//! as equations and inequalities of the rate problem.
+//! A contact that can change, or the contacts of a node that change together: their velocities, and their possible
+//! modes as equations and inequalities of the rate problem.
 
 use crate::complementarity::rate_search::slip_onset_direction::Touch;
 use crate::complementarity::rates::rate_problem::{Choice, Entity, Signed, Touching};
@@ -19,7 +19,7 @@ use nalgebra::DVector;
 
 /// Contacts that change together.
 pub(crate) struct Changeable {
-    /// One, or the closed ones of a corner; the first has the node's whole force in the held system.
+    /// One contact, or the closed contacts of a node; while they are held, the first has the total force on the node.
     pub contacts: Vec<usize>,
     pub(crate) standing: Standing,
     frames: Vec<Frame>,
@@ -29,23 +29,23 @@ pub(crate) struct Changeable {
     reaction: Reaction,
     /// The present force on the node.
     pub(crate) force: Vector,
-    /// Of a corner in space or of a guided node.
+    /// The closed obstacles of a node with several contacts, where it is free in space or guided.
     pub(crate) pocket: Option<Pocket>,
 }
 
-/// The modes of an option.
+/// The outcome of an option: the modes of the contacts.
 #[derive(Debug, Clone)]
 pub(crate) struct OptionOutcome {
     pub modes: Vec<(usize, Mode)>,
 }
 
-/// Sine below which a ray lies on the bound of a corner's cone.
+/// Sine of the angle below which a ray lies on the bound of a sum of cones.
 const ON_BOUND: f64 = 1e-9;
-/// Rates of a gap (of unit arc length) up to this are zero at first order, and so are speeds along an obstacle.
+/// Rates of a gap and speeds along an obstacle (at unit arc length) up to this are zero at first order.
 const GRAZING: f64 = 1e-9;
 
 impl Changeable {
-    /// `next` is the first free column.
+    /// The contacts with their velocities at a state; `next` is the first free column.
     pub fn new(loading: Loading<'_>, state: &State, contacts: Vec<usize>, standing: Standing, next: usize) -> Self {
         let frames: Vec<Frame> = contacts.iter().map(|contact| loading.frame(*contact, state)).collect();
         let frame = &frames[0];
@@ -81,7 +81,7 @@ impl Changeable {
         if is_cornered { Carried::of(loading, &self.contacts, state) } else { None }
     }
 
-    /// Rate of the dissipation when the node moves while one of the contacts, if any, slips.
+    /// The rate of dissipation when the node moves while one of the contacts, if any, slips.
     pub fn dissipation(&self, loading: Loading<'_>, modes: &[Mode], rate: &Rate, state: &State) -> f64 {
         if let Some(carried) = self.carried(loading, state) {
             return carried.dissipation(loading, modes, &self.force, state, rate);
@@ -99,7 +99,8 @@ impl Changeable {
         -dot(&traction, &loading.relative_rate(*contact, state, rate))
     }
 
-    /// On a curved obstacle: from the rate of the whole force to the rates of normal and tangential reaction.
+    /// On a curved obstacle, converts the rate of the total force into the rates of the normal and tangential
+    /// reactions.
     pub fn take_reaction_apart(&self, loading: Loading<'_>, state: &State, rate: &mut Rate) {
         let frame = &self.frames[0];
         if frame.curvature == 0.0 || self.contacts.len() > 1 {
@@ -114,7 +115,8 @@ impl Changeable {
         reaction.tangential = add(&reaction.tangential, -across, &frame.normal);
     }
 
-    /// Where the node of a corner slides along one obstacle, that one has the whole force.
+    /// Where a node with several contacts slides along one obstacle, assigns the rate of the total force to this
+    /// contact.
     pub fn move_to_slider(&self, loading: Loading<'_>, modes: &[Mode], rate: &mut Rate, state: &State) {
         if let Some(carried) = self.carried(loading, state) {
             let whole = node_forces::force(&self.frames[0], &rate.reactions[self.contacts[0]]);
@@ -141,7 +143,7 @@ impl Changeable {
         rate.reactions[self.contacts[0]] = Reaction::default();
         let mut tangential = add(&force, -normal, &frame.normal);
         if frame.curvature != 0.0 {
-            // The normal reaction turns with the place on the obstacle.
+            // The normal reaction turns with the position on the obstacle.
             let motion = loading.relative_rate(*contact, state, rate);
             let pressed = dot(&self.force, &frame.normal);
             tangential = add(&tangential, -pressed, &frame.normal_change(&motion));
@@ -154,8 +156,8 @@ impl Changeable {
         self.standing == Standing::Touching && loading.contacts[self.contacts[0]].tangents() == 2
     }
 
-    /// The slip of a node that touches in space and is free at first order while it goes along the obstacle: it may be
-    /// pressed at second order, and friction then opposes the motion that it has already.
+    /// The slip of a node that touches in space and, at first order, moves along the obstacle without a reaction: a
+    /// reaction may arise at second order, and friction then opposes the present motion.
     pub fn grazing_slip(&self, loading: Loading<'_>, state: &State, rate: &Rate) -> Option<Mode> {
         if !self.may_turn(loading) {
             return None;
@@ -170,7 +172,8 @@ impl Changeable {
         self.frames[0].tangents
     }
 
-    /// Whether a stick at a touch in space keeps within the circular cone, which linear forms do not say.
+    /// Whether the rate of the reaction of a sticking contact lies within the circular cone, which linear forms do not
+    /// ensure.
     pub fn is_in_cone(&self, loading: Loading<'_>, modes: &[Mode], rate: &Rate, tolerance: f64) -> bool {
         if self.pocket.is_some() {
             return self.margin(modes, rate).is_none_or(|margin| margin >= -tolerance);
@@ -184,7 +187,7 @@ impl Changeable {
         loading.contacts[contact].friction.margin(reaction) >= -tolerance
     }
 
-    /// The options, holding first, and the modes of each.
+    /// The options, the sticking or closed one first, and the modes of each.
     pub fn options(&self, loading: Loading<'_>, state: &State, forms: &mut Forms<'_>) -> (Entity, Vec<OptionOutcome>) {
         let contact = self.contacts[0];
         let friction = loading.contacts[contact].friction;
@@ -193,7 +196,7 @@ impl Changeable {
         match (self.standing, &self.velocities[..]) {
             (Standing::OnCone { direction }, _) => {
                 let along = forms.velocity(self, &direction);
-                // μ ṙ_n + d·ṙ_t; the reaction turns with the place on a curved obstacle.
+                // μ ṙ_n + d·ṙ_t; the reaction turns with the position on a curved obstacle.
                 let mut slack = forms.force_rate(self, &friction.slack_form(&frame.normal, &direction));
                 let (column, _) = self.velocities[0];
                 slack[column] -= frame.curvature * self.reaction.normal * friction.force_direction_squared();
@@ -242,7 +245,8 @@ impl Changeable {
         }
     }
 
-    /// Of a node in a pocket that is not pressed, slips along each of its rough obstacles alone, the others opening.
+    /// For an unloaded node at several obstacles in space, the slips along each rough obstacle alone while the others
+    /// open.
     pub fn touches_in_pocket(&self, entity: usize, forms: &mut Forms<'_>) -> Vec<(usize, Touch)> {
         let (Some(pocket), Standing::Cornered { unloaded: true, .. }) = (&self.pocket, self.standing) else {
             return Vec::new();
@@ -265,7 +269,7 @@ impl Changeable {
         rough.map(touch).collect()
     }
 
-    /// How far a rate of force is from making a node that is held in space, or guided, slide.
+    /// The margin of a rate of force against sliding, for a held node in space or a guided one.
     pub fn margin(&self, modes: &[Mode], rate: &Rate) -> Option<f64> {
         let (Some(pocket), Standing::Cornered { unloaded, zero, .. }) = (&self.pocket, self.standing) else {
             return None;
@@ -293,7 +297,8 @@ impl Changeable {
         })
     }
 
-    /// The node is held, slides along one of its obstacles while the others open, or leaves them all.
+    /// The options of a node with several contacts in the plane: the node is held, slides along one of its obstacles
+    /// while the others open, or leaves them all.
     fn options_of_corner(
         &self,
         loading: Loading<'_>,
@@ -333,7 +338,7 @@ impl Changeable {
                     .flatten()
                     .zip(facets)
                     .any(|(inward, active)| active && dot(inward, &ray).abs() <= ON_BOUND);
-                // The other end of a half-plane's bound is another contact's ray.
+                // The opposite ray on the bound of a half-plane belongs to another contact.
                 let on_ray = on_bound && dot(&ray, &self.force) > 0.0;
                 if !unloaded && !on_ray {
                     continue;
@@ -342,7 +347,7 @@ impl Changeable {
                 let mut off_ray = forms.force_rate(self, &across);
                 if frame.curvature != 0.0 {
                     let turn = frame.curvature * dot(&self.force, &ray);
-                    // The ray turns clockwise as the node goes along the tangent of a convex obstacle.
+                    // The ray turns clockwise as the node moves along the tangent of a convex obstacle.
                     for (column, direction) in &self.velocities {
                         off_ray[*column] += turn * dot(direction, &tangent);
                     }
@@ -378,20 +383,20 @@ impl Changeable {
     }
 }
 
-/// Linear forms of the rate problem as they are made.
+/// The linear forms of the rate problem, collected as they are created.
 pub(crate) struct Forms<'a> {
-    /// The rate of each weight.
+    /// The rate of each weight, one per column.
     pub columns: &'a [Rate],
-    /// Normal and tangential parts in space of what the first contact of a group has.
+    /// The normal in which the reaction of the first contact of a group is resolved.
     pub normals: &'a dyn Fn(usize) -> Vector,
     pub rows: Vec<DVector<f64>>,
     pub is_force: Vec<bool>,
-    /// What the rows hold.
+    /// The memory that the rows take.
     pub held: Taken,
 }
 
 impl Forms<'_> {
-    /// A velocity or the load rate, of each weight.
+    /// Adds the form of a velocity or of the load rate; returns its index.
     pub(crate) fn motion(&mut self, of: impl Fn(&Rate) -> f64) -> usize {
         budget::spend(self.columns.len());
         self.held.add::<f64>(self.columns.len());
@@ -401,7 +406,7 @@ impl Forms<'_> {
         self.rows.len() - 1
     }
 
-    /// Velocity of the node along a direction.
+    /// Adds the form of the velocity of the node along a direction; returns its index.
     pub(crate) fn velocity(&mut self, entry: &Changeable, direction: &Vector) -> usize {
         self.held.add::<f64>(self.columns.len());
         let mut row = DVector::zeros(self.columns.len());
@@ -413,9 +418,9 @@ impl Forms<'_> {
         self.rows.len() - 1
     }
 
-    /// Rate of the whole force on the node along a direction.
+    /// The row of the rate of the total force on the node along a direction.
     pub(crate) fn force_rate(&self, entry: &Changeable, direction: &Vector) -> DVector<f64> {
-        // Each column's reactions lie elsewhere in memory: of many columns and rows, that takes long.
+        // The reactions of each column lie elsewhere in memory: for many columns and rows this takes long.
         budget::spend(self.columns.len());
         let contact = entry.contacts[0];
         let normal = (self.normals)(contact);

@@ -1,4 +1,4 @@
-//! The ways on of a node between two planes that move against each other, as options of the rate problem.
+//! The options, in the rate problem, of a node between two planes that move against each other.
 
 use crate::complementarity::rates::rate_problem::{Choice, Entity, Signed};
 use crate::mechanics::contact::Mode;
@@ -9,7 +9,7 @@ use crate::mechanics::multi_contact::rate_options::contact_options::{Changeable,
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::State;
 
-/// The ways on of the node. `force` is that on it, zero up to `zero`.
+/// The options of the node, with the modes of each; forces up to `zero` count as zero.
 pub fn options(
     carried: &Carried,
     loading: Loading<'_>,
@@ -32,7 +32,7 @@ pub fn options(
     };
     let gaps = [0, 1].map(|place| against(forms, place, &carried.frames[place].normal));
     let tangents = [0, 1].map(|place| against(forms, place, &carried.frames[place].tangents[0]));
-    // Bounds that a force is at, or `None` where it is past them.
+    // The active bounds on the force, or `None` where the force lies outside a bound.
     let bounds = |forms: &mut Forms<'_>, contacts: &[usize], modes: &dyn Fn(usize) -> Mode| {
         let inward = planar::sector(loading, contacts, modes, state).inward;
         let values: Vec<Vector> = inward.into_iter().flatten().collect();
@@ -60,7 +60,7 @@ pub fn options(
         let (normal, tangent) = (carried.frames[place].normal, carried.frames[place].tangents[0]);
         let rough = carried.frictions[place].is_rough();
         let parting = dot(&carried.frames[other].normal, &add(&carried.shifts[place], -1.0, &carried.shifts[other]));
-        // Where the other does not open the node is carried.
+        // Where the other plane does not open, the node is carried.
         let parts = parting.abs() > STILL * size(&carried.shifts[place]).max(size(&carried.shifts[other]));
         let sticks = |_| Mode::Stick;
         if rough

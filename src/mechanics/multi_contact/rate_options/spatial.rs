@@ -1,4 +1,4 @@
-//! The ways on of a node in a pocket as options of the rate problem.
+//! The options, in the rate problem, of a node in contact with several obstacles in space.
 
 use crate::complementarity::rates::rate_problem::{Choice, Entity, Signed};
 use crate::mechanics::contact::Mode;
@@ -8,8 +8,9 @@ use crate::mechanics::multi_contact::spatial::{Drive, Pocket, Slide};
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::State;
 
-/// The node is held, slides along one obstacle or an edge, or leaves. What keeps it held is no linear form: see
-/// `Pocket::margin_of_rate`; nor is a first slip along one rough obstacle in space: see `slip_onset_direction`.
+/// The options of the node: it is held, slides along one obstacle or an edge, or leaves. The condition that the node is
+/// held is no linear form: see `Pocket::margin_of_rate`; nor is that of a first slip along one rough obstacle in space:
+/// see `slip_onset_direction`.
 pub fn options(
     entry: &Changeable,
     pocket: &Pocket,
@@ -35,7 +36,7 @@ pub fn options(
             (Slide::Face { place }, _) if !pocket.frictions[place].is_rough() => writer.smooth_face(place, drive),
             (Slide::Face { place }, Some(drive)) => writer.face(place, &drive),
             (Slide::Face { place }, None) if pocket.free.len() == 2 => writer.guided_face(place),
-            // Its direction is unknown.
+            // The direction of this slip is unknown.
             (Slide::Face { .. }, None) => {}
         }
     }
@@ -47,7 +48,8 @@ pub fn options(
     (Entity { options: writer.options, touching: None }, writer.outcomes)
 }
 
-/// Of a node that is driven against its obstacles and free in one direction alone: one of them holds it there, or none.
+/// The options of a node that is driven against its obstacles and free in one direction only: one obstacle holds the
+/// node in this direction, or none does.
 fn driven(
     entry: &Changeable,
     pocket: &Pocket,
@@ -106,7 +108,7 @@ impl Writer<'_, '_> {
         self.outcomes.push(OptionOutcome { modes });
     }
 
-    /// The others open.
+    /// The conditions that all obstacles except those at the indices `but` open.
     fn gaps(&mut self, but: &[usize]) -> Vec<Signed> {
         let others = (0..self.pocket.contacts.len()).filter(|place| !but.contains(place));
         let normals: Vec<Vector> = others.map(|place| self.pocket.frames[place].normal).collect();
@@ -122,7 +124,7 @@ impl Writer<'_, '_> {
         self.along(&normal)
     }
 
-    /// The form of the rate of force less what the turning of the present reactions makes of it.
+    /// Adds the form of the rate of force less the contribution of the turning of the present reactions.
     fn off(&mut self, form: &Vector, places: &[usize], direction: &Vector, normals: &[f64]) -> usize {
         let mut row = self.forms.force_rate(self.entry, form);
         for (column, motion) in &self.entry.velocities {
@@ -166,7 +168,7 @@ impl Writer<'_, '_> {
         self.option(zero, nonnegative, |other| if other == place { Mode::Slip { direction } } else { Mode::Free });
     }
 
-    /// Of a node that is guided in a plane, without force.
+    /// Adds the slides of an unloaded node that is guided in a plane.
     fn guided_face(&mut self, place: usize) {
         let pocket = self.pocket;
         let normal = pocket.face_form(place);

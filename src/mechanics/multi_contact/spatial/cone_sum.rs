@@ -1,34 +1,35 @@
-//! What the friction cones of a node's obstacles hold together.
+//! The sum of the friction cones of a node's obstacles.
 //!
-//! A force `R` is in the sum of the cones `K_i` where no direction of all their duals sees it from behind (the bipolar
-//! theorem: R. T. Rockafellar, *Convex Analysis*, Princeton 1970, §14):
+//! A force `R` lies in the sum of the cones `K_i` if its product with no direction in all their dual cones is negative
+//! (the bipolar theorem: R. T. Rockafellar, *Convex Analysis*, Princeton 1970, §14):
 //!
 //! ```text
 //! R in Σ K_i   <=>   min { y·R : |y| = 1, y·n_i >= sin φ_i } >= 0,      tan φ_i = μ_i
 //! ```
 //!
-//! The set of the directions `y` is bounded by circles on the sphere, so that the minimum is at `-R/|R|`, at the point of a
-//! circle nearest to that, or where two circles meet. Without any such `y` the node is jammed. At the minimum
+//! The set of the directions `y` is bounded by circles on the sphere, so that the minimum is at `-R/|R|`, at the point
+//! of a circle nearest to `-R/|R|`, or where two circles intersect. Where no such `y` exists, the node is jammed. At
+//! the minimum
 //!
 //! ```text
 //! R = (y·R) y + Σ a_i (n_i - μ_i d_i),      a_i >= 0,  d_i along the part of y across n_i
 //! ```
 //!
-//! with the obstacles whose circles it lies on: at the end of what is held these alone bear the force.
+//! with the obstacles on whose circles `y` lies: on the bound of the sum these alone carry the force.
 
 use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled, size, unit};
 use crate::mechanics::multi_contact::spatial::{AT_BOUND, FLAT, Pocket, along};
 
-/// Part of a force up to which its distance from the end of what is held is a remainder of one contact's.
+/// Fraction of a force up to which its distance from the bound of the sum is assigned to one contact.
 const NEAR_BOUND: f64 = 1e-7;
 
 impl Pocket {
-    /// Whether the friction cones together are all of space: no direction keeps off all of them.
+    /// Whether the sum of the friction cones is all of space: no direction lies in all dual cones.
     pub fn is_jammed(&self) -> bool {
         let sines = self.sines();
         let normals = self.normals.iter().map(unit).collect();
-        // What keeps off all cones has a corner, or is one cap.
+        // The intersection of the dual cones has a corner, or is one cap.
         let bounds = match self.free.len() {
             3 => self.meetings(&sines),
             2 => self.bounds_in_a_plane(&sines),
@@ -37,22 +38,24 @@ impl Pocket {
         ![normals, bounds].concat().iter().any(|direction| self.keeps_off(direction, &sines))
     }
 
-    /// How far a force is from the end of what the cones hold together: negative beyond, infinite where nothing is.
+    /// The distance of a force from the bound of the sum of the cones: negative outside, infinite where there is no
+    /// bound.
     pub fn hold(&self, force: &Vector) -> f64 {
         self.bounds_seen_from(force).iter().map(|inward| dot(inward, force)).fold(f64::INFINITY, f64::min)
     }
 
-    /// The derivative of that along a rate of the force.
+    /// The derivative of [`hold`](Self::hold) along a rate of the force.
     pub fn hold_slope(&self, force: &Vector, rate: &Vector) -> f64 {
         self.nearest_bound(force).map_or(0.0, |inward| dot(&inward, rate))
     }
 
-    /// Whether a force is at the end of what is held.
+    /// Whether a force is on the bound of the sum of the cones.
     pub fn is_at_bound(&self, force: &Vector, zero: f64) -> bool {
         self.hold(force) <= zero
     }
 
-    /// The least derivative along a rate of a force that is at the end of what is held; infinite where it is not.
+    /// The smallest derivative along the rate of a force on the bound of the sum of the cones; infinite where the force
+    /// is not on the bound.
     pub(super) fn slope_at_bound(&self, force: &Vector, zero: f64, rate: &Vector) -> f64 {
         let bounds = self.bounds_seen_from(force);
         let at_bound = bounds.iter().filter(|inward| dot(inward, force) <= zero);
@@ -63,7 +66,7 @@ impl Pocket {
         self.bounds_seen_from(force).into_iter().min_by(|a, b| dot(a, force).total_cmp(&dot(b, force)))
     }
 
-    /// Sines of the angles of friction, of as much of the cones as the node is free to feel.
+    /// The sines of the friction angles, with the cones restricted to the free directions of the node.
     fn sines(&self) -> Vec<f64> {
         let sine = |(normal, friction): (&Vector, &CoulombFriction)| {
             friction.coefficient / friction.coefficient.hypot(size(normal))
@@ -76,7 +79,7 @@ impl Pocket {
         self.normals.iter().zip(sines).all(fits)
     }
 
-    /// Inward unit normals of the sum of the cones, among them that of the bound nearest to a force.
+    /// Inward unit normals of the sum of the cones, among them the normal of the bound nearest to a force.
     fn bounds_seen_from(&self, force: &Vector) -> Vec<Vector> {
         let sines = self.sines();
         let away = scaled(&unit(force), -1.0);
@@ -97,7 +100,7 @@ impl Pocket {
         bounds
     }
 
-    /// Where the bounds of two cones meet, in space.
+    /// The directions in which the bounds of two dual cones intersect, in space.
     fn meetings(&self, sines: &[f64]) -> Vec<Vector> {
         let of = |[first, second]: [usize; 2]| {
             let (a, b) = (unit(&self.normals[first]), unit(&self.normals[second]));
@@ -114,7 +117,7 @@ impl Pocket {
         self.pairs().flat_map(of).collect()
     }
 
-    /// The bounds of the directions that keep off each cone, in a plane.
+    /// The bounds of the dual cones, in a plane.
     fn bounds_in_a_plane(&self, sines: &[f64]) -> Vec<Vector> {
         let [first, second] = self.free[..] else { return Vec::new() };
         let axis = cross(&first, &second);
@@ -126,7 +129,7 @@ impl Pocket {
         self.normals.iter().zip(sines).flat_map(of).collect()
     }
 
-    /// The reactions that bear a force in space just at the end of what is held.
+    /// The reactions that carry a force in space on the bound of the sum of the cones.
     pub(super) fn at_bound(&self, force: &Vector) -> Option<Vec<Vector>> {
         let inward = self.nearest_bound(force).filter(|_| self.free.len() == 3)?;
         let margin = dot(&inward, force);
@@ -157,7 +160,7 @@ impl Pocket {
         for ((place, ray), part) in rays.iter().zip(&sizes) {
             parts[*place] = scaled(ray, part.max(0.0));
         }
-        // The rest points into the cones.
+        // The remainder points into the cones.
         let rest = parts.iter().fold(*force, |rest, part| add(&rest, -1.0, part));
         let bearer = parts.iter_mut().max_by(|a, b| size(a).total_cmp(&size(b)))?;
         *bearer = add(bearer, 1.0, &along(&self.free, &rest));
@@ -204,7 +207,8 @@ mod tests {
         })
     }
 
-    /// A groove of flanks at the angle β to the vertical holds a pull of `μ/√(sin²β - μ² cos²β)` times the press along it.
+    /// A groove of flanks at the angle β to the vertical holds a pull along it of `μ/√(sin²β - μ² cos²β)` times the
+    /// load.
     #[test]
     fn a_groove_holds_more_than_it_slides_at() {
         let (sine, cosine) = 50.0_f64.to_radians().sin_cos();
@@ -221,7 +225,7 @@ mod tests {
         }
     }
 
-    /// The cones hold what the least reactions are found for, and nothing else.
+    /// A force lies in the sum of the cones exactly where reactions of least norm are found.
     #[test]
     fn what_is_held_has_reactions() {
         let unit = |vector: Vector| unit(&vector);

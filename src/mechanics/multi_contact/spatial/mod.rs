@@ -1,28 +1,30 @@
-//! A node that several obstacles hold at once where it is free in space, or guided by supports.
+//! A node in contact with several obstacles at once, free in space or guided by supports.
 //!
-//! Equilibrium gives only the sum `R` of the obstacles' forces. Let `V = {v : n_k·v >= 0}` be the motions that the
-//! obstacles leave, `v₀` the projection of `-R` on it, and `A` the obstacles along which that motion slides:
+//! Equilibrium determines only the sum `R` of the obstacles' forces. Let `V = {v : n_k·v >= 0}` be the motions that the
+//! obstacles admit, `v₀` the projection of `-R` on `V`, and let the sums be over the obstacles along which the motion
+//! `v₀` slides:
 //!
 //! ```text
 //! R = Σ N_i n_i - v₀,     N_i >= 0,     N_i n_i·v₀ = 0
 //! ```
 //!
-//! (J. J. Moreau, C. R. Acad. Sci. 255 (1962) 238). Without friction the node goes along `v₀`. With friction it slides
-//! that way, along one obstacle or along the edge of two, where `R = Σ N_i (n_i - μ_i d)`, `d` along `v₀`: so it is held as
-//! long as
+//! (J. J. Moreau, C. R. Acad. Sci. 255 (1962) 238). Without friction the node moves along `v₀`. With friction the node
+//! slides in this direction, along one obstacle or along the edge of two, where `R = Σ N_i (n_i - μ_i d)`, `d` along
+//! `v₀`. The node is therefore held as long as
 //!
 //! ```text
 //! |v₀| <= Σ μ_i N_i
 //! ```
 //!
-//! There it slides, although obstacles that press it against each other could hold more: that takes reactions which nothing
-//! has brought about. A node that comes from one obstacle with a force beyond this bound, and within the sum of the friction
-//! cones, is held, since no slide has such a force: where it comes back within the bound the node may slide again, and where
-//! it leaves the sum no motion has it. Where the cones together are all of space the node is jammed and stays, as in the
-//! plane.
-//! What is not free of the node (supported components) is left out of `R` and of the normals.
+//! At this bound the node slides, although obstacles between which it is wedged could hold a larger force: such a force
+//! takes wedging reactions, which nothing has brought about. A node that arrives from one obstacle with a force beyond
+//! this bound, and within the sum of the friction cones, is held, since no slide has such a force: where the force
+//! returns to the bound, the node may slide again, and where the force leaves the sum, no motion has it. Where the sum
+//! of the cones is all of space, the node is jammed and does not move, as in the plane. The supported components of the
+//! node are left out of `R` and of the normals.
 //!
-//! `cone_sum` has what the cones hold together, `sliding` what follows of a node that slides out, `rate_options::spatial` its ways as parts of
+//! `cone_sum` treats the sum of the cones, `sliding` the node while it slides, and `rate_options::spatial` the options
+//! of the node in the rate problem.
 //! the rate problem.
 
 pub(crate) mod cone_sum;
@@ -45,44 +47,44 @@ pub struct Pocket {
     pub contacts: Vec<usize>,
     pub frames: Vec<Frame>,
     pub frictions: Vec<CoulombFriction>,
-    /// The normals as far as the node is free.
+    /// The normals, projected on the free directions of the node.
     normals: Vec<Vector>,
     /// Orthonormal directions in which the node is free.
     pub free: Vec<Vector>,
-    /// The running stage drives the node against the obstacles, or them against each other.
+    /// Whether the current stage drives the node against the obstacles, or the obstacles against each other.
     pub is_driven: bool,
 }
 
-/// A way out of the pocket.
+/// A slide of the node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Slide {
-    /// Along the edge of two obstacles, places in the pocket.
+    /// Along the edge of two obstacles; `places` are their indices in the [`Pocket`].
     Edge { places: [usize; 2], direction: Vector },
     /// Along one obstacle, the others opening.
     Face { place: usize },
 }
 
-/// What a force on the node says of a slide.
+/// The action of a force on the node along a slide.
 #[derive(Debug, Clone, Copy)]
 pub struct Drive {
     pub direction: Vector,
     /// Normal reactions of the obstacles along which the node slides; the second is 0 for a face.
     pub normals: [f64; 2],
-    /// What drives the node less the friction.
+    /// The driving force less the friction.
     pub excess: f64,
 }
 
-/// Sine of an angle below which directions are one, and cosine below which they are across each other.
+/// Sine of the angle below which directions coincide, and cosine below which they are perpendicular.
 const SAME: f64 = 1e-9;
 /// Normals are independent where the sine of the angle between them is above this.
 const INDEPENDENT: f64 = 1e-6;
-/// Cones closer to all of space than this (angle) are taken as not quite.
+/// Cones closer to all of space than this (angle) count as not all of space.
 const FLAT: f64 = 1e-12;
-/// A force is at a bound within this part of it ...
+/// A force is on a bound if its distance is within this fraction of the force ...
 const AT_BOUND: f64 = 1e-9;
-/// ... or of the forces that meet at the node, whose rounding it may be.
+/// ... or of the forces that meet at the node, whose round-off it may be.
 const ROUND_OFF: f64 = 1e-12;
-/// Parts of a force below this part of it are none.
+/// Components of a force below this fraction of it count as zero.
 const NONE: f64 = 1e-12;
 
 impl Pocket {
@@ -99,18 +101,18 @@ impl Pocket {
         Self { contacts: contacts.to_vec(), frames, frictions, normals, free, is_driven }
     }
 
-    /// Sum of the forces of the obstacles as far as the node is free.
+    /// The sum of the forces of the obstacles, projected on the free directions of the node.
     pub fn force(&self, loading: Loading<'_>, state: &State) -> Vector {
         along(&self.free, &total_force(loading, self.contacts.iter().copied(), state))
     }
 
-    /// A vector as far as the node is free.
+    /// A vector, projected on the free directions of the node.
     pub fn free_part(&self, vector: &Vector) -> Vector {
         along(&self.free, vector)
     }
 
-    /// Whether every way of sliding out gives the reactions: no two obstacles face the same way, and no edge with friction
-    /// is one of three.
+    /// Whether every slide determines the reactions: no two normals are parallel, and no edge with friction is shared
+    /// by three obstacles.
     pub fn is_determinate_when_sliding(&self) -> bool {
         if self.is_driven {
             return self.free.len() == 1;
@@ -131,11 +133,11 @@ impl Pocket {
     fn pairs(&self) -> impl Iterator<Item = [usize; 2]> + use<> {
         let count = self.contacts.len();
         let all = (0..count).flat_map(move |first| (first + 1..count).map(move |second| [first, second]));
-        // Whoever takes a pair looks at all obstacles of the node.
+        // The user of a pair visits all obstacles of the node.
         all.inspect(move |_| budget::spend(count))
     }
 
-    /// Every way of sliding out; of edges those that lead away from the other obstacles.
+    /// All slides; along edges only those that lead away from the other obstacles.
     pub fn slides(&self) -> Vec<Slide> {
         let mut slides = Vec::new();
         if self.free.len() == 3 {
@@ -154,13 +156,13 @@ impl Pocket {
         slides
     }
 
-    /// Whether a direction leads into no obstacle other than those in some places.
+    /// Whether a direction leads into no obstacle, those at the indices `but` excepted.
     pub fn opens(&self, direction: &Vector, but: &[usize]) -> bool {
         (0..self.contacts.len())
             .all(|place| but.contains(&place) || dot(&self.frames[place].normal, direction) >= -SAME)
     }
 
-    /// Linear forms of a force: the normal reactions along an edge.
+    /// The linear forms of a force that give the two normal reactions at an edge.
     pub fn edge_forms(&self, places: [usize; 2], direction: &Vector) -> [Vector; 2] {
         let [first, second] = places.map(|place| self.normals[place]);
         let of = |normal: &Vector, other: &Vector| {
@@ -170,7 +172,7 @@ impl Pocket {
         [of(&first, &second), of(&second, &first)]
     }
 
-    /// The linear form of a force that drives a node along an edge against its friction.
+    /// The linear form of a force that gives the driving force along an edge less the friction.
     pub fn edge_drive(&self, places: [usize; 2], direction: &Vector) -> Vector {
         let forms = self.edge_forms(places, direction);
         let [first, second] = places.map(|place| self.frictions[place].coefficient);
@@ -184,7 +186,8 @@ impl Pocket {
         scaled(normal, 1.0 / dot(normal, normal))
     }
 
-    /// What a force says of a slide; `None` where it does not press the node that way.
+    /// The action of a force along a slide; `None` where the force does not press the node against the obstacles of the
+    /// slide, or drives it into another.
     pub fn drive(&self, slide: &Slide, force: &Vector) -> Option<Drive> {
         let zero = NONE * size(force);
         match *slide {
@@ -205,7 +208,7 @@ impl Pocket {
         }
     }
 
-    /// How far a force is from making the node slide or leave; negative where it would.
+    /// The margin of a force against sliding or leaving; negative where the node would slide or leave.
     pub fn margin(&self, force: &Vector) -> f64 {
         if self.is_jammed() {
             return f64::INFINITY;
@@ -237,14 +240,15 @@ impl Pocket {
         }
     }
 
-    /// Rate of the whole force, as far as the node is free.
+    /// The rate of the total force, projected on the free directions of the node.
     pub fn force_rate(&self, loading: Loading<'_>, state: &State, rate: &Rate) -> Vector {
         let parts = self.contacts.iter().map(|contact| reaction_in_space(loading, *contact, (state, rate)).1);
         self.free_part(&parts.fold([0.0; 3], |sum, part| add(&sum, 1.0, &part)))
     }
 
-    /// Whether the node is on its way within what holds it without wedging, so that it slides where that ends. A node that
-    /// arrives from one obstacle may be held beyond: no slide can begin there.
+    /// Whether the force on the node stays within the bound for holding without wedging, so that the node slides where
+    /// the force reaches this bound. A node that arrives from one obstacle may be held beyond the bound: no slide can
+    /// begin there.
     pub fn keeps(&self, loading: Loading<'_>, state: &State, rate: &Rate) -> bool {
         let (force, change) = (self.force(loading, state), self.force_rate(loading, state, rate));
         let meeting = self.contacts.iter().map(|contact| loading.forces_meeting_at(*contact, state));
@@ -259,21 +263,21 @@ impl Pocket {
         self.margin_of_slides(&slides, unloaded, zero, &change) >= -AT_BOUND * size(&change)
     }
 
-    /// The slides that a force is just enough for.
+    /// The slides at whose friction bound a force lies.
     pub fn ready(&self, force: &Vector, zero: f64) -> Vec<(Slide, Drive)> {
         if self.is_jammed() {
             return Vec::new();
         }
         let pressed = |drive: &Drive| drive.normals[0].max(drive.normals[1]) > zero;
         let ready = |slide: Slide| {
-            // What the location of a zero left over presses nothing.
+            // The remainder from the location of a zero is no normal reaction.
             let drive = self.drive(&slide, force).or_else(|| self.drive_within(&slide, force, zero))?;
             (drive.excess.abs() <= zero && pressed(&drive)).then_some((slide, drive))
         };
         self.slides().into_iter().filter_map(ready).collect()
     }
 
-    /// The same where normal reactions are zero within a tolerance.
+    /// As [`drive`](Self::drive), where normal reactions or driving forces are zero within a tolerance.
     fn drive_within(&self, slide: &Slide, force: &Vector, zero: f64) -> Option<Drive> {
         match *slide {
             Slide::Edge { places, direction } => {
@@ -290,15 +294,15 @@ impl Pocket {
         }
     }
 
-    /// How far a rate of the force is from making the node slide or leave, or from what no motion has.
+    /// The margin of a rate of the force against sliding or leaving, and against leaving the sum of the cones.
     pub fn margin_of_rate(&self, force: &Vector, unloaded: bool, zero: f64, rate: &Vector) -> f64 {
         let slides = if unloaded { Vec::new() } else { self.ready(force, zero) };
         let margin = self.margin_of_slides(&slides, unloaded, zero, rate);
         if unloaded { margin } else { margin.min(self.slope_at_bound(force, zero, rate)) }
     }
 
-    /// How far a rate of force is from making the node slide or leave, where `ready` slides are at their limit; without a
-    /// force all are.
+    /// The margin of a rate of the force against sliding or leaving, where the slides `ready` are at their friction
+    /// bound; without a force all slides are.
     fn margin_of_slides(&self, ready: &[(Slide, Drive)], unloaded: bool, zero: f64, rate: &Vector) -> f64 {
         if unloaded {
             return self.margin(rate);
@@ -324,7 +328,8 @@ impl Pocket {
         ready.iter().filter_map(drives).map(|excess| -excess).fold(size(rate), f64::min)
     }
 
-    /// Forms of the rate of force that are not negative where a slide that begins along other obstacles turns off them.
+    /// Forms of the rate of force that are not negative where a slide that begins tangent to other obstacles turns away
+    /// from them.
     pub fn turns_off(&self, place: usize, direction: &Vector) -> Vec<Vector> {
         let across = cross(&self.frames[place].normal, direction);
         let grazes = |other: &usize| {
@@ -334,7 +339,7 @@ impl Pocket {
         (0..self.contacts.len()).filter(grazes).map(form).collect()
     }
 
-    /// The cones of the obstacles as their reactions are shared.
+    /// The friction cones of the obstacles, for the reactions of least norm.
     fn cones(&self) -> Vec<Cone> {
         let of = |(frame, friction): (&Frame, &CoulombFriction)| Cone {
             normal: frame.normal,
@@ -344,8 +349,8 @@ impl Pocket {
         self.frames.iter().zip(&self.frictions).map(of).collect()
     }
 
-    /// Reactions of least norm that make up a force; where they are not found, just at the end of what holds it or at a
-    /// slide, those that are left there.
+    /// The reactions of least norm whose sum is a force; where they are not found, on the bound of the sum of the cones
+    /// or at a slide, the only reactions possible there.
     pub fn share(&self, force: &Vector) -> Option<Vec<Vector>> {
         least_reactions(&self.cones(), &self.free, force)
             .or_else(|| self.at_bound(force))
@@ -353,7 +358,7 @@ impl Pocket {
             .or_else(|| self.parts(force))
     }
 
-    /// Normal reactions of three obstacles that make up a force in space.
+    /// The normal reactions of three obstacles whose sum is a force in space.
     fn resting(&self, force: &Vector) -> Option<Vec<Vector>> {
         let count = if self.free.len() == 3 { self.contacts.len() } else { 0 };
         let triples = (0..count).flat_map(|a| (a + 1..count).flat_map(move |b| (b + 1..count).map(move |c| [a, b, c])));
@@ -373,7 +378,7 @@ impl Pocket {
         })
     }
 
-    /// Reactions without wedging.
+    /// The reactions to a force without wedging.
     fn parts(&self, force: &Vector) -> Option<Vec<Vector>> {
         let drives = |slide: Slide| Some((slide, self.drive(&slide, force)?));
         let driven = |(_, drive): &(Slide, Drive)| dot(&drive.direction, force) <= 0.0;
@@ -403,7 +408,7 @@ impl Pocket {
     }
 }
 
-/// A vector as far as some orthonormal directions hold it.
+/// The projection of a vector on the span of orthonormal directions.
 fn along(directions: &[Vector], vector: &Vector) -> Vector {
     if directions.len() == 3 {
         return *vector;

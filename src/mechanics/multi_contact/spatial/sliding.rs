@@ -1,4 +1,4 @@
-//! A node that slides out of a pocket: its reactions and their rates.
+//! A node that slides along one of its obstacles or an edge: its reactions and their rates.
 
 use crate::mechanics::contact::vector::{Vector, add, cross, dot, scaled, size, unit};
 use crate::mechanics::contact::{Frame, Mode, Reaction};
@@ -7,7 +7,7 @@ use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_forces::Corner;
 use crate::mechanics::problem::state::State;
 
-/// The other of two obstacles along whose edge a node in space slides in these modes, if that is what it does.
+/// The other of the two obstacles along whose edge a node in space slides in these modes, if it slides along an edge.
 pub fn beside(loading: Loading<'_>, modes: &[Mode], contact: usize) -> Option<usize> {
     if loading.structure.dimension != 3 {
         return None;
@@ -20,9 +20,9 @@ pub fn beside(loading: Loading<'_>, modes: &[Mode], contact: usize) -> Option<us
     }
 }
 
-/// The edge of two obstacles at a node, in the order of their numbers.
+/// The edge of two obstacles at a node, in the order of their indices.
 pub struct Edge {
-    /// Unit vector along it.
+    /// Unit vector along the edge.
     pub direction: Vector,
     frames: [Frame; 2],
     /// Sine of the angle between the normals.
@@ -40,13 +40,13 @@ impl Edge {
         Self { direction: unit(&across), frames, sine: size(&across) }
     }
 
-    /// How a direction along the edge turns with a motion of the node.
+    /// The change of a direction along the edge with a motion of the node.
     pub fn change_along(&self, direction: &Vector, motion: &Vector) -> Vector {
         let sign = if dot(direction, &self.direction) < 0.0 { -1.0 } else { 1.0 };
         scaled(&self.change(motion), sign)
     }
 
-    /// How the edge turns with a motion of the node.
+    /// The change of the edge's direction with a motion of the node.
     pub fn change(&self, motion: &Vector) -> Vector {
         let [first, second] = &self.frames;
         let turned = add(
@@ -58,18 +58,18 @@ impl Edge {
     }
 }
 
-/// A node on its way along one obstacle or the edge of two.
+/// The slide of a node along one obstacle or the edge of two.
 struct PocketSlide {
-    /// Places in the pocket.
+    /// Indices of the obstacles in the [`Pocket`].
     places: Vec<usize>,
-    /// Zero where nothing rubs.
+    /// Direction of the slide; zero without friction.
     direction: Vector,
-    /// Linear forms of the force that give the normal reactions, one a place.
+    /// Linear forms of the force that give the normal reactions, one per obstacle.
     forms: Vec<Vector>,
 }
 
 impl Pocket {
-    /// How the node slides in these modes of all contacts, if it does.
+    /// The slide of the node in these modes of all contacts, if it slides.
     fn sliding(&self, modes: &[Mode]) -> Option<PocketSlide> {
         let active = |place: &usize| modes[self.contacts[*place]].is_active();
         let places: Vec<usize> = (0..self.contacts.len()).filter(active).collect();
@@ -93,13 +93,14 @@ impl Pocket {
         Some(PocketSlide { places, direction, forms })
     }
 
-    /// The drag on the node in these modes under a force.
+    /// The friction force on the node in these modes under a force.
     pub fn drag_in(&self, modes: &[Mode], force: &Vector) -> f64 {
         let Some(PocketSlide { places, forms, .. }) = self.sliding(modes) else { return 0.0 };
         places.iter().zip(&forms).map(|(place, form)| self.frictions[*place].bound(dot(form, force))).sum()
     }
 
-    /// How the forces of the obstacles along which the node slides turn with a motion, present normal reactions given.
+    /// The change, with a motion, of the forces of the obstacles along which the node slides, at given normal
+    /// reactions.
     pub(crate) fn turning(
         &self,
         places: &[usize],
@@ -122,8 +123,8 @@ impl Pocket {
         places.iter().zip(normals).map(of).collect()
     }
 
-    /// Rates of the reactions of the obstacles along which the node slides, from that of their sum; none where it does not
-    /// slide.
+    /// The rates of the reactions of the obstacles along which the node slides, from the rate of their sum; empty where
+    /// the node does not slide.
     pub fn rates_in(&self, modes: &[Mode], force: &Vector, rate: &Vector, motion: &Vector) -> Vec<(usize, Reaction)> {
         let Some(PocketSlide { places, direction, forms }) = self.sliding(modes) else { return Vec::new() };
         let normals: Vec<f64> = forms.iter().map(|form| dot(form, force)).collect();
@@ -139,7 +140,7 @@ impl Pocket {
             parts.push((self.contacts[*place], Reaction { normal: growing[k], tangential }));
         }
         if let [(_, only)] = &mut parts[..] {
-            // What is across the direction turns it.
+            // The component perpendicular to the direction turns the direction.
             let normal = &self.frames[places[0]].normal;
             let pressed = scaled(&self.normals[places[0]], only.normal);
             let across = add(&add(&rest, -1.0, &pressed), -dot(&rest, &direction), &direction);
@@ -151,8 +152,8 @@ impl Pocket {
     }
 }
 
-/// Reactions of the obstacles along which alone a node goes on, where those of others become theirs; none where there is
-/// nothing to take over.
+/// The reactions of the obstacles along which alone a node slides further, where they take over the reactions of
+/// others; empty where there is nothing to take over.
 pub fn taken_over(loading: Loading<'_>, corner: &Corner, modes: &[Mode], state: &State) -> Vec<(usize, Reaction)> {
     let pocket = Pocket::new(loading, &corner.contacts, state);
     let Some(PocketSlide { places, direction, forms }) = pocket.sliding(modes) else { return Vec::new() };
@@ -172,7 +173,7 @@ pub fn taken_over(loading: Loading<'_>, corner: &Corner, modes: &[Mode], state: 
         rest = add(&add(&rest, -normal, &pocket.normals[*place]), -1.0, &tangential);
         parts.push((*place, Reaction { normal, tangential }));
     }
-    // What is left is what the location of the event left over; the sum stays.
+    // The remainder comes from the location of the event; the sum is preserved.
     if let Some((_, part)) = parts.iter_mut().find(|(place, _)| pocket.frictions[*place].is_rough()) {
         part.tangential = add(&part.tangential, 1.0, &rest);
     }
