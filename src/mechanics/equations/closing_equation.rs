@@ -1,7 +1,7 @@
 //! The closing equation of a mode: it selects the point on the branch.
 //!
 //! ```text
-//! c(u, s) = 0        arc length: ‖(Δu, Δs)‖ - S    prescribed load: s - value     prescribed displacement: u_i - value
+//! c(u, s) = 0        arc length: ‖(Δu, Δs)‖ - S    prescribed load: s - value    prescribed displacement: u_i - value
 //! ```
 //!
 //! Arc length after E. Riks, Int. J. Solids Struct. 15 (1979) 529, doi:10.1016/0020-7683(79)90081-7. An event function

@@ -1,4 +1,4 @@
-//! The motion of a contact by the degrees of freedom of the structure, and its forces on them.
+//! The motion of a contact with the degrees of freedom of the structure, and its forces on them.
 
 use crate::mechanics::contact::ContactPair;
 use crate::mechanics::contact::kinematics::{CoupledKinematics, Kinematics};
@@ -9,7 +9,7 @@ use smallvec::SmallVec;
 /// The unit vectors of the axes.
 pub(crate) const AXES: [Vector; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// The degrees of freedom that move a coupled contact, and what they are.
+/// The degrees of freedom that move a coupled contact, and their values.
 fn gathered(
     structure: &Structure,
     coupled: &dyn CoupledKinematics,
@@ -22,7 +22,7 @@ fn gathered(
     (freedoms, own)
 }
 
-/// `m(u)`: how far a contact has moved, in the axes of its obstacle.
+/// The displacement `m(u)` of a contact, in the axes of its obstacle.
 #[inline(always)]
 pub fn moved(structure: &Structure, contact: &ContactPair, displacement: &[f64]) -> Vector {
     match &contact.kinematics {
@@ -31,7 +31,7 @@ pub fn moved(structure: &Structure, contact: &ContactPair, displacement: &[f64])
     }
 }
 
-/// `B(u) u̇`: how fast it moves.
+/// The velocity `B(u) u̇` of a contact.
 #[inline(always)]
 pub fn velocity(structure: &Structure, contact: &ContactPair, displacement: &[f64], rate: &[f64]) -> Vector {
     match &contact.kinematics {
@@ -44,7 +44,7 @@ pub fn velocity(structure: &Structure, contact: &ContactPair, displacement: &[f6
     }
 }
 
-/// Calls `each(freedom, column)` with the columns of `B(u)`: how the contact moves with each degree of freedom.
+/// Calls `each(freedom, column)` with the columns of `B(u)`: the motion of the contact per degree of freedom.
 #[inline(always)]
 pub fn each_column(
     structure: &Structure,
@@ -78,7 +78,7 @@ pub fn add_force(
     each_column(structure, contact, displacement, |freedom, column| forces[freedom] += factor * dot(column, force));
 }
 
-/// Calls `add(row, column, value)` with the entries of `∂(Bᵀ r)/∂u` at a constant force; none of a single node.
+/// Calls `add(row, column, value)` with the entries of `∂(Bᵀ r)/∂u` at a constant force; none for a single node.
 pub fn each_curvature(
     structure: &Structure,
     contact: &ContactPair,

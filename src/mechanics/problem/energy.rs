@@ -4,8 +4,8 @@
 //! ΔW = f_held·Δu + ∫ s d(f·u) + ∫ Q ds,      ΔD = -Σ ∫ r_t·dx
 //! ```
 //!
-//! `Q` is what supports and obstacles that move with the load factor push with; `x` a node's place relative to its
-//! obstacle.
+//! `Q` is the force of the supports and obstacles that move with the load factor, work-conjugate to the load factor;
+//! `x` is the position of a node relative to its obstacle.
 //!
 //! Both integrands are products along a curve whose ends and end directions are known: cubic Hermite interpolants of
 //! both factors, integrated exactly, give an error of fourth order in the step. The interpolants' parameter is arc
@@ -30,7 +30,7 @@ struct Ends {
 /// A point and the direction of the path there.
 pub type Placed<'a> = (&'a State, &'a Rate);
 
-/// `(ΔW, ΔD)` of an increment in one mode, whose direction turns by an angle (radians).
+/// `(ΔW, ΔD)` of an increment in one mode; `turned` is the angle (radians) by which the path's direction turns.
 pub fn work_and_dissipation(
     loading: Loading<'_>,
     modes: &[Mode],
@@ -79,7 +79,7 @@ pub fn work_and_dissipation(
     (work, dissipation)
 }
 
-/// `Q` and its derivative by arc length.
+/// The force `Q` and its derivative by arc length.
 pub fn boundary_force(loading: Loading<'_>, at: Placed<'_>) -> (f64, f64) {
     let (state, rate) = at;
     let structure = loading.structure;

@@ -1,4 +1,4 @@
-//! The structure under a load pattern, with what earlier stages hold.
+//! The structure under a load pattern and the constant loads of earlier stages.
 
 use crate::mechanics::contact::vector::{Vector, add, scaled};
 use crate::mechanics::contact::{ContactPair, Frame, Reaction};
@@ -8,7 +8,7 @@ use crate::mechanics::problem::state::{Rate, State};
 use crate::mechanics::structure::Structure;
 use serde::{Deserialize, Serialize};
 
-/// What a load factor multiplies, dimensionless.
+/// The loads that a load factor multiplies, dimensionless.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct LoadPattern {
     /// Forces; all degrees of freedom.
@@ -20,7 +20,7 @@ pub struct LoadPattern {
 }
 
 impl LoadPattern {
-    /// Adds a multiple of another.
+    /// Adds a multiple of another pattern.
     pub fn add(&mut self, factor: f64, other: &Self) {
         self.forces.iter_mut().zip(&other.forces).for_each(|(sum, value)| *sum += factor * value);
         self.supports.iter_mut().zip(&other.supports).for_each(|(sum, value)| *sum += factor * value);
@@ -32,7 +32,7 @@ impl LoadPattern {
         self.supports.iter().any(|value| *value != 0.0) || self.shifts.iter().any(|shift| *shift != [0.0; 3])
     }
 
-    /// The same shape, all zero.
+    /// The zero pattern of the same shape.
     pub fn zeroed(&self) -> Self {
         Self {
             forces: vec![0.0; self.forces.len()],
@@ -42,21 +42,21 @@ impl LoadPattern {
     }
 }
 
-/// The structure under a load pattern, with what is held from before.
+/// The structure under a load pattern and the constant loads of earlier stages.
 #[derive(Clone, Copy)]
 pub struct Loading<'a> {
     pub structure: &'a Structure,
     pub contacts: &'a [ContactPair],
     /// Nodes with several contacts.
     pub corners: &'a [Corner],
-    /// Multiplied by the load factor.
+    /// Loads multiplied by the load factor.
     pub pattern: &'a LoadPattern,
-    /// Held by earlier stages.
+    /// Constant loads of earlier stages.
     pub held: &'a LoadPattern,
 }
 
-/// The displacement (dimensionless) whose forces count as meeting at a node even where there is less: the scale of
-/// displacements itself. A structure that is just undeformed has no smaller forces than before.
+/// Lower bound on the displacements (dimensionless) by which the forces that meet at a node are estimated: the scale of
+/// displacements itself, so that the estimate does not vanish for a structure that happens to be undeformed.
 pub(crate) const USUAL: f64 = 1.0;
 
 fn largest_of(vector: &Vector) -> f64 {
@@ -64,7 +64,7 @@ fn largest_of(vector: &Vector) -> f64 {
 }
 
 impl Loading<'_> {
-    /// How far a contact has moved less its obstacle's displacement, in the obstacle's axes.
+    /// The displacement of a contact less that of its obstacle, in the obstacle's axes.
     #[inline(always)]
     pub fn relative(&self, contact: usize, state: &State) -> Vector {
         let moved = contact_motion::moved(self.structure, &self.contacts[contact], &state.displacement);
@@ -72,7 +72,7 @@ impl Loading<'_> {
         add(&shifted, -state.load, &self.pattern.shifts[contact])
     }
 
-    /// Its velocity less its obstacle's at a state.
+    /// The velocity of a contact less that of its obstacle at a state.
     #[inline(always)]
     pub fn relative_rate(&self, contact: usize, state: &State, rate: &Rate) -> Vector {
         let contact_data = &self.contacts[contact];
@@ -80,13 +80,14 @@ impl Loading<'_> {
         add(&moved, -rate.load, &self.pattern.shifts[contact])
     }
 
-    /// Calls `each(freedom, column)` with how a contact moves with each degree of freedom at a state.
+    /// Calls `each(freedom, column)` with the motion of a contact per degree of freedom at a state.
     #[inline(always)]
     pub fn each_column(&self, contact: usize, state: &State, each: impl FnMut(usize, &Vector)) {
         contact_motion::each_column(self.structure, &self.contacts[contact], &state.displacement, each);
     }
 
-    /// Velocity of a contact, less its obstacle's, per load factor with no unknown moving: by supports and obstacle.
+    /// The velocity of a contact less that of its obstacle, per load factor, due to the motion of supports and obstacle
+    /// alone.
     pub fn driven(&self, contact: usize, state: &State) -> Vector {
         let mut motion = scaled(&self.pattern.shifts[contact], -1.0);
         self.each_column(contact, state, |freedom, column| {
@@ -103,7 +104,8 @@ impl Loading<'_> {
         self.contacts[contact].frame(&self.relative(contact, state))
     }
 
-    /// The reaction (or its rate) by which a contact takes a force on its node; across the normal where there is friction.
+    /// The reaction (or its rate) by which a contact carries a force on its node; with a tangential part only with
+    /// friction.
     pub fn taken_by(&self, contact: usize, state: &State, force: &Vector) -> Reaction {
         let normal = self.frame(contact, state).normal;
         if self.contacts[contact].tangents() == 0 {
@@ -119,13 +121,14 @@ impl Loading<'_> {
         self.contacts[contact].gap(&self.relative(contact, state))
     }
 
-    /// The force against which a contact's reaction is zero: those that meet at its node, or the largest of the path where
-    /// that is less. Structures with forces far apart each have their own.
+    /// The force scale against which a contact's reaction counts as zero: the forces that meet at its node, or the
+    /// largest of the path where this is smaller. Parts of a structure with forces of different size have scales of
+    /// their own.
     pub fn force_scale_at(&self, contact: usize, state: &State, force_scale: f64) -> f64 {
         self.forces_meeting_at(contact, state).min(force_scale).max(f64::EPSILON * force_scale)
     }
 
-    /// Size of the forces that meet at a contact's node; the largest of several.
+    /// Size of the forces that meet at a contact's node; the largest over several nodes.
     pub fn forces_meeting_at(&self, contact: usize, state: &State) -> f64 {
         let at_node = |node: &usize| {
             let own = |pattern: &LoadPattern| largest_of(&self.structure.translation_at(*node, &pattern.forces));
@@ -137,9 +140,10 @@ impl Loading<'_> {
         self.contacts[contact].kinematics.nodes().iter().map(at_node).fold(0.0, f64::max)
     }
 
-    /// Whether a force at a contact is at most so many times the forces against which its reaction is zero.
+    /// Whether a force at a contact is at most `tolerance` times the force scale against which its reaction counts as
+    /// zero.
     pub fn is_no_force(&self, contact: usize, state: &State, force: f64, tolerance: f64, force_scale: f64) -> bool {
-        // The largest of the path often tells.
+        // The largest force of the path often decides.
         force <= tolerance * force_scale && force <= tolerance * self.force_scale_at(contact, state, force_scale)
     }
 
@@ -149,7 +153,7 @@ impl Loading<'_> {
         self.pattern.supports.get(freedom).copied().unwrap_or(0.0)
     }
 
-    /// Puts the supports where the load factor has them.
+    /// Places the supports according to the load factor of a state.
     pub fn place_supports(&self, state: &mut State) {
         for (freedom, (held, pattern)) in self.held.supports.iter().zip(&self.pattern.supports).enumerate() {
             if self.structure.unknown_of[freedom].is_none() {

@@ -1,14 +1,14 @@
 //! A structure with contacts under its loads.
 //!
-//! | file | what it holds |
+//! | file | contents |
 //! |---|---|
 //! | `state` | a point of the path and its derivative by arc length |
-//! | `loading` | the structure under a load pattern, with what earlier stages hold |
-//! | `contact_motion` | the motion of a contact by the degrees of freedom, and its forces on them |
+//! | `loading` | the structure under a load pattern and the constant loads of earlier stages |
+//! | `contact_motion` | the motion of a contact with the degrees of freedom, and its forces on them |
 //! | `node_forces` | the forces of all contacts on one node |
-//! | `natural_residual` | how far a state is from the laws of contact and friction |
+//! | `natural_residual` | the violation of the laws of contact and friction by a state |
 //! | `energy` | external work and dissipation along an increment |
-//! | `linearity` | whether every direction of first order holds over some way |
+//! | `linearity` | whether every direction of first order holds over a finite length |
 
 pub(crate) mod contact_motion;
 pub(crate) mod energy;

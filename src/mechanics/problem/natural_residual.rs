@@ -1,4 +1,4 @@
-//! How far a state is from the laws of contact and friction.
+//! The violation of the laws of contact and friction by a state.
 //!
 //! ```text
 //! 0 <= g ⊥ r_n >= 0,      |r_t| <= μ r_n
@@ -8,7 +8,7 @@ use crate::mechanics::contact::Reaction;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::State;
 
-/// A point whose violation is larger is not accepted.
+/// Largest violation at an accepted point.
 pub const MOST_VIOLATION: f64 = 1e-10;
 
 /// The largest violation over the contacts; gaps dimensionless, reactions over the force scale at their nodes.
@@ -17,7 +17,7 @@ pub fn violation(loading: Loading<'_>, state: &State, force_scale: f64) -> f64 {
         let gap = loading.gap(index, state);
         let friction = loading.contacts[index].friction;
         let traction = reaction.tangential_size();
-        // The forces at the node are at most the force scale: often they need not be known.
+        // The forces at the node are at most the force scale, so that they often need not be computed.
         let obeys = reaction.normal >= 0.0 && traction <= friction.bound(reaction.normal);
         if obeys && gap <= reaction.normal / force_scale.max(NO_FORCE) {
             return gap.abs();
@@ -38,7 +38,7 @@ pub fn holds(loading: Loading<'_>, state: &State, force_scale: f64) -> bool {
 /// A gap (dimensionless) or a reaction (over the force scale) of this size is zero.
 pub const ZERO: f64 = 1e-10;
 
-/// Forces (dimensionless) below this are none: what rounding leaves where nothing is loaded.
+/// Forces (dimensionless) below this count as zero: they are round-off where nothing is loaded.
 pub(crate) const NO_FORCE: f64 = 1e-20;
 
 #[cfg(test)]
@@ -46,7 +46,7 @@ mod tests {
     use super::*;
     use crate::continuation::scene::Scene;
 
-    /// A node on a floor with μ = 1/2: what each law says of a few states.
+    /// A node on a floor with μ = 1/2: the violation of each law in a few states.
     #[test]
     fn a_breach_of_any_law_is_seen() {
         let request = crate::model::decode::decode(

@@ -1,4 +1,4 @@
-//! The forces of all contacts on one node, and where the node is free.
+//! The forces of all contacts on one node, and the directions in which the node is free.
 
 use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::vector::{Vector, add, scaled, size};
@@ -21,8 +21,8 @@ impl Corner {
         self.contacts.iter().copied().filter(|contact| loading.gap(*contact, state) <= ZERO).collect()
     }
 
-    /// The contacts that hold the node together in these modes, one that sticks first; none where fewer than two do. A node
-    /// that sticks to an obstacle may be carried along others, against which it slips.
+    /// The contacts that hold the node together in these modes, the sticking ones first; none where fewer than two are
+    /// active or none sticks. A node that sticks to one obstacle may be carried along others, against which it slips.
     pub fn holding<'a>(&'a self, modes: &'a [Mode]) -> impl Iterator<Item = usize> + 'a {
         let sticks = move |contact: &&usize| modes[**contact] == Mode::Stick;
         let slips = move |contact: &&usize| matches!(modes[**contact], Mode::Slip { .. });
@@ -33,8 +33,8 @@ impl Corner {
     }
 }
 
-/// Rays closer to opposite than this (angle) are opposite. A force that is taken as held then lies outside the true cone
-/// by no more than this part of its size.
+/// Rays whose angle is within this of half a turn count as opposite. A force accepted as held then lies outside the
+/// true cone by no more than this fraction of its size.
 pub(crate) const FLAT: f64 = 1e-12;
 
 /// Whether a node is free in the plane, so that the sum of its friction cones is a sector.
@@ -43,7 +43,8 @@ pub fn is_in_plane(loading: Loading<'_>, corner: &Corner) -> bool {
         && corner.contacts.iter().all(|contact| loading.contacts[*contact].sliding != Sliding::None)
 }
 
-/// Whether the running stage drives a node against some closed obstacles by its supports, or them against each other.
+/// Whether the current stage drives a node against closed obstacles by its supports, or the obstacles against each
+/// other.
 pub fn is_driven(loading: Loading<'_>, closed: &[usize]) -> bool {
     let shift = &loading.pattern.shifts[closed[0]];
     let by_support = |node: &usize| {
@@ -55,19 +56,19 @@ pub fn is_driven(loading: Loading<'_>, closed: &[usize]) -> bool {
     move_apart(loading, closed) || loading.contacts[closed[0]].kinematics.nodes().iter().any(by_support)
 }
 
-/// Whether the running stage moves the obstacles of some contacts against each other.
+/// Whether the current stage moves the obstacles of some contacts against each other.
 pub(crate) fn move_apart(loading: Loading<'_>, contacts: &[usize]) -> bool {
     let shifts = &loading.pattern.shifts;
     contacts.iter().skip(1).any(|other| shifts[contacts[0]] != shifts[*other])
 }
 
-/// The whole force of an obstacle on its node.
+/// The total force of an obstacle on its node.
 pub fn force(frame: &Frame, reaction: &Reaction) -> Vector {
     add(&reaction.tangential, reaction.normal, &frame.normal)
 }
 
-/// Rates of the forces of the contacts on their nodes; for a node with several the sum, with the first of them: how it is
-/// shared is not part of a motion.
+/// The rates of the forces of the contacts on their nodes; for a node with several contacts the first of them has the
+/// sum, since the shares of the contacts do not affect the motion.
 pub fn whole_rates(loading: Loading<'_>, state: &State, rate: &Rate) -> Vec<Vector> {
     let mut rates: Vec<Vector> =
         (0..loading.contacts.len()).map(|contact| reaction_in_space(loading, contact, (state, rate)).1).collect();
@@ -89,20 +90,20 @@ pub fn total_force(loading: Loading<'_>, contacts: impl Iterator<Item = usize>, 
     })
 }
 
-/// Normal and tangential parts of a force in the cone of a contact. With much friction the normal part may be lost in the
-/// rounding of the whole: it is then what the cone makes of the tangential one.
+/// The normal and tangential parts of a force in the cone of a contact. For a large coefficient of friction the normal
+/// part may be lost in the rounding of the force; it then follows from the tangential part and the cone.
 pub fn taken_apart(force: &Vector, frame: &Frame, friction: CoulombFriction) -> Reaction {
     if !friction.is_rough() {
         return Reaction::along(force, &frame.normal);
     }
     let Reaction { normal, tangential } = Reaction::of(force, &frame.normal);
-    // A little more, so that the cone holds in spite of rounding, however large the force.
+    // Slightly larger, so that the reaction is within the cone in spite of rounding, however large the force.
     let least = size(&tangential) / friction.coefficient * (1.0 + 4.0 * f64::EPSILON);
     let is_round_off = least - normal <= FLAT * size(force);
     Reaction { normal: if is_round_off { normal.max(least) } else { normal }, tangential }
 }
 
-/// The whole force of an obstacle on its node, and its derivative by arc length.
+/// The total force of an obstacle on its node, and its derivative by arc length.
 pub fn reaction_in_space(loading: Loading<'_>, contact: usize, at: Placed<'_>) -> (Vector, Vector) {
     let (reaction, change) = (&at.0.reactions[contact], &at.1.reactions[contact]);
     if *reaction == Default::default() && *change == Default::default() {
@@ -115,7 +116,7 @@ pub fn reaction_in_space(loading: Loading<'_>, contact: usize, at: Placed<'_>) -
     (force, rate)
 }
 
-/// Orthonormal directions in which a contact is free to move: all, where several nodes move it.
+/// Orthonormal directions in which a contact is free to move: all directions where several nodes move the contact.
 pub fn free_directions(loading: Loading<'_>, contact: usize) -> Vec<Vector> {
     let structure = loading.structure;
     let axes = &AXES[..structure.dimension];

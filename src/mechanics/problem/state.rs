@@ -4,7 +4,7 @@ use crate::mechanics::contact::Reaction;
 use crate::mechanics::structure::Structure;
 use serde::{Deserialize, Serialize};
 
-/// Displacements over all degrees of freedom, load factor, reactions (one a contact).
+/// Displacements over all degrees of freedom, load factor, reactions (one per contact).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
     pub displacement: Vec<f64>,
@@ -36,7 +36,7 @@ impl State {
         state
     }
 
-    /// Goes on straight along a rate.
+    /// Advances the state by a straight step along a rate.
     pub fn advance(&mut self, rate: &Rate, step: f64) {
         for (value, rate) in self.displacement.iter_mut().zip(&rate.displacement) {
             *value += step * rate;
@@ -47,7 +47,7 @@ impl State {
         }
     }
 
-    /// Becomes another state; no memory is asked for where both are of one structure.
+    /// Copies another state, without new memory where both are of one structure.
     pub fn set_to(&mut self, other: &Self) {
         self.displacement.clone_from(&other.displacement);
         self.load = other.load;
@@ -112,7 +112,7 @@ impl Rate {
         }
     }
 
-    /// The same of unit size; `None` where it has none.
+    /// The rate scaled to unit size; `None` where the size is zero or not finite.
     pub fn normalised(mut self) -> Option<Self> {
         let size = self.size();
         if size <= 0.0 || !size.is_finite() {

@@ -2,14 +2,14 @@
 
 use crate::mechanics::structure::elements::{FiniteElement, Stretching};
 
-/// An element and the degrees of freedom that it joins, in its own order.
+/// An element and the degrees of freedom that it joins, in the order of the element.
 #[derive(Clone, Copy)]
 pub struct ElementAt<'a> {
     pub element: &'a dyn FiniteElement,
     pub freedoms: &'a [usize],
 }
 
-/// Memory for the numbers of one element, kept from one to the next.
+/// Work memory for one element, reused for the next.
 #[derive(Default)]
 pub struct ElementBuffer {
     displacement: Vec<f64>,
@@ -17,7 +17,7 @@ pub struct ElementBuffer {
 }
 
 impl ElementBuffer {
-    /// The element's displacement, and room for so many numbers.
+    /// The element's displacement, and room for `count` numbers.
     fn of(&mut self, at: ElementAt<'_>, displacement: &[f64], count: usize) -> (&[f64], &mut [f64]) {
         self.displacement.clear();
         self.displacement.extend(at.freedoms.iter().map(|freedom| displacement[*freedom]));
@@ -35,7 +35,7 @@ impl ElementAt<'_> {
         carried
     }
 
-    /// Calls `add(freedom, size)` with the size of the numbers of which the nodal forces are made.
+    /// Calls `add(freedom, size)` with the size of the terms that make up the nodal forces.
     pub fn each_force_size(
         self,
         displacement: &[f64],
@@ -61,7 +61,7 @@ impl ElementAt<'_> {
         self.each_entry(stiffness, add);
     }
 
-    /// The same without what [`stretching`](Self::stretching) lists.
+    /// As [`each_stiffness`](Self::each_stiffness), without the summands that [`stretching`](Self::stretching) lists.
     pub fn each_stiffness_across(
         self,
         displacement: &[f64],
@@ -74,8 +74,9 @@ impl ElementAt<'_> {
         self.each_entry(stiffness, add);
     }
 
-    /// The entries of a matrix of the element: of each pair of components those of all nodes, of a node with itself first.
-    /// Sums over the columns of a row then take what belongs to one component together.
+    /// Calls `add` with the entries of a matrix of the element, ordered by pairs of components; for each pair, the
+    /// entries of a node with itself come first. Sums over the columns of a row thus add the entries of one component
+    /// together.
     fn each_entry(self, matrix: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
         let (count, nodes) = (self.freedoms.len(), self.element.nodes().len());
         let of_node = count / nodes;
@@ -93,7 +94,7 @@ impl ElementAt<'_> {
         }
     }
 
-    /// The summands `k c cᵀ` of the tangent by which the element resists being stretched.
+    /// The summands `k c cᵀ` of the tangent by which the element resists stretching.
     pub fn stretching(self, displacement: &[f64]) -> impl Iterator<Item = Stretching> {
         let (mut buffer, freedoms) = (ElementBuffer::default(), self.freedoms);
         let own = self.element.stretching(buffer.of(self, displacement, 0).0);
@@ -103,7 +104,7 @@ impl ElementAt<'_> {
         })
     }
 
-    /// The stiffness against a motion, as an axial one.
+    /// The stiffness against a motion, expressed as an axial stiffness.
     pub fn axial_stiffness(self, motion: &[f64], buffer: &mut ElementBuffer) -> f64 {
         self.element.axial_stiffness(buffer.of(self, motion, 0).0)
     }

@@ -4,8 +4,9 @@
 //! f_int(u) = Σ_e ∂W_e/∂u,   K(u) = Σ_e ∂²W_e/∂u²
 //! ```
 //!
-//! Dimensionless throughout (`scene` divides by the scales). Knows nothing of contacts, loads or paths. Each kind of
-//! element is a file of its own behind [`elements::FiniteElement`]; [`numbering`] alone knows which degrees of freedom a node has.
+//! All quantities are dimensionless (`scene` divides by the scales). The module knows nothing of contacts, loads or
+//! paths. Each kind of element has a file of its own behind [`elements::FiniteElement`]; only [`numbering`] knows which
+//! degrees of freedom a node has.
 
 pub mod assembly;
 pub mod elements;
@@ -21,39 +22,39 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Unknowns up to which matrices are dense.
+/// Largest number of unknowns for which matrices are dense.
 pub const MOST_DENSE: usize = 16;
 
-/// Unknowns up to which null spaces and eigenvalues are sought, in dense matrices: smooth bifurcation points and
-/// directions at singular points are not looked for beyond.
+/// Largest number of unknowns for which null spaces and eigenvalues are computed, in dense matrices: beyond it, smooth
+/// bifurcation points and directions at singular points are not sought.
 pub const MOST_ANALYSED: usize = 3_000;
 
 /// A checked structure.
 #[derive(Debug, Clone)]
 pub struct Structure {
-    /// That of the space.
+    /// Dimension of the space.
     pub dimension: usize,
-    /// Which degrees of freedom each node has.
+    /// The degrees of freedom of each node.
     pub numbering: Numbering,
     /// The unknown of each degree of freedom; `None` where it is supported.
     pub unknown_of: Vec<Option<usize>>,
     /// The degree of freedom of each unknown.
     pub freedom_of: Vec<usize>,
     elements: Vec<Arc<dyn FiniteElement>>,
-    /// The degrees of freedom of each element, one after the other, and where those of each begin.
+    /// The degrees of freedom of the elements, one element after the other, and the index of the first of each element.
     element_freedoms: Vec<usize>,
     first_freedom: Vec<usize>,
-    /// The elements at the nodes, node by node, and where those of each begin.
+    /// The elements at the nodes, node by node, and the index of the first of each node.
     elements_at: Vec<usize>,
     first_at: Vec<usize>,
-    /// Nodes whose degrees of freedom are coupled by other things than elements.
+    /// Groups of nodes whose degrees of freedom are coupled otherwise than by elements.
     couplings: Vec<Vec<usize>>,
     layout: Option<Arc<Layout>>,
 }
 
 impl Structure {
-    /// A structure whose nodes have the rotations that their elements have. A support holds a degree of freedom of a node:
-    /// its number among the node's.
+    /// A structure whose nodes have the rotations of their elements. A support fixes a degree of freedom of a node,
+    /// given by its index among the node's.
     pub fn new(
         dimension: usize,
         nodes: usize,
@@ -63,8 +64,8 @@ impl Structure {
         Self::like(None, dimension, nodes, supports, elements)
     }
 
-    /// As [`new`](Self::new); the places of the tangent's entries are those of another structure with the same unknowns and
-    /// elements between the same nodes, if that is one.
+    /// As [`new`](Self::new), with the sparsity layout of another structure if this has the same unknowns and elements
+    /// between the same nodes.
     pub fn like(
         other: Option<&Self>,
         dimension: usize,
@@ -107,7 +108,7 @@ impl Structure {
         structure
     }
 
-    /// The same nodes and supports, with more elements.
+    /// The structure with the same nodes and supports, and with more elements.
     pub fn with_elements(&self, more: impl IntoIterator<Item = Arc<dyn FiniteElement>>) -> Self {
         let held = (0..self.freedoms()).filter(|freedom| self.unknown_of[*freedom].is_none());
         let supports: Vec<(usize, usize)> = held.map(|freedom| self.numbering.node_of(freedom)).collect();
@@ -133,14 +134,14 @@ impl Structure {
         (self.elements, self.elements_at, self.first_at) = (elements, elements_at, first_at);
     }
 
-    /// Gives the tangent room for entries between the degrees of freedom of nodes that something else than an element
-    /// couples, one list of nodes each.
+    /// Adds entries to the layout of the tangent for degrees of freedom that are coupled otherwise than by elements;
+    /// each coupling is a list of nodes.
     pub fn couple(&mut self, couplings: Vec<Vec<usize>>) {
         self.couplings = couplings;
         self.set_sparse(self.layout.is_some());
     }
 
-    /// Whether the entries of both tangents are at the same places and come in the same order.
+    /// Whether the entries of both tangents have the same positions and the same order.
     fn has_places_of(&self, other: &Self) -> bool {
         self.numbering == other.numbering
             && self.unknown_of == other.unknown_of
@@ -150,7 +151,7 @@ impl Structure {
             && self.elements.iter().zip(&other.elements).all(|(one, other)| one.nodes().len() == other.nodes().len())
     }
 
-    /// Where the degrees of freedom of a node's translations are.
+    /// The degrees of freedom of a node's translations.
     #[inline(always)]
     pub fn translations_of(&self, node: usize) -> Range<usize> {
         self.numbering.translations_of(node)
@@ -195,11 +196,11 @@ impl Structure {
         self.elements.iter().all(|element| element.is_linear())
     }
 
-    /// Whether matrices are to be sparse; they stay dense where there is not the memory to find their layout.
+    /// Makes matrices sparse or dense; they stay dense where memory does not suffice to find the layout.
     pub fn set_sparse(&mut self, sparse: bool) {
         self.layout = if sparse { Layout::new(self).map(Arc::new) } else { None };
         if self.layout.is_none() {
-            // Whether there is room for a dense matrix is not left to the moment when it is formed.
+            // Whether a dense matrix fits into memory is checked now, not only when it is formed.
             drop(crate::resources::budget::take::<f64>(self.unknowns().saturating_mul(self.unknowns())));
         }
     }
@@ -209,7 +210,7 @@ impl Structure {
         self.unknowns() <= MOST_ANALYSED
     }
 
-    /// Where the tangent has its entries; `None` where matrices are dense.
+    /// The positions of the tangent's entries; `None` where matrices are dense.
     pub fn layout(&self) -> Option<&Layout> {
         self.layout.as_deref()
     }
@@ -224,7 +225,7 @@ impl Structure {
         self.unknown_of.len()
     }
 
-    /// Writes `f_int(u)` over all degrees of freedom and returns the largest force any element carries.
+    /// Writes `f_int(u)` over all degrees of freedom and returns the largest force that any element carries.
     pub fn internal_force(&self, displacement: &[f64], force: &mut [f64]) -> f64 {
         force.fill(0.0);
         let mut buffer = ElementBuffer::default();
@@ -233,17 +234,17 @@ impl Structure {
         })
     }
 
-    /// What the rounding of the displacements puts into `f_int(u)`, one bound a degree of freedom: stiffness times unit
-    /// round-off times the displacements that meet there. No state can be closer to equilibrium than this.
+    /// A bound on the rounding of the displacements in `f_int(u)`, one value per degree of freedom: stiffness times
+    /// unit round-off times the displacements that meet there. No state can be closer to equilibrium than this bound.
     pub fn rounding(&self, displacement: &[f64]) -> Vec<f64> {
         let mut rounding = vec![0.0; self.freedoms()];
         self.force_sizes(displacement, 0.0, &mut rounding);
         rounding.iter_mut().for_each(|size| *size *= f64::EPSILON);
         rounding
     }
-    /// Writes the size of the numbers of which `f_int(u)` is made, one a degree of freedom: `|K| |u|` and the forces that
-    /// the elements carry, with displacements taken as `least` at least. Against it a residual is small or not, whatever the
-    /// forces elsewhere (W. Oettli, W. Prager, Numer. Math. 6 (1964) 405, doi:10.1007/BF01386090).
+    /// Writes the size of the terms that make up `f_int(u)`, one per degree of freedom: `|K| |u|` and the forces that
+    /// the elements carry, with displacements of at least `least`. A residual is small or not relative to this size,
+    /// whatever the forces elsewhere (W. Oettli, W. Prager, Numer. Math. 6 (1964) 405, doi:10.1007/BF01386090).
     pub fn force_sizes(&self, displacement: &[f64], least: f64, sizes: &mut [f64]) {
         sizes.fill(0.0);
         let mut buffer = ElementBuffer::default();
@@ -252,7 +253,7 @@ impl Structure {
         }
     }
 
-    /// The largest of them of a node's translations.
+    /// The largest of the [`force_sizes`](Self::force_sizes) of a node's translations.
     pub fn force_size_at(&self, node: usize, displacement: &[f64], least: f64) -> f64 {
         let first = self.translations_of(node).start;
         let (mut sizes, mut buffer) = ([0.0; 3], ElementBuffer::default());
@@ -282,13 +283,13 @@ impl Structure {
         });
     }
 
-    /// Calls `add` for every entry of every element's tangent without the parts that [`Self::stretching`] lists.
+    /// Calls `add` for every entry of every element's tangent without the summands that [`Self::stretching`] lists.
     pub fn each_stiffness_across(&self, displacement: &[f64], add: &mut impl FnMut(usize, usize, f64)) {
         let mut buffer = ElementBuffer::default();
         self.elements().for_each(|element| element.each_stiffness_across(displacement, &mut buffer, add));
     }
 
-    /// The summands `k c cᵀ` of the tangent by which elements resist being stretched, `c` over degrees of freedom.
+    /// The summands `k c cᵀ` of the tangent by which elements resist stretching, `c` over degrees of freedom.
     pub fn stretching(&self, displacement: &[f64]) -> Vec<Stretching> {
         self.elements().flat_map(|element| element.stretching(displacement)).collect()
     }
@@ -299,15 +300,16 @@ impl Structure {
         self.elements().filter_map(|element| element.stretch(displacement, &mut buffer)).fold(f64::INFINITY, f64::min)
     }
 
-    /// `W(u)`.
+    /// The strain energy `W(u)`.
     pub fn strain_energy(&self, displacement: &[f64]) -> f64 {
         let mut buffer = ElementBuffer::default();
         self.elements().map(|element| element.energy(displacement, &mut buffer)).sum()
     }
 
     /// The largest change of any element's nodal forces under a displacement rate, over its stiffness times the rate's
-    /// size: zero for a motion that no element resists. The stiffness is the element's largest; of a linear element that of
-    /// the row, since its rows are as the user gives them, and a soft one beside a stiff one is no round-off.
+    /// size: zero for a motion that no element resists. The stiffness is the largest of the element; for a linear
+    /// element it is the largest of the row, since the user prescribes the rows, and a soft row beside a stiff one is
+    /// no round-off.
     pub fn resistance(&self, displacement: &[f64], rate: &[f64]) -> f64 {
         let size = rate.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
         if size == 0.0 {

@@ -1,10 +1,11 @@
-//! Which degrees of freedom each node has.
+//! The degrees of freedom of each node.
 //!
 //! A node has as many translations as the space has dimensions, then its rotations (none at the nodes of bars). The
-//! degrees of freedom are numbered node by node. Nothing else knows which index one of them has.
+//! degrees of freedom are numbered node by node. Only this module knows the index of a degree of freedom.
 //!
-//! All are dimensionless: translations over the length scale, rotations in radians. The norm of the arc length adds their
-//! squares, so that a rotation counts as the displacement of a point one length scale away from its node.
+//! All degrees of freedom are dimensionless: translations over the length scale, rotations in radians. The norm of the
+//! arc length adds their squares, so that a rotation counts as the displacement of a point one length scale away from
+//! its node.
 
 use std::ops::Range;
 
@@ -12,12 +13,12 @@ use std::ops::Range;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Numbering {
     dimension: usize,
-    /// The first degree of freedom of each node, and the number of all.
+    /// The first degree of freedom of each node, and the total number.
     first_of: Vec<usize>,
 }
 
 impl Numbering {
-    /// `rotations`: of each node how many it has; `dimension`: that of the space, 2 or 3.
+    /// The numbering in a space of dimension 2 or 3; `rotations` gives the number of rotations of each node.
     pub fn new(dimension: usize, rotations: impl IntoIterator<Item = usize>) -> Self {
         let mut first_of = vec![0];
         let mut next = 0;
@@ -28,7 +29,7 @@ impl Numbering {
         Self { dimension, first_of }
     }
 
-    /// Nodes that only have translations.
+    /// The numbering of nodes that have only translations.
     pub fn of_translations(dimension: usize, nodes: usize) -> Self {
         Self::new(dimension, std::iter::repeat_n(0, nodes))
     }
@@ -61,7 +62,7 @@ impl Numbering {
         self.first_of[node] + self.dimension..self.first_of[node + 1]
     }
 
-    /// A motion along one of a node's degrees of freedom, in words.
+    /// The motion along one of a node's degrees of freedom, in words.
     pub fn motion_of(&self, which: usize) -> &'static str {
         match (which, self.dimension) {
             (0, _) => "move along x",
@@ -71,7 +72,7 @@ impl Numbering {
         }
     }
 
-    /// The node of a degree of freedom, and which of the node's it is.
+    /// The node of a degree of freedom, and the index of the degree of freedom among the node's.
     pub fn node_of(&self, freedom: usize) -> (usize, usize) {
         let node = self.first_of.partition_point(|first| *first <= freedom) - 1;
         (node, freedom - self.first_of[node])

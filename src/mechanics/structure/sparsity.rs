@@ -1,4 +1,4 @@
-//! Where the tangent of a structure with many unknowns has its entries.
+//! The sparsity layout of the tangent of a structure with many unknowns.
 
 use crate::algebra::sparse::Pattern;
 use crate::mechanics::structure::Structure;
@@ -7,19 +7,20 @@ use itertools::Itertools;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Found once; the tangent is then added up in place.
+/// The positions of the tangent's entries, found once; the tangent is then assembled in place.
 #[derive(Debug)]
 pub struct Layout {
     pub pattern: Arc<Pattern>,
-    /// For each call that `Structure::each_stiffness` makes, in its order, the place of the entry; `None` where its row or
-    /// column is supported.
+    /// For each call that `Structure::each_stiffness` makes, in its order, the position of the entry; `None` where its
+    /// row or column is supported.
     places: Vec<Option<u32>>,
     _held: Taken,
 }
 
 impl Layout {
-    /// Every node has a full block of its own, in which contacts add theirs, and full blocks with the nodes to which elements
-    /// or other things couple it. `None` where memory or the numbers of places do not suffice.
+    /// The layout of a structure. Every node has a full block of its own, which also takes the entries of contacts, and
+    /// full blocks with the nodes to which elements or other couplings connect it. `None` where memory or the range of
+    /// the indices does not suffice.
     pub fn new(structure: &Structure) -> Option<Self> {
         let unknown_of = &structure.unknown_of;
         let block = |rows: Range<usize>, columns: Range<usize>| {
@@ -50,7 +51,7 @@ impl Layout {
         Some(Self { pattern: Arc::new(pattern), places, _held: held })
     }
 
-    /// Places of the entries of the calls, in their order.
+    /// The positions of the entries of the calls, in their order.
     pub fn places(&self) -> impl Iterator<Item = Option<usize>> + '_ {
         self.places.iter().map(|place| place.map(|place| place as usize))
     }

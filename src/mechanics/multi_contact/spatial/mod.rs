@@ -25,7 +25,6 @@
 //!
 //! `cone_sum` treats the sum of the cones, `sliding` the node while it slides, and `rate_options::spatial` the options
 //! of the node in the rate problem.
-//! the rate problem.
 
 pub(crate) mod cone_sum;
 pub(crate) mod sliding;

@@ -17,10 +17,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone)]
 pub struct Bar {
     pub nodes: [usize; 2],
-    /// Undeformed vector from the first node to the second; from the places as given, so that close nodes far from the
-    /// origin keep their digits.
+    /// Undeformed vector from the first node to the second; computed from the positions as given, so that close nodes
+    /// far from the origin keep their digits.
     pub reference: [f64; 3],
-    /// Its length. What it has more than the rest length adds to the elongation, so that small strains lose no digits.
+    /// Length of `reference`. Its excess over the rest length adds to the elongation, so that small strains lose no
+    /// digits.
     pub reference_length: f64,
     pub axial_stiffness: f64,
     pub rest_length: f64,
@@ -28,7 +29,8 @@ pub struct Bar {
     pub strain: Strain,
 }
 
-/// How much stiffer a bar may be than undeformed, over the square of its stretch, for rounding to count: `N'` of Green strain.
+/// Bound on the stiffness of a bar over its undeformed stiffness and the square of its stretch, in the estimate of
+/// rounding: `N'` of Green strain.
 const MOST_STIFFENED: f64 = 1.5;
 
 #[derive(Clone, Copy)]
@@ -50,7 +52,7 @@ impl Bar {
         }
     }
 
-    /// The same by the displacement of the second node less that of the first.
+    /// The deformed direction, length and elongation from the displacement of the second node relative to the first.
     #[inline(always)]
     fn deformed_by<const DIMENSION: usize>(&self, relative: [f64; DIMENSION]) -> Deformed {
         let mut direction = [0.0; 3];
@@ -69,7 +71,7 @@ impl Bar {
         Deformed { direction, length, elongation }
     }
 
-    /// `ε`, `N` and `N'`.
+    /// The strain `ε`, the axial force `N` and the slope `N'`.
     #[inline(always)]
     fn response(&self, elongation: f64) -> (f64, f64, f64) {
         let (stiffness, rest) = (self.axial_stiffness, self.rest_length);
@@ -90,7 +92,7 @@ impl Bar {
         }
     }
 
-    /// `N' d dᵀ` times a factor and `(N/L)(I - d dᵀ)`, between the nodes.
+    /// Writes `slope d dᵀ + geometric (I - d dᵀ)` between the nodes; the tangent where these are `N'` and `N/L`.
     fn write_parts(deformed: &Deformed, slope: f64, geometric: f64, stiffness: &mut [f64]) {
         match stiffness.len() {
             16 => Self::write_parts_in::<2>(deformed, slope, geometric, stiffness),
@@ -98,7 +100,7 @@ impl Bar {
         }
     }
 
-    /// The same in so many dimensions, which the compiler knows.
+    /// As `write_parts`, in a number of dimensions known to the compiler.
     fn write_parts_in<const DIMENSION: usize>(deformed: &Deformed, slope: f64, geometric: f64, stiffness: &mut [f64]) {
         for (row, values) in stiffness.chunks_exact_mut(2 * DIMENSION).enumerate() {
             let (first, second) = values.split_at_mut(DIMENSION);
@@ -141,8 +143,8 @@ impl FiniteElement for Bar {
         Self::write_parts(&deformed, slope, axial / deformed.length, stiffness);
     }
 
-    /// The axial force and what displacements of this size would make of it; not what they do to the direction of a bar
-    /// that shrinks to a point: there the forces are lost, which is no equilibrium.
+    /// The axial force and its change under displacements of this size. The stiffness is bounded, so that the loss of
+    /// direction of a bar that shrinks to a point does not count: there the forces are lost, which is no equilibrium.
     fn write_force_sizes(&self, displacement: &[f64], least: f64, sizes: &mut [f64]) {
         let deformed = self.deformed(displacement);
         let (_, axial, slope) = self.response(deformed.elongation);

@@ -1,4 +1,4 @@
-//! The kinds of elements, each a file of its own, and what each must be able to do.
+//! The kinds of elements, one file each, and the interface of all.
 
 pub mod bar;
 pub mod spring;
@@ -13,7 +13,7 @@ pub trait FiniteElement: Debug + Send + Sync {
     /// The nodes that the element joins.
     fn nodes(&self) -> &[usize];
 
-    /// How many rotations the element has at each of its nodes.
+    /// The number of rotations that the element has at each of its nodes.
     fn rotations(&self) -> usize {
         0
     }
@@ -27,11 +27,12 @@ pub trait FiniteElement: Debug + Send + Sync {
     /// Writes the tangent `∂²W/∂u²`.
     fn write_stiffness(&self, displacement: &[f64], stiffness: &mut [f64]);
 
-    /// Writes the size of the numbers of which the nodal forces are made: stiffness times the displacements as they are
-    /// (`least` at least), not their differences, and the force carried.
+    /// Writes the size of the terms that make up the nodal forces: stiffness times the displacements themselves (at
+    /// least `least`), not their differences, and the force carried.
     fn write_force_sizes(&self, displacement: &[f64], least: f64, sizes: &mut [f64]);
 
-    /// The stiffness per strain by which the element resists a motion (of its degrees of freedom), as an axial one.
+    /// The stiffness against a motion (of the element's degrees of freedom) per strain, expressed as an axial
+    /// stiffness.
     fn axial_stiffness(&self, motion: &[f64]) -> f64;
 
     /// Whether the nodal forces are linear in the displacements.
@@ -39,13 +40,13 @@ pub trait FiniteElement: Debug + Send + Sync {
         false
     }
 
-    /// The summands `k c cᵀ` of the tangent by which the element resists being stretched, apart from the rest, where stiff
-    /// and soft ones meet; `along` counts the element's own degrees of freedom.
+    /// The summands `k c cᵀ` of the tangent by which the element resists stretching, kept apart from the rest where
+    /// stiff and soft elements meet; `along` counts the element's own degrees of freedom.
     fn stretching(&self, _displacement: &[f64]) -> Vec<Stretching> {
         Vec::new()
     }
 
-    /// Writes the tangent without what [`stretching`](Self::stretching) lists.
+    /// Writes the tangent without the summands that [`stretching`](Self::stretching) lists.
     fn write_stiffness_across(&self, displacement: &[f64], stiffness: &mut [f64]) {
         self.write_stiffness(displacement, stiffness);
     }
@@ -61,9 +62,9 @@ pub trait FiniteElement: Debug + Send + Sync {
 pub struct Stretching {
     /// Not zero.
     pub stiffness: f64,
-    /// Entries of `c`, one a degree of freedom.
+    /// Entries of `c`, one per degree of freedom.
     pub along: Vec<(usize, f64)>,
 }
 
-/// Stretch of an element at which steps that do not converge are its collapse.
+/// Stretch of an element below which a failure to converge counts as its collapse.
 pub(crate) const COLLAPSED: f64 = 1e-4;

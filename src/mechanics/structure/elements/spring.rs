@@ -1,5 +1,5 @@
 //! A constant symmetric stiffness matrix between a node and the ground, or between two nodes: `f = K Δu`,
-//! `W = ½ Δuᵀ K Δu`. It does not follow rotation.
+//! `W = ½ Δuᵀ K Δu`. The spring does not follow rotations.
 
 use crate::mechanics::structure::elements::{FiniteElement, Stretching};
 use nalgebra::DMatrix;
@@ -7,19 +7,19 @@ use smallvec::SmallVec;
 
 #[derive(Debug, Clone)]
 pub struct Spring {
-    /// One node, held against the ground, or two.
+    /// One node, connected to the ground, or two.
     nodes: SmallVec<[usize; 2]>,
     /// The leading `dimension x dimension` block is used.
     stiffness: [[f64; 3]; 3],
 }
 
 impl Spring {
-    /// Between a node and the ground.
+    /// A spring between a node and the ground.
     pub fn to_ground(node: usize, stiffness: [[f64; 3]; 3]) -> Self {
         Self { nodes: SmallVec::from_slice(&[node]), stiffness }
     }
 
-    /// Between two nodes.
+    /// A spring between two nodes.
     pub fn between(nodes: [usize; 2], stiffness: [[f64; 3]; 3]) -> Self {
         Self { nodes: SmallVec::from_slice(&nodes), stiffness }
     }
@@ -28,7 +28,7 @@ impl Spring {
         self.nodes.len() > 1
     }
 
-    /// `Δu`, of as many components as the space has dimensions.
+    /// The relative displacement `Δu`, with as many components as the space has dimensions.
     fn relative(&self, displacement: &[f64]) -> SmallVec<[f64; 3]> {
         let (own, other) = displacement.split_at(displacement.len() / self.nodes.len());
         match self.has_two_nodes() {
@@ -73,7 +73,7 @@ impl FiniteElement for Spring {
         }
     }
 
-    /// The force that displacements of this size make.
+    /// The force due to displacements of this size.
     fn write_force_sizes(&self, displacement: &[f64], least: f64, sizes: &mut [f64]) {
         let dimension = displacement.len() / self.nodes.len();
         let (own, other) = displacement.split_at(dimension);
@@ -87,7 +87,7 @@ impl FiniteElement for Spring {
         }
     }
 
-    /// That against the motion.
+    /// The stiffness against the motion.
     fn axial_stiffness(&self, motion: &[f64]) -> f64 {
         let moved = self.relative(motion);
         let size = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>().sqrt();
@@ -99,7 +99,7 @@ impl FiniteElement for Spring {
         true
     }
 
-    /// Between two nodes `K = Σ k v vᵀ` over its eigenvectors, each a resistance of its own.
+    /// Between two nodes `K = Σ k v vᵀ` over its eigenvectors, each with a summand of its own.
     fn stretching(&self, displacement: &[f64]) -> Vec<Stretching> {
         if !self.has_two_nodes() {
             return Vec::new();
