@@ -1,11 +1,12 @@
-//! What is watched along a mode: quantities that must not become negative while the mode lasts, and ends of the stage.
+//! The event functions of a mode: quantities that must not become negative while the mode lasts, and the ends of the
+//! stage.
 //!
 //! ```text
 //! free: g      stick: μ r_n ± r_t, or μ r_n - |r_t|      slip: r_n and d·ẋ_t      load rate's sign      bounds of a stage
 //! ```
 //!
-//! Between two points each quantity is also followed by its cubic Hermite interpolant, so that a dip inside the step
-//! is seen.
+//! Between two points each quantity is also interpolated by a cubic Hermite polynomial, so that a dip below zero inside
+//! the step is detected.
 
 use crate::algebra::dense::assembly::Sink;
 use crate::mechanics::contact::vector::{Vector, add, direction_of, dot, scaled};
@@ -20,7 +21,7 @@ use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::node_forces;
 use crate::mechanics::problem::state::{Rate, State};
 
-/// A quantity that is watched; negative means that it was passed.
+/// An event function; negative values mean that the event has been passed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Watch {
     Gap(usize),
@@ -31,20 +32,21 @@ pub enum Watch {
         side: f64,
     },
     Sliding(usize),
-    /// The force on a node that several contacts hold in the plane, off a bound of the sum of their cones.
+    /// The distance of the force on a node that several contacts hold in the plane from a bound of the sum of their
+    /// cones.
     Facet {
         corner: usize,
         side: usize,
     },
-    /// The same in space, or guided, off all bounds at which a slide begins.
+    /// The margin of the force on such a node in space, or a guided one, against all slides.
     Slide {
         corner: usize,
     },
-    /// The force on such a node that is held beyond any slide, off the end of what the cones hold together ...
+    /// Where such a node is held beyond any slide, the distance of the force from the bound of the sum of the cones ...
     Hold {
         corner: usize,
     },
-    /// ... and off the forces that a slide may have.
+    /// ... and its distance from the forces at which a slide is possible.
     Return {
         corner: usize,
     },
@@ -54,9 +56,9 @@ pub enum Watch {
     End(End),
 }
 
-/// Everything that ends a mode which goes on from a state along a rate.
+/// The event functions that may end a mode continued from a state along a rate.
 pub fn of_mode(loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate) -> Vec<Watch> {
-    // Of each contact, of the load and of the stage's ends.
+    // Those of each contact, of the load and of the ends of the stage.
     let mut watches = Vec::with_capacity(2 * modes.len() + 2);
     let mut together = Vec::new();
     for (corner, data) in loading.corners.iter().enumerate() {
@@ -81,7 +83,7 @@ pub fn of_mode(loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate)
             }
             Mode::Stick => watches.extend([1.0, -1.0].map(|side| Watch::Cone { contact, side })),
             Mode::Slip { .. } => {
-                // Of a node that sticks to another obstacle it is a share of the whole.
+                // At a node that sticks to another obstacle, the normal reaction is only a share of the total force.
                 if !together.contains(&contact) {
                     watches.push(Watch::Normal(contact));
                 }
@@ -113,7 +115,7 @@ impl Watch {
         }
     }
 
-    /// The quantity at a point with its direction.
+    /// The value at a point with its direction.
     pub fn value(self, loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate) -> f64 {
         match self {
             Self::Gap(contact) => loading.gap(contact, state),
@@ -154,7 +156,7 @@ impl Watch {
         }
     }
 
-    /// Derivative by arc length; `None` for quantities that are themselves rates.
+    /// The derivative by arc length; `None` for quantities that are themselves rates, and for [`Self::Facet`].
     pub fn slope(self, loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate) -> Option<f64> {
         match self {
             Self::Gap(contact) => {
@@ -186,7 +188,7 @@ impl Watch {
         }
     }
 
-    /// Change over an increment of what a rate is the rate of: `s`, or the way slid.
+    /// The integral over an increment of a quantity that is a rate: the change of `s`, or the distance slid.
     fn change(self, loading: Loading<'_>, modes: &[Mode], start: &State, end: &State) -> Option<f64> {
         match self {
             Self::Sliding(contact) => {
@@ -201,7 +203,7 @@ impl Watch {
         }
     }
 
-    /// Of a quantity that is a rate, what it is the rate of, since the start; `None` where that is no simple difference.
+    /// The integral since the start of a quantity that is a rate; `None` where it is no simple difference.
     pub fn whole(self, loading: Loading<'_>, modes: &[Mode], start: &State, state: &State) -> Option<f64> {
         if let Self::Sliding(contact) = self {
             let contact = &loading.contacts[contact];
@@ -212,7 +214,7 @@ impl Watch {
         self.change(loading, modes, start, state)
     }
 
-    /// The size against which the quantity is zero at a state; `force_scale` is the largest force of the path.
+    /// The scale relative to which the quantity is zero at a state; `force_scale` is the largest force of the path.
     pub fn scale(self, loading: Loading<'_>, state: &State, force_scale: f64) -> f64 {
         match self {
             Self::Normal(contact) | Self::Cone { contact, .. } => loading.force_scale_at(contact, state, force_scale),
@@ -226,7 +228,7 @@ impl Watch {
 
     /// Whether a value of the quantity is above a tolerance times its scale.
     pub fn is_above(self, loading: Loading<'_>, state: &State, value: f64, tolerance: f64, force_scale: f64) -> bool {
-        // No scale of forces is larger than that of the path, which often tells.
+        // No scale of forces is larger than that of the path, which often decides.
         let most = if self.is_of_forces() { force_scale } else { 1.0 };
         value > tolerance * most || value > tolerance * self.scale(loading, state, force_scale)
     }
@@ -244,7 +246,7 @@ impl Watch {
         value > tolerance * most || value > self.zero_within(loading, state, tolerance, force_scale)
     }
 
-    /// The value at a state that is zero as far as a relative tolerance tells.
+    /// The value up to which the quantity counts as zero at a state, for a relative tolerance.
     pub fn zero_within(self, loading: Loading<'_>, state: &State, tolerance: f64, force_scale: f64) -> f64 {
         match self {
             Self::Cone { contact, .. } => none_from_cone(loading, contact, state, tolerance, force_scale),
@@ -252,7 +254,7 @@ impl Watch {
         }
     }
 
-    /// A place inside `(0, step)` where the Hermite interpolant of the quantity is least, if that is below `-zero`.
+    /// The position inside `(0, step)` of the minimum of the quantity's interpolant, if the minimum is below `-zero`.
     pub fn dip(
         self,
         loading: Loading<'_>,
@@ -277,12 +279,12 @@ impl Watch {
     }
 }
 
-/// Where an event function that has a slope is zero, over its scale.
+/// The closing equation of a zero: an event function with a slope, over its scale.
 #[derive(Debug, Clone, Copy)]
 pub struct EventZero<'a> {
     pub watch: Watch,
     pub scale: f64,
-    /// About the direction of the path.
+    /// The approximate direction of the path.
     pub towards: &'a Rate,
 }
 
@@ -326,7 +328,7 @@ fn direction(loading: Loading<'_>, modes: &[Mode], contact: usize, state: &State
     if dot(&direction, &tangent) < 0.0 { scaled(&tangent, -1.0) } else { tangent }
 }
 
-/// Where on `(0, 1)` the cubic with these end values and slopes has a minimum below `-zero`.
+/// The position on `(0, 1)` of the minimum of the cubic with these end values and slopes, if it is below `-zero`.
 fn dip_of_cubic(first: f64, first_slope: f64, last: f64, last_slope: f64, zero: f64) -> Option<f64> {
     if first_slope >= 0.0 || last_slope <= 0.0 {
         return None;
@@ -340,7 +342,8 @@ fn dip_of_cubic(first: f64, first_slope: f64, last: f64, last_slope: f64, zero: 
     (place > 0.0 && place < 1.0 && value < -zero).then_some(place)
 }
 
-/// Where on `(0, 1)` the quadratic with these end values and this mean is least, if below `-zero` there.
+/// The position on `(0, 1)` of the minimum of the quadratic with these end values and this mean, if it is below
+/// `-zero`.
 fn dip_of_slope(mean: f64, first: f64, last: f64, zero: f64) -> Option<f64> {
     // q(x) = first + b x + a x²
     let a = 3.0 * (first + last - 2.0 * mean);
@@ -359,7 +362,7 @@ mod tests {
 
     #[test]
     fn a_dip_between_two_positive_ends_is_seen() {
-        // (x - 0.4)(x - 0.6) has its least value at 0.5.
+        // (x - 0.4)(x - 0.6) has its minimum at 0.5.
         let place = dip_of_cubic(0.24, -1.0, 0.24, 1.0, 0.0).unwrap();
         assert!((place - 0.5).abs() < 1e-12);
         assert!(dip_of_cubic(0.3, -1.0, 0.3, 1.0, 0.0).is_none());

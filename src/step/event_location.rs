@@ -1,9 +1,9 @@
-//! Where within a step a watched quantity falls to zero.
+//! The location of the zero of an event function within a step.
 //!
-//! A quantity is followed by the polynomial through its values and slopes at the points of the step that are reached
-//! already (a rate by that of what it is the rate of). The place where that is zero becomes a point, solved from the
-//! Hermite interpolant of the states next to it, and takes part from then on: the error of the place falls with the
-//! square of itself and more. Where it does not fall the bracket is halved.
+//! A quantity is interpolated by the polynomial through its values and slopes at the points of the step computed so far
+//! (a rate by the derivative of the polynomial of its integral). At the zero of the polynomial a new point is solved
+//! for, from the Hermite interpolant of the neighbouring states, and added to the points: the error of the position
+//! decreases at least quadratically. Where it does not decrease, the bracket is halved.
 
 use crate::algebra::SystemFactorisation;
 use crate::algebra::scalar_root::find_root;
@@ -17,35 +17,36 @@ use crate::step::event_functions::Watch;
 use crate::step::interpolation::{Knot, NewtonPolynomial, PlacedPoint, between, placed, unit};
 use crate::step::segment::{PASSED, Reached, Refused, StepStart};
 
-/// How far from zero, over its scale, a quantity may be at a point that is taken for its zero.
+/// Largest value of a quantity, over its scale, at a point accepted as its zero.
 const LOCATED: f64 = 1e-16;
-/// Points that are tried.
+/// Largest number of points tried.
 const MOST_POINTS: usize = 100;
-/// Where a quantity that is zero at the start is looked for past it, over the bracket.
+/// Distances past the start, over the bracket, at which a quantity that is zero at the start is evaluated.
 const FURTHER_ON: [f64; 3] = [1e-3, 1e-6, 1e-9];
-/// A value that has fallen by less than this since the point before has fallen slowly.
+/// Ratio to the nearest earlier value above which a value has decreased too slowly.
 const SLOW: f64 = 0.25;
-/// Multiple of what counts as zero within which the zero is found by a straight step: what that leaves over is of second
-/// order.
+/// Multiple of the tolerance on zero within which the zero is found by a straight step; the error of the step is of
+/// second order.
 const BY_SERIES: f64 = 1e3;
-/// Length of that step over the distance to the next point, along which the direction changes evenly.
+/// Largest length of this step over the distance to the next point, between which the direction is interpolated
+/// linearly.
 const MOST_BY_SERIES: f64 = 1e-3;
-/// Points closer than this to another, over the bracket, tell nothing more.
+/// Points closer than this to another, over the bracket, give no further information.
 const CLOSE: f64 = 1e-2;
-/// Slopes that differ by no more than this factor are alike.
+/// Slopes that differ by no more than this factor count as similar.
 const ALIKE: f64 = 4.0;
-/// How far the point at which a bound is met may be from where it was expected, over the bracket.
+/// Largest distance of the point at which a bound is met from the estimate, over the bracket.
 const EXPECTED: f64 = 0.1;
-/// How far beside a place a point is tried where none is found at it, over what counts as one place.
+/// Distance at which a point is tried beside a position where none is found, over the tolerance on positions.
 const BESIDE: f64 = 16.0;
-/// Multiple of the rounding of a state's numbers within which two places are one.
+/// Multiple of the rounding of a state's numbers within which two positions coincide.
 const ROOM: f64 = 4.0;
 
-/// The points of a step that are reached, in order, and its start.
+/// The points of a step computed so far, in order, and the start of the step.
 pub(crate) struct StepPoints {
     origin: PlacedPoint,
     points: Vec<(PlacedPoint, Box<Reached>)>,
-    /// The last factorisation: it may serve at points close to its own.
+    /// The last factorisation, which may be reused at nearby points.
     serving: Option<SystemFactorisation>,
 }
 
@@ -59,7 +60,7 @@ impl StepPoints {
         std::iter::once(&self.origin).chain(self.points.iter().map(|(placed, _)| placed))
     }
 
-    /// The state at a place, as the points next to it have it.
+    /// The state at a position, interpolated between the neighbouring points.
     pub fn guess(&self, place: f64) -> State {
         let next = self.points.partition_point(|(point, _)| point.place < place).min(self.points.len() - 1);
         let before = if next == 0 { &self.origin } else { &self.points[next - 1].0 };
@@ -72,7 +73,7 @@ impl StepPoints {
         self.points.insert(at, (point, Box::new(reached.clone())));
     }
 
-    /// The point at a place, kept.
+    /// The point at a position; it is added to the points of the step.
     pub fn reach(&mut self, start: &StepStart<'_>, place: f64, work: &mut Work) -> Result<Box<Reached>, Refused> {
         let reached =
             start.reach_by(self.guess(place), place, &mut self.serving, work).or_else(|_| start.reach(place, work))?;
@@ -81,21 +82,21 @@ impl StepPoints {
     }
 }
 
-/// A quantity at a point.
+/// The value of a quantity at a point.
 #[derive(Debug, Clone, Copy)]
 struct Sample {
-    /// Of unit speed along the path's chord.
+    /// The value, at unit speed along the path's chord.
     value: f64,
-    /// The quantity, or where it is a rate that of which it is the rate.
+    /// The quantity, or its integral where it is a rate.
     knot: Knot,
     is_slope: bool,
 }
 
-/// A quantity between two points next to each other, at the first of which it is not negative and at the second of which
-/// it is.
+/// A quantity at the points of a step, and two neighbouring points: at the first the quantity is not negative, at the
+/// second it is.
 struct Bracket {
     samples: Vec<Sample>,
-    /// Of the second point.
+    /// Index of the second point.
     end: usize,
 }
 
@@ -109,13 +110,13 @@ impl Bracket {
         last.knot.place - first.knot.place
     }
 
-    /// The place where the polynomial through the ends and the point next to them is zero; `None` where the quantity is
-    /// zero at the first end and is not seen to rise from there.
+    /// The zero of the polynomial through the ends and the point nearest to them; `None` where the quantity is zero at
+    /// the first end and the polynomial does not rise from there.
     fn estimate(&self, zero: f64) -> Option<f64> {
         let [first, last] = self.ends();
         let width = self.width();
         let near = |place: f64| (place - first.knot.place).abs().min((place - last.knot.place).abs());
-        // Of points that lie close together only one is used: their difference is rounding.
+        // Of points that lie close together only one is used, since their difference is round-off.
         let apart = |sample: &&Sample| near(sample.knot.place) > CLOSE * width;
         let third = self.samples.iter().filter(apart).min_by(|a, b| near(a.knot.place).total_cmp(&near(b.knot.place)));
         let mut used = vec![first, last];
@@ -123,7 +124,7 @@ impl Bracket {
             used.swap(0, 1);
         }
         used.extend(third);
-        // Over a short way the whole of a rate is rounding.
+        // Over a short distance the integral of a rate is round-off.
         let is_slope = last.is_slope && width * width * width > f64::EPSILON;
         let knot = |sample: &&Sample| match sample.is_slope && !is_slope {
             true => Knot { place: sample.knot.place, value: sample.value, slope: None },
@@ -155,14 +156,14 @@ fn sample(start: &StepStart<'_>, watch: Watch, at: &PlacedPoint) -> Sample {
     Sample { value, knot, is_slope: whole.is_some() }
 }
 
-/// Where along the points a quantity first becomes negative.
+/// The bracket of the points between which a quantity first becomes negative.
 fn bracket(start: &StepStart<'_>, watch: Watch, stretch: &StepPoints, zero: f64) -> Option<Bracket> {
     let samples: Vec<Sample> = stretch.placed().map(|placed| sample(start, watch, placed)).collect();
     let end = samples.iter().skip(1).position(|sample| sample.value < -zero)? + 1;
     Some(Bracket { samples, end })
 }
 
-/// The quantity that falls to zero first, of those that are negative at the last point.
+/// The quantity that falls to zero first, among those that are negative at the last point.
 pub(crate) fn earliest<'w>(
     start: &StepStart<'_>,
     passed: &'w [Watch],
@@ -179,7 +180,7 @@ pub(crate) fn earliest<'w>(
     })
 }
 
-/// The point at which a quantity that is negative at the last point first is zero; `zero` is what counts as that.
+/// The first zero of a quantity that is negative at the last point; values up to `zero` count as zero.
 pub(crate) fn locate(
     start: &StepStart<'_>,
     watch: Watch,
@@ -213,7 +214,7 @@ pub(crate) fn locate(
             Some(_) if halve => first.knot.place + 0.5 * bracket.width(),
             Some(place) => place,
             None => {
-                // A contact that has just changed starts at zero: begin a little further on.
+                // A contact that has just changed starts at zero: the search begins a little further on.
                 begin_further_on(start, watch, stretch, zero, work)?;
                 continue;
             }
@@ -222,7 +223,7 @@ pub(crate) fn locate(
         if best > 0 && (place - known).abs() <= same_place(place) {
             return Ok(stretch.points[best - 1].1.clone());
         }
-        // Just there the equations may be singular to the last digit.
+        // Exactly at this position the equations may be singular to the last digit.
         let beside = (place - BESIDE * same_place(place)).max(0.5 * place);
         let found = stretch.reach(start, place, work).or_else(|refused| match watch {
             // A bound at a singular point ends the stage there: see `stage_end`.
@@ -239,7 +240,7 @@ pub(crate) fn locate(
             return Ok(exact);
         }
         if nearest <= zero {
-            // What is left is rounding.
+            // The remainder is round-off.
             return Ok(if value.abs() < nearest { found } else { stretch.points[best.max(1) - 1].1.clone() });
         }
         halve = value.abs() > SLOW * nearest;
@@ -259,8 +260,7 @@ pub(crate) fn falls_through(start: &StepStart<'_>, watch: Watch, stretch: &StepP
     before.zip(after).is_some_and(|(before, after)| falls(sampled(before), sampled(after)))
 }
 
-/// The zero so close to a point found that a straight step leads there; `None` where what that leaves over counts for
-/// something.
+/// The zero at a straight step from a point close to it; `None` where the error of the step is not negligible.
 fn by_series(
     start: &StepStart<'_>,
     watch: Watch,
@@ -301,7 +301,7 @@ fn by_series(
     Some(nearer)
 }
 
-/// The point at which a bound of the stage is met, which is an equation of its own; `None` where that leads elsewhere.
+/// The point at which a bound of the stage is met, with the bound as closing equation; `None` where it lies elsewhere.
 fn meet(
     start: &StepStart<'_>,
     end: End,
@@ -316,7 +316,7 @@ fn meet(
     ((met.step - place).abs() <= EXPECTED * bracket.width()).then_some(met)
 }
 
-/// Looks for a point past the start at which a quantity that is zero there is positive.
+/// Adds a point past the start at which a quantity that is zero at the start is positive.
 fn begin_further_on(
     start: &StepStart<'_>,
     watch: Watch,
@@ -334,8 +334,8 @@ fn begin_further_on(
     Err(Refused::AtStart(watch))
 }
 
-/// Whether a quantity that is zero at place 0 falls there, and is not just zero: the lines to values at places on both
-/// sides of it fall much alike.
+/// Whether a quantity that is zero at position 0 decreases through zero and does not only touch it: the secants to the
+/// values on both sides have similar, negative slopes.
 fn falls(before: (f64, f64), after: (f64, f64)) -> bool {
     let (first, second) = (before.1 / before.0, after.1 / after.0);
     first < 0.0 && second < 0.0 && first <= second / ALIKE && second <= first / ALIKE

@@ -1,17 +1,17 @@
-//! Between points of a step that are reached already: cubic Hermite interpolants of the states, and polynomials through
-//! values and slopes of one quantity.
+//! Interpolation between the points of a step computed so far: cubic Hermite interpolants of the states, and
+//! polynomials through values and slopes of one quantity.
 
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::segment::{Reached, StepStart};
 use serde::{Deserialize, Serialize};
 
-/// A point on the path with its place: the distance from the start of the step, negative before it.
+/// A point on the path with its `place`: the distance from the start of the step, negative before the start.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PlacedPoint {
     pub place: f64,
     pub state: State,
-    /// Derivative by `place`.
+    /// Derivative of the state with respect to `place`.
     pub rate: Rate,
 }
 
@@ -23,11 +23,11 @@ pub(crate) fn placed(start: &StepStart<'_>, reached: &Reached) -> PlacedPoint {
     PlacedPoint { place, state: reached.corrected.state.clone(), rate }
 }
 
-/// Multiple of the step before up to which the path is foreseen from it: what rounding left in that is not to be seen.
+/// Largest step, over the step before, to which the path is extrapolated: round-off must not be amplified visibly.
 const MOST_FORESEEN: f64 = 4.0;
 
 impl PlacedPoint {
-    /// The point before another of the same mode, `rate` its direction.
+    /// The point before another of the same mode; `rate` is the direction at this point.
     pub fn before(state: State, mut rate: Rate, here: &State) -> Option<Self> {
         let width = state.distance(here);
         let cosine = state.cosine_of_chord(here, width, &rate);
@@ -38,9 +38,10 @@ impl PlacedPoint {
         Some(Self { place: -width, state, rate })
     }
 
-    /// The state a step past a point of direction `rate`, by the cubic through both: displacements and load are off by the
-    /// fourth power of the step. Reactions, which the equations are linear in, are taken straight on: rounding that they
-    /// do not see, of a traction off its plane, must not grow from step to step.
+    /// The state one step past a point with direction `rate`, extrapolated by the cubic through both points: the error
+    /// of displacements and load is of fourth order in the step. Reactions, in which the equations are linear, are
+    /// extrapolated linearly: round-off that does not enter the equations, of a traction off its plane, must not grow
+    /// from step to step.
     pub fn foresee(&self, here: &State, rate: &Rate, step: f64) -> Option<State> {
         if step > -MOST_FORESEEN * self.place {
             return None;
@@ -72,7 +73,7 @@ pub(crate) fn unit(rate: &Rate) -> Rate {
     rate
 }
 
-/// The cubic Hermite interpolant and its derivative.
+/// The cubic Hermite interpolant between two points, and its derivative.
 pub(crate) fn between(left: &PlacedPoint, right: &PlacedPoint, place: f64) -> (State, Rate) {
     let width = right.place - left.place;
     if width <= 0.0 {
@@ -91,12 +92,12 @@ pub(crate) fn between(left: &PlacedPoint, right: &PlacedPoint, place: f64) -> (S
     (state, rate)
 }
 
-/// What is known of a quantity at a place.
+/// A quantity at a position: its value, and its slope where it is known.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Knot {
     pub place: f64,
     pub value: f64,
-    /// Derivative by the place, where it is known.
+    /// Derivative with respect to `place`, where it is known.
     pub slope: Option<f64>,
 }
 
@@ -107,7 +108,7 @@ pub(crate) struct NewtonPolynomial {
 }
 
 impl NewtonPolynomial {
-    /// Knots at places that differ.
+    /// The polynomial through knots at different places.
     pub fn through(knots: &[Knot]) -> Self {
         let (mut places, mut differences) = (Vec::new(), Vec::new());
         let mut slopes = Vec::new();
@@ -146,7 +147,8 @@ mod tests {
     use super::{Knot, NewtonPolynomial, PlacedPoint};
     use crate::mechanics::problem::state::{Rate, State};
 
-    /// On a circle of radius 1 the guess is off by the fourth power of the step, and too far on there is none.
+    /// On a circle of radius 1 the error of the guess is of fourth order in the step, and too long a step gives no
+    /// guess.
     #[test]
     fn a_step_is_foreseen_to_fourth_order() {
         let state = |angle: f64| State { displacement: vec![angle.cos()], load: angle.sin(), reactions: Vec::new() };

@@ -1,12 +1,12 @@
 //! One step of the path along one contact mode.
 //!
-//! | file or room | what it does |
+//! | module | contents |
 //! |---|---|
 //! | [`corrector`] | Newton's method, the direction at its end, and the factorisations that they share |
 //! | `segment` | a step along the mode, ended early by the first event |
 //! | `event_functions` | quantities that must not become negative while the mode lasts |
-//! | `event_location` | where one of them falls to zero |
-//! | `interpolation` | between points of a step that are reached already |
+//! | `event_location` | the location of their zeros |
+//! | `interpolation` | interpolation between the points of a step |
 //! | `singular_step` | steps from a point at which the equations have another null vector |
 //! | `increment_mpec` | the mathematical program of one increment (Kanno and Martins), and its certificate |
 

@@ -20,48 +20,48 @@ use crate::step::event_location::StepPoints;
 use crate::step::interpolation::PlacedPoint;
 use crate::step::singular_step;
 
-/// Where a step starts.
+/// The start of a step.
 #[derive(Clone, Copy)]
 pub struct StepStart<'a> {
     pub loading: Loading<'a>,
     pub state: &'a State,
-    /// The direction in `modes`.
+    /// The path's direction in `modes`.
     pub rate: &'a Rate,
     pub modes: &'a [Mode],
-    /// Error of the path so far, where it has one.
+    /// Error of the path so far, where it has a discretisation error.
     pub drift: Option<&'a Rate>,
     pub force_scale: f64,
-    /// The equations have another null vector besides the direction: see `singular_step`.
+    /// Whether the equations have another null vector besides the direction: see `singular_step`.
     pub is_singular: bool,
-    /// How far the path is then off the direction: see `choice::DirectionChoice`.
+    /// Deviation of the path from the direction in this case: see `choice::DirectionChoice`.
     pub beside: Option<&'a Rate>,
 }
 
-/// A point reached.
+/// A point reached by a step.
 #[derive(Debug, Clone)]
 pub struct Reached {
     pub corrected: Corrected,
-    /// The path's direction there, in the mode that led to it.
+    /// The path's direction at the point, in the mode that led to it.
     pub rate: Rate,
     pub step: f64,
     /// Distance to the path (dimensionless).
     pub error_estimate: f64,
-    /// Error of the path up to here, where it has one.
+    /// Error of the path up to the point, where it has a discretisation error.
     pub drift: Option<Rate>,
-    /// What ended the step early.
+    /// The event that ended the step early.
     pub event: Option<Watch>,
-    /// Sign of the bordered determinant there, where it is certain.
+    /// Sign of the bordered determinant at the point, where it is certain.
     pub determinant: Option<f64>,
-    /// The contact at which the step ends because its slip does, where its speed is seen to fall through zero.
+    /// The contact whose slip ends with the step, where its speed falls through zero.
     pub stopped: Option<usize>,
     /// A factorisation of the equations nearby.
     pub nearby: AtHand,
-    /// Motions that have the limit point in common, where they are several; else 0.
+    /// Number of motions that share the limit point, where there are several; else 0.
     pub motions: usize,
 }
 
 impl Reached {
-    /// A point without event. In a box, since it goes through many hands.
+    /// A point without event; boxed, since it is passed on many times.
     pub(crate) fn new(corrected: Corrected, rate: Rate, step: f64, error_estimate: f64) -> Box<Self> {
         let (drift, event, determinant, stopped, nearby) = (None, None, None, None, AtHand::default());
         let motions = 0;
@@ -72,20 +72,20 @@ impl Reached {
 /// Locates a limit point at which the equations of the mode are singular, from the point past it.
 pub type LocateSingularLimit = fn(&StepStart<'_>, Watch, &Reached, &mut Work) -> Option<Box<Reached>>;
 
-/// A step that is tried, and what is watched along it.
+/// A trial step and its event functions.
 pub(crate) struct Attempt {
     /// The farthest point, where some quantities may be negative.
     pub reached: Box<Reached>,
     pub watches: Vec<Watch>,
-    /// Those that are.
+    /// The event functions that are negative there.
     pub passed: Vec<Watch>,
-    /// The points that it is made of, where something is passed.
+    /// The points of the step, where an event is passed.
     pub stretch: Option<Box<StepPoints>>,
-    /// What is zero at the farthest point, where that was solved for.
+    /// The event function that is zero at the farthest point, where its zero was solved for.
     pub met: Option<Watch>,
 }
 
-/// Why a step has to be shorter.
+/// The reason why a step has to be shorter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Refused {
     Newton(Failure),
@@ -93,33 +93,33 @@ pub enum Refused {
     Turned(f64),
     /// An event lies at the start itself.
     AtStart(Watch),
-    /// The point reached breaks the laws of contact and friction.
+    /// The point reached violates the laws of contact and friction.
     Unlawful,
     /// A bar would shrink to a point.
     Collapsed,
-    /// The signs of the equations changed, and no bifurcation point could be made out.
+    /// The signature of the equations changed or is uncertain, and no bifurcation point was located.
     Unresolved,
-    /// Contact changes that were to be taken together cannot be.
+    /// Contact changes that were to be taken together cannot be joined.
     Apart,
 }
 
-/// The direction may turn by this much in a step.
+/// Largest turn of the direction (radians) in a step.
 const MOST_TURN: f64 = 0.6;
-/// Its cosine.
+/// Cosine of [`MOST_TURN`].
 const LEAST_COSINE: f64 = 0.825_335_614_909_678_3;
-/// The turns at the ends of a step may move the chord of a slip by this angle (radians).
+/// Largest angle (radians) by which the turns at the ends of a step may deflect the chord of a slip.
 const MOST_CORRECTION: f64 = 0.1;
-/// Solves of an increment in which directions of slip settle.
+/// Largest number of solves of an increment in which directions of slip settle.
 const MOST_PASSES: u64 = 12;
-/// Change of their angles (radians) from which they have settled.
+/// Change of the angles (radians) of these directions up to which they have settled.
 const SETTLED: f64 = 1e-10;
-/// How far a watched quantity may be negative before it counts as passed.
+/// Largest negative value of an event function, over its scale, that does not count as passed.
 pub(crate) const PASSED: f64 = 1e-13;
-/// A bound of the stage (dimensionless) within this is reached.
+/// Distance (dimensionless) within which a bound of the stage is reached.
 pub const AT_END: f64 = 1e-12;
-/// Zeros and dips that are located in one step, each nearer than the one before.
+/// Largest number of zeros and dips located in one step, each nearer to the start than the one before.
 const MOST_LOOKS: usize = 32;
-/// Two quantities that are zero within this are zero together.
+/// Tolerance within which two quantities are zero at the same point.
 pub(crate) const COINCIDING: f64 = 1e-10;
 
 /// Refuses a turn by more than [`MOST_TURN`].
@@ -138,7 +138,8 @@ impl StepStart<'_> {
         self.reach_by(guess, step, &mut None, work)
     }
 
-    /// The same with a factorisation of the equations nearby, if there is one; the last one takes its place.
+    /// As [`reach_near`](Self::reach_near), with a factorisation of the equations nearby, if there is one; `serving`
+    /// becomes the last factorisation.
     pub(crate) fn reach_by(
         &self,
         guess: State,
@@ -193,7 +194,8 @@ impl StepStart<'_> {
         let mut tangent = tangent::tangent_and_error(&system, &corrected, self.rate, serving, &mut work.factorisations)
             .ok_or(singular)?;
         if system.has_tracks() {
-            // Once more, now that the turn of the slips at the end is known; where directions settle, until they do.
+            // Solve again, now that the turn of the slips at the end is known; where directions settle, until they
+            // have.
             for pass in 1.. {
                 let settles = system.set_turns(self.rate, &corrected, &tangent);
                 let again = newton::correct_from(
@@ -205,7 +207,7 @@ impl StepStart<'_> {
                     work,
                 )
                 .map_err(Refused::Newton)?;
-                // How hard the increment is shows in the first solve.
+                // The first solve shows how difficult the increment is.
                 let hardness = corrected.iterations_to_small;
                 let change = system.largest_turn(&again, Some(&corrected));
                 corrected = again;
@@ -224,7 +226,7 @@ impl StepStart<'_> {
             if turn > MOST_TURN {
                 return Err(Refused::Turned(turn));
             }
-            // The series has ended to say anything where the turn changes much within the step.
+            // The series is no longer valid where the turn changes much within the step.
             let correction = system.largest_correction(&corrected);
             if correction > MOST_CORRECTION {
                 return Err(Refused::Turned(correction));
@@ -232,8 +234,8 @@ impl StepStart<'_> {
         }
         let Tangent { rate, error: error_estimate, determinant, .. } = tangent;
         let step = corrected.state.distance(self.state);
-        // The sphere around the start meets the path behind, too, and may meet other branches: the chord has to go the
-        // way of both directions.
+        // The sphere around the start also meets the path behind, and may meet other branches: the chord has to point
+        // along both directions.
         let cosine = |rate: &Rate| self.state.cosine_of_chord(&corrected.state, step, rate);
         may_turn(cosine(self.rate).min(cosine(&rate)))?;
         let mut reached = Reached::new(corrected, rate, step, error_estimate);
@@ -250,8 +252,8 @@ impl StepStart<'_> {
 
     /// A step of an arc length, or to the first event before.
     ///
-    /// `ends` are those of the stage; `load_sign` is the sign of the load rate along the path just now; `singular_limit`
-    /// locates limit points at which the equations are singular.
+    /// `ends` are those of the stage; `load_sign` is the sign of the load rate along the path at the start;
+    /// `singular_limit` locates limit points at which the equations are singular.
     pub fn advance(
         &self,
         step: f64,
@@ -264,8 +266,8 @@ impl StepStart<'_> {
         self.stop_at_event(tried, ends, singular_limit, work)
     }
 
-    /// A step of an arc length, with what it passes. `before` is the point before the start in the same modes, if there is
-    /// one, and `serving` a factorisation of the equations nearby.
+    /// A trial step of an arc length, with the events that it passes. `before` is the point before the start in the
+    /// same modes, if there is one, and `serving` a factorisation of the equations nearby.
     pub(crate) fn attempt(
         &self,
         step: f64,
@@ -291,7 +293,7 @@ impl StepStart<'_> {
         Ok(Attempt { reached, watches, passed, stretch, met: None })
     }
 
-    /// What may end a step.
+    /// The event functions that may end a step.
     pub(crate) fn watches(&self, ends: &[End], load_sign: f64) -> Vec<Watch> {
         let mut watches = event_functions::of_mode(self.loading, self.modes, self.state, self.rate);
         if load_sign != 0.0 {
@@ -310,19 +312,19 @@ impl StepStart<'_> {
         work: &mut Work,
     ) -> Result<Box<Reached>, Refused> {
         let Attempt { mut reached, watches, mut passed, mut stretch, met } = tried;
-        // How hard the step is shows in its first solve.
+        // The first solve shows how difficult the step is.
         let hardness = reached.corrected.iterations_to_small;
-        // Each round finds the first zero of one quantity; whatever else is negative there came before it.
+        // Each round finds the first zero of one quantity; any other that is negative there has its zero before.
         let mut event = met;
         let mut looks = 0..MOST_LOOKS;
-        // What is solved for has been looked through on its way.
+        // A point that was solved for as a zero has already been checked for earlier events.
         let mut is_clear = met.is_some() && passed.is_empty();
         while !is_clear {
             while let Some(stretch) = &mut stretch
                 && let Some(&watch) =
                     event_location::earliest(self, &passed, stretch, |watch| self.zero(watch, &reached))
             {
-                // Quantities that are nothing but rounding would come by turns.
+                // Quantities that are only round-off would alternate.
                 looks.next().ok_or(Refused::Newton(Failure::NotConverged))?;
                 let located = event_location::locate(self, watch, stretch, self.zero(watch, &reached), work);
                 reached = match watch {
@@ -333,8 +335,8 @@ impl StepStart<'_> {
                 passed = self.passed(&watches, &reached);
                 passed.retain(|other| *other != watch);
             }
-            // What was negative for a while, and is so no more where another quantity falls to zero, came before that. Over a
-            // short way changes of what rates are rates of are rounding.
+            // A quantity that was negative inside the step, but is not where another falls to zero, has its zero
+            // before. Over a short distance the changes of the integrals of rates are round-off.
             let Some(found) = event.filter(|_| reached.step.powi(3) > f64::EPSILON) else { break };
             let others: Vec<Watch> = watches.iter().copied().filter(|other| *other != found).collect();
             let (dipped, inside) = self.dips(&others, &mut reached, None, work)?;
@@ -352,8 +354,8 @@ impl StepStart<'_> {
                 .find(|watch| self.value(*watch, &reached.corrected.state, &reached.rate) <= AT_END);
         }
         if matches!(event, None | Some(Watch::LoadRate { .. })) {
-            // A contact may reach the end of its mode just where the step ends, or at the limit point itself: the change
-            // is what matters.
+            // A contact may reach the end of its mode exactly where the step ends, or at the limit point itself: the
+            // contact change takes precedence.
             event = self.coinciding(&watches, &reached).or(event);
         }
         if let Some(Watch::End(end)) = event {
@@ -372,7 +374,7 @@ impl StepStart<'_> {
         Ok(reached)
     }
 
-    /// A limit point as it was located; where its equations are singular, as several motions have it in common.
+    /// A limit point as located, or, where its equations are singular, as the limit point that several motions share.
     fn alone_or_common(
         &self,
         located: Result<Box<Reached>, Refused>,
@@ -386,7 +388,7 @@ impl StepStart<'_> {
         common.map_or(located, Ok)
     }
 
-    /// The path's error at a point reached, where it has one.
+    /// The error of the path at a point reached, where it has a discretisation error.
     fn drift_at(&self, reached: &Reached, work: &mut Work) -> Option<Rate> {
         let mut modes = self.modes.iter().zip(self.loading.contacts);
         if self.drift.is_none() && !modes.any(|(mode, contact)| mode.is_active() && contact.tangents() > 1) {
@@ -451,8 +453,8 @@ impl StepStart<'_> {
         })
     }
 
-    /// Looks where a quantity may have dipped inside the step; shortens the step to that place if it did, and answers what
-    /// is negative there with the points reached.
+    /// Looks for a quantity that dips below zero inside the step. If there is one, shortens the step to the dip and
+    /// returns the quantities that are negative there, with the points computed.
     pub(crate) fn dips(
         &self,
         watches: &[Watch],
@@ -481,7 +483,7 @@ impl StepStart<'_> {
         Ok((Vec::new(), None))
     }
 
-    /// Solves once more with the end of the stage as an equation, so that a load of 1 is exactly 1.
+    /// Solves once more with the end of the stage as closing equation, so that a load of 1 is exactly 1.
     fn hold_exactly(&self, end: End, reached: Box<Reached>, work: &mut Work) -> Result<Box<Reached>, Refused> {
         let Some(bound) = end.held().filter(|_| !end.is_met_exactly(&reached.corrected.state)) else {
             return Ok(reached);
@@ -499,7 +501,7 @@ mod tests {
 
     #[test]
     fn the_least_cosine_is_that_of_the_most_turn() {
-        // To a rounding: cosines differ in it from library to library.
+        // Up to round-off, in which the cosines of different libraries differ.
         assert!((LEAST_COSINE - MOST_TURN.cos()).abs() < 1e-15);
         assert!(may_turn(0.99 * LEAST_COSINE).is_err() && may_turn(1.01 * LEAST_COSINE).is_ok());
     }

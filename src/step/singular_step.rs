@@ -1,9 +1,10 @@
-//! Steps from a point at which the equations of the mode have other null vectors, or as good as that: see `branch_directions`.
+//! Steps from a point at which the equations of the mode have further null vectors, or nearly so: see
+//! `branch_directions`.
 //!
-//! A slider that sticks at a fold of what hangs on it keeps that at its fold, whatever the load on the slider: all along, a
-//! second null vector leaves Newton's method nothing to go by. Where nothing else bends the path, the point straight ahead
-//! meets the equations. Where something does (another part slips), they are solved with the motions held that they leave
-//! open.
+//! A slider that sticks at a limit point of the structure attached to it keeps this structure at its limit point,
+//! whatever the load on the slider: all along the path a second null vector leaves Newton's method without a unique
+//! correction. Where the path is otherwise straight, the point straight ahead satisfies the equations. Where it is not
+//! (another part slips), they are solved with the motions suppressed that they leave undetermined.
 
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::closing_equation::ClosingEquation;
@@ -12,7 +13,7 @@ use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::newton::{self, ACCEPTED_RESIDUAL};
 use crate::step::segment::{Reached, StepStart};
 
-/// The point straight ahead, where the equations hold along the direction.
+/// The point straight ahead, where it satisfies the equations.
 pub(crate) fn held_straight(
     start: &StepStart<'_>,
     system: &ModeSystem<'_>,
@@ -30,8 +31,8 @@ pub(crate) fn held_straight(
     (error <= ACCEPTED_RESIDUAL).then(|| start.straight_on(corrected, error))
 }
 
-/// The point found with the motions held that the equations leave open; `None` where there are none, or the equations
-/// cannot be met so.
+/// The point found with the undetermined motions suppressed; `None` where there are none, or where the equations cannot
+/// be satisfied in this way.
 pub(crate) fn held_across(
     start: &StepStart<'_>,
     guess: &State,
@@ -52,12 +53,12 @@ pub(crate) fn held_across(
         return None;
     }
     let mut reached = start.directed(system, corrected, closing, &mut None, work).ok()?;
-    // Which sign it has hangs on the signs of what is added to hold the motions.
+    // The sign of the determinant depends on the signs of the terms that suppress the motions.
     reached.determinant = None;
     Some(reached)
 }
 
-/// A guess off the direction, where the path bends at once: along the arm of a parabola.
+/// A guess beside the direction, where the path curves at once: along an arm of a parabola.
 pub(crate) fn guess_beside(start: &StepStart<'_>, closing: &dyn ClosingEquation) -> Option<State> {
     let (beside, step) = (start.beside?, closing.arc_length()?);
     let mut guess = start.state.advanced(start.rate, step);

@@ -1,9 +1,9 @@
-//! Factorisations that are left over.
+//! Factorisations that earlier solves leave for reuse.
 //!
-//! Where nothing bends the path the equations at the start of a step are those at its end: the factorisation that found the
-//! direction serves along it. What is at hand then is what would be made anew without it, to the last bit: a path that is
-//! taken up from a checkpoint has none, makes it, and is the same. Elsewhere that which led to a contact change serves to
-//! find the directions there, within the same increment.
+//! Where the path is straight, the equations at the start of a step are those at its end: the factorisation that gave
+//! the direction serves along the whole step. It agrees with a fresh factorisation to the last bit: a path resumed from
+//! a checkpoint has none, computes one, and continues identically. Elsewhere the factorisation that led to a contact
+//! change serves to find the directions there, within the same increment.
 
 use crate::algebra::SystemFactorisation;
 use crate::algebra::sparse::SparseFactorisation;
@@ -13,13 +13,13 @@ use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::Rate;
 use std::sync::Arc;
 
-/// The equations of some modes at a point or near it, with any border, if they are at hand; copies have none, so that no
-/// more memory is held than is of use.
+/// A reusable factorisation of the equations of some modes at a point or near it, with any border, if there is one;
+/// copies have none, so that no memory is held without use.
 #[derive(Default)]
 pub struct AtHand(Option<Arc<SparseFactorisation>>);
 
 impl AtHand {
-    /// One that serves on, shared.
+    /// Shares a factorisation that may be reused.
     pub(crate) fn shared(serving: Option<&SystemFactorisation>) -> Self {
         match serving {
             Some(SystemFactorisation::Sparse(sparse)) => Self(Some(Arc::clone(sparse))),
@@ -27,7 +27,7 @@ impl AtHand {
         }
     }
 
-    /// What is worth keeping of a factorisation for the step along a direction.
+    /// Keeps a factorisation for the step along a direction, where it can be reused there.
     pub(crate) fn of(loading: Loading<'_>, factorisation: SystemFactorisation) -> Self {
         match factorisation {
             SystemFactorisation::Sparse(sparse) if linearity::is_linear(loading) => Self(Some(sparse)),
@@ -43,7 +43,7 @@ impl AtHand {
         self.0.as_deref()
     }
 
-    /// The equations of a system at its anchor, bordered by the direction; made where they are no longer at hand.
+    /// The factorisation of a system at its anchor, bordered by the direction; computed where there is none to reuse.
     pub(crate) fn along(self, system: &ModeSystem<'_>, rate: &Rate) -> Option<SystemFactorisation> {
         let is_its_own = |sparse: &SparseFactorisation| sparse.size() == system.size();
         let bordered = self.0.and_then(Arc::into_inner).filter(is_its_own).and_then(|sparse| {

@@ -13,19 +13,20 @@ pub struct Work {
     pub mpec_solves: u64,
     #[serde(default)]
     pub sqp_iterations: u64,
-    /// Points shown to solve their increment's program without solving it.
+    /// Points certified as solutions of their increment's program without solving it.
     #[serde(default)]
     pub certificates: u64,
     /// Increments whose end the program alone did not find.
     #[serde(default)]
     pub mpec_fallbacks: u64,
-    /// Factorisations that smooth bifurcation points took: to locate them and to list the directions there.
+    /// Factorisations at smooth bifurcation points: to locate them and to list the directions there.
     #[serde(default)]
     pub bifurcation_factorisations: u64,
 }
 
 impl Work {
-    /// Counts what a piece of work at a smooth bifurcation point factorises, whether it counts for itself or not.
+    /// Does a piece of work at a smooth bifurcation point and counts its factorisations, whether it counts them itself
+    /// or not.
     pub(crate) fn at_bifurcation<T>(&mut self, piece: impl FnOnce(&mut Self) -> T) -> T {
         let _locating = budget::locating_bifurcation();
         let (begun, counted) = (factorisations(), self.factorisations);

@@ -1,4 +1,4 @@
-//! When the determinant of a factorisation has a sign.
+//! When the sign of a factorisation's determinant is certain.
 
-/// Pivots below this fraction of the largest say nothing of the determinant's sign.
+/// Ratio of the smallest to the largest pivot below which the sign of the determinant is uncertain.
 pub const UNCERTAIN: f64 = 1e-10;

@@ -1,14 +1,14 @@
 //! From a predictor to a point of the path: Newton's method on the equations of one contact mode.
 //!
-//! | file | what it does |
+//! | file | contents |
 //! |---|---|
 //! | `newton` | the iteration |
 //! | `tangent` | the direction of the path at the point found, and an estimate of its error |
-//! | `single_iteration` | one iteration, to see where it leads |
+//! | `single_iteration` | a single iteration, for an approximate solution |
 //! | `cached_factorisation` | factorisations that an earlier solve leaves for the next |
-//! | `slip_error` | the error of curved slip, carried along the path |
+//! | `slip_error` | the error of curved slip, accumulated along the path |
 //! | `cost_counters` | counts of work |
-//! | `determinant_sign` | when a determinant has a sign |
+//! | `determinant_sign` | when the sign of a determinant is certain |
 
 pub(crate) mod cached_factorisation;
 pub(crate) mod cost_counters;

@@ -13,45 +13,46 @@ use crate::step::corrector::cost_counters::Work;
 use crate::step::corrector::tangent;
 use nalgebra::DVector;
 
-/// Newton iterations before a step is given up.
+/// Largest number of Newton iterations.
 const MOST_ITERATIONS: u64 = 16;
-/// Iterations of it, each with a factorisation of its own, whose corrections are no smaller than those before: a method that
-/// converges has one on its way in at the most.
+/// Number of iterations with a fresh factorisation and without a decrease of the correction at which the method gives
+/// up: a convergent iteration has at most one, at its beginning.
 const MOST_RISES: u64 = 2;
-/// A correction above this part of the one before has not fallen. At a singular point each is half of it.
+/// Ratio of successive corrections above which the correction has not decreased. At a singular point the ratio is 1/2.
 const RISES: f64 = 0.7;
-/// The second correction over the first, at the most, of a step that may be shorter instead, where a factorisation is most of
-/// the work: from farther away Newton's method need not converge (P. Deuflhard, Newton Methods for Nonlinear Problems,
-/// Springer 2011, section 5.1).
+/// Largest ratio of the second correction to the first in a step that may be shortened, where a factorisation is most
+/// of the work: from farther away Newton's method need not converge (P. Deuflhard, Newton Methods for Nonlinear
+/// Problems, Springer 2011, section 5.1).
 const BEGINS_WELL: f64 = 0.25;
 /// Relative residual that an accepted point must have.
 pub const ACCEPTED_RESIDUAL: f64 = 1e-11;
 
-/// Relative residual below which iterating on gains nothing.
+/// Relative residual below which further iterations gain nothing.
 const ROUND_OFF: f64 = 1e-15;
-/// Arc length (dimensionless) of the next correction, as it is foreseen, below which it is not made where what is left over
-/// is round-off.
+/// Predicted arc length (dimensionless) of the next correction below which it is not computed where the residual is
+/// round-off.
 const NO_CORRECTION: f64 = 4e-15;
-/// Error below which Newton's method is as good as converged.
+/// Error below which Newton's method has practically converged.
 const SMALL: f64 = 1e-6;
-/// Smallest pivot over the largest of a factorisation that may serve on: what is left over says little of the state where
-/// it is smaller. A large structure is soft beside its elements and the pivot falls with its size: it is 8e-5 in a lattice of
-/// 102,304 unknowns that touches with friction.
+/// Smallest ratio of the smallest to the largest pivot of a factorisation that may be reused: below it the residual
+/// says little about the error of the state. A large structure is soft compared with its elements, and the ratio falls
+/// with its size: it is 8e-5 in a lattice of 102,304 unknowns that touches with friction.
 pub(crate) const REGULAR: f64 = 3e-5;
-/// The same where the last correction is this part of that pivot at the most: so little moves it by this part of itself.
+/// Largest last correction, over this ratio, for reuse below it: so small a correction changes the pivot by this
+/// fraction.
 const STILL_FALLS: f64 = 1e-2;
-/// Factor by which an error falls with a factorisation from elsewhere, at the least.
+/// Largest ratio of successive errors for which a factorisation from elsewhere is reused.
 const SERVES_ON: f64 = 0.1;
-/// Multiple of the bound on rounding within which what is left over counts as rounding.
+/// Multiple of the bound on rounding within which a residual counts as round-off.
 const ROOM: f64 = 8.0;
-/// Gaps and arc lengths (dimensionless) that are off by no more than this may be rounding.
+/// Errors of gaps and arc lengths (dimensionless) up to this may be round-off.
 const AT_PLACE: f64 = 1e-13;
-/// Rows with forces below this part of the force scale are judged by their own.
+/// Rows with forces below this fraction of the force scale are judged relative to their own forces.
 const WEAK: f64 = 1e-3;
-/// Corrections that fall by less than this factor are rounding themselves.
+/// Ratio of successive corrections above which they are round-off themselves.
 const NO_FALL: f64 = 0.25;
 
-/// Newton's method from a guess, to round-off.
+/// Solves the equations by Newton's method from a guess, to round-off.
 ///
 /// `force_scale` is the largest force met so far on the path; residuals are relative to it or to the present
 /// forces, whichever is larger.
@@ -64,7 +65,8 @@ pub fn correct(
     correct_from(system, system.iterate(guess), closing, force_scale, &mut None, &mut Work::default())
 }
 
-/// `serving` is a factorisation of the equations nearby, if there is one, and becomes the last one.
+/// As [`correct`], from an iterate; `serving` is a factorisation of the equations nearby, if there is one, and becomes
+/// the last one.
 pub(crate) fn correct_from(
     system: &ModeSystem<'_>,
     guess: Iterate,
@@ -76,7 +78,7 @@ pub(crate) fn correct_from(
     correct_with(system, guess, closing, force_scale, None, serving, work)
 }
 
-/// The same; `own` is a factorisation of these very equations, with whatever border, if there is one.
+/// As [`correct_from`]; `own` is a factorisation of exactly these equations, with any border, if there is one.
 pub(crate) fn correct_with(
     system: &ModeSystem<'_>,
     guess: Iterate,
@@ -92,14 +94,14 @@ pub(crate) fn correct_with(
     iteration.finish(serving)
 }
 
-/// Newton's method under way.
+/// A Newton iteration in progress.
 struct NewtonIteration<'a, 'b> {
     system: &'a ModeSystem<'b>,
     closing: &'a dyn ClosingEquation,
     /// The largest force met so far on the path.
     force_scale: f64,
     iterate: Iterate,
-    /// What is left over of each equation; the correction once it is solved for.
+    /// The residual of each equation; after the solve, the correction.
     values: DVector<f64>,
     force: Vec<f64>,
     change: Rate,
@@ -111,27 +113,27 @@ struct NewtonIteration<'a, 'b> {
     /// Sizes of the last correction and the one before.
     correction: f64,
     previous_correction: f64,
-    /// What the last correction left is as good as none, or below the rounding of each displacement.
+    /// Whether the error that the last correction leaves is negligible, or below the rounding of each displacement.
     nothing_left: bool,
-    /// Rows are judged by the largest force first, and each by its own once that is done.
+    /// Whether rows are judged by their own forces; at first all are judged by the largest force.
     row_by_row: bool,
     factorisation: FactorisationInUse,
 }
 
-/// The factorisation that corrections are found with. Near the solution the last one serves on: what it is off by is as
-/// small as the error was.
+/// The factorisation that gives the corrections. Near the solution the last one is reused: its error is as small as
+/// that of its iterate.
 struct FactorisationInUse {
     latest: Option<SystemFactorisation>,
-    /// Whether the first one was of these very equations.
+    /// Whether the first factorisation was of exactly these equations.
     had_own: bool,
-    /// Whether `latest` is that one, not used yet.
+    /// Whether `latest` is this first factorisation, not used yet.
     is_own: bool,
-    /// How many were made here.
+    /// Number of factorisations computed here.
     made: u64,
-    /// Whether `latest` serves for the correction under way, though the iterate has moved.
+    /// Whether `latest` is reused for the present correction, although the iterate has moved.
     reused: bool,
-    /// The way along the path and the change of the quantity along it, with `latest`, where the place is no equation of its
-    /// own.
+    /// The direction along the path and the change of the event function along it, computed with `latest`, where the
+    /// closing equation has no row of its own.
     along: Option<(DVector<f64>, f64)>,
 }
 
@@ -141,17 +143,17 @@ struct IterateError {
     residual: f64,
     /// Largest force at the iterate.
     forces: f64,
-    /// What the residual is relative to.
+    /// The force scale of the residual.
     scale: f64,
-    /// The largest of what is left over of the other equations.
+    /// Largest residual of the other equations.
     geometric: f64,
     error: f64,
 }
 
-/// How an iterate compares with those before.
+/// An iterate compared with the earlier ones.
 struct ErrorProgress {
     best_before: Option<f64>,
-    /// The least error, with this iterate's.
+    /// The smallest error so far, including this iterate's.
     least: f64,
     improved: bool,
 }
@@ -163,14 +165,14 @@ impl FactorisationInUse {
         Self { latest, had_own, is_own: had_own, made: 0, reused: false, along: None }
     }
 
-    /// Decides whether the latest one serves for the next correction, too. `correction` is the size of the last one. Tells
-    /// whether it served for that.
+    /// Decides whether the latest factorisation is reused for the next correction; `correction` is the size of the last
+    /// one. Returns whether the factorisation was reused for the last correction.
     fn decide_reuse(&mut self, error: f64, progress: &ErrorProgress, correction: f64, row_by_row: bool) -> bool {
         let is_regular = self.latest.as_ref().is_some_and(|latest| {
             let pivot_ratio = latest.pivot_ratio();
             pivot_ratio >= REGULAR || correction <= STILL_FALLS * pivot_ratio
         });
-        // One from elsewhere has to do better than what it would save.
+        // A factorisation left over from elsewhere has to converge faster than a fresh one would.
         let falls = self.had_own || self.made > 0 || progress.best_before.is_none_or(|least| error < SERVES_ON * least);
         let serves = !self.is_own && error <= SMALL && progress.improved && falls && !row_by_row && is_regular;
         std::mem::replace(&mut self.reused, serves)
@@ -208,7 +210,7 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
         }
     }
 
-    /// Iterates until the best iterate is as good as it gets.
+    /// Iterates until the best iterate cannot be improved.
     fn run(&mut self, work: &mut Work) -> Result<(), Failure> {
         loop {
             let at = self.evaluate()?;
@@ -228,7 +230,7 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
         }
     }
 
-    /// What is left over at the iterate.
+    /// Evaluates the residuals and the error of the iterate.
     fn evaluate(&mut self) -> Result<IterateError, Failure> {
         let Self { system, iterate, values, force, .. } = self;
         let (largest, forces) = system.residual(iterate, values, force);
@@ -280,7 +282,8 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
         }
     }
 
-    /// Whether to go on gains nothing. Where that holds of the largest force, rows are judged by their own from here on.
+    /// Whether further iterations gain nothing. Once this holds for the largest force, rows are judged by their own
+    /// forces.
     fn has_settled(&mut self, at: &IterateError, progress: &ErrorProgress, was_reused: bool) -> bool {
         let ErrorProgress { least, improved, .. } = *progress;
         let rounding = !improved && self.is_left_by_rounding(at);
@@ -300,8 +303,8 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
         false
     }
 
-    /// Whether all that is left over is rounding. It goes on as far as rounding lets it: a fresh factorisation would have
-    /// gone beyond the bar at once.
+    /// Whether the whole residual is round-off. The iteration continues as far as rounding permits: a fresh
+    /// factorisation would have passed the tolerance at once.
     fn is_left_by_rounding(&self, at: &IterateError) -> bool {
         let is_large = self.system.loading.structure.layout().is_some();
         let at_place = || at.geometric <= AT_PLACE.max(ROOM * f64::EPSILON * reach(&self.iterate.state));
@@ -310,8 +313,8 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
             && left_by_rounding(self.system, &self.iterate.state, &self.values, at.scale) == Some(0.0)
     }
 
-    /// Whether the iterate is the point because no displacements in this precision leave less: stiff elements next to large
-    /// displacements. The point is the one whose correction no longer falls.
+    /// Whether the iterate is accepted because no displacements in this precision have a smaller residual: with stiff
+    /// elements next to large displacements. The iterate whose correction no longer decreases is the point.
     fn ends_at_rounding(&mut self, at: &IterateError, progress: &ErrorProgress) -> bool {
         let ended = self.iterations == MOST_ITERATIONS;
         let falls_no_more = ended || self.correction >= NO_FALL * self.previous_correction;
@@ -326,8 +329,8 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
         true
     }
 
-    /// Sees to a factorisation for the next correction. Tells whether to solve with it once is enough: of a small
-    /// correction few digits count.
+    /// Provides the factorisation for the next correction. Returns whether a solve without refinement suffices: few
+    /// digits of a small correction count.
     fn factorise_or_reuse(&mut self, error: f64, work: &mut Work) -> bool {
         let Self { system, closing, iterate, factorisation, .. } = self;
         let once = factorisation.reused || (factorisation.is_own && error <= SMALL);
@@ -351,7 +354,7 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
         }
         let FactorisationInUse { latest, along, .. } = factorisation;
         let latest = latest.as_ref().ok_or(Failure::Singular)?;
-        // What one from elsewhere leaves over is more than rounding anyway.
+        // The error of a reused factorisation exceeds rounding anyway.
         let solved = if once { latest.solve_once(values) } else { latest.solve(values) };
         if !solved || !bring_to_zero(system, *closing, left_of_place, iterate, latest, along, values) {
             return Err(Failure::Singular);
@@ -361,7 +364,7 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
         Ok(())
     }
 
-    /// Gives up where the corrections do not fall, and foresees what the last one leaves.
+    /// Gives up where the corrections do not decrease, and predicts the error that the last one leaves.
     fn judge_convergence(&mut self) -> Result<(), Failure> {
         let (before, correction, reused) = (self.previous_correction, self.correction, self.factorisation.reused);
         let begins =
@@ -413,10 +416,10 @@ impl<'a, 'b> NewtonIteration<'a, 'b> {
     }
 }
 
-/// Where the place is a zero, a correction goes on along the path until the quantity is zero at first order: its
-/// gradient, which may have entries at forces that the factorisation eliminates, need not be a row (bordering: H. B.
-/// Keller, in: Applications of Bifurcation Theory, Academic Press 1977, 359). `along` is the way with this factorisation.
-/// `false` where the quantity does not change along it.
+/// Where the closing equation is an event function, extends a correction along the path until the function is zero at
+/// first order: its gradient, which may have entries at forces that the factorisation eliminates, need not be a row
+/// (bordering: H. B. Keller, in: Applications of Bifurcation Theory, Academic Press 1977, 359). `along` is the
+/// direction along the path from this factorisation. Returns `false` where the function does not change along it.
 fn bring_to_zero(
     system: &ModeSystem<'_>,
     closing: &dyn ClosingEquation,
@@ -445,8 +448,8 @@ fn bring_to_zero(
     true
 }
 
-/// The largest equilibrium residual over the forces of its own row, of the rows where these are far below the force
-/// scale. `sizes` becomes those forces.
+/// The largest equilibrium residual over the forces of its own row, among the rows whose forces are far below the force
+/// scale. These forces are written to `sizes`.
 fn residual_of_rows(
     system: &ModeSystem<'_>,
     state: &State,
@@ -479,8 +482,8 @@ fn is_rounding(system: &ModeSystem<'_>, state: &State, correction: &DVector<f64>
     values.zip(correction.as_slice()).all(|(value, change)| (factor * change).abs() <= f64::EPSILON * value.abs())
 }
 
-/// Whether what is left over of each equation is within the rounding of the state's numbers; then the largest
-/// equilibrium residual beyond it, over the force scale.
+/// Where the residual of each equation is within the rounding of the state's numbers, returns the largest equilibrium
+/// residual beyond this rounding, over the force scale.
 fn left_by_rounding(system: &ModeSystem<'_>, state: &State, values: &DVector<f64>, scale: f64) -> Option<f64> {
     let structure = system.loading.structure;
     let rounding = structure.rounding(&state.displacement);
@@ -494,7 +497,8 @@ fn left_by_rounding(system: &ModeSystem<'_>, state: &State, values: &DVector<f64
     (residual <= ACCEPTED_RESIDUAL && within).then_some(residual)
 }
 
-/// A point as it is, with its residual. Slips in planes have the directions that their tractions oppose.
+/// A state as a point without correction, with its residual. Slips in planes have the directions that oppose their
+/// tractions.
 pub fn judged(system: &ModeSystem<'_>, state: State, force_scale: f64) -> Corrected {
     let mut iterate = system.iterate(state);
     for (contact, role) in system.roles.iter().enumerate() {
@@ -508,7 +512,7 @@ pub fn judged(system: &ModeSystem<'_>, state: State, force_scale: f64) -> Correc
     judged_as_state(system, iterate, &[], force_scale)
 }
 
-/// The same of an iterate, without the equations in some rows.
+/// As [`judged`], for an iterate and without the equations in some rows.
 pub(crate) fn judged_as_state(
     system: &ModeSystem<'_>,
     mut iterate: Iterate,
@@ -535,22 +539,22 @@ pub(crate) fn judged_as_state(
     }
 }
 
-/// How far the chords of slips in planes are from where their directions would have them, in these rows.
+/// The largest deviation of the chords of slips in planes from the rule of their tracks, in these rows.
 pub(crate) fn off_track(corrected: &Corrected, rows: &[usize]) -> f64 {
     rows.iter().fold(0.0, |largest, row| largest.max(corrected.left_over[*row].abs()))
 }
 
-/// The largest displacement, or the load: what the rounding of places is relative to.
+/// The largest displacement, or the load: the scale of the rounding of positions.
 fn reach(state: &State) -> f64 {
     state.displacement.iter().fold(state.load.abs(), |reach, value| reach.max(value.abs()))
 }
 
-/// The largest of what is left over of the equations other than equilibrium.
+/// The largest residual of the equations other than equilibrium.
 fn largest_below_equilibrium(system: &ModeSystem<'_>, values: &DVector<f64>) -> f64 {
     values.as_slice()[system.loading.structure.unknowns()..].iter().fold(0.0_f64, |m, v| m.max(v.abs()))
 }
 
-/// The best iterate so far, and what Newton's method says of it.
+/// The best iterate so far, with its error and residual.
 struct BestIterate {
     error: f64,
     iterate: Iterate,

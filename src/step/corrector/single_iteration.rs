@@ -1,5 +1,5 @@
-//! One iteration of Newton's method on the equations of a mode (`equations`): about where it leads, off by the square of
-//! how far the guess was.
+//! One iteration of Newton's method on the equations of a mode (`equations`): an approximate solution, whose error is
+//! of second order in the error of the guess.
 
 use crate::algebra::SystemFactorisation;
 use crate::algebra::dense::assembly::Sink;
@@ -34,7 +34,7 @@ pub(crate) fn iterated_once(
     Some((system.corrected_by(iterate, &values).state, factorisation))
 }
 
-/// About the path's direction, by a factorisation of the equations nearby, on the side of another.
+/// The approximate direction of the path, from a factorisation of the equations nearby, on the side of `towards`.
 pub(crate) fn direction_about(
     system: &ModeSystem<'_>,
     state: &State,

@@ -1,4 +1,4 @@
-//! How far the path may have drifted from the exact one: the error of slip tracks, carried along.
+//! The drift of the computed path from the exact one: the error of slip tracks, accumulated along the path.
 //!
 //! Slip along any tangent is the only place where an increment has an error of discretisation (`slip_integration`). With
 //! `y = computed - exact` at the end of an increment, `y₀` at its start and the rule's defect
@@ -8,7 +8,7 @@
 //! J y = (0, 0, t·y₀ at sticking contacts, m·y₀ + ½ h θ(y₀) - τ at tracks, 0 along the path)
 //! ```
 //!
-//! `θ''''` comes from a point half way: what the cubic through both ends' `θ` and `κ` misses there.
+//! `θ''''` follows from a point half way: from the error there of the cubic through `θ` and `κ` at both ends.
 
 use crate::mechanics::contact::Mode;
 use crate::mechanics::contact::vector::{Vector, add, cross, dot, size};
@@ -41,7 +41,7 @@ pub fn drift(
         match role {
             Role::Free | Role::Frictionless | Role::Line { .. } | Role::Edge { .. } | Role::HeldBy => {}
             Role::Stick | Role::Held => {
-                // A gap is closed exactly.
+                // The gap of a sticking contact is closed exactly.
                 let tangents = usize::from(matches!(role, Role::Stick));
                 for (k, direction) in system.held_directions(contact).iter().enumerate().skip(tangents) {
                     values[row + k] = dot(direction, &moved);
@@ -71,7 +71,7 @@ pub fn drift(
     Some(system.rate_at(&iterate, &values, Kind::Increment))
 }
 
-/// `τ`
+/// The defect `τ` of the rule.
 fn defect(system: &ModeSystem<'_>, contact: usize, start: &Rate, middle: Pointed<'_>, end: Pointed<'_>) -> Option<f64> {
     let Role::Plane { track } = system.roles[contact] else { return None };
     let Track { start: begun, turn: own } = &system.tracks[track];
@@ -102,14 +102,14 @@ fn defect(system: &ModeSystem<'_>, contact: usize, start: &Rate, middle: Pointed
     let y = 1.0 - x;
     let settles = own.settling.is_some_and(|settling| settling.share() > 0.0);
     let Some(first_turn) = first_turn.filter(|_| !settles) else {
-        // The quadratic through the end's turn misses what the rule has 2/3 of.
+        // The defect of the rule is 2/3 of the error of the quadratic with the turn at the end.
         let square = last_turn * length - last_angle;
         let quadratic = x * (last_angle - square) + x * x * square;
         let scale = x * y * y / 0.125;
         return Some(length * (half_angle - quadratic) / (1.5 * scale));
     };
     let cubic = y * y * x * length * first_turn + x * x * ((1.0 + 2.0 * y) * last_angle - y * length * last_turn);
-    // The cubic misses x² y² h⁴ θ''''/24.
+    // The error of the cubic is x² y² h⁴ θ''''/24.
     let fourth = 24.0 * (half_angle - cubic) / (x * x * y * y);
     let (mean, change) = (0.5 * (first_turn + last_turn) * length, (last_turn - first_turn) * length);
     Some(length * (fourth - mean * mean * change) / 720.0)

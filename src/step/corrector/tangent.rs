@@ -12,8 +12,8 @@ use crate::step::corrector::newton::REGULAR;
 /// The path's direction at a converged point, and an estimate of the point's error: the size of one more Newton
 /// correction across the path.
 ///
-/// `serving` is a factorisation of the equations nearby, if there is one. Where it does not
-/// serve, one of the point itself takes its place, and `factorisations` counts it.
+/// `serving` is a factorisation of the equations nearby, if there is one. Where it is not suitable, a factorisation at
+/// the point itself takes its place, and `factorisations` counts it.
 pub fn tangent_and_error(
     system: &ModeSystem<'_>,
     corrected: &Corrected,
@@ -66,8 +66,8 @@ pub(crate) fn error_by(system: &ModeSystem<'_>, nearby: &SparseFactorisation, co
     solved.then(|| system.length_of(&values))
 }
 
-/// A factorisation that may serve nearby. With slips in planes the directions have equations of their own; dense
-/// matrices are factorised as fast.
+/// The factorisation, where it may be reused nearby: not with slips in planes, whose directions have equations of their
+/// own, nor where it is dense, since dense matrices are factorised as fast.
 pub(crate) fn may_serve(system: &ModeSystem<'_>, factorisation: SystemFactorisation) -> Option<SystemFactorisation> {
     let may = matches!(factorisation, SystemFactorisation::Sparse(_)) && !system.has_tracks();
     may.then_some(factorisation)
@@ -85,6 +85,6 @@ fn tangent_nearby(
     }
     let nearby = Nearby::new(nearby, system.assemble_sparse(iterate, Kind::Rates)?)?;
     let values = nearby.solve(&system.bordering())?;
-    // On the same side of both borders, so that the determinants have one sign.
+    // The direction is on the same side of both borders, so that the determinants have the same sign.
     system.direction_from(iterate, &values).filter(|rate| rate.product(towards) > 0.0)
 }
