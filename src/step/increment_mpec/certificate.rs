@@ -1,30 +1,31 @@
-//! A point that the path has reached already, shown to solve the increment's program.
+//! A certificate that a point already reached by the path solves the increment's program.
 //!
-//! Where at a feasible point one member of every pair is positive, the feasible points nearby are those of one
-//! contact mode, and where the equations of that mode are regular these are a curve. Along it, with
-//! `τ = ‖(Δu, Δs)‖/S` for parameter and `y = (Δu, Δs)/S`, the objective is
+//! Where at a feasible point one member of every pair is positive, the feasible points nearby belong to one contact
+//! mode, and where the equations of this mode are regular, these points form a curve. Along the curve, with
+//! `τ = ‖(Δu, Δs)‖/S` as parameter and `y = (Δu, Δs)/S`, the objective is
 //!
 //! ```text
 //! φ(τ) = ℓ·y(τ) - ½ γ1 τ²,        ℓ·v = -r_t⁽ᵏ⁾·v_t/F + γ2 d·v
 //! ```
 //!
-//! and the point at `τ = 1` is a strict local solution where `φ'(1) = 0` and `φ''(1) < 0`. `γ1` is what is adapted until
-//! the increment has the arc length sought: `φ'(1) = 0` gives it at once, `γ1 = ℓ·y'(1)`, and it has to be positive. `y'(1)`
-//! is the path's direction there over its cosine with `y`; `y''(1)` is that of the cubic through both ends with their
-//! directions. With the gradients of the mode's equations independent, `φ'(1) = 0` is the same as the existence of
-//! multipliers, and with no pair biactive the point is strongly stationary, hence B-stationary: H. Scheel and S. Scholtes,
-//! Math. Oper. Res. 25 (2000), doi:10.1287/moor.25.1.1.15213.
+//! and the point at `τ = 1` is a strict local solution where `φ'(1) = 0` and `φ''(1) < 0`. `γ1` is the parameter that
+//! is adapted until the increment has the prescribed arc length: `φ'(1) = 0` gives it directly, `γ1 = ℓ·y'(1)`, and it
+//! has to be positive. `y'(1)` is the path's direction at the point over its cosine with `y`; `y''(1)` is that of the
+//! cubic through both ends with their directions. With independent gradients of the mode's equations, `φ'(1) = 0` is
+//! equivalent to the existence of multipliers, and with no pair biactive the point is strongly stationary, hence
+//! B-stationary: H. Scheel and S. Scholtes, Math. Oper. Res. 25 (2000), doi:10.1287/moor.25.1.1.15213.
 //!
-//! A member is positive where it is so by more than what the point leaves violated and rounding could make of zero. A
-//! smaller one is if it was not negative at the start, falls at neither end and rises at one: rates are known to more
-//! digits than the difference of two nearly equal states. One that falls to zero at the end itself was positive just
-//! before: what is shown then holds of every increment a little shorter, since all else is strict.
+//! A member counts as positive where it exceeds the constraint violation at the point and the rounding of zero. A
+//! smaller member counts as positive if it was not negative at the start, decreases at neither end and increases at
+//! one: rates are known to more digits than the difference of two nearly equal states. A member that falls to zero at
+//! the end itself was positive just before: the certificate then holds for every slightly shorter increment, since all
+//! other conditions are strict.
 //!
-//! The two parts of the slip of a contact that is apart are no matter: there is no force, and only their difference counts.
+//! The two parts of the slip of an open contact do not matter: there is no force, and only their difference counts.
 //!
-//! Nothing is claimed where any of this fails or is not clear, where a cone is circular (there the path's rule is of higher
-//! order than the program's) or where two contacts press one node (their reactions need not be unique): then the program
-//! is solved.
+//! Nothing is certified where any of these conditions fails or is unclear, where a cone is circular (there the
+//! integration rule of the path is of higher order than that of the program) or where two contacts of one node are
+//! closed (their reactions need not be unique): then the program is solved.
 
 use crate::complementarity::mpec::{Activities, PairActivity, Problem, Settings};
 use crate::mechanics::contact::vector::{Vector, add, dot};
@@ -34,7 +35,7 @@ use crate::step::increment_mpec::solution_extraction;
 use crate::step::increment_mpec::{ForeseenModes, InReach, IncrementProgram, LOOSEST, Named, tangent_components};
 use nalgebra::DVector;
 
-/// Least member that is positive by itself, and how much larger it is than what the point leaves violated.
+/// Smallest member that is positive by its value, and its smallest ratio to the constraint violation at the point.
 const CLEAR: f64 = 1e-9;
 const LEEWAY: f64 = 10.0;
 /// Rounding of rates: of velocities, and of forces relative to the largest.
@@ -46,7 +47,7 @@ const FORWARD: f64 = 0.5;
 #[derive(Clone, Copy)]
 pub struct Arrived<'s> {
     pub state: &'s State,
-    /// Of unit arc length, in the mode that led there.
+    /// The path's direction, of unit arc length, in the mode that led to the point.
     pub rate: &'s Rate,
     /// Distance to the mode's curve (dimensionless).
     pub error: f64,
@@ -57,11 +58,11 @@ pub struct Arrived<'s> {
 struct PairMember {
     start: f64,
     end: f64,
-    /// Rates at both ends, by the arc length over the one sought.
+    /// Rates at both ends, per arc length over the prescribed one.
     rates: [f64; 2],
-    /// Of the rates.
+    /// Rounding of the rates.
     rounding: f64,
-    /// A slip, which starts at zero and may turn on the way.
+    /// Whether the member is a slip, which starts at zero and may reverse on the way.
     is_slip: bool,
 }
 
@@ -74,13 +75,14 @@ impl PairMember {
         self.end > clear || is_small && (rises || arrives)
     }
 
-    /// Its value at the end; of a slip the part that has this sense.
+    /// The value at the end; for a slip, the part in its own sense.
     fn part(&self) -> f64 {
         if self.is_slip { self.end.max(0.0) } else { self.end }
     }
 
-    /// The part of the way after which it is negative, where it is at the end: by the parabola through both ends that
-    /// leaves as it does; of a slip, where it turns, by the line through both rates.
+    /// The fraction of the increment after which a member becomes negative that is negative at the end: from the
+    /// parabola through both ends with the rate at the start; for a slip, the fraction at which it reverses, from the
+    /// line through both rates.
     fn ends_after(&self) -> f64 {
         let [first, last] = self.rates;
         let part = if self.is_slip {
@@ -89,15 +91,15 @@ impl PairMember {
             let bend = self.end - self.start - first;
             2.0 * self.start / ((first * first - 4.0 * bend * self.start).max(0.0).sqrt() - first)
         };
-        // One that leaves from zero comes back where the rest of the parabola is zero.
+        // A member that starts at zero returns to zero at the other root of the parabola.
         let back = if self.start > 0.0 || self.is_slip { part } else { first / (first - self.end + self.start) };
         if back.is_finite() { back.clamp(0.0, 1.0) } else { 0.0 }
     }
 }
 
-/// What is shown of an increment of the arc length sought that ends at a point: [`ForeseenModes::Named`] where it solves the
-/// program with `γ1` adapted to it, [`ForeseenModes::EndsAfter`] where it lies past the end of its mode,
-/// [`ForeseenModes::Unclear`] where nothing is.
+/// The result of the certificate for an increment of the prescribed arc length that ends at a point:
+/// [`ForeseenModes::Named`] where the point solves the program with `γ1` adapted to it, [`ForeseenModes::EndsAfter`]
+/// where the point lies past the end of its mode, [`ForeseenModes::Unclear`] where nothing is certain.
 ///
 /// `forward` is the direction at the start in the mode that leads to the end, and the equations of that mode are
 /// regular at the end.
@@ -142,13 +144,13 @@ pub(super) fn variables_of(program: &IncrementProgram<'_>, state: &State, frames
     x
 }
 
-/// The way of a contact's node against its obstacle.
+/// The motion of a contact relative to its obstacle since the start of the increment.
 fn chord(program: &IncrementProgram<'_>, entry: &InReach, state: &State) -> Vector {
     let before = program.loading.relative(entry.contact, program.base);
     add(&program.loading.relative(entry.contact, state), -1.0, &before)
 }
 
-/// Which member of each pair is zero, where the variables are feasible and that is certain.
+/// The zero member of each pair, where the variables are feasible and the members are certain.
 fn clear_activities(
     program: &IncrementProgram<'_>,
     x: &DVector<f64>,
@@ -157,7 +159,7 @@ fn clear_activities(
 ) -> Result<Activities, ForeseenModes> {
     let mut equality = DVector::zeros(program.equalities());
     program.equality_values(x, &mut equality);
-    // Not `max`, which passes over what is not a number.
+    // Not `max`, which ignores NaN.
     let larger = |most: f64, value: f64| if most.is_nan() || value.abs() <= most { most } else { value.abs() };
     let members = members(program, x, end, frames);
     let rounding = program.rounding(x);
@@ -168,7 +170,7 @@ fn clear_activities(
     let is_feasible = smaller.fold(left, larger) <= feasible;
     let is_near = end.error <= LOOSEST * program.step;
     if !is_feasible || !is_near {
-        // Where there is no force against a slip, it may have either sense.
+        // Where no force opposes a slip, the slip may have either sense.
         let is_broken = |[first, second]: &[PairMember; 2]| {
             let turns = second.is_slip && first.end.abs() <= feasible;
             [first.end < -feasible, second.end < -feasible && (turns || !second.is_slip)]
@@ -250,7 +252,7 @@ fn members(
     members
 }
 
-/// Whether the objective has a strict maximum along the curve at its end, with `γ1` adapted to it.
+/// Whether the objective has a strict maximum along the curve at its end, with `γ1` adapted to the end.
 fn is_strict_solution(program: &mut IncrementProgram<'_>, x: &DVector<f64>, end: Arrived<'_>) -> bool {
     let load = program.loading.structure.unknowns();
     let (mut along_forward, mut along_end) = (x[load] * program.forward.load, x[load] * end.rate.load);
@@ -266,7 +268,7 @@ fn is_strict_solution(program: &mut IncrementProgram<'_>, x: &DVector<f64>, end:
     let at_end = linear(end.rate) / along_end;
     let dissipated: f64 = program.reach.iter().map(|entry| dissipated(program, entry, x)).sum();
     let of_chord = dissipated + program.forward_weight * along_forward;
-    // γ1 > 0, φ'' < 0, and more is gained than by staying.
+    // γ1 > 0, φ'' < 0, and the objective is larger than without motion.
     let (arc_weight, curvature) = (at_end, 2.0 * at_start + 3.0 * at_end - 6.0 * of_chord);
     let is_strict = arc_weight > 0.0 && curvature < 0.0 && of_chord > 0.5 * arc_weight;
     if is_strict {

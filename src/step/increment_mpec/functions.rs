@@ -1,4 +1,4 @@
-//! The increment's functions and derivatives, as the MPEC solver asks for them.
+//! The functions of the increment and their derivatives, in the form that the MPEC solver requires.
 
 use crate::complementarity::mpec::{Problem, SparseRows};
 use crate::mechanics::contact::Frame;
@@ -247,7 +247,7 @@ impl Problem for IncrementProgram<'_> {
     }
 }
 
-/// On a curved obstacle the reaction turns with the node's place.
+/// Adds the turning of the reaction with the node's position on a curved obstacle.
 fn add_turn_of_reaction(
     program: &IncrementProgram<'_>,
     entry: &InReach,
@@ -273,7 +273,7 @@ fn add_turn_of_reaction(
     }
 }
 
-/// Where several nodes move a contact, its force turns with them.
+/// Adds the turning of the force of a contact that several nodes move.
 fn add_curvature_of_motion(
     program: &IncrementProgram<'_>,
     entry: &InReach,

@@ -13,16 +13,16 @@
 //! t_k·Δx = a_k, k = 1, 2,       K ∋ (μ r_n, r_t)  ⊥  (λ, a) ∈ K,       K the second-order cone
 //! ```
 //!
-//! Variables are scaled: `y = (Δu, Δs)/S`, `ρ = r/F`,
-//! `α = a/S`, with `S` the arc length sought and `F` the force scale, so that all are of order one whatever the step.
+//! Variables are scaled: `y = (Δu, Δs)/S`, `ρ = r/F`, `α = a/S`, with `S` the prescribed arc length and `F` the force
+//! scale, so that all are of order one whatever the step.
 //!
-//! `γ1` follows from `S`: along a unit direction `e` with dissipation `D` per arc the objective is
-//! `(D + γ2 d·e) α - ½ γ1 α²`, largest at `α = 1` for `γ1 = D + γ2 d·e`. Where the program leaves the direction that
-//! was expected, `γ1` is adapted until `‖y‖` is near 1. `γ2` is a fraction of the dissipation (or 1 where there is
-//! none), so that the branch does not depend on the step.
+//! `γ1` follows from `S`: along a unit direction `e` with dissipation `D` per arc length the objective is
+//! `(D + γ2 d·e) α - ½ γ1 α²`, largest at `α = 1` for `γ1 = D + γ2 d·e`. Where the solution leaves the expected
+//! direction, `γ1` is adapted until `‖y‖` is near 1. `γ2` is a fraction of the dissipation (or 1 where there is none),
+//! so that the branch does not depend on the step.
 //!
-//! A point that the path has reached in a mode is first held against the conditions under which it solves the program
-//! (`certificate`); the search is for where they do not settle it.
+//! A point that the path has reached in a mode is first checked against sufficient conditions for a solution of the
+//! program (`certificate`); the program is solved where these do not decide.
 
 pub(crate) mod certificate;
 pub(crate) mod functions;
@@ -54,22 +54,22 @@ use tangent_components::Components;
 
 /// Contacts whose gap is beyond this many arc lengths cannot close in the increment and are left out.
 const REACH: f64 = 3.0;
-/// The forward term's share of the dissipation.
+/// Ratio of the weight of the forward term to the dissipation.
 const FORWARD_SHARE: f64 = 0.1;
-/// Dissipation per arc below which it is round-off of a motion that sticks.
+/// Dissipation per arc length below which it is round-off of a sticking motion.
 const LEAST_DISSIPATION: f64 = 1e-12;
-/// Multiple of the bound on rounding within which what is left over of equilibrium counts as rounding, and the largest
-/// tolerance that a mode is named by.
+/// Multiple of the bound on rounding within which the residual of equilibrium counts as round-off, and the largest
+/// tolerance with which modes are determined.
 const ROOM: f64 = 8.0;
 const LOOSEST: f64 = 1e-3;
-/// Solves with `γ1` adapted before the last one is taken as it is.
+/// Largest number of solves with `γ1` adapted.
 const MOST_ADAPTATIONS: usize = 6;
 
-/// One increment's program.
+/// The program of one increment.
 pub struct IncrementProgram<'a> {
     loading: Loading<'a>,
     base: &'a State,
-    /// The arc length sought.
+    /// The prescribed arc length.
     pub step: f64,
     /// The direction that the forward term rewards; unit arc length.
     forward: &'a Rate,
@@ -78,7 +78,7 @@ pub struct IncrementProgram<'a> {
     pub forward_weight: f64,
     reach: Vec<InReach>,
     variables: usize,
-    /// Bound on each displacement and on the load, over the arc length sought; infinite where there is none.
+    /// Bound on each displacement and on the load, over the prescribed arc length; infinite where there is none.
     most_motion: f64,
 }
 
@@ -90,9 +90,9 @@ struct InReach {
     friction: CoulombFriction,
     /// Number of tangents with friction: 0, 1 (a polyhedral cone) or 2 (a circular one).
     tangents: usize,
-    /// Frame at the start of the increment, along which slip is counted.
+    /// Frame at the start of the increment, along which slip is measured.
     frame: Frame,
-    /// `r_t⁽ᵏ⁾/F` along the tangents; with circular cones divided by what the objective is divided by.
+    /// `r_t⁽ᵏ⁾/F` along the tangents; with circular cones divided by the scale of the objective.
     traction: Components,
 }
 
@@ -130,19 +130,19 @@ impl InReach {
     }
 }
 
-/// What the program says of an increment.
+/// The result of the program for an increment.
 #[derive(Debug, Clone)]
 pub struct Named {
     /// The contact modes at the end of the increment.
     pub modes: Vec<Mode>,
-    /// In 3D, where some contact has friction: the state there, with the arc length exactly the one sought and residuals at
-    /// round-off. `None` where the semismooth method did not get there.
+    /// In 3D, where some contact has friction: the state at the end, with exactly the prescribed arc length and
+    /// residuals at round-off. `None` where the semismooth method did not converge.
     #[cfg(test)]
     pub end: Option<State>,
 }
 
 impl Named {
-    /// Modes that there is nothing to decide about.
+    /// The result of modes that are known already.
     pub fn of(modes: &[Mode]) -> Self {
         Self {
             modes: modes.to_vec(),
@@ -152,14 +152,14 @@ impl Named {
     }
 }
 
-/// What the modes of a start lead to.
+/// The result of following the modes of a start.
 #[derive(Debug, Clone)]
 pub enum ForeseenModes {
-    /// A solution, with contacts that are not about to change.
+    /// A solution, with no contact about to change.
     Named(Named),
-    /// Some contact changes after this part of the arc length.
+    /// Some contact changes after this fraction of the arc length.
     EndsAfter(f64),
-    /// They hold, but a contact is so near to a change all along that another mode may be better.
+    /// The modes hold, but a contact is so near to a change throughout that another mode may be better.
     Untold,
     /// No solution was found.
     Unclear,
@@ -171,7 +171,7 @@ pub struct ProgramCounts {
     pub qp_solves: u64,
     pub mpec_solves: u64,
     pub sqp_iterations: u64,
-    /// The last bound on products that was visited; `None` where the start's own branch was enough.
+    /// The last bound on products that was used; `None` where the start's own branch was enough.
     pub last_relaxation: Option<f64>,
 }
 
@@ -185,7 +185,7 @@ impl ProgramCounts {
 }
 
 impl<'a> IncrementProgram<'a> {
-    /// `forward` is the direction in which the increment is to go; `γ1` is set for it.
+    /// The program of an increment; `forward` is its expected direction, for which `γ1` is set.
     pub fn new(loading: Loading<'a>, base: &'a State, forward: &'a Rate, step: f64, force: f64) -> Self {
         let structure = loading.structure;
         let mut next = structure.unknowns() + 1;
@@ -221,7 +221,7 @@ impl<'a> IncrementProgram<'a> {
         program
     }
 
-    /// Brings the objective to numbers near one, whatever the friction, so that tolerances mean the same.
+    /// Scales the objective to the order of one, whatever the friction, so that tolerances keep their meaning.
     fn divide_objective(&mut self, scale: f64) {
         self.arc_weight /= scale;
         self.forward_weight /= scale;
@@ -230,7 +230,7 @@ impl<'a> IncrementProgram<'a> {
         }
     }
 
-    /// `-r_t⁽ᵏ⁾·u̇_t / F`
+    /// The dissipation `-r_t⁽ᵏ⁾·u̇_t / F` along a rate.
     fn dissipation_along(&self, rate: &Rate) -> f64 {
         let of = |entry: &InReach| {
             let motion = self.motion(entry, rate);
@@ -239,7 +239,7 @@ impl<'a> IncrementProgram<'a> {
         self.reach.iter().map(of).sum()
     }
 
-    /// `r_t⁽ᵏ⁾·Δu_t / (F S)` of the variables: the objective's dissipation.
+    /// The dissipation term `r_t⁽ᵏ⁾·Δu_t / (F S)` of a contact in the objective.
     fn dissipation_of(&self, entry: &InReach, x: &DVector<f64>) -> f64 {
         if entry.tangents == 2 {
             return (0..2).map(|k| entry.traction[k] * x[entry.slip(k)]).sum();
@@ -252,7 +252,7 @@ impl<'a> IncrementProgram<'a> {
         tangent_components::components(&entry.frame, &self.loading.relative_rate(entry.contact, self.base, rate))
     }
 
-    /// The variables of a state on the way, for a start.
+    /// The variables of the state one step along a rate, as a start.
     pub fn variables_at(&self, rate: &Rate) -> DVector<f64> {
         let structure = self.loading.structure;
         let mut x = DVector::zeros(self.variables);
@@ -285,8 +285,8 @@ impl<'a> IncrementProgram<'a> {
         x
     }
 
-    /// A bound on the slip that tells the start's branch: above it for a contact that stays apart, below it for one that
-    /// is about to close, so that it is taken to slip.
+    /// A bound on the slip that selects the start's branch: larger than the slip for a contact that stays open, smaller
+    /// for a contact that is about to close, so that the contact is taken to slip.
     fn bound_at(&self, entry: &InReach, x: &DVector<f64>, slip: Components) -> f64 {
         let size = slip[0].hypot(slip[1]);
         if x[entry.normal()] > 0.0 {
@@ -307,7 +307,7 @@ impl<'a> IncrementProgram<'a> {
         state
     }
 
-    /// Solves from a start and reads the contact modes off the solution; `None` where no solution was found.
+    /// Solves from a start and extracts the contact modes of the solution; `None` where no solution was found.
     ///
     /// `present` decides where a pair is biactive.
     pub fn name(
@@ -322,7 +322,7 @@ impl<'a> IncrementProgram<'a> {
         }
     }
 
-    /// The same in the branch of the modes `present` alone: whether they hold for an increment of this length.
+    /// Solves in the branch of the modes `present` alone, to decide whether they hold for an increment of this length.
     pub fn foresee(
         &mut self,
         start: &DVector<f64>,
@@ -340,8 +340,8 @@ impl<'a> IncrementProgram<'a> {
         branch: Option<&[PairActivity]>,
         cancel: &CancelFlag,
     ) -> (ForeseenModes, ProgramCounts) {
-        // The start is a predictor in a mode that is likely right: where no solution lies near it, a shorter increment
-        // helps more than a longer search.
+        // The start is a predictor in a mode that is likely correct: where no solution lies near the start, a shorter
+        // increment helps more than a longer search.
         let warm = Settings::warm();
         let settings = Settings {
             finish: Finish::PatternSettled,
@@ -396,7 +396,8 @@ impl<'a> IncrementProgram<'a> {
                 continue;
             }
             let [(forward, _), (backward, _)] = entry.parts();
-            // Where the contact is free, there is no force either way; one part of the slip is left to take what it is.
+            // An open contact has no friction force in either sense; one part of the slip is left free to take its
+            // value.
             let sliding = match mode {
                 Mode::Stick => [false, false],
                 Mode::Slip { direction } => {
@@ -410,14 +411,15 @@ impl<'a> IncrementProgram<'a> {
         members
     }
 
-    /// What the rounding of displacements leaves of equilibrium: next to stiff elements no program can do better.
+    /// The residual of equilibrium due to the rounding of displacements: next to stiff elements no program can do
+    /// better.
     fn rounding(&self, x: &DVector<f64>) -> f64 {
         let rounding = self.loading.structure.rounding(&self.state(x).displacement);
         ROOM * rounding.into_iter().fold(0.0, f64::max) / self.force
     }
 
-    /// How far a contact has moved since the start over the step, along the tangents there; of a node in the unknowns
-    /// themselves, which keeps their digits.
+    /// The motion of a contact since the start over the step, along the tangents there; for a single node from the
+    /// unknowns themselves, which keeps their digits.
     fn motion_at(&self, entry: &InReach, state: &State, x: &DVector<f64>) -> Components {
         let structure = self.loading.structure;
         if self.loading.contacts[entry.contact].kinematics.node().is_none() {
@@ -435,7 +437,7 @@ impl<'a> IncrementProgram<'a> {
         motion
     }
 
-    /// The unknowns that move a contact at a state, and how they do.
+    /// The unknowns that move a contact at a state, with the motion of the contact per unknown.
     fn columns_of(&self, entry: &InReach, state: &State) -> SmallVec<[(usize, Vector); 3]> {
         let mut columns = SmallVec::new();
         self.loading.each_column(entry.contact, state, |freedom, column| {
@@ -446,7 +448,7 @@ impl<'a> IncrementProgram<'a> {
 }
 
 impl InReach {
-    /// The tangents at another place on the obstacle.
+    /// The tangents at another position on the obstacle.
     fn tangents_at(&self, frame: &Frame) -> [Vector; 2] {
         if self.tangents < 2 || frame.curvature == 0.0 {
             return if self.tangents < 2 { frame.tangents } else { self.frame.tangents };
@@ -455,7 +457,7 @@ impl InReach {
         self.frame.tangents.map(|direction| Start { direction, normal }.carried_to(&frame.normal))
     }
 
-    /// How one of them turns with a motion.
+    /// The change of one of these tangents with a motion.
     fn tangent_change(&self, frame: &Frame, tangent: &Vector, motion: &Vector) -> Vector {
         if self.tangents < 2 {
             return frame.tangent_change(motion);

@@ -1,5 +1,6 @@
-//! The program solved by itself, with nothing known of its end: the products relaxed to `ε`, `ε` falling to its last value,
-//! each relaxed program by sequential quadratic programming, each quadratic program by the interior-point method.
+//! The program solved on its own, without knowledge of its end: the products are relaxed to `ε`, which decreases to its
+//! last value; each relaxed program is solved by sequential quadratic programming, each quadratic program by the
+//! interior-point method.
 
 use crate::complementarity::mpec::{self, Finish, Settings, SolveStatus, SolverIterate};
 use crate::mechanics::contact::Mode;
@@ -9,36 +10,36 @@ use crate::step::increment_mpec::solution_extraction;
 use crate::step::increment_mpec::{InReach, IncrementProgram, LOOSEST, ProgramCounts};
 use nalgebra::DVector;
 
-/// The largest first bound on the products, the factor from one to the next, and the last.
+/// The largest first bound on the products, the ratio of successive bounds, and the last bound.
 const FIRST: f64 = 1e-2;
 const FACTOR: f64 = 1e-2;
 const LAST: f64 = 1e-8;
-/// Most of each displacement and of the load in an increment, over the arc length sought.
+/// Largest change of each displacement and of the load in an increment, over the prescribed arc length.
 const MOST_MOTION: f64 = 2.0;
-/// Iterations of one sequence.
+/// Largest number of iterations of one sequence.
 const MOST_ITERATIONS: usize = 40;
-/// Biactive pairs whose branches are enumerated.
+/// Largest number of biactive pairs whose branches are enumerated.
 const ENUMERATED: usize = 6;
 
-/// Where the program ends.
+/// The end of an increment that the search found.
 #[derive(Debug, Clone)]
 pub struct ProgramEnd {
     /// The contact modes at the end of the increment.
     pub modes: Vec<Mode>,
-    /// The state there, as exact as the program is.
+    /// The state at the end, as exact as the program is.
     pub state: State,
-    /// Its variables, from which the next search may start.
+    /// The variables at the end, from which the next search may start.
     pub variables: DVector<f64>,
-    /// Its arc length over the one sought.
+    /// The arc length over the prescribed one.
     pub size: f64,
 }
 
-/// One search.
+/// The result of one search.
 pub struct Searched {
     /// `None` where no stationary point was found.
     pub end: Option<ProgramEnd>,
     pub counts: ProgramCounts,
-    /// Where they are kept.
+    /// The iterates, if they are kept.
     pub iterates: Vec<SolverIterate>,
 }
 
@@ -48,13 +49,14 @@ pub struct ContactAt {
     pub contact: usize,
     pub gap: f64,
     pub normal: f64,
-    /// `μ r_n - |r_t|`
+    /// The margin `μ r_n - |r_t|`.
     pub within_cone: f64,
-    /// `|Δu_t|`
+    /// The size `|Δu_t|`.
     pub slip: f64,
 }
 
-/// Keeps searches from going to solutions far away, of which the arc length cannot become the one sought.
+/// Bounds the motion: searches do not go to distant solutions, whose arc length cannot be adapted to the prescribed
+/// one.
 pub fn stay_near(program: &mut IncrementProgram<'_>) {
     program.most_motion = MOST_MOTION;
 }
@@ -81,20 +83,20 @@ pub fn contacts_at(program: &IncrementProgram<'_>, variables: &DVector<f64>) -> 
     (state, contacts)
 }
 
-/// The arc length at variables of the program over the one sought.
+/// The arc length at variables of the program over the prescribed one.
 pub fn arc_length_ratio(program: &IncrementProgram<'_>, variables: &DVector<f64>) -> f64 {
     variables.rows(0, program.loading.structure.unknowns() + 1).norm()
 }
 
 /// The first bound on the products. A bound `ε` lets a contact within its cone slip by about `ε` over its distance from
-/// it and dissipate without having to: that has to be little beside what the objective gains along the path.
+/// the cone, with a spurious dissipation: this has to be small compared with the gain of the objective along the path.
 pub fn first_relaxation(program: &IncrementProgram<'_>) -> f64 {
     let tractions = program.reach.iter().flat_map(|entry| &entry.traction[..entry.tangents]);
     let largest = tractions.fold(0.0_f64, |largest, traction| largest.max(traction.abs()));
     (FIRST * (program.arc_weight / largest).min(1.0)).max(LAST)
 }
 
-/// Solves from a start, `γ1` and `γ2` as they are; `present` decides where a pair is biactive.
+/// Solves from a start with the present `γ1` and `γ2`; `present` decides where a pair is biactive.
 pub fn search_from(
     program: &IncrementProgram<'_>,
     start: &DVector<f64>,
@@ -141,8 +143,8 @@ pub fn tighter(relaxation: f64) -> Option<f64> {
     (relaxation > LAST).then(|| (FACTOR * relaxation).max(LAST))
 }
 
-/// Adapts `γ1` to a solution whose arc length is not the one sought: along a straight direction the arc length is
-/// inversely proportional to it.
+/// Adapts `γ1` to a solution whose arc length is not the prescribed one: along a straight direction the arc length is
+/// inversely proportional to `γ1`.
 pub fn adapt_arc_weight(program: &mut IncrementProgram<'_>, size: f64) {
     program.arc_weight *= size.clamp(0.02, 50.0);
 }

@@ -1,4 +1,4 @@
-//! What is read off the end of an increment: contact modes, the state, and the state made exact.
+//! The results of an increment from the variables at its end: contact modes, the state, and the exact solution.
 
 use crate::complementarity::mpec::semismooth::{self, Polished};
 use crate::complementarity::mpec::{Activities, ConeActivity, PairActivity, Problem, ProgramSolution};
@@ -8,15 +8,15 @@ use crate::resources::cancel::CancelFlag;
 use crate::step::increment_mpec::{InReach, IncrementProgram, Named, tangent_components};
 use nalgebra::DVector;
 
-/// Tangential force or slip, relative to the scales, that has no direction of its own.
+/// Tangential force or slip, relative to the scales, below which its direction is undefined.
 const NO_DIRECTION: f64 = 1e-9;
 /// Largest member of a pair that counts as zero at an exact end.
 const SAME: f64 = 1e-9;
 /// Least cosine between the motion that the program found and the exact one.
 const SAME_WAY: f64 = 0.9;
 
-/// What a solution of the program says. Where there are cones, it is first made exact, so that directions of slip are
-/// those of the increment's own end.
+/// The result of a solution of the program. Where there are circular cones, the solution is first made exact, so that
+/// the directions of slip are those at the end of the increment.
 pub(super) fn named_modes(
     program: &IncrementProgram<'_>,
     solution: ProgramSolution,
@@ -40,7 +40,7 @@ pub(super) fn named_modes(
     }
 }
 
-/// The exact end near variables of the program, where there are cones.
+/// The exact solution near variables of the program, where there are circular cones.
 fn exact_end(program: &IncrementProgram<'_>, x: &DVector<f64>, cancel: &CancelFlag) -> Option<DVector<f64>> {
     if program.cone_sizes().is_empty() {
         return None;
@@ -48,7 +48,7 @@ fn exact_end(program: &IncrementProgram<'_>, x: &DVector<f64>, cancel: &CancelFl
     let polished = polish(program, x, cancel).filter(|polished| polished.is_converged)?;
     let moved = program.loading.structure.unknowns() + 1;
     let (before, after) = (x.rows(0, moved), polished.x.rows(0, moved));
-    // Another solution than the program's is no answer to what the program chose.
+    // A solution other than that of the program is rejected.
     (before.dot(&after) >= SAME_WAY * before.norm() * after.norm()).then_some(polished.x)
 }
 
@@ -106,8 +106,8 @@ pub(super) fn end_state(program: &IncrementProgram<'_>, x: &DVector<f64>) -> Sta
     state
 }
 
-/// The increment's equilibrium, contact and friction with the arc length exactly the one sought, by the semismooth
-/// Newton method from variables of the program: what serves where a mode's own equations cannot start, since the
+/// Solves equilibrium, contact and friction of the increment with exactly the prescribed arc length, by the semismooth
+/// Newton method from variables of the program. This serves where the equations of a mode cannot be started, since the
 /// direction of slip is not known.
 pub(super) fn polish(program: &IncrementProgram<'_>, x: &DVector<f64>, cancel: &CancelFlag) -> Option<Polished> {
     let moved = program.loading.structure.unknowns() + 1;

@@ -37,7 +37,7 @@ fn kkt_holds(name: &str, forward: impl Fn(&Scene) -> Rate) {
     let x = &solution.x;
     let moved = x.rows(0, scene.structure.unknowns() + 1).norm();
     assert!(moved > 0.05, "{name}: the step must not be zero, {moved}");
-    // Gradients of all active constraints, one a column.
+    // Gradients of all active constraints, one per column.
     let mut equalities = SparseRows::zeros(program.equalities(), program.variables());
     program.equality_jacobian(x, &mut equalities);
     let mut columns: Vec<DVector<f64>> = equalities.to_dense().row_iter().map(|row| row.transpose()).collect();
@@ -56,7 +56,7 @@ fn kkt_holds(name: &str, forward: impl Fn(&Scene) -> Rate) {
         }
     }
     let gradients = DMatrix::from_columns(&columns);
-    // y - (γ2/γ1) d must lie in their span.
+    // y - (γ2/γ1) d must lie in the span of the gradients.
     let unknowns = scene.structure.unknowns() + 1;
     let mut step = DVector::zeros(program.variables());
     let direction = program.variables_at(&forward);
@@ -70,7 +70,7 @@ fn kkt_holds(name: &str, forward: impl Fn(&Scene) -> Rate) {
 
 fn towards_the_load(scene: &Scene) -> Rate {
     let pattern = scene.stages[0].pattern.forces.clone();
-    // A guess of slip, so that the start names the branch.
+    // A guess of slip, so that the start selects the branch.
     let pressed = |contact: &crate::mechanics::contact::ContactPair| crate::mechanics::contact::Reaction {
         normal: 0.4,
         tangential: [-0.4 * contact.friction.coefficient, 0.0, 0.0],

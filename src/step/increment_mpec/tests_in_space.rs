@@ -71,7 +71,7 @@ impl OneBar {
         }
     }
 
-    /// A spring to the ground besides, without which the tip can turn about the pin.
+    /// Adds a spring to the ground, without which the tip can turn about the pin.
     fn with_spring(mut self, stiffness: f64) -> Self {
         let mut matrix = [[0.0; 3]; 3];
         (0..3).for_each(|k| matrix[k][k] = stiffness);
@@ -126,7 +126,7 @@ fn slip_in_plane(mode: Mode) -> [f64; 3] {
     direction
 }
 
-/// How far an end is from equilibrium, Coulomb's law and the arc length, by its own reckoning.
+/// The largest violation of equilibrium, Coulomb's law and the arc length at an end, computed independently.
 fn off_balance(scene: &OneBar, base: &State, end: &State, step: f64) -> f64 {
     let mut force = vec![0.0; 6];
     scene.structure.internal_force(&end.displacement, &mut force);
@@ -151,7 +151,7 @@ fn off_balance(scene: &OneBar, base: &State, end: &State, step: f64) -> f64 {
     worst
 }
 
-/// What a march along the tractrix took and how far off it ended.
+/// The cost and the error of a march along the tractrix.
 struct March {
     increments: u64,
     counts: ProgramCounts,
@@ -194,7 +194,7 @@ fn march(step: f64) -> March {
         base = end;
         march.increments += 1;
         assert!(march.increments < 10_000, "the march ends");
-        // Off the track, measured along x at the present w, times the track's slope.
+        // The distance from the track: that along x at the present w, times the slope of the track.
         let w = b - base.displacement[4];
         let c = friction * h;
         let slope = w / (c * c - w * w).sqrt();
@@ -225,7 +225,7 @@ fn the_tip_slides_along_the_tractrix_to_first_order() {
     assert!(fine.error < 5e-3, "{:e}", fine.error);
 }
 
-/// At an unstressed start nothing tells the direction of slip; the exact one is `(√(c² - b²), -b)/c`.
+/// At an unstressed start nothing determines the direction of slip; the exact one is `(√(c² - b²), -b)/c`.
 #[test]
 fn the_direction_of_the_first_slip_is_found() {
     let (b, h, friction) = (0.1, 1.0, 0.8);
@@ -245,7 +245,7 @@ fn the_direction_of_the_first_slip_is_found() {
     assert!(miss < 1e-4, "{slip:?} is not {exact:?}");
 }
 
-/// A tip above the floor comes down obliquely and lands sliding, in a direction that no reaction tells beforehand.
+/// A tip above the floor comes down obliquely and lands sliding, in a direction that no reaction determines beforehand.
 #[test]
 fn a_landing_tip_slides_in_the_direction_in_which_it_lands() {
     let scene = OneBar::new([0.0, 0.1, 1.0], [-1.4, 0.0, 0.004], 0.2, [1.0, 0.2, -0.4]);
@@ -267,8 +267,8 @@ fn a_landing_tip_slides_in_the_direction_in_which_it_lands() {
     assert!(dot(&slip, &moved) / size > 0.999, "{slip:?} against {moved:?}");
 }
 
-/// Without the program, from a predictor that knows no reaction and no direction of slip: the residual falls to round-off,
-/// at the end as the square of the one before.
+/// Without the program, from a predictor that knows no reaction and no direction of slip: the residual falls to
+/// round-off, at the end quadratically.
 #[test]
 fn the_landing_converges_quadratically_from_the_predictor() {
     let scene = OneBar::new([0.0, 0.1, 1.0], [-1.4, 0.0, 0.004], 0.2, [1.0, 0.2, -0.4]);
@@ -287,7 +287,8 @@ fn the_landing_converges_quadratically_from_the_predictor() {
     }
 }
 
-/// A tip near the floor that stays apart, and one that leaves it: the slip's bound is undetermined and does no harm.
+/// A tip near the floor that stays open, and one that leaves the floor: the undetermined bound on the slip does no
+/// harm.
 #[test]
 fn a_tip_that_is_apart_at_the_end_bears_nothing() {
     for (height, pattern, tip) in [(0.01, [1.0, 0.2, 0.0], [0.8, 0.1, 0.0]), (0.0, [0.3, 0.0, 1.0], [0.1, 0.0, 0.5])] {
@@ -307,7 +308,7 @@ fn a_tip_that_is_apart_at_the_end_bears_nothing() {
     }
 }
 
-/// Pushed less than friction bears, the tip sticks; the increment is all load.
+/// Pushed by less than the friction bound, the tip sticks; only the load changes in the increment.
 #[test]
 fn a_pressed_tip_sticks() {
     let scene = OneBar::new([0.0, 0.1, 1.0], [-1.4, 0.0, 0.0], 0.8, [0.3, 0.1, -1.0]);
@@ -323,7 +324,7 @@ fn a_pressed_tip_sticks() {
     assert!((end.reactions[0].normal - 0.02).abs() < 1e-14);
 }
 
-/// Functions and derivatives against differences, at a point where nothing is special.
+/// Functions and derivatives against finite differences, at a generic point.
 #[test]
 fn derivatives_are_those_of_differences() {
     let scene = OneBar::new([0.0, 0.1, 1.0], [-1.4, 0.0, 0.004], 0.2, [1.0, 0.2, -0.4]);
@@ -335,7 +336,7 @@ fn derivatives_are_those_of_differences() {
     let (equalities, pairs, in_cones) = (program.equalities(), program.pairs(), 3 * program.cone_sizes().len());
     assert_eq!((n, equalities, pairs, in_cones), (10, 5, 1, 3));
     let x = DVector::from_fn(n, |i, _| 0.3 - 0.11 * i as f64 + 0.05 * (i * i % 7) as f64);
-    // All functions, one below the other, and their gradients.
+    // All functions, in one vector, and their gradients.
     let values = |x: &DVector<f64>| {
         let mut all = vec![program.objective(x)];
         let (mut h, mut a, mut b) = (DVector::zeros(equalities), DVector::zeros(pairs), DVector::zeros(pairs));
@@ -403,7 +404,8 @@ fn karush_kuhn_tucker_conditions_of_the_increment_in_space() {
     program.pair_jacobians(x, &mut gap, &mut reaction);
     columns.push(gap.to_dense().row(0).transpose());
     assert_eq!(solution.cone_activity, [mpec::ConeActivity::BothOnBoundary]);
-    // The complementarity of a pair on the boundary: its natural map's derivative, independent of the solver's rows.
+    // The complementarity of a pair on the boundary: the derivative of its natural map, independent of the solver's
+    // rows.
     let (mut a, mut b) = (DVector::zeros(3), DVector::zeros(3));
     program.cone_values(x, &mut a, &mut b);
     let (mut first, mut second) = (DMatrix::zeros(3, n), DMatrix::zeros(3, n));

@@ -1,4 +1,4 @@
-//! What is shown of an increment without a search, beside what the search finds; and where nothing may be shown.
+//! The certificate of an increment compared with the search, and the conditions under which nothing may be certified.
 
 use crate::complementarity::mpec::Problem;
 use crate::complementarity::rate_search::tests::Random;
@@ -13,7 +13,7 @@ use crate::step::increment_mpec::*;
 use crate::step::segment::{Reached, StepStart as Beginning};
 use serde_json::{Map, json};
 
-/// Where an increment began.
+/// The start of an increment.
 struct Begun {
     state: State,
     rate: Rate,
@@ -43,7 +43,7 @@ impl Begun {
         mpec_verification::program(loading, self.force, ends, &self.rate, reached.step)
     }
 
-    /// What is shown of the increment to a point; nothing where no contact is in reach.
+    /// The result of the certificate for the increment to a point; unclear where no contact is in reach.
     fn shown(&self, loading: Loading<'_>, reached: &Reached) -> ForeseenModes {
         let program = self.program(loading, reached);
         program.map_or(ForeseenModes::Unclear, |mut program| {
@@ -56,12 +56,12 @@ fn arrived(reached: &Reached) -> Arrived<'_> {
     Arrived { state: &reached.corrected.state, rate: &reached.rate, error: reached.error_estimate }
 }
 
-/// Between 0 and 1.
+/// A random number between 0 and 1.
 fn part(random: &mut Random) -> f64 {
     0.5 * (1.0 + random.value())
 }
 
-/// Calls `look` for each increment of a path with where it began.
+/// Calls `look` for each increment of a path with the start of the increment.
 fn each_increment(scene: &Scene, mut look: impl FnMut(Loading<'_>, &Begun, &Increment)) {
     let mut path = Path::new(scene, CancelFlag::default());
     path.next();
@@ -106,7 +106,7 @@ fn row(random: &mut Random) -> Scene {
     Scene::new(&serde_json::from_value(request).expect("a request")).expect("a scene")
 }
 
-/// The whole program, `γ1` as it was adapted, finds nothing better from nearby and names the same modes.
+/// The full program with the adapted `γ1`, started nearby, finds no better solution and the same modes.
 #[test]
 fn what_is_shown_is_a_solution_that_the_search_finds() {
     let (mut random, mut shown, mut asked) = (Random::new(7), 0, 0);
@@ -132,7 +132,7 @@ fn what_is_shown_is_a_solution_that_the_search_finds() {
             start.iter_mut().for_each(|value| *value *= 1.0 + 1e-3 * part(&mut random));
             let solution = mpec::solve(&program, &start, &Settings::warm(), &CancelFlag::default()).unwrap();
             assert_eq!(solution.status, mpec::SolveStatus::Solved, "increment {}", increment.index);
-            // The search ends within its tolerances: no point of it is better, and it is near.
+            // The search ends within its tolerances: its end is not better, and it is near.
             let moved = loading.structure.unknowns() + 1;
             let apart = (solution.x.rows(0, moved) - end.rows(0, moved)).amax();
             let gained = program.objective(&end) - solution.objective;
@@ -146,7 +146,7 @@ fn what_is_shown_is_a_solution_that_the_search_finds() {
     assert!(asked > 200 && 10 * shown > 9 * asked, "{shown} of {asked}");
 }
 
-/// Past the end of a mode it says about where that was.
+/// Past the end of a mode the certificate gives the approximate position of the end.
 #[test]
 fn past_the_end_of_a_mode_nothing_is_shown_but_where_it_ends() {
     let (mut changes, mut ends) = (0, 0);
@@ -159,7 +159,7 @@ fn past_the_end_of_a_mode_nothing_is_shown_but_where_it_ends() {
                 return;
             }
             changes += 1;
-            // A slip that turned back on the way is still one in its old sense until it has come back.
+            // A slip that has reversed on the way keeps its old sense until it has returned to zero.
             let Some(reached) = begun.reach(loading, 3.0 * increment.step) else { return };
             let ForeseenModes::EndsAfter(part) = begun.shown(loading, &reached) else { return };
             let (found, there) = (part * reached.step, increment.step);
@@ -171,7 +171,7 @@ fn past_the_end_of_a_mode_nothing_is_shown_but_where_it_ends() {
     assert!(ends >= 5, "{ends} of {changes}");
 }
 
-/// Off equilibrium, against the direction, at a contact that is zero both ways, in a corner and on a circular cone.
+/// Off equilibrium, with a wrong reaction, against the direction, with a NaN and with a large error estimate.
 #[test]
 fn nothing_is_shown_where_a_condition_fails() {
     let scene = row(&mut Random::new(3));
@@ -230,7 +230,7 @@ fn a_contact_that_may_do_either_is_refused() {
     assert!(matches!(certificate::solved_at(&mut program, end, &begun.modes), ForeseenModes::Unclear));
 }
 
-/// Where slip turns in a plane, and where two obstacles press one node, the search has the word.
+/// Where slip turns in a plane, and where two obstacles touch one node, the search decides.
 #[test]
 fn circular_cones_and_corners_are_left_to_the_search() {
     let mut asked = 0;

@@ -1,6 +1,6 @@
-//! Increment after increment in space with several contacts: a chain of blocks on the floor `z >= 0`, tied by springs alike
-//! in all directions, each pressed, the first one pulled along the floor. Everything is known: block m + 1 starts to slip
-//! at the load `(m + 1) μ W`, all of them move along the pull.
+//! Successive increments in space with several contacts: a chain of blocks on the floor `z >= 0`, tied by isotropic
+//! springs, each block pressed, the first one pulled along the floor. The exact solution is known: block m + 1 starts
+//! to slip at the load `(m + 1) μ W`, and all blocks move along the pull.
 
 use crate::mechanics::contact::coulomb::CoulombFriction;
 use crate::mechanics::contact::kinematics::Kinematics;
@@ -60,16 +60,16 @@ impl Chain {
         }
     }
 
-    /// Pressed, and not pulled yet.
+    /// Pressed, and not yet pulled.
     fn pressed(&self) -> State {
         let mut state = State::at_rest(&self.structure, self.blocks);
         state.reactions.fill(Reaction { normal: self.weight, ..Reaction::default() });
         state
     }
 
-    /// How far each block has moved under a load that never fell.
+    /// The exact motion of each block under a load that never fell.
     fn exact(&self, load: f64) -> Vec<f64> {
-        // Block m bears μ W of what reaches it; the spring behind it carries on the rest.
+        // Block m takes μ W of the force that reaches it; the spring behind it transmits the rest.
         let carried: Vec<f64> =
             (1..=self.blocks).map(|blocks| (load - blocks as f64 * self.friction * self.weight).max(0.0)).collect();
         (0..self.blocks)
@@ -78,7 +78,8 @@ impl Chain {
     }
 }
 
-/// Runs increments until the load has passed `until`; returns the work and the worst distance from what is known.
+/// Runs increments until the load has passed `until`; returns the work and the largest distance from the exact
+/// solution.
 fn run(chain: &Chain, step: f64, until: f64) -> (ProgramCounts, u64, f64) {
     let mut base = chain.pressed();
     let mut forward = Rate {
@@ -134,7 +135,7 @@ fn blocks_start_to_slip_one_after_another() {
         [(1, 0.4, 0.3), (2, 0.4, 2.0), (3, 0.3, -0.7), (4, 1.5, 0.0), (3, 1e-3, 1.0), (2, 1e-5, 0.5), (2, 1e3, 0.5)]
     {
         let chain = Chain::new(blocks, friction, angle);
-        // Short of the load at which the last block slips too and nothing holds the chain.
+        // Below the load at which the last block slips, too, and nothing holds the chain.
         let strength = blocks as f64 * friction;
         let (work, increments, worst) = run(&chain, 0.07 * strength, 0.9 * strength);
         println!(
