@@ -2,7 +2,7 @@
 //! stage.
 //!
 //! ```text
-//! free: g      stick: μ r_n ± r_t, or μ r_n - |r_t|      slip: r_n and d·ẋ_t      load rate's sign      bounds of a stage
+//! free: g     stick: μ r_n ± r_t, or μ r_n - |r_t|     slip: r_n and d·ẋ_t     load rate's sign     bounds of a stage
 //! ```
 //!
 //! Between two points each quantity is also interpolated by a cubic Hermite polynomial, so that a dip below zero inside
@@ -58,7 +58,7 @@ pub enum Watch {
 
 /// The event functions that may end a mode continued from a state along a rate.
 pub fn of_mode(loading: Loading<'_>, modes: &[Mode], state: &State, rate: &Rate) -> Vec<Watch> {
-    // Those of each contact, of the load and of the ends of the stage.
+    // Capacity for those of each contact, of the load and of the ends of the stage.
     let mut watches = Vec::with_capacity(2 * modes.len() + 2);
     let mut together = Vec::new();
     for (corner, data) in loading.corners.iter().enumerate() {

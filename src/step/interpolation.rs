@@ -23,7 +23,7 @@ pub(crate) fn placed(start: &StepStart<'_>, reached: &Reached) -> PlacedPoint {
     PlacedPoint { place, state: reached.corrected.state.clone(), rate }
 }
 
-/// Largest step, over the step before, to which the path is extrapolated: round-off must not be amplified visibly.
+/// Largest step, over the step before, for which the path is extrapolated: round-off must not be amplified visibly.
 const MOST_FORESEEN: f64 = 4.0;
 
 impl PlacedPoint {

@@ -113,7 +113,7 @@ const MOST_CORRECTION: f64 = 0.1;
 const MOST_PASSES: u64 = 12;
 /// Change of the angles (radians) of these directions up to which they have settled.
 const SETTLED: f64 = 1e-10;
-/// Largest negative value of an event function, over its scale, that does not count as passed.
+/// Magnitude of an event function, over its scale, up to which a negative value does not count as passed.
 pub(crate) const PASSED: f64 = 1e-13;
 /// Distance (dimensionless) within which a bound of the stage is reached.
 pub const AT_END: f64 = 1e-12;
@@ -250,9 +250,9 @@ impl StepStart<'_> {
         Reached::new(corrected, rate, step, error_estimate)
     }
 
-    /// A step of an arc length, or to the first event before.
+    /// A step of a given arc length, or to the first event before its end.
     ///
-    /// `ends` are those of the stage; `load_sign` is the sign of the load rate along the path at the start;
+    /// `ends` are the ends of the stage; `load_sign` is the sign of the load rate along the path at the start;
     /// `singular_limit` locates limit points at which the equations are singular.
     pub fn advance(
         &self,

@@ -4,7 +4,7 @@
 //! A slider that sticks at a limit point of the structure attached to it keeps this structure at its limit point,
 //! whatever the load on the slider: all along the path a second null vector leaves Newton's method without a unique
 //! correction. Where the path is otherwise straight, the point straight ahead satisfies the equations. Where it is not
-//! (another part slips), they are solved with the motions suppressed that they leave undetermined.
+//! (another part slips), the equations are solved with the undetermined motions suppressed.
 
 use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::equations::closing_equation::ClosingEquation;

@@ -1,7 +1,7 @@
 //! The motion of a contact with the structure.
 //!
 //! ```text
-//! x = m(u)        ẋ = B(u) u̇        forces on the structure: Bᵀ r,   their derivative at constant r: Σ_k r_k ∂²m_k/∂u²
+//! x = m(u)       ẋ = B(u) u̇       forces on the structure: Bᵀ r,   their derivative at constant r: Σ_k r_k ∂²m_k/∂u²
 //! ```
 //!
 //! `x` is the position of the contact in the axes of its obstacle, relative to the undeformed position; obstacle, gap,

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! f_int(u) - s f - f_held - Σ_i (n r_n + r_t)_i = 0          equilibrium
-//! g_i(u, s) = 0                                              closed contacts (or the gap below 1e-10 at which one closed)
+//! g_i(u, s) = 0                                              closed contacts (or the gap below 1e-10 at closing)
 //! t·(x_i - x_i⁰) = 0                                         sticking contacts, unknown r_t
 //! r_t = -μ r_n d                                             slipping contacts, d a tangent, or along an edge
 //! c(u, s) = 0                                                arc length, or a prescribed load or displacement

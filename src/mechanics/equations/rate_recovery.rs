@@ -14,7 +14,7 @@ impl ModeSystem<'_> {
         self.rate_at(&self.iterate(state.clone()), values, Kind::Rates)
     }
 
-    /// The rate of a solution at an iterate; `kind` is that of the equations solved.
+    /// The rate of a solution at an iterate; `kind` is the kind of the equations solved.
     pub(crate) fn rate_at(&self, iterate: &Iterate, values: &DVector<f64>, kind: Kind) -> Rate {
         let mut rate = self.no_rate();
         self.rate_into(iterate, values, kind, &mut rate);
@@ -127,8 +127,8 @@ impl ModeSystem<'_> {
         self.modes.iter().enumerate().map(at).collect()
     }
 
-    /// The path's direction in this mode at its anchor or at a converged point: the null vector of the rate equations, of
-    /// unit arc length, on the side of `towards`. `None` where the equations have no such vector or more than one.
+    /// The path's direction in this mode at its anchor or at a converged point: the null vector of the rate equations,
+    /// of unit arc length, on the side of `towards`. `None` where the equations have no such vector or more than one.
     pub fn tangent(&self, corrected: &Corrected, towards: &Rate) -> Option<Rate> {
         let iterate = self.iterate_of(corrected);
         self.tangent_by(&self.bordered(&iterate, towards)?, &iterate)

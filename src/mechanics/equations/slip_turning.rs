@@ -29,8 +29,8 @@ impl ModeSystem<'_> {
         settles
     }
 
-    /// The largest angle (radians) between the direction of a slip in a plane and that at another point, or that at the
-    /// start; contacts without normal reaction are left out.
+    /// The largest angle (radians) between the directions of a slip in a plane at a point and at another point, or at
+    /// the start; contacts without normal reaction are left out.
     pub fn largest_turn(&self, corrected: &Corrected, other: Option<&Corrected>) -> f64 {
         let of = |(index, role): (usize, &Role)| {
             let (Role::Plane { track }, Mode::Slip { direction }) = (role, corrected.modes[index]) else {

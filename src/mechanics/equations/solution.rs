@@ -38,6 +38,7 @@ pub struct Tangent {
     pub error: f64,
     /// Sign of the bordered determinant, where it is certain.
     pub determinant: Option<f64>,
-    /// For each contact that slips in a plane, the stiffness across the slip: force per motion. Empty where none does.
+    /// For each contact that slips in a plane, the stiffness across the slip: force per motion. Empty where no contact
+    /// slips in a plane.
     pub stiffness_across: Vec<Option<f64>>,
 }

@@ -65,7 +65,7 @@ pub fn each_column(
     }
 }
 
-/// Adds a multiple of the forces `Bᵀ r` of a contact to those on the degrees of freedom.
+/// Adds a multiple of the forces `Bᵀ r` of a contact to the forces on the degrees of freedom.
 #[inline(always)]
 pub fn add_force(
     structure: &Structure,

@@ -128,7 +128,7 @@ fn value(ends: Ends, length: f64, x: f64) -> f64 {
         + x * x * ((1.0 + 2.0 * y) * ends.last - y * length * ends.last_rate)
 }
 
-/// Derivative by `x`, that is by arc length over the length.
+/// Derivative with respect to `x`, the arc length over the length of the increment.
 fn slope(ends: Ends, length: f64, x: f64) -> f64 {
     let y = 1.0 - x;
     6.0 * x * y * (ends.last - ends.first)

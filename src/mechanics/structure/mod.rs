@@ -64,8 +64,8 @@ impl Structure {
         Self::like(None, dimension, nodes, supports, elements)
     }
 
-    /// As [`new`](Self::new), with the sparsity layout of another structure if this has the same unknowns and elements
-    /// between the same nodes.
+    /// As [`new`](Self::new), with the sparsity layout of another structure if the other one has the same unknowns and
+    /// elements between the same nodes.
     pub fn like(
         other: Option<&Self>,
         dimension: usize,

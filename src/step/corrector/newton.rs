@@ -38,8 +38,8 @@ const SMALL: f64 = 1e-6;
 /// says little about the error of the state. A large structure is soft compared with its elements, and the ratio falls
 /// with its size: it is 8e-5 in a lattice of 102,304 unknowns that touches with friction.
 pub(crate) const REGULAR: f64 = 3e-5;
-/// Largest last correction, over this ratio, for reuse below it: so small a correction changes the pivot by this
-/// fraction.
+/// Largest last correction, over the pivot ratio, with which a factorisation below [`REGULAR`] may be reused: so small
+/// a correction changes the smallest pivot by at most this fraction.
 const STILL_FALLS: f64 = 1e-2;
 /// Largest ratio of successive errors for which a factorisation from elsewhere is reused.
 const SERVES_ON: f64 = 0.1;

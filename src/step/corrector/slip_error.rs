@@ -1,7 +1,7 @@
 //! The drift of the computed path from the exact one: the error of slip tracks, accumulated along the path.
 //!
-//! Slip along any tangent is the only place where an increment has an error of discretisation (`slip_integration`). With
-//! `y = computed - exact` at the end of an increment, `y₀` at its start and the rule's defect
+//! Slip along any tangent is the only place where an increment has an error of discretisation (`slip_integration`).
+//! With `y = computed - exact` at the end of an increment, `y₀` at its start and the rule's defect
 //! `τ = h⁵ (θ'''' - κ² κ')/720`, the linearised equations of the increment give
 //!
 //! ```text
@@ -25,7 +25,7 @@ pub struct Pointed<'a> {
     pub rate: &'a Rate,
 }
 
-/// The drift at the end of an increment, from that at its start (`None`: none yet) and the point half way.
+/// The drift at the end of an increment, from the drift at its start (`None`: none yet) and the point half way.
 pub fn drift(
     system: &ModeSystem<'_>,
     start: &Rate,

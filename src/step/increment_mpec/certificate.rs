@@ -10,10 +10,11 @@
 //!
 //! and the point at `τ = 1` is a strict local solution where `φ'(1) = 0` and `φ''(1) < 0`. `γ1` is the parameter that
 //! is adapted until the increment has the prescribed arc length: `φ'(1) = 0` gives it directly, `γ1 = ℓ·y'(1)`, and it
-//! has to be positive. `y'(1)` is the path's direction at the point over its cosine with `y`; `y''(1)` is that of the
-//! cubic through both ends with their directions. With independent gradients of the mode's equations, `φ'(1) = 0` is
-//! equivalent to the existence of multipliers, and with no pair biactive the point is strongly stationary, hence
-//! B-stationary: H. Scheel and S. Scholtes, Math. Oper. Res. 25 (2000), doi:10.1287/moor.25.1.1.15213.
+//! has to be positive. `y'(1)` is the path's direction at the point over its cosine with `y`; `y''(1)` is the second
+//! derivative of the cubic through both ends with their directions. With independent gradients of the mode's equations,
+//! `φ'(1) = 0` is equivalent to the existence of multipliers, and with no pair biactive the point is strongly
+//! stationary, hence B-stationary: H. Scheel and S. Scholtes, Math. Oper. Res. 25 (2000),
+//! doi:10.1287/moor.25.1.1.15213.
 //!
 //! A member counts as positive where it exceeds the constraint violation at the point and the rounding of zero. A
 //! smaller member counts as positive if it was not negative at the start, decreases at neither end and increases at

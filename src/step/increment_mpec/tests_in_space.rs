@@ -161,8 +161,8 @@ struct March {
     seconds: f64,
 }
 
-/// The curving slip of the exact scenes: b = 0.1, h = 1, x0 = -1.4, μ = 0.8, from rest to x = -0.4. The start is unstressed,
-/// so the first increment does not know in which direction the tip will slip.
+/// The curved slip of the exact scenes: b = 0.1, h = 1, x0 = -1.4, μ = 0.8, from rest to x = -0.4. The start is
+/// unstressed, so that the first increment does not know in which direction the tip will slip.
 fn march(step: f64) -> March {
     let (b, h, x0, friction) = (0.1, 1.0, -1.4, 0.8);
     let scene = OneBar::new([0.0, b, h], [x0, 0.0, 0.0], friction, [1.0, 0.0, 0.0]);
@@ -194,7 +194,7 @@ fn march(step: f64) -> March {
         base = end;
         march.increments += 1;
         assert!(march.increments < 10_000, "the march ends");
-        // The distance from the track: that along x at the present w, times the slope of the track.
+        // The distance from the track: the distance along x at the present w, times the slope of the track.
         let w = b - base.displacement[4];
         let c = friction * h;
         let slope = w / (c * c - w * w).sqrt();

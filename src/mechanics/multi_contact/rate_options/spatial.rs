@@ -9,8 +9,8 @@ use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::State;
 
 /// The options of the node: it is held, slides along one obstacle or an edge, or leaves. The condition that the node is
-/// held is no linear form: see `Pocket::margin_of_rate`; nor is that of a first slip along one rough obstacle in space:
-/// see `slip_onset_direction`.
+/// held is no linear form: see `Pocket::margin_of_rate`; nor is the condition of a first slip along one rough obstacle
+/// in space: see `slip_onset_direction`.
 pub fn options(
     entry: &Changeable,
     pocket: &Pocket,

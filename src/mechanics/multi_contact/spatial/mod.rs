@@ -17,11 +17,11 @@
 //! ```
 //!
 //! At this bound the node slides, although obstacles between which it is wedged could hold a larger force: such a force
-//! takes wedging reactions, which nothing has brought about. A node that arrives from one obstacle with a force beyond
-//! this bound, and within the sum of the friction cones, is held, since no slide has such a force: where the force
-//! returns to the bound, the node may slide again, and where the force leaves the sum, no motion has it. Where the sum
-//! of the cones is all of space, the node is jammed and does not move, as in the plane. The supported components of the
-//! node are left out of `R` and of the normals.
+//! takes wedging reactions, which the loading has not produced. A node that arrives from one obstacle with a force
+//! beyond this bound, and within the sum of the friction cones, is held, since no slide has such a force: where the
+//! force returns to the bound, the node may slide again, and where the force leaves the sum, no motion is compatible
+//! with it. Where the sum of the cones is all of space, the node is jammed and does not move, as in the plane. The
+//! supported components of the node are left out of `R` and of the normals.
 //!
 //! `cone_sum` treats the sum of the cones, `sliding` the node while it slides, and `rate_options::spatial` the options
 //! of the node in the rate problem.

@@ -7,8 +7,9 @@ use std::fmt::Debug;
 
 /// One element. All quantities are dimensionless.
 ///
-/// `displacement` and `force` hold the element's own degrees of freedom, node by node: the translations of a node, then as
-/// many of its rotations as [`rotations`](Self::rotations) says. `stiffness` is square in them, row by row.
+/// `displacement` and `force` hold the element's own degrees of freedom, node by node: the translations of a node, then
+/// as many of its rotations as [`rotations`](Self::rotations) says. `stiffness` is a square matrix over these degrees
+/// of freedom, row by row.
 pub trait FiniteElement: Debug + Send + Sync {
     /// The nodes that the element joins.
     fn nodes(&self) -> &[usize];
