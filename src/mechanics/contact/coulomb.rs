@@ -69,7 +69,7 @@ impl CoulombFriction {
         self.bound(reaction.normal) - reaction.tangential_size()
     }
 
-    /// The square `|n - μ d|² = 1 + μ²`.
+    /// The squared norm `|n - μ d|² = 1 + μ²`.
     #[inline(always)]
     pub fn force_direction_squared(self) -> f64 {
         1.0 + self.coefficient * self.coefficient

@@ -68,7 +68,7 @@ pub fn all_continue(first: &[Mode], second: &[Mode]) -> bool {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Reaction {
     pub normal: f64,
-    /// In space.
+    /// A vector in space.
     pub tangential: Vector,
 }
 

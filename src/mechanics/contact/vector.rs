@@ -1,6 +1,6 @@
 //! Vectors in space; in 2D the third component is 0.
 
-/// Three components.
+/// A vector with three components.
 pub type Vector = [f64; 3];
 
 /// `a·b`

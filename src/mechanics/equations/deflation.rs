@@ -25,9 +25,9 @@ const NO_MOTION: f64 = 1e-8;
 
 /// A suppressed motion.
 pub(super) struct Still {
-    /// `ψ`
+    /// The left null vector `ψ`.
     column: DVector<f64>,
-    /// `φ`, as a row.
+    /// The motion `φ`, as a row.
     row: DVector<f64>,
 }
 

@@ -11,9 +11,9 @@ use serde::{Deserialize, Serialize};
 /// The loads that a load factor multiplies, dimensionless.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct LoadPattern {
-    /// Forces; all degrees of freedom.
+    /// Forces over all degrees of freedom.
     pub forces: Vec<f64>,
-    /// Displacements of supports; all degrees of freedom, or empty where no support moves in any stage.
+    /// Displacements of supports over all degrees of freedom; empty where no support moves in any stage.
     pub supports: Vec<f64>,
     /// Translation of each contact's obstacle.
     pub shifts: Vec<Vector>,

@@ -64,7 +64,7 @@ impl State {
         chord
     }
 
-    /// `‖(Δu, Δs)‖` to another state.
+    /// The distance `‖(Δu, Δs)‖` to another state.
     pub fn distance(&self, other: &Self) -> f64 {
         let squared: f64 = self.displacement.iter().zip(&other.displacement).map(|(a, b)| (a - b) * (a - b)).sum();
         (squared + (self.load - other.load).powi(2)).sqrt()
@@ -88,12 +88,12 @@ impl State {
 }
 
 impl Rate {
-    /// `‖(u̇, ṡ)‖`
+    /// The norm `‖(u̇, ṡ)‖`.
     pub fn size(&self) -> f64 {
         (dot(&self.displacement, &self.displacement) + self.load * self.load).sqrt()
     }
 
-    /// `(u̇, ṡ)₁·(u̇, ṡ)₂`
+    /// The inner product `(u̇, ṡ)₁·(u̇, ṡ)₂`.
     pub fn product(&self, other: &Self) -> f64 {
         dot(&self.displacement, &other.displacement) + self.load * other.load
     }

@@ -282,7 +282,7 @@ fn dissipated(program: &IncrementProgram<'_>, entry: &InReach, x: &DVector<f64>)
     if entry.tangents == 0 { 0.0 } else { -program.dissipation_of(entry, x) }
 }
 
-/// Whether some node is closed against two obstacles.
+/// Whether some node is in contact with two obstacles.
 fn is_any_node_pressed_twice(program: &IncrementProgram<'_>, state: &State) -> bool {
     program.loading.corners.iter().any(|corner| corner.closed(program.loading, state).len() >= 2)
 }

@@ -13,7 +13,7 @@ fn rough<'a>(program: &'a IncrementProgram<'_>) -> impl Iterator<Item = &'a InRe
     program.reach.iter().filter(|entry| entry.friction.is_rough())
 }
 
-/// Contacts with friction whose cone is a second-order one.
+/// Contacts with friction whose cone is a second-order cone.
 fn coned<'a>(program: &'a IncrementProgram<'_>) -> impl Iterator<Item = &'a InReach> {
     program.reach.iter().filter(|entry| entry.tangents == 2)
 }

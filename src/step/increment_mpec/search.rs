@@ -36,7 +36,7 @@ pub struct ProgramEnd {
 
 /// The result of one search.
 pub struct Searched {
-    /// `None` where no stationary point was found.
+    /// The end found; `None` where no stationary point was found.
     pub end: Option<ProgramEnd>,
     pub counts: ProgramCounts,
     /// The iterates, if they are kept.

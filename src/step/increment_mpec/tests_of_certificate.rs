@@ -37,7 +37,7 @@ impl Begun {
         start.reach(step, &mut Work::default()).ok()
     }
 
-    /// `None` where no contact is in reach.
+    /// The program of the increment; `None` where no contact is in reach.
     fn program<'a>(&'a self, loading: Loading<'a>, reached: &Reached) -> Option<IncrementProgram<'a>> {
         let ends = (&self.state, &reached.corrected.state);
         mpec_verification::program(loading, self.force, ends, &self.rate, reached.step)
@@ -75,7 +75,7 @@ fn each_increment(scene: &Scene, mut look: impl FnMut(Loading<'_>, &Begun, &Incr
     }
 }
 
-/// A row of bars over a floor, tied to each other, of which some begin above it.
+/// A row of bars over a floor, tied to each other, some of which begin above the floor.
 fn row(random: &mut Random) -> Scene {
     let bars = 1 + (3.0 * part(random)) as usize;
     let (mut nodes, mut supports, mut forces) = (Map::new(), Map::new(), Map::new());

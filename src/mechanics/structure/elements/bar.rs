@@ -159,7 +159,7 @@ impl FiniteElement for Bar {
         self.axial_stiffness
     }
 
-    /// `N' d dᵀ`
+    /// The summand `N' d dᵀ`.
     fn stretching(&self, displacement: &[f64]) -> Vec<Stretching> {
         let deformed = self.deformed(displacement);
         let (_, _, stiffness) = self.response(deformed.elongation);
@@ -173,7 +173,7 @@ impl FiniteElement for Bar {
         vec![Stretching { stiffness, along: end(0, -1.0).chain(end(dimension, 1.0)).collect() }]
     }
 
-    /// `(N/L)(I - d dᵀ)` alone.
+    /// Writes `(N/L)(I - d dᵀ)` alone.
     fn write_stiffness_across(&self, displacement: &[f64], stiffness: &mut [f64]) {
         let deformed = self.deformed(displacement);
         let (_, axial, _) = self.response(deformed.elongation);

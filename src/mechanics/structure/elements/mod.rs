@@ -61,7 +61,7 @@ pub trait FiniteElement: Debug + Send + Sync {
 /// A summand `k c cᵀ` of the tangent: the stiffness `k` against motions along `c`.
 #[derive(Debug, Clone)]
 pub struct Stretching {
-    /// Not zero.
+    /// The stiffness `k`, not zero.
     pub stiffness: f64,
     /// Entries of `c`, one per degree of freedom.
     pub along: Vec<(usize, f64)>,
