@@ -296,9 +296,9 @@ pub fn bordered_determinant(
 }
 
 /// The sign of the bordered determinant at the end of a step, where it is certain. Next to stiff elements the pivots of
-/// a factorisation of the assembled equations leave it undecided; rows scaled by their sizes decide it, as at the start.
-/// Otherwise each step would begin with a signature and end without one, as if it passed a singular point, and would be
-/// shortened.
+/// a factorisation of the assembled equations leave it undecided; rows scaled by their sizes decide it, as at the
+/// start. Otherwise each step would begin with a signature and end without one, as if it passed a singular point, and
+/// would be shortened.
 pub fn sign_at_end(start: &StepStart<'_>, reached: &Reached, work: &mut Work) -> Option<f64> {
     reached.determinant.or_else(|| {
         let (loading, state) = (start.loading, &reached.corrected.state);
