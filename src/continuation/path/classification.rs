@@ -84,8 +84,7 @@ fn arrive(trace: &mut PathTrace<'_>, event: Option<Watch>, crossing: Option<Cros
             }
             look_around(trace, incoming, PointKind::SmoothLimit, Some(what.to_owned()), Some(-sign), false)
         }
-        // The mode continues: the node still sticks in the corner, with a force at which slip was possible before and
-        // is again.
+        // The mode continues: the node is still held in its corner, by a force at which it may slide again.
         Some(Watch::Return { .. }) => look_around(trace, incoming, PointKind::Regular, None, None, false),
         Some(Watch::Gap(_) | Watch::Normal(_) | Watch::Cone { .. } | Watch::Sliding(_) | Watch::Facet { .. }) => {
             contact_change(trace, came)

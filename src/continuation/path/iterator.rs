@@ -44,7 +44,7 @@ impl<'a> Path<'a> {
         self.trace.at.step = self.trace.at.step.min(longest.max(least));
     }
 
-    /// Keeps the iterates of the next increment's programs.
+    /// Keeps the iterates of each increment's programs from now on, each until the next increment.
     pub fn keep_iterates(&mut self) {
         self.trace.iterates = Some(Vec::new());
     }

@@ -171,7 +171,7 @@ fn way_to_next_change(trace: &PathTrace<'_>, modes: &[Mode], rate: &Rate) -> f64
         .fold(f64::INFINITY, f64::min)
 }
 
-/// The increment's program between a state and another near its end; `None` where no contact can be reached: then there
+/// The increment's program from a state to approximately another; `None` where no contact can be reached: then there
 /// is nothing to decide.
 pub(crate) fn program<'a>(
     loading: Loading<'a>,
