@@ -7,8 +7,8 @@
 //! | [`bifurcation`] | points where an eigenvalue is zero: detection, location, and the branches that leave them |
 //! | [`selection`] | all directions of a point, and the choice among them |
 //!
-//! Each module imports only those above it and the parts of a step ([`crate::step`]). None knows of increments or
-//! files.
+//! Each module imports only those above it and the parts of a step ([`crate::step`]). No module depends on increments
+//! or files.
 
 pub mod bifurcation;
 pub mod directions;

@@ -47,7 +47,7 @@ fn rotated(angle: f64, a: Plane) -> Plane {
     plus(times(angle.cos(), a), times(angle.sin(), turned(a)))
 }
 
-/// A rigid lever about its first node, with springs between its ends and the other two nodes, and between the rotations.
+/// A rigid lever about its first node, with springs between its ends and the other two nodes and between the rotations.
 ///
 /// ```text
 /// W = ½ k Σ |u_o - u_m - (R(θ_m) - I) X_o|² + ½ κ Σ (θ_o - θ_m)²

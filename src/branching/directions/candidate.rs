@@ -48,7 +48,7 @@ pub struct FoundDirections {
     pub degenerate: bool,
     /// Some direction set contains a motion that no element resists.
     pub mechanism: bool,
-    /// A node is closed against several obstacles in a way that is not available.
+    /// A node is in contact with several obstacles in a configuration that is not available.
     pub corner_not_available: bool,
 }
 

@@ -57,7 +57,7 @@ fn start<'a>(trace: &'a PathTrace<'_>, rate: &'a Rate, modes: &'a [Mode]) -> Ste
     }
 }
 
-/// The modes that the point of a mode at an arc length proves for its increment's program.
+/// The result of the certificate for the increment's program at the point of a mode at an arc length.
 fn show(trace: &mut PathTrace<'_>, rate: &Rate, modes: &[Mode], way: f64) -> ForeseenModes {
     let mut work = trace.at.totals.work;
     let reached = start(trace, rate, modes).reach(way, &mut work);
@@ -65,7 +65,7 @@ fn show(trace: &mut PathTrace<'_>, rate: &Rate, modes: &[Mode], way: f64) -> For
     reached.map_or(ForeseenModes::Unclear, |reached| show_at(trace, rate, modes, &reached))
 }
 
-/// The modes that a point reached in a mode proves for its increment's program.
+/// The result of the certificate for the increment's program at a point reached in a mode.
 fn show_at(trace: &mut PathTrace<'_>, rate: &Rate, modes: &[Mode], reached: &Reached) -> ForeseenModes {
     if reached.determinant.is_none() || reached.step <= 0.0 {
         return ForeseenModes::Unclear;

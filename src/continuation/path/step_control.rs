@@ -172,7 +172,7 @@ fn step_along(trace: &mut PathTrace<'_>, rate: &Rate, sought: &mut Sought) -> Re
 /// The intended length of a step, as far as it is known before an attempt.
 fn sought_step(trace: &mut PathTrace<'_>) -> Sought {
     let ordinary = trace.at.step.min(trace.scene.analysis.arc_length.max);
-    // Within this distance of a bend the path is still turning.
+    // At a shorter distance from a bend the path is still turning.
     let width = trace.at.here.beside.as_ref().map_or(0.0, Rate::size);
     let ordinary = ordinary.max(PAST_BEND * width * width);
     let may_join = trace.at.waiting.is_over() && may_join_changes(trace);

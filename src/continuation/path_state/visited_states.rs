@@ -156,7 +156,7 @@ mod tests {
             let mut history = VisitedStates::default();
             let (room, mut found) = (32, None);
             for event in 0..2 * before + 4 * round + 64 {
-                // A different state each time, then round and round.
+                // A different state each time, then a cycle.
                 let place = if event < before { -1.0 - event as f64 } else { ((event - before) % round) as f64 };
                 if is_known(&history, place) {
                     found = Some(event);

@@ -8,8 +8,8 @@ use crate::resources::cancel::CancelFlag;
 use crate::step::corrector::cost_counters::Work;
 use nalgebra::DVector;
 
-/// Difference of the roots' products with the previous displacements, relative to the square of the arc length, that is
-/// zero.
+/// Largest difference of the roots' products with the previous displacements, relative to the square of the arc length,
+/// that counts as zero.
 const NO_TURN: f64 = 1e-12;
 
 /// The equation that closes the system.

@@ -2,8 +2,8 @@
 //!
 //! Lengths are divided by `displacement_scale` `ℓ`, forces by `force_scale` `φ`, each stage's load factor by its
 //! `load_scale` `σ`; a pattern `f` becomes `f σ/φ`. By default `ℓ` is the longest bar and `φ` the smallest axial
-//! stiffness of those that resist the load. Without bars, `φ` is the largest force of any stage at the load factor at
-//! which the stage is to end (1 where it specifies none), or the stiffness of the springs that resist the load (the
+//! stiffness of the bars that resist the load. Without bars, `φ` is the largest force of any stage at the load factor
+//! at which the stage is to end (1 where it specifies none), or the stiffness of the springs that resist the load (the
 //! largest Frobenius norm) times the largest prescribed motion if this is larger, and `ℓ` is this force divided by this
 //! stiffness. The resisting stiffness is found by `characteristic_stiffness`, unless the bars' stiffnesses differ by no
 //! more than a factor of two. `σ` is the smaller of `φ / max |f|`, with the `φ` of the stiffness that resists the

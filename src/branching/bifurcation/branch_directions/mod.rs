@@ -255,8 +255,7 @@ impl BranchingPoint<'_> {
         Some((left, right))
     }
 
-    /// The directions of the branches other than the path itself, which has two. `None` where the null vectors cannot
-    /// be determined.
+    /// The directions of the branches, without the path's own two. `None` where the null vectors cannot be determined.
     fn directions(&self, tangent: &Rate, degenerate: &mut bool) -> Option<Vec<Rate>> {
         let (left, basis) = self.null_vectors()?;
         let (own, others) = self.split(&basis, tangent)?;

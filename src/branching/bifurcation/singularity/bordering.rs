@@ -100,8 +100,8 @@ impl<'a> Bordering<'a> {
         Some((orthonormal(self.right.iter().map(|values| self.rate(values)))?, columns))
     }
 
-    /// The null vectors of the equations: the border vectors themselves where all test functions are zero, and
-    /// otherwise their combinations for which the test functions vanish.
+    /// The null vectors of the equations: `X` and `ψ` themselves where all test functions are zero, and otherwise their
+    /// combinations for which the test functions vanish.
     pub fn null_vectors(&self, tolerance: f64) -> Option<NullVectors> {
         let corank = self.left.len();
         if self.tests.amax() <= tolerance {

@@ -3,13 +3,13 @@
 //! Two quantities are monitored along the path:
 //!
 //! * the determinant of the equations of the mode, bordered by the path's own direction. The bordered matrix is regular
-//! at limit points, and the determinant changes sign exactly at bifurcation points with an odd number of additional
-//! null vectors (H. B. Keller, in: Applications of Bifurcation Theory, Academic Press 1977, 359). It is a by-product of
-//! the factorisation that gives the direction, and is valid for unsymmetric matrices (frictional slip) as well.
+//!   at limit points, and the determinant changes sign exactly at bifurcation points with an odd number of additional
+//!   null vectors (H. B. Keller, in: Applications of Bifurcation Theory, Academic Press 1977, 359). It is a by-product
+//!   of the factorisation that gives the direction, and is valid for unsymmetric matrices (frictional slip) as well.
 //! * the number of negative eigenvalues of the tangent reduced to the motions that the mode allows, `Zᵀ K Z` with `Z` a
-//! basis of the null space of the closed contacts' equations (Sylvester's law: any basis will do). It detects two
-//! eigenvalues that cross together, where the determinant keeps its sign. At a limit point it changes by one; the
-//! determinant distinguishes this change from that at a bifurcation.
+//!   basis of the null space of the closed contacts' equations (Sylvester's law: any basis will do). It detects two
+//!   eigenvalues that cross together, where the determinant keeps its sign. At a limit point it changes by one; the
+//!   determinant distinguishes this change from that at a bifurcation.
 //!
 //! Contacts that touch without reaction throughout a step do not affect the path in any mode, but may block a branch:
 //! the mode in which they are free is monitored as well.

@@ -41,8 +41,7 @@ const FEW_OF_MANY: usize = 4;
 const MOST_OF_MANY: usize = 24;
 /// Entries of a column of the factor for which one more contact can be searched as fast.
 const ENTRIES_A_CONTACT: usize = 3;
-/// Number of entries of the condensed equations (contacts that can change times the size of their columns) that is too
-/// large.
+/// Largest number of entries of the condensed equations (contacts that can change times the size of their columns).
 const MOST_CONDENSED: usize = 25_000_000;
 
 /// Lists the directions; `false` where they are not proven to be complete and the contacts are few enough for a search.

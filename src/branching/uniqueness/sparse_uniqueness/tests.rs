@@ -142,7 +142,7 @@ fn from_rest_they_are_those_of_every_combination() {
             forces.insert(name.clone(), json!([random.value(), 0.5 * random.value() - 0.3]));
             let friction = if number % 5 == 0 && node == 1 { 0.0 } else { 0.1 + 0.1 * (node % 3) as f64 };
             contacts.push(json!({"node": &name, "obstacle": "floor", "friction": friction}));
-            // Some are held by one spring only, so that their structure alone can move.
+            // Some nodes are held by one spring only, so that the structure without contacts can move.
             let rank = 1 + usize::from(number % 2 == 0);
             elements.push(json!({"kind": "spring", "nodes": [&name], "stiffness": stiffness(&mut random, rank)}));
             if node > 0 {
