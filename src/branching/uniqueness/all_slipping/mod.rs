@@ -13,8 +13,8 @@
 //! `x`), which is then a P-matrix: each sign of the load rate has one ray (see `rates::p_matrix`). One ray continues
 //! the path. The other usually has all contacts stuck, which its own equations confirm. Where the symmetric part is not
 //! definite it may be definite across the load, and each sign of the load's power has one ray (see
-//! `one_direction::proof`); or the slips are few, and their condensed matrix is formed (see `rates::parametric`), which
-//! is not needed for a single slip.
+//! `sparse_uniqueness::proof`); or the slips are few, and their condensed matrix is formed (see
+//! `rates::parametric_lcp`), which is not needed for a single slip.
 //!
 //! [`many`] treats sparse matrices, [`static_condensation`] condenses dense ones.
 //!
