@@ -1,13 +1,14 @@
-//! Which directions leave a point of the path, and which one is taken.
+//! Directions that leave a point of the path, and the choice of the one taken.
 //!
-//! | room | what it holds |
+//! | module | contents |
 //! |---|---|
 //! | [`directions`] | the one-sided directions of first order, by a problem condensed on the contacts that can change |
-//! | [`uniqueness`] | tests that prove that there are no others |
-//! | [`bifurcation`] | points where an eigenvalue is zero: told, located, and the branches that leave them |
+//! | [`uniqueness`] | tests that prove that there are no other directions |
+//! | [`bifurcation`] | points where an eigenvalue is zero: detection, location, and the branches that leave them |
 //! | [`selection`] | all directions of a point, and the choice among them |
 //!
-//! Each room imports only those above it, and what a step is made of ([`crate::step`]). None knows of increments or files.
+//! Each module imports only those above it and the parts of a step ([`crate::step`]). No module depends on increments
+//! or files.
 
 pub mod bifurcation;
 pub mod directions;

@@ -1,4 +1,4 @@
-//! The path by whichever method the analysis names.
+//! Path tracing by the method that the analysis names.
 
 use crate::continuation::path::iterator::Path;
 use crate::continuation::penalty::RegularisedPath;
@@ -8,7 +8,7 @@ use crate::resources::cancel::CancelFlag;
 use crate::result::increment::Increment;
 use crate::result::report::Report;
 
-/// A path being traced. An iterator like the two it holds.
+/// A path being traced, by either of two methods; an iterator of increments like the paths it contains.
 pub enum TracedPath<'a> {
     /// `auto` and `mpec`.
     Exact(Box<Path<'a>>),

@@ -1,16 +1,16 @@
 //! Path following: from a checked scene to a sequence of increments.
 //!
-//! [`path::iterator::Path`] is an iterator; whoever drives it (command line, worker, test) decides what to do with each
+//! [`path::iterator::Path`] is an iterator; its caller (command line, worker, test) decides what to do with each
 //! increment.
 //!
-//! | room or file | what it holds |
+//! | module or file | contents |
 //! |---|---|
-//! | [`scene`] | a request made dimensionless, and the plan: what the scene does not need |
+//! | [`scene`] | a request made dimensionless, and the plan: features the scene does not need |
 //! | [`path_state`] | the state of a path: present point, contacts in reach, totals, history; rows for the user |
-//! | [`contact_changes`] | contact changes that are foreseen, taken together, or jumped to |
+//! | [`contact_changes`] | contact changes that are predicted, treated together, or reached in one straight step |
 //! | [`path`] | the loop of an increment: stages, step control, trial, acceptance, classification, checkpoints |
 //! | [`penalty`] | the conventional method with penalties, for comparison |
-//! | [`method_dispatch`] | the path by whichever method the analysis names |
+//! | [`method_dispatch`] | path tracing by the method that the analysis names |
 
 pub mod contact_changes;
 pub mod method_dispatch;

@@ -1,4 +1,4 @@
-//! Whole paths whose last point is searched a second time, by plain enumeration of every contact mode.
+//! Whole paths whose last point is searched again, by plain enumeration of every contact mode.
 
 use crate::branching::directions::arrival_tangent::Incoming;
 use crate::branching::directions::condensed_rate_problem::Condensed;
@@ -60,7 +60,7 @@ fn where_rows_of_bars_end_only_the_way_back_is_a_direction() {
         let found = every_combination(condensed.problem());
         assert!(!found.degenerate);
         for ray in &found.rays {
-            // What is feasible at all is the incoming step turned round.
+            // Only the incoming step in reverse is feasible.
             assert!(condensed.combine(&ray.weights).0.product(incoming) < -1.0 + 1e-4, "n = {n}: {ray:?}");
         }
         println!("n = {n}: {} rays", found.rays.len());

@@ -1,8 +1,8 @@
-//! An element with three nodes and a rotation, and a contact that three nodes move, traced like any others.
+//! An element with three nodes and a rotation, and a contact that moves with three nodes, traced like any others.
 //!
-//! A lever turns about a held node. One of its ends rests on two bars that snap through; the other one then hits a rail
-//! between two nodes on springs, sticks to it and slips along it. Path following knows neither: what it finds is held
-//! against equilibrium and the laws of contact written down once more below.
+//! A lever rotates about a fixed node. One of its ends rests on two bars that snap through; the other end then hits a
+//! rail between two nodes on springs, sticks to it and slips along it. Path following knows neither: its results are
+//! compared with equilibrium and the contact laws written down again below.
 
 use crate::continuation::path::iterator::Path;
 use crate::continuation::scene::{AdditionalParts, Scene};
@@ -47,7 +47,7 @@ fn rotated(angle: f64, a: Plane) -> Plane {
     plus(times(angle.cos(), a), times(angle.sin(), turned(a)))
 }
 
-/// A rigid lever about its first node, with springs between its ends and the other two nodes, and between the rotations.
+/// A rigid lever about its first node, with springs between its ends and the other two nodes and between the rotations.
 ///
 /// ```text
 /// W = ½ k Σ |u_o - u_m - (R(θ_m) - I) X_o|² + ½ κ Σ (θ_o - θ_m)²
@@ -137,15 +137,15 @@ impl FiniteElement for Lever {
     }
 }
 
-/// A node in front of a rail that is held at its second node and guided by its third: `x` is where the node is in the
-/// rail's axes, along it and across it.
+/// A node in front of a rail that is pinned at its second node and guided by its third: `x` is the position of the node
+/// in the rail's axes, along it and across it.
 #[derive(Debug)]
 struct NodeOnRail {
     nodes: [usize; 3],
     places: [Plane; 3],
 }
 
-/// The rail's unit vector, normal and length, and where the node is along and across it.
+/// The rail's unit vector, normal and length, and the position of the node along and across it.
 struct Rail {
     tangent: Plane,
     normal: Plane,
@@ -194,7 +194,7 @@ impl CoupledKinematics for NodeOnRail {
         let mut add = |row: usize, column: usize, value: f64| curvature[6 * row + column] += value;
         for i in 0..2 {
             for j in 0..2 {
-                // By the node's place and by the rail, which the second node moves both.
+                // Contributions of the node's position and of the rail; the second node moves both.
                 let node_rail = (t * normal[i] - n * tangent[i]) * normal[j] / length;
                 let rail_node = (t * normal[j] - n * tangent[j]) * normal[i] / length;
                 let rail_rail = -(pull * normal[i] * normal[j]
@@ -216,9 +216,9 @@ impl CoupledKinematics for NodeOnRail {
 const FRICTION: f64 = 0.5;
 const ARMS: [Plane; 2] = [[-1.0, 0.0], [1.0, 0.0]];
 const RAIL: [Plane; 3] = [[1.0, 0.0], [1.5, 0.3], [0.5, 0.3]];
-/// Stiffnesses of the springs that hold the nodes of the rail.
+/// Stiffnesses of the springs that support the nodes of the rail.
 const SEATS: [Plane; 2] = [[0.05, 0.02], [0.03, 0.04]];
-/// And of the spring at the lever's end: a request takes no node that none of its own elements holds.
+/// Stiffness of the spring at the lever's end: a request accepts no node that none of its own elements supports.
 const RIGHT: Plane = [0.01, 0.02];
 /// Feet of the bars, and their common length.
 const FEET: [Plane; 2] = [[-1.8, -0.6], [-0.2, -0.6]];
@@ -227,7 +227,7 @@ const BENDING: f64 = 0.05;
 /// Nodes of the lever (pivot and ends) and of the rail, then of the bars' feet.
 const NAMES: [&str; 7] = ["pivot", "left", "right", "held", "guided", "foot", "other_foot"];
 
-/// `extra` more nodes in a row hang on the left end.
+/// The request; `extra` more nodes in a row hang on the left end.
 fn request(method: &str, extra: usize) -> JobRequest {
     let places = [[0.0, 0.0], ARMS[0], ARMS[1], RAIL[1], RAIL[2], FEET[0], FEET[1]];
     let mut nodes = serde_json::Map::new();
@@ -282,7 +282,7 @@ fn scene(method: &str, extra: usize) -> Scene {
     Scene::with_parts(None, &request(method, extra), parts).expect("a scene")
 }
 
-/// A point of a path with what is not in its increment.
+/// A point of a path with data that are not in its increment.
 struct Seen {
     increment: Increment,
     state: State,
@@ -297,7 +297,7 @@ fn traced(scene: &Scene) -> Vec<Seen> {
     seen
 }
 
-/// What is left over of equilibrium at a state, by hand: all forces on each node and all moments.
+/// Residual of equilibrium at a state, by hand: all forces on each node and all moments.
 fn left_over(structure: &Structure, state: &State, load: f64) -> f64 {
     let u = |node: usize| {
         let first = structure.translations_of(node).start;
@@ -310,7 +310,7 @@ fn left_over(structure: &Structure, state: &State, load: f64) -> f64 {
         let end = rotated(turn(0), *arm);
         let pull = times(LEVER, minus(u(which + 1), minus(end, *arm)));
         forces[which + 1] = minus(forces[which + 1], pull);
-        // The pull turns the lever; the ends bear no moment, so that they turn with it.
+        // The pull rotates the lever; the ends carry no moment, so that they rotate with it.
         moment += end[0] * pull[1] - end[1] * pull[0];
         assert!((turn(which + 1) - turn(0)).abs() <= 1e-12);
     }
@@ -325,7 +325,7 @@ fn left_over(structure: &Structure, state: &State, load: f64) -> f64 {
         (0..2).for_each(|k| forces[node][k] -= seat[k] * u(node)[k]);
     }
     // The rail's force on the node, and on the rail by equilibrium of the rail itself: the traction at the node that
-    // holds it, the pressure where the node is, as on a beam on two supports.
+    // pins it, the normal pressure at the position of the node, as on a beam on two supports.
     let reaction = state.reactions[0];
     let place = |k: usize, node: usize| plus(RAIL[k], u(node));
     let (node, rail) = (minus(place(0, 2), place(1, 3)), minus(place(2, 4), place(1, 3)));
@@ -378,7 +378,7 @@ fn check(structure: &Structure, seen: &[Seen]) {
     }
 }
 
-/// Below 16 unknowns with dense matrices, the same with sparse ones, and beyond 16: exact, and one path.
+/// Below 16 unknowns with dense matrices, the same with sparse ones, and above 16: exact, and the same path.
 #[test]
 fn a_new_element_and_a_new_contact_are_traced_like_any() {
     let dense = scene("auto", 0);

@@ -48,7 +48,7 @@ fn sparse_and_dense_trace_the_same_path() {
     }
 }
 
-/// A node that hangs on one bar of a large lattice can swing: sparse matrices tell as dense ones do.
+/// A node that hangs on one bar of a large lattice can swing: sparse matrices detect this as dense ones do.
 #[test]
 fn a_mechanism_in_a_large_lattice_is_refused() {
     for unknowns in [100, 1_000] {

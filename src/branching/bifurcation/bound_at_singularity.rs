@@ -1,8 +1,8 @@
-//! A bound of the stage at a singular point of the path, or beside one.
+//! A bound of the stage at or near a singular point of the path.
 //!
-//! Newton's method is singular there, and near it may land on another branch. Like the singular point itself
-//! (`locate`), the point at which the bound is met is taken on a cubic Hermite interpolant between regular points, and
-//! judged by its residual like any other.
+//! Newton's method is singular at such a point, and near it may converge to another branch. As for the singular point
+//! itself (`locate`), the point at which the path meets the bound is therefore found on a cubic Hermite interpolant
+//! between regular points, and accepted by its residual as every other point is.
 
 use crate::algebra::scalar_root::find_root;
 use crate::branching::bifurcation::locate::{self, Located, LocatedEnd, WIDTHS};
@@ -17,14 +17,14 @@ use crate::step::event_functions::Watch;
 use crate::step::interpolation::{PlacedPoint, between, placed, unit};
 use crate::step::segment::{AT_END, Reached, StepStart};
 
-/// Steps that are tried, over the one that ends at the bound: the point past it has to be regular.
+/// Trial step lengths, relative to the step that ends at the bound: the point past the bound has to be regular.
 const LENGTHENED: [f64; 4] = [1.0, 1.01, 1.1, 1.5];
 
 /// How far a bifurcation point is moved along the path to meet a bound that lies within round-off of it.
 const ALONG: f64 = 1e-9;
 
-/// Ends a step at a bound of the stage, or at the bifurcation just before it, where Newton's method does not reach the
-/// bound; `None` where there is no singular point near.
+/// Ends a step at a bound of the stage, or at the bifurcation point just before it, where Newton's method does not
+/// reach the bound; `None` where there is no singular point nearby.
 ///
 /// `load_sign` and `known`: sign of the load rate and signature at the start.
 pub fn beside_singular(
@@ -68,7 +68,7 @@ pub fn beside_singular(
     })
 }
 
-/// Which of bound and bifurcation comes first.
+/// The bound or the bifurcation point, whichever comes first.
 fn at_crossing(
     start: &StepStart<'_>,
     located: Located,
@@ -81,7 +81,7 @@ fn at_crossing(
     let Located { mut point, crossing, .. } = located;
     let width = farther.place - nearer.place;
     if let Some(bound) = bounds.iter().find(|bound| left_to(bound, &point.corrected.state).abs() <= AT_END) {
-        // Both are within round-off of each other; the bound is met exactly.
+        // The bifurcation point and the bound coincide within round-off; the bound is met exactly.
         let watch = Watch::End(*bound);
         let slope = watch.slope(start.loading, start.modes, &point.corrected.state, &point.rate).unwrap_or(0.0);
         let ahead = -left_to(bound, &point.corrected.state) / slope;
@@ -100,7 +100,7 @@ fn at_crossing(
     Some((ended(start, state, &rate, bound, width, beyond)?, None, None))
 }
 
-/// The bound that is met first between two points, and where.
+/// The bound that the path meets first between two points, and its place.
 fn first_met(
     nearer: &PlacedPoint,
     farther: &PlacedPoint,
@@ -117,7 +117,7 @@ fn first_met(
     bounds.iter().filter_map(met).min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// The point at which a stage ends, its bound exact; `None` where its residual is not accepted.
+/// The point at which a stage ends, with the bound met exactly; `None` where its residual is not accepted.
 fn ended(
     start: &StepStart<'_>,
     mut state: State,

@@ -1,12 +1,12 @@
 //! Smooth bifurcations: where an eigenvalue of the equations of a mode is zero.
 //!
-//! | room or file | what it does |
+//! | module or file | contents |
 //! |---|---|
-//! | `singularity` | signs that change at such a point, null vectors, and equations bordered to be regular there |
-//! | `locate` | the point itself, by dense or by sparse matrices, and folded singularities of slip |
-//! | `branch_directions` | the branches that leave it |
-//! | `simultaneous_limit_points` | limit points that uncoupled parts have in common |
-//! | `bound_at_singularity` | an end of the stage at or beside such a point |
+//! | `singularity` | test functions that change sign there, null vectors, and bordered equations that are regular |
+//! | `locate` | location of the point with dense or sparse matrices, and of folded singularities of slip |
+//! | `branch_directions` | the branches that leave the point |
+//! | `simultaneous_limit_points` | limit points shared by uncoupled parts |
+//! | `bound_at_singularity` | a bound of the stage at or near such a point |
 
 pub(crate) mod bound_at_singularity;
 pub(crate) mod branch_directions;

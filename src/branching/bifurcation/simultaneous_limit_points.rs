@@ -1,21 +1,21 @@
-//! Limit points that several motions have in common: parts that nothing joins, or hardly anything, and that are alike.
+//! Limit points shared by several motions: those of uncoupled or weakly coupled parts that are alike.
 //!
-//! Where the load rate is zero the equations of a mode without their load have a null vector. Of parts that are not coupled
-//! each has one, and where they are alike all appear at once: then the equations bordered by the path's direction are
-//! singular too, and Newton's method finds no point close by. The point is found on the cubic Hermite interpolant between
-//! regular points on both sides, closer and closer, as bifurcation points are (`locate`); the residual of what is found is
-//! judged like any other's.
+//! Where the load rate is zero the equations of a mode without their load have a null vector. Of several uncoupled
+//! parts each has a null vector, and where the parts are alike all of them appear at once. Then the equations bordered
+//! by the path's direction are singular too, and Newton's method finds no point nearby. The point is found on the cubic
+//! Hermite interpolant between regular points on both sides, closer and closer, as bifurcation points are (`locate`),
+//! and accepted by its residual as every other point is.
 //!
-//! Which way each part goes from there shows at second order. With `v_i` the null vectors, each of one part, and `φ_i` the
-//! left ones, the load along `x = b_i v_i + ...` is
+//! Second order determines which way each part continues. With `v_i` the null vectors, each of one part, and `φ_i` the
+//! left null vectors, the load along `x = b_i v_i + ...` is
 //!
 //! ```text
 //! s = s* + ½ σ_i b_i²,     σ_i = -φ_i·F''(v_i, v_i) / φ_i·F_s
 //! ```
 //!
-//! and it is the same of all parts: `b_i = ±|σ_i|^(-1/2)` for those that move. A part that slides against friction cannot go
-//! back, but may rest while the load falls; any other goes on or back. So there are `2^n` directions of `n` parts, that in
-//! which all rest included. Each was tried with a small step.
+//! and is the same for all parts: `b_i = ±|σ_i|^(-1/2)` for those that move. A part that slides against friction cannot
+//! reverse, but may rest while the load falls; any other part continues or reverses. So there are `2^n` combinations
+//! for `n` parts, including the one in which all rest. A small step confirms each direction.
 
 use crate::algebra::scalar_root::find_root;
 use crate::algebra::{nearest_null_space, null_space_as_scaled};
@@ -41,16 +41,17 @@ use nalgebra::{DMatrix, DVector};
 
 /// Difference step (dimensionless) for second derivatives.
 const DIFFERENCE: f64 = 1e-4;
-/// Second derivatives of one part along another's motion, relative to its own, up to which they are not coupled.
+/// Second derivatives of one part along another's motion, relative to its own, up to which the parts are uncoupled.
 const COUPLED: f64 = 1e-5;
-/// Lengths of the steps by which directions are tried.
+/// Lengths of the trial steps.
 const TRIALS: [f64; 3] = [1e-3, 1e-2, 1e-4];
-/// Speeds (of unit arc length) up to this are none.
+/// Speeds (of unit arc length) up to this are zero.
 const STILL: f64 = 1e-7;
-/// A direction this close to the incoming one (cosine) is it.
+/// Cosine of the largest angle to the incoming direction at which a direction counts as the incoming one.
 const SAME: f64 = 1.0 - 1e-8;
 
-/// The limit point of a step that ends past it, and how many motions have it in common, if they are several.
+/// The limit point, shared by several motions, of a step that ends past it, with their number in `motions`; `None` for
+/// any other limit point.
 pub(crate) fn locate(start: &StepStart<'_>, watch: Watch, end: &Reached, work: &mut Work) -> Option<Box<Reached>> {
     let system = ModeSystem::new(start.loading, start.modes, start.state);
     if system.has_tracks() || !start.loading.structure.allows_dense() {
@@ -82,7 +83,7 @@ pub(crate) fn locate(start: &StepStart<'_>, watch: Watch, end: &Reached, work: &
         let (state, rate) = between(&left, &right, root);
         let corrected = newton::judged(&system, state, start.force_scale);
         if let Some(best) = &best {
-            // Each round's points are at least four times closer.
+            // The points of each round are at least four times closer.
             error = corrected.state.distance(&best.corrected.state) / 256.0;
         }
         let step = corrected.state.distance(start.state);
@@ -96,21 +97,22 @@ pub(crate) fn locate(start: &StepStart<'_>, watch: Watch, end: &Reached, work: &
         null_space_as_scaled(matrix, SINGULAR).map(|basis| basis.ncols())
     };
     point.motions = null_vectors(&point.corrected.state)?;
-    // What is soft beside something stiff is not singular: it looks the same a little way off.
+    // A part that is merely soft compared with a stiff one is not singular: it looks the same a little before the
+    // point.
     (point.motions > 1 && null_vectors(&left.state) == Some(1)).then_some(point)
 }
 
-/// A part's motion.
+/// The motion of one part.
 struct PartMotion {
-    /// Times `|σ|^(-1/2)`.
+    /// The null vector, scaled by `|σ|^(-1/2)`.
     rate: Rate,
     /// Sign of `σ`.
     sign: f64,
-    /// Contacts that slide against friction along it.
+    /// Contacts that slide against friction along the motion.
     slides: Vec<usize>,
 }
 
-/// What a part does: goes on or back, or rests.
+/// Whether a part continues, reverses or rests.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum PartSense {
     On,
@@ -118,8 +120,8 @@ enum PartSense {
     Rest,
 }
 
-/// The directions along which the load is stationary at a limit point that so many motions have in common, the path's own
-/// first; at most so many. `None` where the motions are coupled.
+/// The directions along which the load is stationary at a limit point shared by `motions` motions, the path's own
+/// first; at most `most` combinations are examined. `None` where the motions are coupled.
 pub(crate) fn directions(
     here: SingularPoint<'_>,
     modes: &[Mode],
@@ -165,7 +167,7 @@ pub(crate) fn directions(
     Some(found)
 }
 
-/// A direction that a small step along it confirms.
+/// A direction confirmed by a small step along it; `None` where the step does not confirm it.
 fn tried(here: SingularPoint<'_>, rate: Rate, modes: Vec<Mode>) -> Option<DirectionChoice> {
     let SingularPoint { loading, state, force_scale, .. } = here;
     let power = |(contact, reaction): (usize, &Reaction)| {
@@ -199,7 +201,7 @@ fn tried(here: SingularPoint<'_>, rate: Rate, modes: Vec<Mode>) -> Option<Direct
     })
 }
 
-/// The parts' motions, each in the sense in which the path comes.
+/// The motions of the parts, each in the sense of the incoming path.
 fn parts(here: SingularPoint<'_>, modes: &[Mode], incoming: &Rate, motions: usize) -> Option<Vec<PartMotion>> {
     let SingularPoint { loading, state, standings, .. } = here;
     let system = ModeSystem::new(loading, modes, state);
@@ -221,7 +223,7 @@ fn parts(here: SingularPoint<'_>, modes: &[Mode], incoming: &Rate, motions: usiz
         rate.scale(1.0 / size);
         known.push((rate, values / size));
     }
-    // Of each left vector and each two motions.
+    // For each left null vector and each pair of motions.
     let mut second = vec![DMatrix::zeros(motions, motions); motions];
     for (i, (along, _)) in known.iter().enumerate() {
         let [ahead, behind] = [DIFFERENCE, -DIFFERENCE].map(|by| system.matrix(&state.advanced(along, by)));
@@ -236,7 +238,7 @@ fn parts(here: SingularPoint<'_>, modes: &[Mode], incoming: &Rate, motions: usiz
     }
     let mut parts = Vec::with_capacity(motions);
     for (i, (mut rate, _)) in known.into_iter().enumerate() {
-        // The left vector of the same part.
+        // The left null vector of the same part.
         let own = (0..motions).max_by(|a, b| second[*a][(i, i)].abs().total_cmp(&second[*b][(i, i)].abs()))?;
         let value = second[own][(i, i)];
         let rest = second[own].iter().map(|other| other.abs()).sum::<f64>() - value.abs();

@@ -1,17 +1,18 @@
-//! How a path comes to a point, and what that tells of the directions there.
+//! The incoming tangent of the path at a point, and the directions that it determines there.
 //!
-//! Where a slip ends, its speed `w` is zero and so is what its force leaves of the cone, `y`: at first order it may slip on or
-//! stick along one and the same direction. The rates of the rates obey the equations of the rates once more,
+//! Where a slip ends, its speed `w` is zero and so is the distance `y` of its force from the cone: to first order the
+//! contact may continue to slip or stick along the same direction. The second rates satisfy the differentiated rate
+//! equations
 //!
 //! ```text
 //! A (x', w') - q ṡ' + A' (x, w) - q' ṡ = (0, y'),
 //! ```
 //!
-//! in both modes. If it slipped on, `w' = -κ` (it is seen to fall through zero, `κ > 0`) and `y' = 0`; if it sticks, `w' = 0`
-//! and `y' = m κ` at the same load rate, `m` being the quotient of two principal minors of the matrix (its Schur
-//! complement). Where the directions are proven to be the only ones these are all positive (a P-matrix: R. W. Cottle,
-//! J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem*, Academic Press 1992, section 3.3): it sticks, and no trial
-//! step need tell.
+//! in both modes. If the contact continued to slip, `w' = -κ` (the speed is observed to decrease through zero, `κ > 0`)
+//! and `y' = 0`; if it sticks, `w' = 0` and `y' = m κ` at the same load rate, with `m` the quotient of two principal
+//! minors of the matrix (its Schur complement). Where the directions are proven to be the only ones these minors are
+//! all positive (a P-matrix: R. W. Cottle, J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem*, Academic
+//! Press 1992, section 3.3): the contact sticks, and no trial step is needed.
 
 use crate::branching::directions::candidate::CandidateDirection;
 use crate::branching::directions::choice::DirectionChoice;
@@ -21,34 +22,34 @@ use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::corrector::cached_factorisation::AtHand;
 
-/// One less the product of two directions that are one.
+/// Two directions coincide if their product is at least one minus this.
 const SAME_WAY: f64 = 1e-9;
 
-/// Speeds (of unit arc length) up to this are what the location of a slip's end leaves.
+/// Speeds (of unit arc length) up to this are zero within the accuracy with which the end of a slip is located.
 const AT_REST: f64 = 1e-9;
 
-/// How the path arrived.
+/// How the path arrived at a point.
 #[derive(Debug, Clone, Copy)]
 pub struct Incoming<'a> {
-    /// Its direction.
+    /// Incoming direction of the path.
     pub rate: &'a Rate,
-    /// The modes of which that is the direction at the point, where it is known to be.
+    /// The contact modes to which this direction belongs at the point, where known.
     pub modes: Option<&'a [Mode]>,
-    /// A contact that would slip backwards if its mode went on: its speed falls through zero here, and not at rest.
+    /// A contact whose slip would reverse if its mode continued: its speed decreases through zero at the point.
     pub stopped: Option<usize>,
-    /// A factorisation of the equations of those modes near the point, if there is one.
+    /// A factorisation of the equations of these modes near the point, if there is one.
     pub nearby: Option<&'a AtHand>,
-    /// The equations of those modes have had another null vector all along.
+    /// The equations of these modes have had a second null vector all along the incoming path.
     pub is_singular: bool,
 }
 
 impl<'a> Incoming<'a> {
-    /// In a mode that goes on, or of whose end nothing more is known.
+    /// The incoming direction in a mode that continues, or whose end is not known further.
     pub fn along(rate: &'a Rate) -> Self {
         Self { rate, modes: None, stopped: None, nearby: None, is_singular: false }
     }
 
-    /// Whether in a direction contacts that have come to rest stick, all else as it was.
+    /// Whether in a direction contacts that have come to rest stick, while all others keep their modes.
     pub(crate) fn is_stopped_in(&self, loading: Loading<'_>, state: &State, choice: &DirectionChoice) -> bool {
         let Some(modes) = self.modes else { return false };
         let mut stops = false;
@@ -62,9 +63,9 @@ impl<'a> Incoming<'a> {
         modes.iter().zip(&choice.modes).enumerate().all(as_it_was) && stops
     }
 
-    /// Whether a direction that may be taken in two modes at first order is known to be taken in the first.
+    /// Whether a direction that is compatible with two modes at first order is known to be taken in the first of them.
     ///
-    /// It is the incoming one, its kind is proven to be the only one, and only the contact that stops is in doubt.
+    /// It is the incoming direction, the uniqueness of its kind is proven, and only the contact that stops is in doubt.
     pub(crate) fn tells(&self, candidate: &CandidateDirection, is_proven: bool) -> bool {
         let in_doubt =
             || candidate.alternatives.iter().filter(|alternatives| alternatives.len() > 1).flatten().flatten();

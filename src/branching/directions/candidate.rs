@@ -1,4 +1,4 @@
-//! Directions of first order: the rate, and the contact modes that fit it.
+//! Directions of first order: the rate, and the contact modes compatible with it.
 
 use crate::algebra::null_space;
 use crate::mechanics::contact::vector::{Vector, add, size};
@@ -14,50 +14,51 @@ use crate::step::corrector::cached_factorisation::AtHand;
 #[derive(Debug, Clone)]
 pub struct CandidateDirection {
     pub rate: Rate,
-    /// Rates of the contacts' forces, those on one node together: see `node_forces::whole_rates`.
+    /// Rates of the contact forces, those on the same node combined: see `node_forces::whole_rates`.
     pub forces: Vec<Vector>,
-    /// Modes under which it is feasible at first order: stuck where a contact can be.
+    /// Modes under which the direction is feasible at first order: stuck where a contact may stick.
     pub modes: Vec<Mode>,
-    /// What the contacts that change together may do under it at first order, or nearly so, one entry for each that can
-    /// change (those without a doubt may be left out); more than one alternative where an inequality holds with equality.
-    /// Every combination of those that hold is feasible.
+    /// The modes that contacts which change together admit, exactly or nearly at first order, one entry for each that
+    /// can change (contacts without doubt may be omitted); more than one alternative where an inequality holds with
+    /// equality. Every combination of alternatives that hold is feasible.
     pub alternatives: Vec<Vec<Alternative>>,
-    /// Some inequality holds with equality: only a finite step can tell whether the direction exists.
+    /// Some inequality holds with equality: only a finite step can decide whether the direction exists.
     pub weak: bool,
     /// `-r_t·u̇_t` summed over the contacts.
     pub dissipation: f64,
-    /// The factorisation that it was found with, bordered by it.
+    /// The factorisation with which the direction was found, bordered by it.
     pub at_hand: AtHand,
 }
 
 /// Modes of contacts that change together.
 pub type Alternative = Vec<(usize, Mode)>;
 
-/// What was found at a point.
+/// The directions found at a point.
 #[derive(Debug, Clone, Default)]
 pub struct FoundDirections {
     pub candidates: Vec<CandidateDirection>,
-    /// A matrix whose principal minors are all positive proves that they are all.
+    /// A matrix whose principal minors are all positive proves that the list is complete.
     pub is_proven: bool,
     /// Modes that were not examined.
     pub unexplored: u64,
-    /// Those of them in which nodes begin to slip at once in space, in directions that are not proven to be all.
+    /// Number of unexamined modes in which nodes in space begin to slip simultaneously, in directions not proven to be
+    /// complete.
     pub slips_in_doubt: u64,
     /// Some mode has more than one independent direction.
     pub degenerate: bool,
     /// Some direction set contains a motion that no element resists.
     pub mechanism: bool,
-    /// A node is closed against several obstacles in a way that is not available.
+    /// A node is in contact with several obstacles in a configuration that is not available.
     pub corner_not_available: bool,
 }
 
-/// Inequalities (of rates of unit arc length) that hold within this are weak.
+/// Inequalities (of rates of unit arc length) satisfied with a margin smaller than this are weak.
 pub(crate) const WEAK: f64 = 1e-9;
 
-/// Directions closer than this are one.
+/// Directions closer than this count as one.
 pub(crate) const SAME: f64 = 1e-7;
 
-/// The modes in which every contact that can change is held.
+/// The modes in which every contact that can change sticks, or remains closed where it has no friction.
 pub(crate) fn held_modes(loading: Loading<'_>, standings: &[Standing]) -> Vec<Mode> {
     let held = |(standing, contact): (&Standing, &ContactPair)| match standing {
         Standing::Settled(mode) => *mode,
@@ -68,7 +69,7 @@ pub(crate) fn held_modes(loading: Loading<'_>, standings: &[Standing]) -> Vec<Mo
     standings.iter().zip(loading.contacts).map(held).collect()
 }
 
-/// Whether the held structure has a motion that no element resists.
+/// Whether the structure with these contacts closed has a motion that no element resists.
 pub(crate) fn resists_nothing(system: &ModeSystem<'_>, loading: Loading<'_>, state: &State) -> bool {
     if !loading.structure.allows_dense() {
         return false;
@@ -81,7 +82,7 @@ pub(crate) fn resists_nothing(system: &ModeSystem<'_>, loading: Loading<'_>, sta
     })
 }
 
-/// A motion with no change of load or reactions that no element resists.
+/// Whether a rate is a mechanism: a motion that no element resists, without change of load or reactions.
 pub fn is_mechanism(loading: Loading<'_>, state: &State, rate: &Rate) -> bool {
     let size = rate.size();
     size > 0.0
@@ -90,7 +91,7 @@ pub fn is_mechanism(loading: Loading<'_>, state: &State, rate: &Rate) -> bool {
         && loading.structure.resistance(&state.displacement, &rate.displacement) < WEAK
 }
 
-/// Keeps one entry for one motion, whatever its modes.
+/// Adds a candidate; candidates with the same motion are merged into one entry, whatever their modes.
 pub(crate) fn merge(found: &mut FoundDirections, candidate: CandidateDirection) {
     for known in &mut found.candidates {
         let same_motion = (1.0 - known.rate.product(&candidate.rate)) < 0.5 * SAME * SAME;
@@ -110,7 +111,7 @@ pub(crate) fn merge(found: &mut FoundDirections, candidate: CandidateDirection) 
     found.candidates.push(candidate);
 }
 
-/// Largest difference of forces to others times a factor, over the largest of all.
+/// Largest difference between forces and a multiple of others, relative to the largest of all.
 pub(crate) fn difference_of_forces(forces: &[Vector], others: &[Vector], factor: f64) -> f64 {
     let largest = forces.iter().chain(others).fold(f64::MIN_POSITIVE, |largest, force| largest.max(size(force)));
     forces
@@ -119,7 +120,7 @@ pub(crate) fn difference_of_forces(forces: &[Vector], others: &[Vector], factor:
         .fold(0.0, |most, (force, other)| f64::max(most, size(&add(force, -factor, other)) / largest))
 }
 
-/// More sticking contacts first, then more that are closed.
+/// Sorts alternatives: those with more sticking contacts first, then those with more closed contacts.
 pub(crate) fn sort(alternatives: &mut [Alternative]) {
     let count = |modes: &Alternative, is: fn(&Mode) -> bool| modes.iter().filter(|(_, mode)| is(mode)).count();
     alternatives

@@ -1,4 +1,4 @@
-//! A direction that exists, what is known of the way to the point, and the settings by which one direction is taken.
+//! Feasible directions, the prior motion of the path, and the rules by which one direction is taken.
 
 use crate::branching::directions::arrival_tangent::Incoming;
 use crate::branching::directions::candidate::difference_of_forces;
@@ -24,7 +24,7 @@ pub enum Selection {
     Straightest,
 }
 
-/// A direction that exists.
+/// A feasible direction, confirmed beyond first order where first order does not suffice.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct DirectionChoice {
     pub rate: Rate,
@@ -32,39 +32,40 @@ pub struct DirectionChoice {
     pub dissipation: f64,
     /// Rate of the potential energy of structure and loads, `Π̇ = -D - ṡ f·u`.
     pub potential_rate: f64,
-    /// Sign of the load rate; where that is zero at first order, of the load rate that follows, if it was looked for.
+    /// Sign of the load rate; where it is zero at first order, the sign of the subsequent load rate, if determined.
     pub load_sign: f64,
     pub retrace: bool,
     pub mechanism: bool,
-    /// The equations of its mode have another null vector here, or as good as that: see `branch_directions`.
+    /// The equations of its mode have a second null vector here, exactly or nearly: see `branch_directions`.
     #[serde(default)]
     pub is_singular: bool,
-    /// How far off the direction the path is then at a unit arc length; at others by the square root of that.
+    /// Offset of the path from such a direction at unit arc length; it grows with the square root of the arc length.
     #[serde(default)]
     pub beside: Option<Rate>,
-    /// A step along it, or second order, has told that it holds; else first order has.
+    /// A step along the direction, or second order, has confirmed it; otherwise it holds at first order.
     #[serde(skip)]
     pub is_tried: bool,
-    /// For the step along it.
+    /// Factorisation for the step along the direction.
     #[serde(skip)]
     pub at_hand: AtHand,
 }
 
-/// What the path was doing before.
+/// Motion of the path before the point.
 #[derive(Debug, Clone, Copy)]
 pub enum PriorMotion<'a> {
     Incoming(Incoming<'a>),
-    /// A stage begins: the load is to rise; ties go to the motion that the pattern pushes.
+    /// A stage begins: the load is to rise; ties go to the motion in the direction of the load pattern.
     StageStart,
 }
 
-/// Load rates (of unit arc length) below this have no sign.
+/// Load rates (of unit arc length) below this count as zero.
 pub const STATIONARY: f64 = 1e-9;
 
-/// Difference to the incoming direction reversed, of unit arc length, within which a direction may be the way back.
+/// Largest difference (of unit arc length) from the reversed incoming direction at which a direction may retrace the
+/// path.
 pub(crate) const BACK: f64 = 4e-5;
 
-/// The same of the forces on the nodes, relative to the largest.
+/// The same for the forces on the nodes, relative to the largest.
 pub(crate) const BACK_FORCES: f64 = 1e-4;
 
 /// Settings and scales of a decision.
@@ -75,7 +76,7 @@ pub struct Rules<'a> {
     pub force_scale: f64,
 }
 
-/// Marks the way back. Several directions may run close to it; it is the closest.
+/// Marks the direction that retraces the path: the closest to the reversed incoming one, as several may be close.
 pub fn mark_retrace(loading: Loading<'_>, state: &State, options: &mut [DirectionChoice], incoming: &Rate) {
     let off = |option: &DirectionChoice| off_reverse(loading, state, &option.rate, incoming);
     let back = options.iter_mut().filter_map(|option| Some((off(option)?, option)));
@@ -84,8 +85,8 @@ pub fn mark_retrace(loading: Loading<'_>, state: &State, options: &mut [Directio
     }
 }
 
-/// Rate of the potential energy of structure and loads, `Π̇ = -D - ṡ f·u`; what supports and obstacles that move put in
-/// comes on top.
+/// Rate of the potential energy of structure and loads, `Π̇ = -D - ṡ f·u`, plus the power of moving supports and
+/// obstacles.
 pub fn potential_rate(loading: Loading<'_>, state: &State, rate: &Rate, dissipation: f64) -> f64 {
     let driven = if loading.pattern.moves_boundary() {
         energy::boundary_force(loading, (state, rate)).0 * rate.load
@@ -100,7 +101,8 @@ pub fn sign_of(load: f64) -> f64 {
     if load.abs() <= STATIONARY { 0.0 } else { load.signum() }
 }
 
-/// How far a direction is from the incoming one reversed, forces on the nodes included; `None` where it is another.
+/// Distance of a direction from the reversed incoming one, forces on the nodes included; `None` where it is another
+/// direction.
 pub(crate) fn off_reverse(loading: Loading<'_>, state: &State, rate: &Rate, incoming: &Rate) -> Option<f64> {
     let sums = rate.displacement.iter().zip(&incoming.displacement).map(|(a, b)| a + b);
     let motion = sums.chain(std::iter::once(rate.load + incoming.load)).map(|sum| sum * sum).sum::<f64>().sqrt();
@@ -113,7 +115,7 @@ pub(crate) fn off_reverse(loading: Loading<'_>, state: &State, rate: &Rate, inco
 }
 
 /// Whether two or more directions share the sign of the load rate. `taken_sign` replaces the sign of the direction
-/// taken where its load rate is just zero (a smooth limit point: the sign that follows).
+/// taken where its load rate is exactly zero (a smooth limit point: the subsequent sign).
 pub fn is_bifurcation(options: &[DirectionChoice], taken: Option<usize>, taken_sign: Option<f64>) -> bool {
     let (mut rising, mut falling) = (0, 0);
     for (index, option) in options.iter().enumerate() {
@@ -130,7 +132,7 @@ pub fn is_bifurcation(options: &[DirectionChoice], taken: Option<usize>, taken_s
     rising >= 2 || falling >= 2
 }
 
-/// Whether the list says more than "on, or back".
+/// Whether the list contains more than one direction and its reverse.
 pub fn is_worth_listing(options: &[DirectionChoice]) -> bool {
     match options {
         [] | [_] => false,

@@ -1,12 +1,14 @@
-//! Full rates of the structure with given velocities of the contacts that can change, and with no load; and with none of
-//! them, its own direction: the matrix `Z` and the vector `z₀` of `condensed_rate_problem` (the usual condensation on the contacts: A.
-//! Klarbring, Ing. Arch. 60 (1990) 529, doi:10.1007/BF00541909).
+//! Basis of the condensation on the contacts that can change: the full rates of the structure for unit velocities of
+//! these contacts at zero load, and the structure's own direction with zero velocities. They are the matrix `Z` and the
+//! vector `z₀` of `condensed_rate_problem` (the usual condensation on the contacts: A. Klarbring, Ing. Arch. 60 (1990)
+//! 529, doi:10.1007/BF00541909).
 //!
-//! With `A` the rate equations in which those contacts are held and a last row `l`, `A Z = v` (unit velocities in the rows
-//! of the contacts) and `A z₀ = (0, 1)`. Or, with `M` the equations of the modes just before, in which each such contact
-//! holds some velocities and not the others: `M x_j = e_j` with a unit velocity where one is held and a unit force where
-//! none is, and the incoming direction `t`. The rates that obey equilibrium with these forces free are the same space, so
-//! `[Z z₀] = [X t] G⁻¹`, `G` the velocities and the load rate of `[X t]`.
+//! Let `A` be the rate equations in which these contacts are fixed, with a last row `l`: then `A Z = v` (unit
+//! velocities in the rows of the contacts) and `A z₀ = (0, 1)`. Alternatively, let `M` be the equations of the modes
+//! just before the point, in which each of these contacts has some velocities prescribed and the others free: then
+//! `M x_j = e_j` with a unit velocity where it is prescribed and a unit force where it is free, and `t` is the incoming
+//! direction. Both span the rates that satisfy equilibrium with these forces free, so `[Z z₀] = [X t] G⁻¹`, with `G`
+//! the velocities and the load rate of `[X t]`.
 
 use crate::algebra::dense::assembly::Sink;
 use crate::algebra::sparse::preconditioned_refinement::Nearby;
@@ -21,21 +23,22 @@ use crate::mechanics::problem::state::Rate;
 use crate::resources::budget;
 use nalgebra::{DMatrix, DVector};
 
-/// Cosine up to which a direction lies across a normal.
+/// Largest cosine of the angle with a normal at which a direction counts as tangential.
 const ACROSS: f64 = 1e-12;
-/// Backward error of the solutions that columns are made of, as of those by a factorisation of their own: on a lattice of
-/// 102,304 unknowns they tell rates to about 2e-9.
+/// Accepted backward error of the solutions combined into columns, the same as with a factorisation of their own: on a
+/// lattice of 102,304 unknowns the rates are accurate to about 2e-9.
 const ACCEPTED: f64 = 1e-11;
-/// Smallest pivot of the velocities and loads of solutions, of sizes about 1, at which these span all that is asked for.
+/// Smallest pivot of the matrix of velocities and loads of the solutions (entries of about 1) at which they span the
+/// space.
 const SPANS: f64 = 1e-3;
 
-/// The velocities of all: the contact and the direction of each.
+/// The velocities of all contacts that can change: the contact and the direction of each.
 fn velocities(changeable: &[Changeable]) -> impl Iterator<Item = (usize, &Vector)> {
     changeable.iter().flat_map(|entry| entry.velocities.iter().map(|(_, direction)| (entry.contacts[0], direction)))
 }
 
-/// The rates for unit velocities of each contact that can change, which this system holds, one after the other, and
-/// after them the direction without; `None` where that is more than one.
+/// The rates for unit velocities of each contact that can change, which this system prescribes, one after the other,
+/// and last the direction with zero velocities; `None` where this direction is not unique.
 pub(crate) fn columns(
     equations: &ModeSystem<'_>,
     changeable: &[Changeable],
@@ -46,7 +49,7 @@ pub(crate) fn columns(
         .or_else(|| columns_held(equations, changeable, incoming.map(|incoming| incoming.rate)))
 }
 
-/// By a factorisation of the held equations.
+/// The columns by a factorisation of the equations in which the contacts are fixed.
 fn columns_held(equations: &ModeSystem<'_>, changeable: &[Changeable], incoming: Option<&Rate>) -> Option<Vec<Rate>> {
     let factorisation = bordered_somehow(equations, incoming)?;
     let solved = |mut values: DVector<f64>| {
@@ -58,13 +61,14 @@ fn columns_held(equations: &ModeSystem<'_>, changeable: &[Changeable], incoming:
     rights.chain(std::iter::once_with(|| equations.bordering())).map(solved).collect()
 }
 
-/// A right-hand side: the node of a closed contact moves along a direction, as far as the contact holds it.
+/// The right-hand side for a unit motion of the node of a closed contact along a direction, in the directions that the
+/// contact constrains.
 pub(crate) fn moving(equations: &ModeSystem<'_>, contact: usize, direction: &Vector) -> DVector<f64> {
     let mut values = DVector::zeros(equations.size);
     let row = equations.row_of(contact);
     let normal = equations.loading.frame(contact, equations.anchor).normal;
     let held = equations.held_directions(contact);
-    // A smooth contact holds along its normal alone, and so does one that slips.
+    // A frictionless contact constrains the normal direction alone, and so does a slipping one.
     let held = if held.is_empty() { std::slice::from_ref(&normal) } else { held };
     held.iter().enumerate().for_each(|(k, one)| values[row + k] = dot(one, direction));
     values
@@ -95,12 +99,12 @@ fn bordered_somehow(equations: &ModeSystem<'_>, incoming: Option<&Rate>) -> Opti
     Factorisation::new(by_null_vector).map(SystemFactorisation::Dense)
 }
 
-/// By the factorisation that led here, of the modes just before. In these each contact that changes holds some
-/// velocities and leaves the forces along the others, at which there are none, to be what they are; with a unit of each
-/// in turn, and with the direction in which the path came, their solutions span what the columns are to span.
+/// The columns by the factorisation that led to the point, of the modes just before. In these modes each contact that
+/// changes prescribes some velocities and leaves the others free, with zero forces along them; the solutions for a unit
+/// of each in turn, together with the incoming direction, span the space of the columns.
 ///
-/// On a flat obstacle: on another the reactions turn with the node, each mode's in its own way. `None` where
-/// something else is not as described.
+/// Valid on flat obstacles: on a curved one the reactions turn with the node, differently in each mode. `None` where
+/// one of these assumptions does not hold.
 fn columns_nearby(equations: &ModeSystem<'_>, changeable: &[Changeable], incoming: Incoming<'_>) -> Option<Vec<Rate>> {
     let (nearby, modes) = (incoming.nearby?.sparse()?, incoming.modes?);
     let (loading, state) = (equations.loading, equations.anchor);
@@ -114,7 +118,7 @@ fn columns_nearby(equations: &ModeSystem<'_>, changeable: &[Changeable], incomin
     let iterate = system.iterate(state.clone());
     let nearby = Nearby::new(nearby, system.assemble_sparse(&iterate, Kind::Rates)?)?;
     let velocities: Vec<(usize, &Vector)> = velocities(changeable).collect();
-    // The right-hand sides, what comes of them, and the rates.
+    // The right-hand sides, their solutions, and the rates.
     let _held = budget::take::<f64>((velocities.len() + 1) * (5 * system.size + 4 * loading.contacts.len()));
     let mut rights = Vec::with_capacity(velocities.len() * system.size);
     for (contact, direction) in &velocities {
@@ -135,7 +139,7 @@ fn columns_nearby(equations: &ModeSystem<'_>, changeable: &[Changeable], incomin
     combined(equations, &velocities, &solutions)
 }
 
-/// Whether a contact changes alone, on a flat obstacle, at a node that is free to move.
+/// Whether an entry is a single contact on a flat obstacle, at a node without supports.
 fn is_plain(equations: &ModeSystem<'_>, entry: &Changeable) -> bool {
     let structure = equations.loading.structure;
     let [contact] = entry.contacts[..] else { return false };
@@ -145,7 +149,8 @@ fn is_plain(equations: &ModeSystem<'_>, entry: &Changeable) -> bool {
         && freedoms.all(|freedom| structure.unknown_of[freedom].is_some())
 }
 
-/// Whether a mode gives a contact's velocity along a direction, not the force; `None` where it is not that simple.
+/// Whether a mode prescribes a contact's velocity along a direction rather than its force; `None` where it prescribes
+/// neither alone.
 fn holds(equations: &ModeSystem<'_>, contact: usize, direction: &Vector) -> Option<bool> {
     match equations.roles[contact] {
         Role::Free => Some(false),
@@ -159,7 +164,7 @@ fn holds(equations: &ModeSystem<'_>, contact: usize, direction: &Vector) -> Opti
     }
 }
 
-/// A right-hand side: a unit force along a direction on the node of a contact.
+/// The right-hand side for a unit force along a direction on the node of a contact.
 pub(crate) fn pushed(equations: &ModeSystem<'_>, contact: usize, direction: &Vector) -> DVector<f64> {
     let structure = equations.loading.structure;
     let mut values = DVector::zeros(equations.size);
@@ -171,7 +176,7 @@ pub(crate) fn pushed(equations: &ModeSystem<'_>, contact: usize, direction: &Vec
     values
 }
 
-/// The columns as combinations of solutions, as many, that span them.
+/// The columns as combinations of an equal number of solutions that span them.
 fn combined(equations: &ModeSystem<'_>, velocities: &[(usize, &Vector)], solutions: &[Rate]) -> Option<Vec<Rate>> {
     let count = solutions.len();
     let _held = budget::take::<f64>(2 * count * count);
@@ -219,8 +224,8 @@ mod tests {
     use crate::step::corrector::cost_counters::Work;
     use crate::step::segment::StepStart;
 
-    /// At the changes of an arch that lands, the factorisation that led there gives the columns as one of the held
-    /// equations does.
+    /// At the contact changes of an arch that lands, the factorisation that led to each gives the same columns as a
+    /// factorisation of the equations in which the contacts are fixed.
     #[test]
     fn a_factorisation_of_the_modes_before_gives_the_same() {
         let (mut by_nearby, mut most) = (0, 0.0_f64);
@@ -238,7 +243,7 @@ mod tests {
                     continue;
                 }
                 let rate = &listed.options[taken].rate;
-                // The direction in which the path came, found once more from a point nearby.
+                // The incoming direction, computed again from a point nearby.
                 let before = state.advanced(rate, -1e-6);
                 let start = StepStart {
                     loading,

@@ -1,8 +1,9 @@
 //! The rate equations condensed on the contacts that can change, and the directions of each contact mode.
 //!
-//! With `v` the velocities of those contacts and `τ` the coordinate along the held structure's own direction `z₀`,
-//! `(u̇, ṡ, ṙ) = Z v + z₀ τ`; a mode picks one linear equation for each velocity and leaves a line, taken in both senses.
-//! The inequalities are those listed in `selection::enumeration`; `rate_options` writes them down, `rates` finds the rays.
+//! With `v` the velocities of these contacts and `τ` the coordinate along the direction `z₀` of the structure with the
+//! contacts fixed, `(u̇, ṡ, ṙ) = Z v + z₀ τ`; a mode selects one linear equation for each velocity and leaves a line,
+//! taken in both senses. The inequalities are those listed in `selection::enumeration`; `rate_options` formulates them,
+//! `rates` finds the rays.
 
 use crate::branching::directions::arrival_tangent::Incoming;
 use crate::branching::directions::candidate::{
@@ -26,7 +27,8 @@ use crate::resources::budget::{self, Taken};
 use crate::step::corrector::cached_factorisation::AtHand;
 use nalgebra::{DMatrix, DVector};
 
-/// Up to so many contacts the search finds its way alone, and slips of unknown direction are sought one by one.
+/// Largest number of contacts for which the search needs no starting guess, and slips of unknown direction are sought
+/// separately.
 const FEW: usize = 6;
 
 /// The rate equations condensed on the changeable contacts: column `j` is the full rate for unit `v_j`, the last one
@@ -36,13 +38,14 @@ pub(crate) struct Condensed<'a> {
     columns: Vec<Rate>,
     changeable: Vec<Changeable>,
     problem: RateProblem,
-    /// What the options of each mean.
+    /// The contact modes that each option of each entry stands for.
     outcomes: Vec<Vec<OptionOutcome>>,
     _held: Taken,
 }
 
 impl<'a> Condensed<'a> {
-    /// `None` where the held structure has more than one independent direction.
+    /// Condenses the rate equations; `None` where the structure with the contacts fixed has more than one independent
+    /// direction.
     pub(crate) fn new(
         system: &ModeSystem<'_>,
         loading: Loading<'a>,
@@ -79,7 +82,7 @@ impl<'a> Condensed<'a> {
         Some(Self { loading, columns, changeable, problem, outcomes, _held: held })
     }
 
-    /// The rate problem, for those who try every combination.
+    /// The rate problem, for tests that try every combination.
     #[cfg(test)]
     pub(crate) fn problem(&self) -> &RateProblem {
         &self.problem
@@ -151,7 +154,7 @@ impl<'a> Condensed<'a> {
         }
     }
 
-    /// Where a node in a pocket is not pressed, first slips along one of its obstacles in a direction that is unknown.
+    /// Adds slips of an unloaded node out of a corner, which begin along one of its obstacles in an unknown direction.
     fn add_slips_out_of_pockets(&self, held: &[Mode], state: &State, effort: Effort<'_>, found: &mut FoundDirections) {
         let normals = |contact: usize| self.loading.frame(contact, state).normal;
         let mut forms = Forms {
@@ -188,7 +191,7 @@ impl<'a> Condensed<'a> {
         }
     }
 
-    /// Of a set of motions that no element resists, the one nearest to the direction in which the path came.
+    /// Adds, of a set of motions that no element resists, the one closest to the incoming direction.
     fn add_nearest_mechanism(
         &self,
         motions: &[Rate],
@@ -239,7 +242,7 @@ impl<'a> Condensed<'a> {
         );
     }
 
-    /// The weights that come nearest to a rate: its velocities, and what it has along `z₀`.
+    /// The weights of the columns that best represent a rate: its velocities, and its component along `z₀`.
     fn weights_of(&self, state: &State, rate: &Rate) -> DVector<f64> {
         let last = self.columns.len() - 1;
         budget::spend(last * rate.displacement.len());
@@ -268,7 +271,7 @@ impl<'a> Condensed<'a> {
             entry.take_reaction_apart(self.loading, state, &mut rate);
             let slips_out = turning.iter().any(|(slipping, _)| entry.contacts.contains(slipping));
             for (contact, mode) in &outcomes[choice].modes {
-                // The other obstacles of its node are left.
+                // The node leaves its other obstacles.
                 let mode = if slips_out && entry.contacts.len() > 1 { &Mode::Free } else { mode };
                 let slips = turning.iter().find(|(turning, _)| turning == contact);
                 let mode = &slips.map_or(*mode, |(_, direction)| Mode::Slip { direction: *direction });
@@ -277,7 +280,7 @@ impl<'a> Condensed<'a> {
                 match mode {
                     Mode::Free if entry.contacts.len() == 1 => *reaction = Reaction::default(),
                     Mode::Slip { direction } if entry.contacts.len() == 1 => {
-                        // Exactly on the cone along the direction; what is across it turns the direction.
+                        // Exactly on the cone along the direction; the rate across it turns the direction.
                         let friction = self.loading.contacts[*contact].friction;
                         let drag = -friction.bound(reaction.normal) - dot(&reaction.tangential, direction);
                         reaction.tangential = add(&reaction.tangential, drag, direction);
@@ -303,7 +306,7 @@ impl<'a> Condensed<'a> {
         );
     }
 
-    /// What each contact may do along a ray.
+    /// The alternative modes of each contact along a ray.
     fn alternatives(
         &self,
         ray: &Ray,
@@ -336,8 +339,8 @@ impl<'a> Condensed<'a> {
         self.changeable.iter().zip(&self.outcomes).zip(&ray.in_doubt).map(of_entity).collect()
     }
 
-    /// The rate of unit arc length for weights of the columns, and the weights that give it; of no size where the
-    /// weights move nothing.
+    /// The rate of unit arc length for weights of the columns, and the weights scaled accordingly; a zero rate where
+    /// the weights produce no motion.
     pub(crate) fn combine(&self, weights: &DVector<f64>) -> (Rate, DVector<f64>) {
         budget::spend(self.columns.len() * (self.columns[0].displacement.len() + 4 * self.loading.contacts.len()));
         let mut rate = self.columns[0].clone();
@@ -358,7 +361,7 @@ impl<'a> Condensed<'a> {
     }
 }
 
-/// The contacts that can change, each corner once, with their columns.
+/// The contacts that can change, each corner once, with the numbers of their columns.
 pub(crate) fn changeable(loading: Loading<'_>, state: &State, standings: &[Standing]) -> Vec<Changeable> {
     let mut entries: Vec<Changeable> = Vec::new();
     let mut next = 0;
@@ -382,7 +385,7 @@ pub(crate) fn changeable(loading: Loading<'_>, state: &State, standings: &[Stand
     entries
 }
 
-/// A matrix by its entries: each column is work of its own, so that a large one can be interrupted.
+/// A matrix built column by column, so that the work on a large one can be interrupted.
 fn column_by_column(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> DMatrix<f64> {
     let mut matrix = DMatrix::zeros(rows, columns);
     for (column, mut values) in matrix.column_iter_mut().enumerate() {

@@ -1,13 +1,13 @@
 //! The one-sided directions at a point, to first order.
 //!
-//! | file | what it does |
+//! | file | contents |
 //! |---|---|
-//! | `candidate` | a direction of first order with the contact modes that fit it |
-//! | `choice` | a direction that exists, and the rules by which one is taken |
+//! | `candidate` | a direction of first order with the compatible contact modes |
+//! | `choice` | a feasible direction, and the rules by which one is taken |
 //! | `condensed_rate_problem` | the rate equations condensed on the velocities of the contacts that can change |
-//! | `condensation_basis` | the full rates of the structure for each of those velocities |
-//! | `arrival_tangent` | what the way to the point tells of the directions there |
-//! | `trial_step` | a short step tells whether a direction of first order holds, and under which modes |
+//! | `condensation_basis` | the full rates of the structure for each of these velocities |
+//! | `arrival_tangent` | the incoming tangent, and the directions that it determines |
+//! | `trial_step` | a short step decides whether a direction of first order holds, and under which modes |
 
 pub(crate) mod arrival_tangent;
 pub(crate) mod candidate;

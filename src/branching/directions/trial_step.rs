@@ -1,10 +1,10 @@
-//! Whether a direction that holds only at first order is one, and under which modes: a small step tells.
+//! Trial steps: a small step decides whether a direction that holds only at first order exists, and under which modes.
 //!
-//! Where inequalities hold with equality, several modes fit one direction, and it is one if it holds under some of them
-//! for a short way. With many such contacts (velocities that die away along a chain, many contacts that touch without
-//! force) their combinations are too many to try: what a step finds violated is changed, and the step tried again, as in
-//! an active set method. Only where that leads nowhere are combinations tried in turn, as many as there are up to a
-//! bound.
+//! Where inequalities hold with equality, several modes are compatible with one direction, and the direction exists if
+//! it holds under some of them over a short arc length. With many such contacts (velocities that decay along a chain,
+//! many contacts that touch without force) the combinations are too many to try. As in an active-set method, the modes
+//! that a step violates are changed and the step is repeated. Only where this does not succeed are combinations tried
+//! in turn, up to a bound on their number.
 
 use crate::branching::directions::candidate::CandidateDirection;
 use crate::branching::directions::choice::sign_of;
@@ -26,35 +26,36 @@ use crate::step::segment::may_turn;
 use nalgebra::DVector;
 use std::collections::BTreeSet;
 
-/// Arc lengths of the steps by which a direction of first order is tried, one after another until it is clear.
+/// Arc lengths of the trial steps for a direction of first order, tried one after another until the outcome is clear.
 const TRIAL_STEPS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
 /// Quantities and slopes below this are zero at first order.
 const IN_DOUBT: f64 = 1e-8;
-/// Slopes of forces beyond this after a trial step have a sign, relative to the contact's own forces ...
+/// After a trial step, slopes of forces above this, relative to the contact's own forces, have a sign ...
 const CLEAR: f64 = 1e-9;
-/// ... but no less than their round-off relative to the largest.
+/// ... but no smaller than their round-off relative to the largest force.
 const CLEAR_OF_ROUND_OFF: f64 = 5e-14;
-/// The same of velocities, against the node's own: what is less leaves a gap within round-off over the whole path.
+/// The same for velocities, relative to the node's own: a smaller one leaves the gap within round-off over the whole
+/// path.
 const CLEAR_OF_SPEED: f64 = 1e-13;
 /// Round-off of a velocity (of unit arc length).
 const STILL: f64 = 1e-14;
-/// Load rates (of unit arc length) up to this are rounding where nothing else is known of it.
+/// Load rates (of unit arc length) up to this are round-off unless a smaller bound is known.
 const NO_LOAD_RATE: f64 = 1e-12;
-/// Roundings in each entry of the equations, and of their solution, for one number.
+/// Number of round-off errors assumed in each entry of the equations and of their solution.
 const ROUNDINGS: f64 = 8.0;
-/// Load rates that differ by no more than this part of themselves are alike.
+/// Load rates whose relative difference is no larger than this are alike.
 const ALIKE: f64 = 0.5;
-/// How far a watched quantity may be negative after a trial step (second order in the step where it is real).
+/// Largest negative value of a watched quantity after a trial step (a true violation is of second order in the step).
 const TRIAL_TOLERANCE: f64 = 1e-11;
-/// Combinations that are tried in turn.
+/// Largest number of combinations that are tried in turn.
 const MOST_COMBINATIONS: u64 = 64;
 
-/// What a small step says of a direction that holds only at first order.
+/// Outcome of a small step along a direction that holds only at first order.
 enum TrialVerdict {
     Holds(f64),
-    /// With the contacts that are to blame, if it is they.
+    /// With the contacts responsible, if contacts are.
     Fails(Vec<usize>),
-    /// What is in doubt stays zero to second order, too.
+    /// The quantities in doubt are zero to second order, too.
     Unclear(f64),
 }
 
@@ -79,7 +80,7 @@ pub(crate) fn confirm_by(
     let trial = Trial { loading, state, candidate, force_scale, steps };
     let (mut tried, mut held) = (BTreeSet::new(), Taken::default());
     let mut places = vec![0; candidate.alternatives.len()];
-    // Every contact in doubt may be changed a few times before it is given up.
+    // Every contact in doubt may be changed a few times before the search gives up.
     let most = candidate.alternatives.iter().map(|alternatives| 2 * (alternatives.len() - 1)).sum::<usize>() + 1;
     for _ in 0..most {
         held.add::<usize>(places.len());
@@ -107,16 +108,16 @@ pub(crate) fn confirm_by(
     combinations.iter().find_map(|places| trial.judge(places).ok())
 }
 
-/// The sign of a load rate that is zero at first order, or as good as that.
+/// The sign of a load rate that is zero at first order, exactly or nearly.
 pub(crate) struct LaterSign {
-    /// 0 where there is none.
+    /// Sign of the load rate; 0 where it has none.
     pub sign: f64,
-    /// It is that of the load rate itself, which is small and the same all along: close to critical friction the load falls
-    /// or rises ever so slowly.
+    /// The sign is that of the load rate itself, which is small and constant along the path: close to critical friction
+    /// the load falls or rises very slowly.
     pub is_steady: bool,
 }
 
-/// The sign of the load rate after the shortest step along a direction in its modes after which it has one.
+/// The sign of the load rate after the shortest trial step along a direction in its modes after which it has a sign.
 pub(crate) fn later_sign(
     loading: Loading<'_>,
     state: &State,
@@ -142,9 +143,10 @@ pub(crate) fn later_sign(
     LaterSign { sign: if is_steady { rate.load.signum() } else { 0.0 }, is_steady }
 }
 
-/// What rounding may do to the load rate of a direction, where the equations are few: entries off by `δA` put `-wᵀ δA x` into
-/// it, with `A x` the last unit vector and `Aᵀ w` that of the load (N. J. Higham, *Accuracy and Stability of Numerical
-/// Algorithms*, SIAM 2002, section 7.2). `A` has its rows over their sizes, so that `|δA|` is unit round-off at the most.
+/// Bound of the round-off in the load rate of a direction, for few equations: errors `δA` of the entries contribute
+/// `-wᵀ δA x`, with `A x` the last unit vector and `Aᵀ w` that of the load (N. J. Higham, *Accuracy and Stability of
+/// Numerical Algorithms*, SIAM 2002, section 7.2). The rows of `A` are scaled by their sizes, so that `|δA|` is at most
+/// the unit round-off.
 fn rounding_of_load_rate(loading: Loading<'_>, state: &State, rate: &Rate, modes: &[Mode]) -> Option<f64> {
     if loading.structure.layout().is_some() {
         return None;
@@ -161,7 +163,7 @@ fn rounding_of_load_rate(loading: Loading<'_>, state: &State, rate: &Rate, modes
     rounding.is_finite().then_some(rounding)
 }
 
-/// The point a small step along a direction in these modes, with the direction there.
+/// The point reached by a small step along a direction in these modes, with the direction there.
 fn stepped(
     loading: Loading<'_>,
     state: &State,
@@ -203,12 +205,12 @@ struct Trial<'a> {
     state: &'a State,
     candidate: &'a CandidateDirection,
     force_scale: f64,
-    /// Arc lengths, tried one after another until it is clear.
+    /// Arc lengths, tried one after another until the outcome is clear.
     steps: &'a [f64],
 }
 
 impl Trial<'_> {
-    /// The modes of a combination and the load rate after a small step, or who is to blame.
+    /// The modes of a combination and the load rate after a small step, or the contacts responsible for its failure.
     fn judge(&self, places: &[usize]) -> Result<(Vec<Mode>, f64), Vec<usize>> {
         budget::spend(self.loading.structure.freedoms());
         let mut modes = self.candidate.modes.clone();
@@ -226,9 +228,9 @@ impl Trial<'_> {
         Ok((modes, later_load))
     }
 
-    /// Follows only what is zero at first order: whatever else ends the mode within the step is an event to come. The
-    /// step is short, so that such events come after it as a rule: where many contacts change close together, a long one
-    /// would judge a motion that does not happen.
+    /// Checks only quantities that are zero at first order: any other end of the mode within the step is a later event.
+    /// The step is short, so that such events usually lie beyond it: where many contacts change close together, a long
+    /// step would assess a motion that does not occur.
     fn step(&self, modes: &[Mode], step: f64) -> TrialVerdict {
         let Self { loading, state, candidate, force_scale, .. } = *self;
         let nobody = || TrialVerdict::Fails(Vec::new());
@@ -256,11 +258,12 @@ impl Trial<'_> {
             let last = watch.value(loading, modes, &corrected.state, &rate) / scale;
             let grown = watch.slope(loading, modes, &corrected.state, &rate).map_or(last, |slope| slope / size);
             let clear = match watch {
-                // A node on a stiff spring is slow, and its direction is as clear.
+                // A node on a stiff spring moves slowly, but its direction is just as clear.
                 Watch::Gap(contact) | Watch::Sliding(contact) => {
                     STILL + CLEAR_OF_SPEED * size_of(&loading.relative_rate(contact, &corrected.state, &rate))
                 }
-                // By the contact's own forces: along a chain close to jamming they fall by orders from node to node.
+                // Relative to the contact's own forces: along a chain close to jamming they decrease by orders of
+                // magnitude between nodes.
                 Watch::Normal(contact) | Watch::Cone { contact, .. } => {
                     let own = candidate.rate.reactions[contact].size().max(rate.reactions[contact].size());
                     (CLEAR * own / size).max(CLEAR_OF_ROUND_OFF)
@@ -283,7 +286,7 @@ impl Trial<'_> {
     }
 }
 
-/// The contacts that a quantity is of.
+/// The contacts to which a watched quantity belongs.
 fn contacts_of(loading: Loading<'_>, watch: Watch) -> Vec<usize> {
     match watch {
         Watch::Gap(contact) | Watch::Normal(contact) | Watch::Cone { contact, .. } | Watch::Sliding(contact) => {

@@ -1,14 +1,14 @@
-//! Which direction the path takes.
+//! The decision which direction the path takes.
 //!
-//! Directions that hold only at first order are tried with a small step; the way the path came is never a candidate.
-//! Then the rule: the largest dissipation per arc length (Kanno and Martins), the smallest rate of potential energy
-//! (Hilding 2000), or the straightest. Ties go to the straightest in
-//! displacement, `u̇·u̇_prev` alone: a rule in which the load enters would depend on its units. Where that ties, too
-//! (nothing moves), the load goes on rising or falling as it did.
+//! Directions that hold only at first order are tested by a small step; the direction that retraces the path is never a
+//! candidate. The rule then takes the largest dissipation per arc length (Kanno and Martins), the smallest rate of
+//! potential energy (Hilding 2000), or the straightest direction. Ties go to the straightest in displacement,
+//! `u̇·u̇_prev` alone: a rule that included the load would depend on its units. Where this is a tie, too (nothing
+//! moves), the load continues to rise or fall as before.
 //!
 //! The potential energy is that of structure and loads, `Π = W(u) - f_held·u - s f·u`. Along a direction
-//! `Π̇ = (f_int - f_held - s f)·u̇ - ṡ f·u`, and by equilibrium the bracket is the reactions, whose power is `-D` with the
-//! dissipation `D = -Σ r_t·u̇_t`: so `Π̇ = -D - ṡ f·u`, per unit arc length.
+//! `Π̇ = (f_int - f_held - s f)·u̇ - ṡ f·u`, and by equilibrium the bracket equals the reactions, whose power is `-D`
+//! with the dissipation `D = -Σ r_t·u̇_t`: so `Π̇ = -D - ṡ f·u`, per unit arc length.
 
 use crate::branching::bifurcation::branch_directions::{SecondOrderFindings, SingularPoint};
 use crate::branching::directions::candidate::{FoundDirections, is_mechanism};
@@ -25,11 +25,11 @@ use crate::mechanics::problem::state::{Rate, State, dot};
 use crate::result::stop_reason::StopReason;
 use crate::step::corrector::cached_factorisation::AtHand;
 
-/// The directions at a point and the one that is taken.
+/// The directions at a point and the one taken.
 #[derive(Debug, Clone)]
 pub struct Decision {
     pub options: Vec<DirectionChoice>,
-    /// Which of `options` is taken; `None` where the path ends.
+    /// Index in `options` of the direction taken; `None` where the path ends.
     pub taken: Option<usize>,
     /// Why the path ends here, if it does.
     pub stop: Option<StopReason>,
@@ -40,11 +40,11 @@ pub struct Decision {
 /// Dissipations closer than this, relative to the largest force, tie.
 const TIE: f64 = 1e-8;
 
-/// Displacement rates along the incoming one that differ by less than this part of their sizes tie.
+/// Displacement rates whose components along the incoming one differ by less than this part of their sizes tie.
 const TIE_OF_MOTIONS: f64 = 1e-9;
-/// Displacement rates below this part of a direction are no motion: so much is left where nothing moves by the location of the
-/// event that led there, and by the differences of the tangent that tell a direction at a fold. Which way such a motion
-/// goes hangs on units, axes and steps.
+/// Displacement rates below this part of a direction count as zero: where nothing moves, the location of the event
+/// before the point, or the differences of the tangent that determine a direction at a fold, leave a remainder of this
+/// size. Its direction depends on units, axes and steps.
 const STILL: f64 = 1e-9;
 
 /// Lists the directions at a point.
@@ -117,7 +117,7 @@ pub fn decide(
     taken_of(loading, options, &FoundDirections { degenerate: unclear, ..FoundDirections::default() }, before, rules)
 }
 
-/// Takes one of the directions that were found.
+/// Takes one of the directions found.
 fn taken_of(
     loading: Loading<'_>,
     options: Vec<DirectionChoice>,
@@ -163,7 +163,7 @@ fn taken_of(
     }
 }
 
-/// The direction that the rule puts first, among those that are eligible.
+/// The direction that the rule prefers among those that are eligible.
 pub fn preferred(
     options: &[DirectionChoice],
     previous: &Rate,
@@ -175,7 +175,7 @@ pub fn preferred(
         .reduce(|best, other| if is_preferred(&options[other], &options[best], previous, rules) { other } else { best })
 }
 
-/// Whether the first of two directions goes before the second.
+/// Whether the rule prefers the first of two directions to the second.
 fn is_preferred(first: &DirectionChoice, second: &DirectionChoice, previous: &Rate, rules: Rules<'_>) -> bool {
     match rules.selection {
         Selection::Straightest => is_straighter(first, second, previous, true),
@@ -193,8 +193,8 @@ fn is_preferred(first: &DirectionChoice, second: &DirectionChoice, previous: &Ra
     }
 }
 
-/// Whether the first of two directions has the larger product (or cosine) with the way the path came, in displacement;
-/// where neither has, whether it alone keeps the sign of the load rate.
+/// Whether the first of two directions has the larger product (or cosine) with the incoming direction, in displacement;
+/// in case of a tie, whether it alone keeps the sign of the load rate.
 fn is_straighter(first: &DirectionChoice, second: &DirectionChoice, previous: &Rate, by_cosine: bool) -> bool {
     let size = |rate: &Rate| {
         let size = dot(&rate.displacement, &rate.displacement).sqrt();

@@ -1,15 +1,16 @@
 //! All one-sided directions of the path at a point.
 //!
-//! Contacts that cannot change keep their equations. For the others (on the cone, or touching without reaction) let
-//! `v` be their velocities against the obstacle. With all of them held, the rate equations
+//! Contacts that cannot change keep their equations. For the others (on the cone, or touching without reaction) let `v`
+//! be their velocities against the obstacle. With all of them fixed, the rate equations
 //!
 //! ```text
 //! K u̇ - f ṡ - B ṙ = 0,    G u̇ = v
 //! ```
 //!
-//! have one solution for each `v` and one more, `z₀`, along which the held structure itself moves: one factorisation,
-//! bordered so that it is regular, gives `(u̇, ṡ, ṙ)` as a linear function of `(v, τ)`. Each contact mode is then a
-//! small linear system in `(v, τ)` with one-dimensional solution, taken in both senses and kept where it satisfies
+//! have one solution for each `v` and one more, `z₀`, along which the structure with fixed contacts moves: one
+//! factorisation, bordered so that it is regular, gives `(u̇, ṡ, ṙ)` as a linear function of `(v, τ)`. Each contact
+//! mode is then a small linear system in `(v, τ)` with one-dimensional solution, taken in both senses and kept where it
+//! satisfies
 //!
 //! ```text
 //! on the cone   stick: v = 0, μ ṙ_n + d ṙ_t >= 0     slip: μ ṙ_n + d ṙ_t = 0, d v_t >= 0
@@ -32,7 +33,7 @@ use crate::mechanics::multi_contact::determinacy;
 use crate::mechanics::problem::loading::Loading;
 use crate::mechanics::problem::state::State;
 
-/// Lists the directions; `incoming` helps to border the equations where the held structure is singular.
+/// Lists the directions; `incoming` may border the equations where the structure with fixed contacts is singular.
 pub fn directions(
     loading: Loading<'_>,
     state: &State,
@@ -58,7 +59,7 @@ pub fn directions(
     };
     condensed.enumerate(&held, state, incoming.map(|incoming| incoming.rate), effort, &mut found);
     if are_few && found.unexplored > 0 && loading.structure.layout().is_some() {
-        // Where the search was cut there may be a proof.
+        // Where the search was cut short, a uniqueness proof may succeed.
         let mut proven = FoundDirections::default();
         if sparse_uniqueness::directions(loading, state, standings, incoming, effort, &mut proven) && proven.is_proven {
             return proven;

@@ -1,9 +1,9 @@
-//! All directions of a point, and the one that the path takes.
+//! All directions of a point, and the direction that the path takes.
 //!
-//! | file | what it does |
+//! | file | contents |
 //! |---|---|
 //! | `enumeration` | every direction of first order |
-//! | `second_order` | where first order does not tell, second order is asked |
+//! | `second_order` | directions at second order, where first order is inconclusive |
 //! | `decision` | the selection rule: largest dissipation, least potential energy, or straightest |
 
 pub(crate) mod decision;

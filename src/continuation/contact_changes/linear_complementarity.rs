@@ -1,17 +1,17 @@
-//! Which of several contacts without friction are closed at the end of a step, by equations that are linearised once.
+//! The frictionless contacts that are closed at the end of a step, by the equations linearised once.
 //!
-//! With `x₀` the state after one iteration in some mode, and `x_j` the solutions of the same equations for a unit force of a
-//! contact that is open in it and for a unit gap of one that is closed, each `x₀ + Σ z_j x_j` obeys equilibrium at first
-//! order. The gaps of the former and the forces of the latter are `w`:
+//! Let `x₀` be the state after one iteration in some mode, and `x_j` the solutions of the same equations for a unit
+//! force of each contact that is open in this mode and for a unit gap of each closed contact. Each `x₀ + Σ z_j x_j`
+//! satisfies equilibrium to first order. Let `w` be the gaps of the open contacts and the forces of the closed ones:
 //!
 //! ```text
 //! w = w₀ + M z,    0 <= w ⊥ z >= 0
 //! ```
 //!
-//! This linear complementarity problem of the contacts that change is solved by letting all of them change whose sign is
-//! wrong, again and again (block pivoting: J. J. Júdice, F. M. Pires, Computers Ops. Res. 21 (1994) 587,
-//! doi:10.1016/0305-0548(94)90106-6, without its way out of circles: what is found here is a guess). A contact joins them
-//! when its own sign is wrong.
+//! This linear complementarity problem of the contacts that change is solved by repeatedly changing all contacts with
+//! the wrong sign (block pivoting: J. J. Júdice, F. M. Pires, Computers Ops. Res. 21 (1994) 587,
+//! doi:10.1016/0305-0548(94)90106-6, without its safeguard against cycling: the result serves only as a guess). A
+//! contact enters the problem when its own sign is wrong.
 
 use crate::algebra::sparse::SparseFactorisation;
 use crate::algebra::{Factorisation, SystemFactorisation};
@@ -22,33 +22,34 @@ use crate::mechanics::equations::{Kind, ModeSystem};
 use crate::mechanics::problem::state::{Rate, State};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-/// Contacts that may change: for each a solution as large as the structure is kept.
+/// Largest number of contacts that may change: for each a solution of the size of the structure is stored.
 const MOST_CHANGING: usize = 64;
-/// Sets of contacts that are tried.
+/// Largest number of active sets tried.
 const MOST_SETS: usize = 12;
 
-/// What the equations linearised once say of a step's end.
+/// The end of a step by the equations linearised once.
 pub(crate) struct Complementary {
     /// The contacts that change.
     pub changed: Vec<usize>,
-    /// About the end with them changed.
+    /// Approximate state at the end of the step after these changes.
     pub state: State,
-    /// Whether the contacts that may change feel a positive definite stiffness.
+    /// Whether the stiffness condensed on the contacts that may change is positive definite.
     pub leaves_no_choice: bool,
 }
 
-/// The contacts that may change, as far as they are known.
+/// The contacts known so far that may change.
 struct ActiveSetCandidates {
     contacts: Vec<usize>,
-    /// Whether each is changed.
+    /// Whether each contact is changed.
     are_changed: Vec<bool>,
-    /// The rate with its own unit for each.
+    /// The rate for the unit force or unit gap of each contact.
     columns: Vec<Rate>,
 }
 
-/// The contacts that change at about the state that one iteration of this system led to, with its factorisation; the
-/// `first` are known to break their modes. `broken` tells those that do so at a state, and nothing where something else
-/// is broken, and the path has about the direction `rate` there. `None` where that is not found.
+/// The contacts that change near the state found by one iteration of this system, with the factorisation of the
+/// iteration; the `first` contacts are known to violate their modes. `broken` returns the contacts that violate their
+/// modes at a state, or `None` where another quantity is violated; `rate` is the approximate direction of the path
+/// there. `None` where no consistent set is found.
 pub(crate) fn complementary(
     system: &ModeSystem<'_>,
     state: &State,
@@ -62,7 +63,7 @@ pub(crate) fn complementary(
     join(system, &mut changing, first, state, factorisation)?;
     for _ in 0..MOST_SETS {
         let (end, mut wrong) = with_changes(system, &changing, state)?;
-        // Those that are changed already are judged by what they changed to.
+        // Contacts already changed are judged by their new modes.
         let is_changed = |contact: &usize| {
             changing.contacts.iter().position(|other| other == contact).is_some_and(|at| changing.are_changed[at])
         };
@@ -86,7 +87,7 @@ pub(crate) fn complementary(
     None
 }
 
-/// More contacts change.
+/// Adds contacts to those that may change.
 fn join(
     system: &ModeSystem<'_>,
     changing: &mut ActiveSetCandidates,
@@ -121,9 +122,9 @@ fn join(
     Some(())
 }
 
-/// Whether at a load that is held the gaps of the open contacts by forces there, and the forces of the closed ones by
-/// gaps, are positive definite: then (additivity of inertia) the tangent has as many negative eigenvalues with all of
-/// these contacts held as with all of them free.
+/// Whether at constant load the matrix of the open contacts' gaps due to their forces, and that of the closed contacts'
+/// forces due to their gaps, are positive definite: then (additivity of inertia) the tangent has as many negative
+/// eigenvalues with all of these contacts closed as with all of them open.
 fn leaves_no_choice(system: &ModeSystem<'_>, changing: &ActiveSetCandidates, state: &State, rate: &Rate) -> bool {
     [false, true].into_iter().all(|are_closed| {
         let contacts: Vec<usize> = (0..changing.contacts.len())
@@ -131,7 +132,7 @@ fn leaves_no_choice(system: &ModeSystem<'_>, changing: &ActiveSetCandidates, sta
             .collect();
         let matrix = DMatrix::from_fn(contacts.len(), contacts.len(), |row, column| {
             let (contact, column) = (changing.contacts[contacts[row]], &changing.columns[contacts[column]]);
-            // The columns have the arc length held.
+            // The columns are solutions at constant arc length.
             let along = left_over_by(system, contact, rate, state) * column.load / rate.load;
             left_over_by(system, contact, column, state) - along
         });
@@ -139,7 +140,8 @@ fn leaves_no_choice(system: &ModeSystem<'_>, changing: &ActiveSetCandidates, sta
     })
 }
 
-/// The rate of what a contact leaves over: the force of one that is closed, the gap of one that is not.
+/// The rate of a contact's constraint residual: the force of a contact that is closed in the mode, the gap of one that
+/// is open.
 fn left_over_by(system: &ModeSystem<'_>, contact: usize, rate: &Rate, state: &State) -> f64 {
     if system.modes[contact].is_active() {
         rate.reactions[contact].normal
@@ -149,7 +151,7 @@ fn left_over_by(system: &ModeSystem<'_>, contact: usize, rate: &Rate, state: &St
     }
 }
 
-/// The state at which nothing is left over of those that are changed, and which of them have the wrong sign there.
+/// The state at which the changed contacts satisfy their new modes, and those among them with the wrong sign there.
 fn with_changes(system: &ModeSystem<'_>, changing: &ActiveSetCandidates, state: &State) -> Option<(State, Vec<usize>)> {
     let changed: Vec<usize> = (0..changing.contacts.len()).filter(|at| changing.are_changed[*at]).collect();
     let count = changed.len();
@@ -193,9 +195,9 @@ mod tests {
     use crate::step::segment::StepStart;
     use std::collections::BTreeSet;
 
-    /// Where an arch lands on several contacts at a time, its equations linearised without them tell about where the arch
-    /// is with them: gaps and forces obey the law of contact, the larger part of what the contacts do to the step is found, and
-    /// whether they leave a choice is what the tangent's eigenvalues say.
+    /// Where an arch lands on several contacts at a time, its equations linearised without them approximate the state
+    /// with them: gaps and forces obey the contact law, most of the contacts' effect on the step is predicted, and the
+    /// uniqueness test agrees with the eigenvalues of the tangent.
     #[test]
     fn the_end_of_a_step_onto_several_contacts_is_foreseen() {
         let arch = LatticeArch { increments: 150, friction: 0.0, ..LatticeArch::of_unknowns(400) }.landing(40);

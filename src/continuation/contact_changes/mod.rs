@@ -1,11 +1,11 @@
-//! Contact changes within a step: foreseen by rates, solved for at once, or taken together.
+//! Contact changes within a step: predicted by rates, solved for directly, or treated together.
 //!
-//! | file | what it does |
+//! | file | contents |
 //! |---|---|
-//! | `prediction` | the next change, where the rates at the start of a step foresee it |
-//! | `piecewise_linear` | straight stretches of a path, which are one increment |
-//! | `simultaneous` | several changes of one step, taken together |
-//! | `linear_complementarity` | which of them are closed at its end, by equations linearised once |
+//! | `prediction` | the next change, predicted by the rates at the start of a step |
+//! | `piecewise_linear` | straight stretches of a path, each of which is one increment |
+//! | `simultaneous` | several changes of one step, treated together |
+//! | `linear_complementarity` | the contacts closed at the end of such a step, by the equations linearised once |
 
 pub(crate) mod linear_complementarity;
 pub(crate) mod piecewise_linear;

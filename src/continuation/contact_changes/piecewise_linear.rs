@@ -1,10 +1,10 @@
-//! Straight stretches of a path, which are one increment.
+//! Straight stretches of a path, each of which is one increment.
 //!
-//! Where every element is linear, every contact in reach a plane's and no slip can turn, the tangent of a mode is constant
-//! and everything that is watched is linear in the arc length: the place of the next event is known from where the path
-//! stands, and nothing lies in between. It is solved for at once (`prediction`); the direction there is that of the start, and
-//! so are the signs that tell of bifurcations. Along stretches of bifurcations the increments are kept, because from any of
-//! them another direction can be followed.
+//! Where every element is linear, every obstacle in reach is a plane and no slip can turn, the tangent of a mode is
+//! constant and every watched quantity is linear in the arc length: the place of the next event follows from the
+//! present point, and no event lies before it. The event is solved for directly (`prediction`); the direction there is
+//! that of the start, and so is the signature that detects bifurcations. Along stretches of bifurcations the increments
+//! are kept, because another direction can be followed from any of them.
 
 use crate::continuation::contact_changes::prediction::ForeseenChange;
 use crate::continuation::path_state::trace::PathTrace;
@@ -13,16 +13,17 @@ use crate::mechanics::problem::linearity::is_straight;
 use crate::mechanics::problem::node_forces;
 use crate::step::event_functions::{self, Watch};
 
-/// How far past the event the step is tried, over the way there: the event is then seen to be passed.
+/// Length by which the trial step exceeds the distance to the event, relative to this distance: the event is then
+/// detected as passed.
 const PAST: f64 = 1.0 / 64.0;
-/// A quantity that changes by less than this fraction of its scale by unit arc length does not change.
+/// A quantity that changes by less than this fraction of its scale per unit arc length is constant.
 const CONSTANT: f64 = 1e-10;
-/// The same of the load and displacements, which are no differences of others.
+/// The same for the load and displacements, which are not differences of other quantities.
 const CONSTANT_BOUND: f64 = 1e-14;
-/// What counts as zero, over a quantity's scale.
+/// Values up to this, relative to a quantity's scale, count as zero.
 const ZERO: f64 = 1e-12;
 
-/// The next event, where the path is straight up to there and a little farther.
+/// The next event, where the path is straight up to the event and a little beyond.
 pub(crate) fn next_event_ahead(trace: &mut PathTrace<'_>) -> Option<ForeseenChange> {
     if !trace.scene.jumps || trace.at.listed.as_ref().is_some_and(|listed| listed.point.bifurcation) {
         return None;
@@ -37,11 +38,11 @@ pub(crate) fn next_event_ahead(trace: &mut PathTrace<'_>) -> Option<ForeseenChan
     }
 }
 
-/// What falls to zero first, and the arc length up to there.
+/// The quantity that first decreases to zero, and the arc length up to its zero.
 fn straight_way(trace: &PathTrace<'_>) -> Option<(Watch, f64)> {
     let (loading, here) = (trace.loading(), &trace.at.here);
     let rate = here.rate.as_ref()?;
-    // The force of several obstacles in space reaches the bound of what they hold along no straight line.
+    // The force of several obstacles in space does not vary linearly up to the bound of its admissible set.
     if !loading.contacts.iter().all(is_straight)
         || loading.corners.iter().any(|corner| !node_forces::is_in_plane(loading, corner))
     {

@@ -1,11 +1,11 @@
-//! The next contact change, where the rates at the start of a step foresee it.
+//! Prediction of the next contact change by the rates at the start of a step.
 //!
-//! A step that passes many changes is cut at the first of them: what was solved at its far end was solved for nothing,
-//! and is too far from the change to help to locate it. The gaps and forces of the contacts and their rates foresee the
-//! place. There the change itself is solved for, in place of an arc length: one factorisation leads to it. Where that
-//! finds no zero that lies where it should and comes first, the step goes to just past the place, and needs less of Newton's
-//! method than a whole one. Where nothing has changed by then its end is a point like others, and the next step is as long
-//! as this one was to be.
+//! Without prediction a step that passes many changes is cut at the first of them: the solution at its end is wasted
+//! and too far from the change to help locate it. The gaps and forces of the contacts and their rates predict the place
+//! of the change. Newton's method then solves for the change itself, in place of a given arc length: one factorisation
+//! suffices. Where it finds no zero close enough to the prediction and before all others, the step goes to just past
+//! the predicted place, and needs fewer Newton iterations than a full step. Where nothing has changed by then its end
+//! is an ordinary point, and the next step has the full length intended for this one.
 
 use crate::algebra::SystemFactorisation;
 use crate::continuation::contact_changes::simultaneous::may_join_at;
@@ -23,31 +23,30 @@ use crate::step::event_location::StepPoints;
 use crate::step::interpolation::PlacedPoint;
 use crate::step::segment::{Attempt, PASSED, StepStart, may_turn};
 
-/// How far past the change the step is to end, over the way there: rates are not all that tells where it is.
+/// Length of the step relative to the distance to the predicted change: the prediction is not exact.
 const PAST: f64 = 1.25;
-/// The change is where it was foreseen if it is not nearer than this part of the way there, and not past that end.
+/// Smallest distance of the change, relative to the prediction, that is accepted; the largest is the end of the step.
 const LEAST_OF_WAY: f64 = 0.5;
-/// No step is cut to less than this part of what it was to be.
+/// Smallest part of its intended length to which a step is cut.
 const LEAST: f64 = 1.0 / 256.0;
 
-/// A contact change, or the end of a stage, that the rates foresee.
+/// A contact change, or the end of a stage, predicted by the rates.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ForeseenChange {
-    /// What falls to zero there.
+    /// The quantity that decreases to zero there.
     pub watch: Watch,
-    /// Arc length up to there.
+    /// Arc length up to the change.
     pub way: f64,
-    /// To just past it.
+    /// Arc length to just past the change.
     pub step: f64,
-    /// The path is straight up to there: nothing that is not zero at its ends is so on the way.
+    /// The path is straight up to the change: a quantity that is nonzero at both ends is nonzero in between.
     pub is_straight: bool,
 }
 
-/// A shorter step along the direction just now that ends just past the change that comes first. `may_join`: those that
-/// may be taken together are not stopped at.
+/// A shorter step along the present direction that ends just past the first predicted change. With `may_join` the step
+/// does not stop at changes that may be treated together.
 ///
-/// Only where matrices are sparse: the factorisations that are saved of a dense one cost as little as the points that
-/// come on top.
+/// Only with sparse matrices: a dense factorisation saved costs no more than the additional points.
 pub(crate) fn step_to_foreseen_change(
     trace: &PathTrace<'_>,
     step: f64,
@@ -59,7 +58,7 @@ pub(crate) fn step_to_foreseen_change(
     let way = |watch: &event_functions::Watch| {
         let slope = watch.slope(loading, &here.modes, &here.state, rate).filter(|slope| *slope < 0.0)?;
         let value = watch.value(loading, &here.modes, &here.state, rate);
-        // What is zero here has just changed.
+        // A quantity that is zero at the present point has just changed.
         let is_above = watch.is_above(loading, &here.state, value, PASSED, trace.at.totals.force_scale);
         is_above.then(|| value / -slope)
     };
@@ -74,7 +73,7 @@ pub(crate) fn step_to_foreseen_change(
     (part < 1.0).then_some(ForeseenChange { watch: first, way, step, is_straight: false })
 }
 
-/// The step that ends at a change foreseen, which is solved for at once; `None` where that leads elsewhere.
+/// The step that ends at a predicted change, which is solved for directly; `None` where the solution lies elsewhere.
 pub(crate) fn meet_change(
     start: &StepStart<'_>,
     foreseen: ForeseenChange,

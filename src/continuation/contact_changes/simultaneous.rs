@@ -1,36 +1,39 @@
-//! Contact changes of one step that are taken together.
+//! Contact changes of one step that are treated together.
 //!
-//! Contacts without friction that touch or lift off within a step leave no trace of where they did: the end of the step is
-//! found from the laws at the end alone,
+//! The places where frictionless contacts touch or lift off within a step do not affect its end, which is determined by
+//! the laws at the end alone,
 //!
 //! ```text
 //! equilibrium,    0 <= g ⊥ r_n >= 0,    ‖(Δu, Δs)‖ = S
 //! ```
 //!
-//! by Newton's method in one mode after another: what a mode breaks at its end is changed, all of it at once (a
-//! primal-dual active set: M. Hintermüller, K. Ito, K. Kunisch, SIAM J. Optim. 13 (2002) 865,
-//! doi:10.1137/S1052623401383558). In large structures one iteration a mode tells that, until nothing is broken any more,
-//! and from one mode to the next it is found with the equations of that iteration (`linear_complementarity`); then the point is
-//! solved for, and looked at again.
+//! and found by Newton's method in one mode after another: all contacts that violate a mode at its end are changed at
+//! once (a primal-dual active set: M. Hintermüller, K. Ito, K. Kunisch, SIAM J. Optim. 13 (2002) 865,
+//! doi:10.1137/S1052623401383558). In large structures one iteration for each mode identifies them, until no mode is
+//! violated any more, and the next mode is found with the linearised equations of this iteration
+//! (`linear_complementarity`); then the point is solved for, and checked again.
 //!
-//! That end is the path's where nothing on the way leaves a choice. With `M` the stiffness that the contacts which
-//! change feel (the others as they are), each sign of the load rate has exactly one direction in any mode of theirs if
-//! `M` is positive definite: see `rates`. By the additivity of inertia it is if and only if the reduced tangent has as
-//! many negative eigenvalues with all of them held as with all of them free. That is asked for at both ends of the
-//! step, and the same number at both: but for eigenvalues that cross zero to and fro in between, as they may in any step,
-//! no limit point and no bifurcation lies there in any mode that the path may have had. The way on from each change is then
-//! not the way back, and keeps the sign of the load rate. Contacts that change there and back within the step are asked for
-//! as well. Where the equations linearised once already tell of a choice, or of too great a turn, nothing more is looked at.
-//! Nor may the direction turn by more than in any other step: where closing contacts turn it further each change
-//! ends a step. Nothing slides against friction, so that the work of the step is taken from the energy stored.
+//! This end lies on the path if the direction is unique throughout the step. Let `M` be the stiffness condensed on the
+//! contacts that change, with all others unchanged. Each sign of the load rate has exactly one direction in any of
+//! their modes if `M` is positive definite: see `rates`. By the additivity of inertia this is so if and only if the
+//! reduced tangent has as many negative eigenvalues with all of these contacts closed as with all of them open. The
+//! condition is checked at both ends of the step, with the same number at both: except for eigenvalues that cross zero
+//! twice in between, as they may in any step, no limit point and no bifurcation then lies in the step in any mode that
+//! the path may have had. The direction after each change then does not retrace the path, and keeps the sign of the
+//! load rate. Contacts that change twice within the step are included in the check. Where the equations linearised once
+//! already show a loss of uniqueness, or too large a turn, the attempt ends. Nor may the direction turn by more than in
+//! any other step: where closing contacts turn it further each change ends a step. No contact slides against friction,
+//! so that the work of the step equals the change of stored energy.
 //!
-//! Where a try fails, as many in a row do as a rule (an arch that rolls onto a floor leaves it where it first touched, and
-//! stands only while one of the two contacts holds it): it waits for some steps, and for longer each time.
+//! An attempt may fail, usually several times in a row (an arch that rolls onto a floor leaves it at the first contact
+//! point, and is stable only while one of the two contacts is closed): the next attempt is postponed by some steps, and
+//! by more each time.
 //!
-//! Everything else ends a step as it always does: friction remembers where a node has landed. On the kinks of such a step
-//! a quantity may go to and fro unseen. So there is none where a contact with friction is closed or could close within the
-//! length of the path, nor where a displacement that ends the stage could get there. A contact without friction that
-//! touches and leaves again within the step is not named.
+//! All other changes end a step as usual: with friction the reactions depend on the place where a node has landed. At
+//! the kinks of such a step a quantity may vanish and return unnoticed. Therefore changes are not treated together
+//! where a contact with friction is closed or could close within the length of the path, nor where a displacement that
+//! ends the stage could reach its bound. A frictionless contact that touches and opens again within the step is not
+//! reported.
 
 use crate::algebra::SystemFactorisation;
 use crate::branching::bifurcation::singularity::test_functions::{Signature, negative_eigenvalues};
@@ -52,21 +55,22 @@ use crate::step::event_functions::{self, Watch};
 use crate::step::segment::{Attempt, COINCIDING, PASSED, Reached, StepStart, may_turn};
 use std::collections::BTreeSet;
 
-/// A mode that breaks so many times the contacts that the first one broke leads away from the end.
+/// Largest number of violating contacts, relative to those of the first mode: more indicate that the modes diverge.
 const MOST_RISE: usize = 2;
-/// Modes that are tried at the end of a step.
+/// Largest number of modes tried at the end of a step.
 const MOST_ROUNDS: usize = 12;
 
-/// Length of a path with kinks over that of its chord, as it is reckoned with: not proven to be the most.
+/// Assumed bound of the length of a path with kinks, relative to its chord; not proven.
 const LONGEST: f64 = 4.0;
 
-/// The end of a step with contact changes inside.
+/// The end of a step that contains contact changes.
 pub(crate) struct Joined {
     pub reached: Box<Reached>,
-    /// How many.
+    /// The number of contact changes.
     pub changes: u64,
     pub signature: Option<Signature>,
-    /// The path's direction at the step's end if no contact changed: how much it turns beside its kinks.
+    /// The path's direction at the end of the step if no contact changed: it shows the turn of the path without its
+    /// kinks.
     pub unchanged: Rate,
 }
 
@@ -74,19 +78,19 @@ pub(crate) struct Joined {
 struct EndModes {
     modes: Vec<Mode>,
     corrected: Corrected,
-    /// All contacts that were changed on the way to the modes.
+    /// All contacts changed in the search for the modes.
     asked: BTreeSet<usize>,
-    /// Negative eigenvalues at the start with those held, and as many with them free.
+    /// Number of negative eigenvalues at the start, the same with these contacts closed and open.
     negative: usize,
 }
 
-/// About where a step would end if no contact changed.
+/// The approximate end of a step if no contact changed.
 #[derive(Clone, Copy)]
 struct UnchangedStepEnd<'a> {
     state: &'a State,
     rate: &'a Rate,
     step: f64,
-    /// Of the equations whose solution the state is at first order.
+    /// Factorisation of the equations that the state satisfies to first order.
     factorisation: Option<&'a SystemFactorisation>,
 }
 
@@ -97,23 +101,23 @@ fn smooth(loading: Loading<'_>, watch: Watch) -> Option<usize> {
     (alone && loading.contacts[contact].tangents() == 0).then_some(contact)
 }
 
-/// Whether a contact with friction is closed.
+/// Whether a contact with friction is closed, so that the path depends on its history.
 fn remembers(loading: Loading<'_>, modes: &[Mode]) -> bool {
     let mut modes = modes.iter().zip(loading.contacts);
     modes.any(|(mode, contact)| mode.is_active() && contact.tangents() > 0)
 }
 
-/// Whether the change at which a quantity is zero may be taken together with others.
+/// Whether the change at which a quantity is zero may be treated together with others.
 pub(crate) fn may_join_at(loading: Loading<'_>, modes: &[Mode], watch: Watch) -> bool {
     smooth(loading, watch).is_some() && !remembers(loading, modes)
 }
 
-/// The contacts that change in a step that was tried, if they are several and may be taken together.
+/// The contacts that change in a trial step, if they are several and may be treated together.
 pub(crate) fn changes_to_join(start: &StepStart<'_>, tried: &Attempt) -> Option<BTreeSet<usize>> {
     joinable(start, &tried.watches, &tried.passed, tried.reached.step)
 }
 
-/// The end of a step that was tried and passes these contact changes, if they can be taken together.
+/// The end of a trial step that passes these contact changes, if they can be treated together.
 pub(crate) fn join_changes(
     start: &StepStart<'_>,
     first: &BTreeSet<usize>,
@@ -135,8 +139,8 @@ pub(crate) fn join_changes(
     )
 }
 
-/// The same of a step in which the rates foresee such changes, which is not tried any further then. `None` where they
-/// foresee none, `Some(None)` where they cannot be taken together.
+/// The same for a step in which the rates predict such changes, without completing the trial step. `None` where they
+/// predict none, `Some(None)` where the changes cannot be treated together.
 pub(crate) fn join_foreseen(
     start: &StepStart<'_>,
     step: f64,
@@ -204,13 +208,13 @@ fn join(
     Some(Joined { reached, changes: changes as u64, signature, unchanged: far.rate.clone() })
 }
 
-/// Whether changes in a step may be taken together: not where a contact with friction is closed.
+/// Whether changes in a step may be treated together: not where a contact with friction is closed.
 pub(crate) fn may_join(start: &StepStart<'_>) -> bool {
     start.drift.is_none() && !remembers(start.loading, start.modes)
 }
 
-/// Whether within a step nothing can end that leaves a trace: on its kinks a quantity may go to and fro. The load goes
-/// one way; no displacement goes farther than the path is long.
+/// Whether no event that depends on its place can occur within a step, where a quantity may vanish and return at the
+/// kinks. The load is monotonic; no displacement exceeds the length of the path.
 fn leaves_no_trace(start: &StepStart<'_>, watches: &[Watch], step: f64) -> bool {
     let length = LONGEST * step;
     watches.iter().all(|watch| {
@@ -226,8 +230,8 @@ fn leaves_no_trace(start: &StepStart<'_>, watches: &[Watch], step: f64) -> bool 
     })
 }
 
-/// The modes that hold at the end of the step, with the `last` factorisation; the mode just now breaks the `first`
-/// contacts there. `None` where the contacts leave a choice at the start.
+/// The modes that hold at the end of the step, with the `last` factorisation; the present mode is violated by the
+/// `first` contacts there. `None` where the direction is not unique at the start.
 fn end_modes(
     start: &StepStart<'_>,
     first: &BTreeSet<usize>,
@@ -237,12 +241,12 @@ fn end_modes(
 ) -> Option<EndModes> {
     let mut modes = start.modes.to_vec();
     let mut state = far.state.clone();
-    // In most modes on the way one iteration tells what breaks them.
+    // In most intermediate modes one iteration suffices to find the contacts that violate them.
     let mut roughly = start.loading.structure.layout().is_some();
     let mut wrong: Vec<usize> = first.iter().copied().collect();
     let mut asked = first.clone();
     let mut tried = BTreeSet::new();
-    // Contacts that were looked at together at the start, and the negative eigenvalues found.
+    // Number of contacts examined together at the start, and the number of negative eigenvalues found.
     let mut counted: Option<(usize, usize)> = None;
     let mut linearised = None;
     for round in 0..MOST_ROUNDS {
@@ -270,7 +274,7 @@ fn end_modes(
         }
         let system = ModeSystem::new(start.loading, &modes, start.state);
         let closing = ArcLengthEquation { from: start.state, step: far.step };
-        // Each mode has equations of its own.
+        // Each mode has its own equations.
         (*last, linearised) = (None, None);
         if roughly {
             let (next, factorisation) = single_iteration::iterated_once(&system, state, &closing, work)?;
@@ -284,8 +288,8 @@ fn end_modes(
                 linearised = Some(factorisation);
             }
         }
-        // What leaves a choice at the start is not worth the solves. One iteration tells most of what is asked besides,
-        // and what holds with more contacts held or free holds with fewer.
+        // Without uniqueness at the start the solves are useless. One iteration finds most of the contacts to be
+        // examined, and uniqueness with more contacts closed or open implies it with fewer.
         if counted.is_none() {
             counted = Some((asked.len(), negative_where_held_or_free(start, &asked, start.state, work)?));
         }
@@ -309,7 +313,8 @@ fn end_modes(
     None
 }
 
-/// The contacts that change from some modes at about the state that one iteration in them led to, by that factorisation.
+/// The contacts that change from some modes near the state that one iteration in them found, by the factorisation of
+/// this iteration.
 fn settled(
     start: &StepStart<'_>,
     modes: &[Mode],
@@ -333,7 +338,7 @@ pub(crate) fn broken(start: &StepStart<'_>, modes: &[Mode], state: &State, force
 }
 
 /// Whether no stage ends within the step or at its end, the load rate keeps its sign, the other contacts keep their
-/// modes, and none can change at the end. Those that may have changed there and back join the `restless`.
+/// modes, and none can change at the end. Contacts that may have changed twice are added to the `restless`.
 fn nothing_else_ends(
     start: &StepStart<'_>,
     watches: &[Watch],
@@ -364,7 +369,7 @@ fn nothing_else_ends(
     standings(start.loading, state, forces).iter().all(settled)
 }
 
-/// Negative eigenvalues of the tangent at a state with some contacts held and with them free, where these are as many.
+/// The number of negative eigenvalues of the tangent at a state, if it is the same with some contacts closed and open.
 pub(crate) fn negative_where_held_or_free(
     start: &StepStart<'_>,
     contacts: &BTreeSet<usize>,
@@ -377,6 +382,6 @@ pub(crate) fn negative_where_held_or_free(
         negative_eigenvalues(start.loading, &modes, start.state, state, work)
     };
     let free = count(Mode::Free)?;
-    // Held they can only be fewer.
+    // Closing contacts can only reduce the number.
     (free == 0 || count(Mode::Slip { direction: [0.0; 3] })? == free).then_some(free)
 }

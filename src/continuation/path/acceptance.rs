@@ -1,4 +1,4 @@
-//! A point that a step has reached becomes the present one and a row.
+//! Acceptance of a point reached by a step: it becomes the present point and a row.
 
 use crate::branching::bifurcation::locate::Crossing;
 use crate::continuation::path::classification::{self, Arrival, Came};
@@ -14,7 +14,8 @@ use crate::result::stop_reason::StopReason;
 use crate::step::event_functions::Watch;
 use crate::step::interpolation::PlacedPoint;
 
-/// Makes a reached point the present one and says what it is; none where the way on would break the laws of contact.
+/// Makes the reached point the present one and classifies it; `None` where its continuation would violate the contact
+/// laws.
 pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Option<Increment> {
     let reached = accepted.reached;
     trace.at.totals.add(&accepted.added);
@@ -27,7 +28,7 @@ pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Optio
     (here.before, here.is_factorised) = (None, false);
     let mut modes = std::mem::replace(&mut here.modes, reached.corrected.modes);
     here.drift = reached.drift;
-    // Past its bend the path is like any other, and what is foreseen of it does not go back beyond.
+    // Past its bend the path is an ordinary one, and predictions do not use points before the bend.
     let bends = here.beside.take().is_some();
     here.is_singular &= !bends;
     let begun = begun.filter(|_| !bends);
@@ -50,7 +51,7 @@ pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Optio
     let changed = joins || !all_continue(&trace.at.here.modes, &modes);
     let creeps = step_control::reason_of_creep(trace, step, changed || at_bound || arrival.stage_ends);
     arrival.stop = arrival.stop.or(creeps);
-    // A change may have moved reactions.
+    // A contact change may have redistributed reactions.
     if changes && !natural_residual::holds(trace.loading(), &trace.at.here.state, trace.at.totals.force_scale) {
         trace.at.totals.index -= 1;
         trace.end(StopReason::ContactViolated);
@@ -86,7 +87,7 @@ pub(crate) fn accept(trace: &mut PathTrace<'_>, accepted: AcceptedStep) -> Optio
     Some(row)
 }
 
-/// What the point turns out to be. `modes` are those that led to it, which changes that are taken together have replaced.
+/// Classifies the point. `modes` are the modes that led to it, unless changes treated together have replaced them.
 fn what_it_is(
     trace: &mut PathTrace<'_>,
     modes: &mut Vec<Mode>,
@@ -112,8 +113,8 @@ fn tell_end_of_stage(point: &mut Point, stage: &str) {
     point.event = Some(point.event.take().map_or(what.clone(), |event| format!("{event}; {what}")));
 }
 
-/// Whether reactions have moved from those that a step arrived with: where contacts of a node share its force in another way
-/// as the path goes on, they do not yet where it arrives.
+/// Whether reactions differ from those with which a step arrived: the contacts of a node may share its force in another
+/// way in the continuation of the path, but do not yet share it so at the point.
 fn is_anew(trace: &PathTrace<'_>, arrived: &[Reaction]) -> bool {
     let round_off = ROUND_OFF * trace.at.totals.force_scale;
     let now = trace.at.here.state.reactions.iter();

@@ -13,7 +13,7 @@ use crate::mechanics::equations::stage_criteria::End;
 use crate::result::increment::{Increment, Point, PointKind};
 use crate::step::segment::AT_END;
 
-/// A path of its own from a point along one of the directions listed there: see `Path::follow`.
+/// A separate path from a point along one of the directions listed there: see `Path::follow`.
 pub(crate) fn along(
     mut trace: PathTrace<'_>,
     direction: usize,
@@ -26,7 +26,7 @@ pub(crate) fn along(
     {
         turn(&mut trace, choice);
         if listed.point.kind == PointKind::SmoothBifurcation {
-            // A branch bends from where it begins, whatever the path before did.
+            // A branch bends from its start, whatever the curvature of the path before.
             trace.at.step = trace.at.step.min(trace.scene.analysis.arc_length.initial);
         }
     }
@@ -41,7 +41,7 @@ pub(crate) fn along(
     Ok(trace)
 }
 
-/// The stage's counts at the present point if the path leaves it along that direction, or why it cannot.
+/// The stage's counts at the present point if the path leaves it along a direction, or the reason why it cannot.
 pub(crate) fn counts_along(trace: &PathTrace<'_>, direction: usize) -> Result<StageCounts, CheckpointError> {
     let listed = trace.at.listed.as_ref().ok_or(CheckpointError::NothingListed)?;
     let options = listed.options.len();
@@ -54,7 +54,7 @@ pub(crate) fn counts_along(trace: &PathTrace<'_>, direction: usize) -> Result<St
     if listed.taken != Some(direction)
         && let Some(arriving) = &listed.arriving
     {
-        // What this point counts as depends on how the path leaves it.
+        // The counts at this point depend on the direction in which the path leaves it.
         let changed =
             arriving.counts.contact_changes < counts.contact_changes || !all_continue(&arriving.modes, &choice.modes);
         let turned = arriving.load_sign * choice.load_sign < 0.0;
@@ -79,7 +79,8 @@ fn turn(trace: &mut PathTrace<'_>, choice: &DirectionChoice) {
     }
 }
 
-/// Whether a direction leads out of the running stage at a bound that is reached here, or stays on it.
+/// Whether a direction leaves the running stage at a bound that is reached at the present point, or remains on the
+/// bound.
 fn goes_past_end(trace: &PathTrace<'_>, choice: &DirectionChoice) -> bool {
     trace.scene.stages[trace.at.stage].ends.iter().any(|end| match *end {
         End::Load { bound, sign } => {

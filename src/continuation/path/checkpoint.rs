@@ -1,9 +1,9 @@
-//! A path put down at a point: everything that decides how it goes on, so that it can be taken up there again with the
-//! same bits, or followed along another of the directions listed there (`branch_switching`).
+//! Checkpoints: everything at a point that determines the continuation of a path, so that the path can be resumed there
+//! bit for bit, or followed along another of the directions listed there (`branch_switching`).
 //!
-//! Written as JSON, a checkpoint reads back to the same bits: serde_json writes the shortest digits that do, and reads
-//! them exactly (`float_roundtrip`). What a scene says (structure, loads, settings) is not in it: a checkpoint is taken
-//! up with the scene that it was made with, or with one that differs in `max_increments` alone.
+//! Written as JSON, a checkpoint is read back bit for bit: serde_json writes the shortest digits that identify a
+//! number, and reads them exactly (`float_roundtrip`). A checkpoint does not contain the scene (structure, loads,
+//! settings): it is resumed with the scene with which it was made, or with one that differs in `max_increments` alone.
 
 use crate::continuation::path_state::progress::{Listed, Progress};
 use crate::continuation::path_state::trace::PathTrace;
@@ -14,7 +14,7 @@ use crate::mechanics::problem::state::{Rate, State};
 use crate::resources::cancel::CancelFlag;
 use serde::{Deserialize, Serialize};
 
-/// Changes when a checkpoint of before would be read as something else.
+/// Increased whenever an earlier checkpoint would be misread.
 const VERSION: u32 = 9;
 
 /// A path at one of its points.
@@ -26,8 +26,8 @@ pub struct Checkpoint {
     at: Progress,
 }
 
-/// States that a path has passed, for telling a cycle. Along a stage new ones come and old ones are forgotten: kept apart
-/// from the checkpoints, each is stored once, and a checkpoint takes back those that it knew.
+/// States that a path has passed, to detect a cycle. Along a stage new states are added and old ones removed: stored
+/// apart from the checkpoints, each state is stored once, and each checkpoint gets back the states that it contained.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Trail(Vec<Numbered>);
 
@@ -37,7 +37,7 @@ impl Trail {
     }
 }
 
-/// Why a checkpoint cannot be taken up, or a direction not followed.
+/// Why a checkpoint cannot be resumed, or a direction not followed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum CheckpointError {
     #[error("the checkpoint is of version {found}; this program reads version {VERSION}")]
@@ -55,7 +55,7 @@ pub enum CheckpointError {
 }
 
 impl Checkpoint {
-    /// Index of the increment at which the path was put down.
+    /// Index of the increment at which the checkpoint was made.
     pub fn index(&self) -> u64 {
         self.at.totals.index
     }
@@ -65,17 +65,17 @@ impl Checkpoint {
         self.at.stage
     }
 
-    /// How many states there were, those that are forgotten among them.
+    /// The number of states recorded so far, including those already removed.
     pub fn trail_length(&self) -> u64 {
         self.at.visited.seen()
     }
 
-    /// Takes the trail out, and of it the part that begins at this number.
+    /// Takes the trail out of the checkpoint and returns the part of it that begins at the state of this number.
     pub fn take_trail(&mut self, from: u64) -> Trail {
         Trail(self.at.visited.take(from))
     }
 
-    /// Puts the parts of a trail back, in the order in which they were taken.
+    /// Puts the parts of a trail back, in the order in which they were taken out.
     pub fn put_trail(&mut self, parts: impl IntoIterator<Item = Trail>) {
         let stage = self.at.stage;
         self.at.visited.put(parts.into_iter().flat_map(|part| part.0), stage);
@@ -130,12 +130,12 @@ impl Checkpoint {
     }
 }
 
-/// The path at its present point.
+/// A checkpoint of the path at its present point.
 pub(crate) fn put_down(trace: &PathTrace<'_>) -> Checkpoint {
     Checkpoint { version: VERSION, elapsed_s: trace.elapsed_s(), at: trace.at.clone() }
 }
 
-/// Takes a path up where it was put down.
+/// Resumes a path from a checkpoint.
 pub(crate) fn take_up<'a>(
     scene: &'a Scene,
     checkpoint: Checkpoint,

@@ -1,4 +1,4 @@
-//! What a point turned out to be, and how the path goes on from it.
+//! Classification of a point, and the continuation of the path from it.
 
 use crate::branching::bifurcation::locate::Crossing;
 use crate::branching::bifurcation::{branch_directions, simultaneous_limit_points};
@@ -25,22 +25,22 @@ use crate::result::stop_reason::StopReason;
 use crate::step::corrector::cached_factorisation::AtHand;
 use crate::step::event_functions::Watch;
 
-/// What a point turned out to be.
+/// A classified point and the continuation of the path.
 pub(crate) struct Arrival {
     pub point: Point,
     pub options: Vec<DirectionChoice>,
     pub taken: Option<usize>,
     pub stop: Option<StopReason>,
     pub stage_ends: bool,
-    /// The program was asked for the direction taken and does not name its mode.
+    /// The program was solved for the direction taken and does not confirm its mode.
     pub unconfirmed: bool,
 }
 
-/// How a step came to its end.
+/// The end of a step as the path arrives at it.
 pub(crate) struct Came {
-    /// The path's direction there.
+    /// The path's direction at the end of the step.
     pub rate: Rate,
-    /// Its arc length.
+    /// Arc length of the step.
     pub step: f64,
     /// See [`Incoming`].
     pub stopped: Option<usize>,
@@ -49,7 +49,8 @@ pub(crate) struct Came {
     pub motions: usize,
 }
 
-/// What kind of point this is, and how the path goes on: along the direction in which it came, if no other is taken.
+/// Classifies a point and determines the continuation of the path: along the incoming direction, unless another is
+/// taken.
 pub(crate) fn classify(
     trace: &mut PathTrace<'_>,
     event: Option<Watch>,
@@ -83,7 +84,7 @@ fn arrive(trace: &mut PathTrace<'_>, event: Option<Watch>, crossing: Option<Cros
             }
             look_around(trace, incoming, PointKind::SmoothLimit, Some(what.to_owned()), Some(-sign), false)
         }
-        // The mode goes on: the node is still held, by a force that a slide may have again.
+        // The mode continues: the node is still held in its corner, by a force at which it may slide again.
         Some(Watch::Return { .. }) => look_around(trace, incoming, PointKind::Regular, None, None, false),
         Some(Watch::Gap(_) | Watch::Normal(_) | Watch::Cone { .. } | Watch::Sliding(_) | Watch::Facet { .. }) => {
             contact_change(trace, came)
@@ -92,7 +93,8 @@ fn arrive(trace: &mut PathTrace<'_>, event: Option<Watch>, crossing: Option<Cros
     }
 }
 
-/// The end of a step in which contacts have changed together, from the modes `old`: none of them can change here.
+/// The end of a step in which contacts have changed together, from the modes `old`: no contact can change at this
+/// point.
 pub(crate) fn joined_changes(trace: &mut PathTrace<'_>, old: &[Mode], changes: u64, incoming: Rate) -> Arrival {
     trace.at.here.rate = Some(incoming);
     trace.at.counts.contact_changes += changes;
@@ -102,7 +104,7 @@ pub(crate) fn joined_changes(trace: &mut PathTrace<'_>, old: &[Mode], changes: u
     Arrival { point, options: Vec::new(), taken: None, stop: None, stage_ends: false, unconfirmed: false }
 }
 
-/// Directions at a point where the mode goes on.
+/// Directions at a point where the mode continues.
 fn look_around(
     trace: &PathTrace<'_>,
     incoming: &Rate,
@@ -121,7 +123,7 @@ fn look_around(
     let (loading, here) = (trace.loading(), &trace.at.here);
     let before = PriorMotion::Incoming(Incoming::along(incoming));
     let told = if here.is_singular {
-        // First order says nothing of what stays at its fold.
+        // First order is inconclusive for parts that remain at their fold.
         let (state, force_scale) = (&here.state, rules.force_scale);
         let at = branch_directions::SingularPoint { loading, state, standings: &standings, force_scale };
         second_order::directions(at, before)
@@ -137,7 +139,7 @@ fn look_around(
         decision::list(loading, &here.state, &standings, before, rules)
     };
     let taken = options.iter().position(|option| option.rate.product(incoming) > 1.0 - 1e-9);
-    // A load rate too small to tell by itself keeps the sign that it has had.
+    // A load rate too small to have a sign of its own keeps its previous sign.
     let has_sign = taken.is_none_or(|taken| options[taken].load_sign != 0.0) || here.load_sign == 0.0;
     let sign = sign.or_else(|| (!has_sign).then_some(here.load_sign));
     point.bifurcation = choice::is_bifurcation(&options, taken, sign);
@@ -151,7 +153,7 @@ fn look_around(
     Arrival { point, options, taken, stop: None, stage_ends, unconfirmed: false }
 }
 
-/// A limit point that several motions have in common: the path goes on in its own direction, the others are listed.
+/// A limit point shared by several motions: the path continues in its own direction, the others are listed.
 fn common_limit(trace: &PathTrace<'_>, what: &str, sign: f64, came: &Came) -> Arrival {
     let (loading, here, rules) = (trace.loading(), &trace.at.here, trace.rules());
     let (incoming, state) = (&came.rate, &here.state);
@@ -162,7 +164,7 @@ fn common_limit(trace: &PathTrace<'_>, what: &str, sign: f64, came: &Came) -> Ar
         .unwrap_or_else(|| branch_directions::branches(at, &here.modes, incoming, came.motions - 1, None));
     let branch_directions::Branches { mut options, mut degenerate, mut unexplored } = found;
     if !standings.iter().all(|standing| matches!(standing, Standing::Settled(_))) {
-        // Those along which the load changes at first order.
+        // Directions along which the load changes at first order.
         let before = PriorMotion::Incoming(Incoming::along(incoming));
         let (others, listed) = decision::list(loading, state, &standings, before, rules);
         options.extend(others.into_iter().filter(|other| choice::sign_of(other.rate.load) != 0.0));
@@ -184,7 +186,8 @@ fn common_limit(trace: &PathTrace<'_>, what: &str, sign: f64, came: &Came) -> Ar
     Arrival { point, options, taken, stop: None, stage_ends: false, unconfirmed: false }
 }
 
-/// An eigenvalue crosses zero within the mode: the path goes on in its own direction, the branches are listed.
+/// A smooth bifurcation, where an eigenvalue crosses zero within the mode: the path continues in its own direction, the
+/// branches are listed.
 fn smooth_bifurcation(trace: &mut PathTrace<'_>, crossing: Crossing, incoming: &Rate, stage_ends: bool) -> Arrival {
     if crossing.eigenvalues == 0 {
         return undetermined(trace);
@@ -206,7 +209,7 @@ fn smooth_bifurcation(trace: &mut PathTrace<'_>, crossing: Crossing, incoming: &
             .map(|(mode, standing)| if *standing == Standing::Touching { Mode::Free } else { *mode })
             .collect();
         let mut found = branch_directions::branches(here, &loose, incoming, crossing.eigenvalues, nulls);
-        // The way on and the way back as they were.
+        // The continuation and its reverse keep their modes.
         let own =
             found.options.iter_mut().filter(|option| option.rate.product(incoming).abs() > branch_directions::SAME);
         own.for_each(|option| option.modes.clone_from(modes));
@@ -215,10 +218,10 @@ fn smooth_bifurcation(trace: &mut PathTrace<'_>, crossing: Crossing, incoming: &
         branch_directions::branches(here, modes, incoming, crossing.eigenvalues, nulls)
     };
     if !standings.iter().all(|standing| matches!(standing, Standing::Settled(_))) {
-        // Other modes of the contacts that can change; in the current mode, singular here, the branches are it.
+        // Other modes of the contacts that can change; the current mode, singular here, is covered by the branches.
         let before = PriorMotion::Incoming(Incoming::along(incoming));
         let (others, listed) = decision::list(trace.loading(), &trace.at.here.state, &standings, before, rules);
-        // Those of looser modes are over other unknowns.
+        // The null vectors of loosened modes are over other unknowns.
         let nulls = nulls.filter(|_| !crossing.grazing);
         let is_singular = |nulls| branch_directions::are_singular_in_all_modes(here, modes, nulls);
         if (listed.degenerate && others.is_empty()) || nulls.is_some_and(is_singular) {
@@ -251,7 +254,7 @@ fn smooth_bifurcation(trace: &mut PathTrace<'_>, crossing: Crossing, incoming: &
     Arrival { point, options, taken: Some(0), stop: None, stage_ends, unconfirmed: false }
 }
 
-/// The slip and the load may go on at any rates, each against the other: a family of paths leaves.
+/// An indeterminate direction: the ratio of slip and load rate is arbitrary, and a family of paths leaves.
 fn undetermined(_trace: &PathTrace<'_>) -> Arrival {
     let point = Point {
         kind: PointKind::End,
@@ -265,13 +268,13 @@ fn undetermined(_trace: &PathTrace<'_>) -> Arrival {
     Arrival { point, options: Vec::new(), taken: None, stop, stage_ends: false, unconfirmed: false }
 }
 
-/// A contact has reached the end of its mode: list the directions and take one.
+/// A contact has reached the end of its mode: lists the directions and takes one.
 fn contact_change(trace: &mut PathTrace<'_>, came: &Came) -> Arrival {
     let Came { rate: incoming, step, stopped, nearby, .. } = came;
     trace.at.counts.contact_changes += 1;
     let standings = trace.standings(&trace.at.here.state);
     for (reaction, standing) in trace.at.here.state.reactions.iter_mut().zip(&standings) {
-        // The event was located to round-off; the rest of a reaction that is zero there is dropped.
+        // The event was located to round-off; the remainder of a reaction that is zero there is dropped.
         if *standing == Standing::Touching && reaction.size() <= ROUND_OFF * trace.at.totals.force_scale {
             *reaction = Reaction::default();
         }
@@ -282,7 +285,7 @@ fn contact_change(trace: &mut PathTrace<'_>, came: &Came) -> Arrival {
     let came = Incoming { rate: incoming, modes, stopped: *stopped, nearby: Some(nearby), is_singular };
     let before = PriorMotion::Incoming(came);
     let mut decision = decision::decide(trace.loading(), &trace.at.here.state, &standings, before, rules);
-    // Ways that share a node's force anew come last: they begin with a rest, not with the motion that led here.
+    // Directions that redistribute a node's force come last: they begin at rest, not with the incoming motion.
     let keeps: Vec<bool> = decision.options.iter().map(|option| keeps_shares(trace, option)).collect();
     if decision.taken.is_some_and(|taken| !keeps[taken]) {
         let open = |index: usize| keeps[index] && !decision.options[index].retrace;
@@ -290,15 +293,15 @@ fn contact_change(trace: &mut PathTrace<'_>, came: &Came) -> Arrival {
         decision.taken = best.filter(|best| !decision.options[*best].mechanism).or(decision.taken);
     }
     let force_scale = rules.force_scale;
-    // The rule decides among the directions, each of which holds over a finite step; the program says whether it names
-    // the mode of the one taken.
+    // The rule decides among the directions, each of which holds over a finite step; the program reports whether it
+    // confirms the mode of the direction taken.
     let confirmed = match decision.taken {
         Some(taken) if trace.scene.analysis.method == Method::Mpec && !trace.scene.analysis.skips_certificate() => {
             mpec_verification::is_confirmed_by_program(trace, &decision.options[taken], *step)
         }
         _ => true,
     };
-    // By the load rates here: of a load that turns, the way back falls as the way on does.
+    // By the load rates at the point: where the load turns, it falls along the reverse as it does ahead.
     let mut bifurcation = choice::is_bifurcation(&decision.options, decision.taken, None);
     if let Some(taken) = decision.taken
         && let choice = &mut decision.options[taken]
@@ -344,15 +347,15 @@ fn contact_change(trace: &mut PathTrace<'_>, came: &Came) -> Arrival {
     }
 }
 
-/// Whether a direction begins with the reactions that are. Where a node is carried by planes that move against each
-/// other and slips along both, equilibrium gives them; another way to share its force begins with a rest.
+/// Whether a direction begins with the present reactions. Where a node is carried by planes that move against each
+/// other and slips along both, equilibrium determines the reactions; another distribution of its force begins at rest.
 fn keeps_shares(trace: &PathTrace<'_>, choice: &DirectionChoice) -> bool {
     let (loading, here) = (trace.loading(), &trace.at.here);
     let (state, zero) = (&here.state, ZERO * trace.rules().force_scale);
     loading.corners.iter().filter(|corner| node_forces::is_in_plane(loading, corner)).all(|corner| {
         let closed = corner.closed(loading, state);
         let slips = |contact: &usize| matches!(here.modes[*contact], Mode::Slip { .. });
-        // What sticks while another presses the node may bear what it did.
+        // A sticking contact pressed by another may keep its share of the force.
         let any_share = closed.iter().any(|contact| choice.modes[*contact] == Mode::Stick)
             && closed.iter().all(|contact| choice.modes[*contact].is_active());
         match Carried::of(loading, &closed, state) {
@@ -369,7 +372,7 @@ fn keeps_shares(trace: &PathTrace<'_>, choice: &DirectionChoice) -> bool {
     })
 }
 
-/// Whether the path has left this very state in these modes before; remembers it if not.
+/// Whether the path has left the same state in the same modes before; otherwise records the state.
 fn is_cycle(trace: &mut PathTrace<'_>) -> bool {
     let here = trace.visit();
     let force = SAME_STATE * trace.at.totals.force_scale;

@@ -1,7 +1,8 @@
 //! The path as an iterator of increments.
 //!
 //! Between events the path keeps its contact mode and is followed by arc-length steps; where the mode ends, the
-//! directions are listed and one is taken. The step follows the turn of the path and the work of Newton's method.
+//! directions are listed and one is taken. The step length is controlled by the turn of the path and the Newton
+//! iterations.
 
 use crate::continuation::path::checkpoint::{self, Checkpoint, CheckpointError};
 use crate::continuation::path::{acceptance, branch_switching, stages, step_control};
@@ -36,29 +37,29 @@ impl<'a> Path<'a> {
         (at.phase == Phase::Ended).then(|| at.totals.report.clone())
     }
 
-    /// Makes the next step no longer than this (arc length, dimensionless), so that a point can be put where it is wanted.
-    /// `analysis.arc_length.min` stays the shortest.
+    /// Limits the next step to this arc length (dimensionless), so that a point can be placed where it is wanted.
+    /// `analysis.arc_length.min` remains the lower bound.
     pub fn shorten_next(&mut self, longest: f64) {
         let least = self.trace.scene.analysis.arc_length.min;
         self.trace.at.step = self.trace.at.step.min(longest.max(least));
     }
 
-    /// Keeps the iterates of each increment's programs from now on, until the next increment.
+    /// Keeps the iterates of each increment's programs from now on, each until the next increment.
     pub fn keep_iterates(&mut self) {
         self.trace.iterates = Some(Vec::new());
     }
 
-    /// Those of the last increment that a program was solved for; empty where they are not kept.
+    /// The iterates of the last increment for which a program was solved; empty where they are not kept.
     pub fn iterates(&self) -> &[ProgramIterate] {
         self.trace.iterates.as_deref().unwrap_or_default()
     }
 
-    /// The path at its present point; after any call of `next`.
+    /// A checkpoint of the path at its present point; valid after any call of `next`.
     pub fn checkpoint(&self) -> Checkpoint {
         checkpoint::put_down(&self.trace)
     }
 
-    /// Takes a path up where it was put down; its increments are the same, bit for bit, as if it had not been.
+    /// Resumes a path from a checkpoint; its increments are the same, bit for bit, as those of the uninterrupted path.
     ///
     /// # Errors
     /// A checkpoint of another model, or of another version of this program.
@@ -66,16 +67,16 @@ impl<'a> Path<'a> {
         checkpoint::take_up(scene, checkpoint, cancel).map(Self::along)
     }
 
-    /// How many directions are listed at the present point; 0 where there is one way on.
+    /// The number of directions listed at the present point; 0 where the continuation is unique.
     pub fn listed_directions(&self) -> usize {
         self.trace.at.listed.as_ref().map_or(0, |listed| listed.options.len())
     }
 
-    /// A path of its own from a checkpoint along one of the directions listed there.
+    /// A separate path from a checkpoint along one of the directions listed there.
     ///
     /// Its first increment, of index 0, is the point itself with `event` as its event; loads, energies, arc length and
-    /// the counts of the stage are carried on. Work and time are its own. Along the direction that was taken, the
-    /// increments are those of the path that was put down.
+    /// the counts of the stage are carried over. Work and time begin at zero. Along the direction that was taken, the
+    /// increments are those of the original path.
     ///
     /// # Errors
     /// A checkpoint that does not fit, and a direction along which there is no path.
@@ -90,7 +91,7 @@ impl<'a> Path<'a> {
         branch_switching::along(trace, direction, event).map(Self::along)
     }
 
-    /// Whether a path goes along this one of the directions listed at the present point.
+    /// Whether a path can follow this one of the directions listed at the present point.
     pub fn can_be_followed(&self, direction: usize) -> bool {
         branch_switching::counts_along(&self.trace, direction).is_ok()
     }

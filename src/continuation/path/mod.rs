@@ -1,16 +1,16 @@
 //! The loop of an increment.
 //!
-//! | file | what it does |
+//! | file | contents |
 //! |---|---|
 //! | `iterator` | the path as an iterator of increments |
-//! | `stages` | how a stage begins, ends and hands over to the next |
-//! | `step_control` | how far a step goes |
-//! | `step_attempt` | one try of a step |
-//! | `acceptance` | a point reached becomes the present one and a row |
-//! | `classification` | what kind of point it is, and how the path goes on from it |
-//! | `mpec_verification` | whether the program of an increment names the same mode |
+//! | `stages` | the beginning and the end of a stage, and the transition to the next |
+//! | `step_control` | the length of a step |
+//! | `step_attempt` | one attempt of a step |
+//! | `acceptance` | acceptance of a point as the present one, and its row |
+//! | `classification` | classification of a point, and the continuation of the path from it |
+//! | `mpec_verification` | whether the program of an increment confirms the mode |
 //! | `mpec_increments` | increments found by their program alone |
-//! | `checkpoint`, `branch_switching` | a path put down and taken up again; along another direction |
+//! | `checkpoint`, `branch_switching` | checkpoints to resume a path; a path along another direction |
 //!
 //! All of them work on one [`PathTrace`](crate::continuation::path_state::trace::PathTrace), which owns the state.
 

@@ -1,14 +1,15 @@
-//! Every increment found by its program alone: `method: "mpec"` where the certificate is skipped.
+//! Increments found by their program alone: `method: "mpec"` with the certificate skipped.
 //!
-//! How far an increment goes and which event ends it is decided as it always is (`step_control`), so that increments are as long
-//! as those of `auto`. Its end is then found anew, by the program from the point before and the direction there; the
-//! contact mode is read off, and Newton's method on the mode's equations with the arc-length equation takes the program's
-//! end to round-off. That point becomes the path's where rounding leaves no more of it than of the first. Where an event ends the increment, a contact is at the edge of two modes
-//! there and the program may name either; the event's own equation has placed the point, which has to be the same.
+//! The length of an increment and the event that ends it are determined as usual (`step_control`), so that increments
+//! are as long as those of `auto`. The end is then found anew, by the program from the previous point and its
+//! direction; the contact mode is identified, and Newton's method on the mode's equations with the arc-length equation
+//! refines the program's solution to round-off. The refined point replaces the original one unless round-off gives it
+//! the larger residual. Where an event ends the increment, a contact is on the boundary of two modes there and the
+//! program may find either; the event's own equation has located the point, which has to be the same.
 //!
-//! `γ1` is adapted until the program ends near the arc length sought, and further where it ends in another mode: an event may
-//! lie just past the point. An increment whose end no search finds is counted as a fall-back: the point stands as the
-//! mode's equations gave it.
+//! `γ1` is adapted until the program ends near the arc length sought, and further where it ends in another mode: an
+//! event may lie just past the point. An increment whose end no search finds counts as a fall-back: the point found by
+//! the mode's equations is retained.
 
 use crate::continuation::path::mpec_verification;
 use crate::continuation::path::step_control::AcceptedStep;
@@ -27,18 +28,19 @@ use crate::step::increment_mpec::{IncrementProgram, ProgramCounts, ProgramEnd, S
 use crate::step::segment::{Reached, StepStart};
 use std::sync::Arc;
 
-/// Searches of one increment, `γ1` adapted from one to the next.
+/// Largest number of searches for one increment, `γ1` adapted from one to the next.
 const MOST_SEARCHES: usize = 8;
-/// Arc lengths over the one sought from which the polish starts.
+/// Range of arc lengths, relative to the one sought, from which the refinement starts.
 const NEAR: [f64; 2] = [0.5, 2.0];
-/// An arc length over the one sought that is off by no more has been adapted to it.
+/// Largest relative error of an arc length that counts as adapted.
 const SETTLED: f64 = 1e-2;
-/// Distance (dimensionless) of a polished point from the one that the step ended at within which they are the same.
+/// Distance (dimensionless) between the refined point and the original one within which they are the same.
 const SAME: f64 = 1e-9;
-/// Reactions over the force scale, and gaps over the arc length, that are zero at the edge of two modes.
+/// Reactions relative to the force scale, and gaps relative to the arc length, that are zero on the boundary of two
+/// modes.
 const EDGE: f64 = 1e-6;
 
-/// What an increment's searches leave.
+/// By-products of the searches for an increment.
 #[derive(Default)]
 struct Left {
     counts: Vec<ProgramCounts>,
@@ -46,7 +48,7 @@ struct Left {
     iterates: Vec<ProgramIterate>,
 }
 
-/// Finds the end of an increment that is about to be accepted by its program.
+/// Finds by its program the end of an increment that is about to be accepted.
 pub(crate) fn found_by_program(trace: &mut PathTrace<'_>, rate: &Rate, mut accepted: AcceptedStep) -> AcceptedStep {
     let (found, Left { counts, work, iterates }) = search_end(trace, rate, &accepted);
     trace.at.totals.work = work;
@@ -60,7 +62,7 @@ pub(crate) fn found_by_program(trace: &mut PathTrace<'_>, rate: &Rate, mut accep
         return accepted;
     };
     let reached = &mut accepted.reached;
-    // Next to stiff elements rounding may leave more of equilibrium at the one than at the other.
+    // Next to stiff elements round-off may leave a larger residual at one of the two points than at the other.
     let is_as_good = found.corrected.residual <= reached.corrected.residual.max(f64::EPSILON);
     if is_as_good && reached.event.is_none() && accepted.crossing.is_none() && !accepted.returned {
         let hardness = reached.corrected.iterations_to_small;
@@ -109,7 +111,7 @@ fn search_end(trace: &PathTrace<'_>, rate: &Rate, accepted: &AcceptedStep) -> (O
                 return (Some(found), left);
             }
         }
-        // Off the path: so large a relaxation led away from it.
+        // Away from the path: too large a relaxation led the search elsewhere.
         let is_off = !is_near || (end.size - 1.0).abs() <= SETTLED;
         match search::tighter(relaxation).filter(|_| is_off) {
             Some(tighter) => (start, relaxation) = (predicted.clone(), tighter),
@@ -151,7 +153,7 @@ fn note(trace: &PathTrace<'_>, program: &IncrementProgram<'_>, searched: &Search
     }
 }
 
-/// The end of a search taken to round-off in a mode, at the arc length sought.
+/// The end of a search refined to round-off in a mode, at the arc length sought.
 fn polished(
     trace: &PathTrace<'_>,
     end: &ProgramEnd,
@@ -174,12 +176,12 @@ fn polished(
     let system = ModeSystem::new(trace.loading(), modes, &here.state);
     let closing = ArcLengthEquation { from: &here.state, step };
     let polished = start.settle(system, end.state.clone(), &closing, work).ok()?;
-    // Once more: from so near the first time may stop where the tolerance is met.
+    // Repeated: close to the solution the first pass may stop as soon as the tolerance is met.
     let system = ModeSystem::new(trace.loading(), modes, &here.state);
     start.settle(system, polished.corrected.state, &closing, work).ok()
 }
 
-/// Whether the modes that a search ends in are these, but for contacts that are at the edge of both.
+/// Whether a search ends in these modes, apart from contacts on the boundary of both modes.
 fn is_mode_at(
     trace: &PathTrace<'_>,
     loading: Loading<'_>,
@@ -201,7 +203,7 @@ fn is_mode_at(
     agree(loading, &either, modes)
 }
 
-/// Whether a contact is in both modes at once.
+/// Whether a contact is on the boundary of two modes.
 fn is_at_edge(
     loading: Loading<'_>,
     contact: usize,

@@ -1,7 +1,8 @@
-//! Where the MPEC names the mode: every increment of `method: "mpec"`, and the direction taken where a mode ends.
+//! Verification of contact modes by the MPEC: for every increment of `method: "mpec"`, and for the direction taken
+//! where a mode ends.
 //!
-//! The point that the path has reached is shown to solve the increment's program, without a quadratic program; where it
-//! is not, the program is solved from the direction at hand.
+//! The point reached by the path is shown to solve the increment's program, without a quadratic program; where this
+//! fails, the program is solved from the given direction.
 
 use crate::branching::directions::choice::DirectionChoice;
 use crate::complementarity::mpec::Problem;
@@ -16,28 +17,29 @@ use crate::step::increment_mpec::certificate;
 use crate::step::increment_mpec::{Arrived, ForeseenModes, IncrementProgram, Named, ProgramCounts};
 use crate::step::segment::{Reached, StepStart};
 
-/// Arc length at which a direction is first put to the program, as a fraction of the path's next step.
+/// Arc length at which a direction is first verified by the program, as a fraction of the path's next step.
 const FIRST_TRIAL: f64 = 0.25;
-/// The part of the way to the next change of a contact that it may go.
+/// Largest part of the distance to the next contact change that this arc length may reach.
 const WITHIN: f64 = 0.5;
-/// Arc length below which changes are not told apart by the program, whose products end at a relaxation of 1e-8.
+/// Arc length below which the program cannot distinguish changes: its products end at a relaxation of 1e-8.
 const RESOLVED: f64 = 1e-8;
-/// How often the whole program is asked, for shorter and shorter increments.
+/// Number of attempts with the whole program, for shorter and shorter increments.
 const TRIALS: usize = 3;
-/// By how much the arc length is shortened where nothing says how far the mode holds, and at most.
+/// Factor by which the arc length is shortened where the extent of the mode is unknown, and its smallest value.
 const SHORTER: f64 = 0.1;
 const SHORTEST: f64 = 1e-3;
-/// Arc length below which a reaction that has just left a boundary may still be there within the program's tolerance.
+/// Arc length below which a reaction that has just left a boundary may still be on it within the program's tolerance.
 const NEAR: f64 = 1e-5;
 
-/// Whether the program, started along the present direction, ends in the present mode; up to an event, on the way there.
+/// Whether the program, started along the present direction, ends in the present mode; where an event ends the step,
+/// before it.
 pub(crate) fn program_keeps_mode(trace: &mut PathTrace<'_>, rate: &Rate, reached: &Reached, step: f64) -> bool {
     let modes = trace.at.here.modes.clone();
     if is_shown(trace, rate, &modes, reached) {
         return true;
     }
     let way = if reached.event.is_some() { WITHIN * reached.step } else { step };
-    // So near to the event the program tells nothing apart.
+    // This close to the event the program cannot distinguish the modes.
     way < RESOLVED || is_named(trace, rate, &modes, way, true)
 }
 
@@ -55,7 +57,7 @@ fn start<'a>(trace: &'a PathTrace<'_>, rate: &'a Rate, modes: &'a [Mode]) -> Ste
     }
 }
 
-/// What the point of a mode at an arc length shows of its increment's program.
+/// The result of the certificate for the increment's program at the point of a mode at an arc length.
 fn show(trace: &mut PathTrace<'_>, rate: &Rate, modes: &[Mode], way: f64) -> ForeseenModes {
     let mut work = trace.at.totals.work;
     let reached = start(trace, rate, modes).reach(way, &mut work);
@@ -63,7 +65,7 @@ fn show(trace: &mut PathTrace<'_>, rate: &Rate, modes: &[Mode], way: f64) -> For
     reached.map_or(ForeseenModes::Unclear, |reached| show_at(trace, rate, modes, &reached))
 }
 
-/// What a point reached in a mode shows of its increment's program.
+/// The result of the certificate for the increment's program at a point reached in a mode.
 fn show_at(trace: &mut PathTrace<'_>, rate: &Rate, modes: &[Mode], reached: &Reached) -> ForeseenModes {
     if reached.determinant.is_none() || reached.step <= 0.0 {
         return ForeseenModes::Unclear;
@@ -77,38 +79,38 @@ fn show_at(trace: &mut PathTrace<'_>, rate: &Rate, modes: &[Mode], reached: &Rea
     foreseen
 }
 
-/// Whether a point reached in a mode is shown to solve the program of its increment: nothing is left to search.
+/// Whether a point reached in a mode is shown to solve the program of its increment, so that no search is needed.
 fn is_shown(trace: &mut PathTrace<'_>, rate: &Rate, modes: &[Mode], reached: &Reached) -> bool {
     let foreseen = show_at(trace, rate, modes, reached);
     is_of(trace, &foreseen, modes)
 }
 
-/// The same of the point at an arc length.
+/// The same for the point at an arc length.
 fn is_shown_within(trace: &mut PathTrace<'_>, rate: &Rate, modes: &[Mode], way: f64) -> bool {
     let foreseen = show(trace, rate, modes, way);
     is_of(trace, &foreseen, modes)
 }
 
-/// Whether these modes are named.
+/// Whether these modes are confirmed.
 fn is_of(trace: &PathTrace<'_>, foreseen: &ForeseenModes, modes: &[Mode]) -> bool {
     matches!(foreseen, ForeseenModes::Named(named) if agree(trace.loading(), &named.modes, modes))
 }
 
 /// Whether the program, started along a direction, ends in the direction's own mode.
 ///
-/// Its increment has about the arc length asked for, not exactly; where it names another mode, it may have gone past
-/// the end of this one, and is asked again for shorter increments. First the point of the mode is looked at: as a rule
-/// it is shown to solve the program. Then the branch of the direction's mode alone is
-/// solved: where it holds, it is the program's solution, and where it ends, it says how far it goes. The whole program
-/// has the word where that does not settle it; `untold` is the answer where no program can tell.
+/// The arc length of the program's increment is only approximately the one requested; where the program finds another
+/// mode, it may have passed the end of this one, and is solved again for shorter increments. First the point of the
+/// mode is tested: usually it is shown to solve the program. Otherwise the branch of the direction's mode alone is
+/// solved: where the mode holds, this is the program's solution, and where it ends, the solution shows how far it
+/// extends. The whole program decides where this is inconclusive; `untold` is returned where no program can decide.
 fn is_named(trace: &mut PathTrace<'_>, rate: &Rate, modes: &[Mode], step: f64, untold: bool) -> bool {
     let state = trace.at.here.state.clone();
     if trace.scene.structure.dimension == 3 {
-        // A cone may bind a branch that holds.
+        // A cone may be active on a valid branch.
         return is_named_by_whole(trace, &state, rate, modes, step);
     }
     if untold && step <= NEAR {
-        // So near to where contacts change no answer of a search would count against the mode.
+        // This close to a contact change no result of a search would refute the mode.
         return true;
     }
     let mut tried = step;
@@ -129,11 +131,11 @@ fn is_named(trace: &mut PathTrace<'_>, rate: &Rate, modes: &[Mode], step: f64, u
             ForeseenModes::Untold => return is_named_by_whole(trace, &state, rate, modes, tried),
         }
     }
-    // So near to where contacts change the whole program tells no more than its branch.
+    // This close to a contact change the whole program is no more conclusive than its branch.
     if step <= NEAR { untold } else { is_named_by_whole(trace, &state, rate, modes, RESOLVED) }
 }
 
-/// The same by the whole program, all branches of it.
+/// The same by the whole program with all its branches.
 fn is_named_by_whole(trace: &mut PathTrace<'_>, state: &State, rate: &Rate, modes: &[Mode], step: f64) -> bool {
     let mut tried = step;
     for _ in 0..TRIALS {
@@ -153,8 +155,8 @@ pub(crate) fn program_joins_changes(trace: &mut PathTrace<'_>, rate: &Rate, step
     named.is_some_and(|named| agree(trace.loading(), &named.modes, end))
 }
 
-/// Arc length to the first change of a contact along a direction, to first order: an increment that goes on past it
-/// ends in another mode. Infinite where none is ahead.
+/// Arc length to the first contact change along a direction, to first order: an increment that continues past it ends
+/// in another mode. Infinite where no change lies ahead.
 fn way_to_next_change(trace: &PathTrace<'_>, modes: &[Mode], rate: &Rate) -> f64 {
     let (loading, state) = (trace.loading(), &trace.at.here.state);
     let forces = trace.at.totals.force_scale;
@@ -163,14 +165,14 @@ fn way_to_next_change(trace: &PathTrace<'_>, modes: &[Mode], rate: &Rate) -> f64
         .filter_map(|watch| {
             let value = watch.value(loading, modes, state, rate);
             let slope = watch.slope(loading, modes, state, rate)?;
-            // What is zero here is not ahead.
+            // A quantity that is zero at the present point does not lie ahead.
             (value > ZERO * watch.scale(loading, state, forces) && slope < 0.0).then(|| value / -slope)
         })
         .fold(f64::INFINITY, f64::min)
 }
 
-/// The increment's program from a state to about another; `None` where no contact can be reached: there is nothing to
-/// decide.
+/// The increment's program from a state to approximately another; `None` where no contact can be reached: then there
+/// is nothing to decide.
 pub(crate) fn program<'a>(
     loading: Loading<'a>,
     force_scale: f64,
@@ -182,7 +184,7 @@ pub(crate) fn program<'a>(
     (program.pairs() > 0).then_some(program)
 }
 
-/// The same, whether or not a contact can be reached.
+/// The increment's program, whether or not a contact can be reached.
 pub(crate) fn increment_program<'a>(
     loading: Loading<'a>,
     force_scale: f64,
@@ -223,13 +225,13 @@ pub(crate) fn count(trace: &mut PathTrace<'_>, counts: ProgramCounts) {
     totals.last_relaxation = counts.last_relaxation.or(totals.last_relaxation);
 }
 
-/// Whether the program confirms a direction at the present point: started along it, it ends in the direction's own
-/// mode. Not where the next change is too near for the program to tell.
+/// Whether the program confirms a direction at the present point: started along it, the program ends in the direction's
+/// own mode. `false` where the next change is too close for the program to decide.
 ///
-/// The forward term rewards the direction that is tried, not the one in which the path came: where the path turns
-/// against its past (a contact closes, the load turns), that term would hold the increment back at zero.
+/// The forward term rewards the direction tried, not the incoming one: where the path reverses (a contact closes, the
+/// load turns), rewarding the incoming direction would keep the increment at zero.
 ///
-/// Changes come in clusters: what is tried first goes no further than the `last` step did.
+/// Changes occur in clusters: the first trial is no longer than the `last` step.
 pub(crate) fn is_confirmed_by_program(trace: &mut PathTrace<'_>, choice: &DirectionChoice, last: f64) -> bool {
     let within = WITHIN * way_to_next_change(trace, &choice.modes, &choice.rate);
     let first = (FIRST_TRIAL * trace.at.step).min(within);

@@ -1,4 +1,4 @@
-//! How a stage begins, ends and hands over to the next.
+//! The beginning and the end of a stage, and the transition to the next.
 
 use crate::branching::directions::choice::{self, PriorMotion};
 use crate::branching::selection::decision;
@@ -15,8 +15,8 @@ use crate::step::corrector::newton;
 use crate::step::event_functions::Watch;
 use crate::step::segment::AT_END;
 
-/// The row with which a stage begins: the directions that exist there, one of them taken. Where a bound of the stage
-/// is met already, it ends there too.
+/// The row with which a stage begins: the directions there, one of them taken. Where a bound of the stage is already
+/// met, the stage ends there too.
 pub(crate) fn begin_stage(trace: &mut PathTrace<'_>) -> Increment {
     if trace.at.phase == Phase::Running {
         trace.at.totals.index += 1;
@@ -62,7 +62,7 @@ pub(crate) fn begin_stage(trace: &mut PathTrace<'_>) -> Increment {
     })
 }
 
-/// Whether a load or displacement at which the stage ends is met before it begins.
+/// Whether a load or displacement at which the stage ends is met before the stage begins.
 fn bound_is_met(trace: &PathTrace<'_>) -> bool {
     let here = &trace.at.here;
     let still = Rate {
@@ -74,7 +74,7 @@ fn bound_is_met(trace: &PathTrace<'_>) -> bool {
     trace.scene.stages[trace.at.stage].ends.iter().any(|end| left(end) <= 0.0)
 }
 
-/// Holds what the stage reached and goes to the next; `false` where there is none.
+/// Keeps the load that the stage reached and begins the next stage; `false` where there is none.
 pub(crate) fn next_stage(trace: &mut PathTrace<'_>) -> bool {
     if trace.at.stage + 1 == trace.scene.stages.len() {
         trace.end(StopReason::StagesCompleted);
@@ -94,8 +94,8 @@ pub(crate) fn next_stage(trace: &mut PathTrace<'_>) -> bool {
     true
 }
 
-/// Whether a load or displacement at which the stage ends is reached here, whatever else happens here; it is then
-/// made exact.
+/// Whether a load or displacement at which the stage ends is reached at the present point, whatever else happens there;
+/// the load is then set exactly.
 pub(crate) fn at_bound(trace: &mut PathTrace<'_>, rate: &Rate) -> bool {
     let here = &trace.at.here;
     let left = |end: &End| Watch::End(*end).value(trace.loading(), &here.modes, &here.state, rate);

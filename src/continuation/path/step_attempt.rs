@@ -1,4 +1,4 @@
-//! One try of a step: how far its mode goes, and whether what is reached can be a point of the path.
+//! One attempt of a step: how far its mode extends, and whether the point reached is admissible.
 
 use crate::branching::bifurcation::locate::{self, Crossing, Located, LocatedEnd};
 use crate::branching::bifurcation::singularity::test_functions::{self, Signature, SignatureChange};
@@ -18,22 +18,23 @@ use crate::step::corrector::cost_counters::Work;
 use crate::step::event_functions::Watch;
 use crate::step::segment::{Attempt, Reached, Refused, StepStart};
 
-/// Where contacts change one after another, the next is looked for within this multiple of the way between the last two,
-/// if that is less than this part of a step: over a short way Newton's method and the location of events have little to do.
+/// Where contacts change one after another, the next change is sought within this multiple of the distance between the
+/// last two, if it is less than this part of a step: over a short distance Newton's method and event location need
+/// little work.
 const NEXT_WITHIN: f64 = 4.0;
 const MOST_OF_STEP: f64 = 0.5;
-/// Shorter steps that are tried where a change of signs cannot be made out.
+/// Largest number of shorter steps tried where a change of signature cannot be resolved.
 const MOST_UNRESOLVED: u64 = 4;
 
-/// The length of a step as far as it is known before it is tried.
+/// The length of a step as far as it is known before an attempt.
 pub(crate) struct Sought {
-    /// By the path's turn, Newton's work and the energy balance of the steps before.
+    /// Determined by the path's turn, Newton's iterations and the energy balance of the previous steps.
     pub ordinary: f64,
-    /// The next event of a path that is straight up to there.
+    /// The next event of a path that is straight up to the event.
     pub jump: Option<ForeseenChange>,
-    /// The next contact change that the rates foresee.
+    /// The next contact change predicted by the rates.
     pub foreseen: Option<ForeseenChange>,
-    /// Contact changes in it may be taken together.
+    /// Contact changes in the step may be treated together.
     pub may_join: bool,
 }
 
@@ -43,23 +44,23 @@ impl Sought {
         self.jump.or(self.foreseen).map_or(self.ordinary, |foreseen| foreseen.step)
     }
 
-    /// Whether a step of this length is one to the next event of a straight path.
+    /// Whether a step of this length leads to the next event of a straight path.
     pub fn jumps(&self, step: f64) -> bool {
         self.jump.is_some_and(|event| event.step == step)
     }
 }
 
-/// What the tries of one step have found so far.
+/// Results of the attempts of one step so far.
 pub(crate) struct Tries {
-    /// The way within which the next change is looked for, once.
+    /// Arc length within which the next change is sought, in the first attempt only.
     next: Option<f64>,
-    /// Signs just past the start.
+    /// Signature just past the start.
     known: Option<Signature>,
-    /// Left over where the direction was found.
+    /// Factorisation with which the direction was found.
     at_hand: AtHand,
-    /// Tries at which a change of signs could not be made out.
+    /// Number of attempts at which a change of signature could not be resolved.
     pub unresolved: u64,
-    /// Of the last try: whether changes that might have been taken together were; `None` where there were none.
+    /// Whether the last attempt treated changes together; `None` where there were none to treat so.
     pub joined: Option<bool>,
 }
 
@@ -70,7 +71,7 @@ impl Tries {
     }
 }
 
-/// Where a step ends.
+/// The end of a step.
 enum AttemptEnd {
     Joined(Joined),
     AtEvent(Box<Reached>),
@@ -85,16 +86,16 @@ impl AttemptEnd {
     }
 }
 
-/// What a try leads to.
+/// The result of an attempt.
 pub(crate) struct Tried {
     pub reached: Box<Reached>,
-    /// The smooth bifurcation there, if it is one.
+    /// The smooth bifurcation at the point, if it is one.
     pub crossing: Option<Crossing>,
-    /// Signs just past it.
+    /// Signature just past the point.
     pub signature: Option<Signature>,
-    /// It is where the stage began.
+    /// The point is the one where the stage began.
     pub returned: bool,
-    /// How many contact changes within the step are taken together, and the direction at its end without them.
+    /// The number of contact changes treated together within the step, and the direction at its end without them.
     pub joined: Option<(u64, Rate)>,
 }
 
@@ -104,7 +105,7 @@ impl Tried {
     }
 }
 
-/// Tries a step of this length along the direction just now.
+/// Attempts a step of this length along the present direction.
 pub(crate) fn try_step(
     trace: &PathTrace<'_>,
     rate: &Rate,
@@ -146,7 +147,7 @@ pub(crate) fn try_step(
             AttemptEnd::Joined(Joined { reached, changes, signature, unchanged }) => {
                 Tried { joined: Some((changes, unchanged)), ..Tried::plain(reached, None, signature) }
             }
-            // The equations of a straight path are the same at both ends, and singular at none in between.
+            // The equations of a straight path are the same at both ends, and nowhere singular in between.
             AttemptEnd::AtEvent(reached) if sought.jumps(step) => Tried::plain(reached, None, None),
             AttemptEnd::AtEvent(reached) => {
                 let known = tries.known.or_else(|| Signature::past_start(&start, reached.step, &mut None, work));
@@ -168,7 +169,7 @@ pub(crate) fn try_step(
     }
 }
 
-/// The end of a step: past changes that are taken together, or at the first event in it.
+/// The end of a step: past changes that are treated together, or at the first event in it.
 fn end_of_step(
     trace: &PathTrace<'_>,
     start: &StepStart<'_>,
@@ -182,7 +183,7 @@ fn end_of_step(
     let foreseen = may_join.then(|| simultaneous::join_foreseen(start, step, ends, load_sign, work)).flatten();
     if let Some(joined) = foreseen {
         tries.joined = Some(joined.is_some());
-        // Where they cannot be taken together nothing but the first of them is to be gone to.
+        // Where the changes cannot be treated together the step has to end at the first of them.
         return joined.map(AttemptEnd::Joined).ok_or(Refused::Apart);
     }
     let tried = attempt(trace, start, step, sought, tries, work)?;
@@ -196,7 +197,7 @@ fn end_of_step(
     start.stop_at_event(tried, ends, simultaneous_limit_points::locate, work).map(AttemptEnd::AtEvent)
 }
 
-/// How far the mode goes: to the next of several changes, if that is near, to one that is foreseen, or a whole step.
+/// The extent of the mode: to the next of several changes if it is near, to a predicted change, or over a whole step.
 fn attempt(
     trace: &PathTrace<'_>,
     start: &StepStart<'_>,
@@ -209,7 +210,7 @@ fn attempt(
     let (ends, load_sign) = (&trace.scene.stages[trace.at.stage].ends, here.load_sign);
     let is_straight = sought.jumps(step);
     let joins = sought.may_join && !is_straight && simultaneous::may_join(start);
-    // Where the rates foresee the next change, it is met where they do.
+    // A change predicted by the rates is located from the prediction.
     let is_open = !joins && !is_straight && sought.foreseen.is_none();
     let next = tries.next.take().filter(|next| *next < MOST_OF_STEP * step && is_open);
     let next = next.and_then(|next| {
@@ -229,8 +230,8 @@ fn attempt(
     met.map_or_else(|| start.attempt(step, before, None, ends, load_sign, work), Ok)
 }
 
-/// Ends a step at the first smooth bifurcation in it, of its own mode or of that in which contacts that touch without
-/// reaction all along are free; with the signs past its end.
+/// Ends a step at the first smooth bifurcation in it, of its own mode or of the mode in which contacts that touch
+/// without reaction throughout the step are free; with the signature past its end.
 fn first_crossing(
     start: &StepStart<'_>,
     before: Option<Signature>,
@@ -246,7 +247,7 @@ fn first_crossing(
     }
 }
 
-/// The first smooth bifurcation of a step in looser modes.
+/// The first smooth bifurcation of a step in loosened modes.
 fn crossing_when_loose(
     start: &StepStart<'_>,
     loose: &[Mode],
@@ -283,7 +284,7 @@ fn crossing_in_mode(
     work: &mut Work,
 ) -> Result<LocatedEnd, Refused> {
     let Some(before) = before else {
-        // The start is singular: signs are known from the end on.
+        // The start is singular: the signature is known from the end of the step on.
         let state = &reached.corrected.state;
         let is_limit = matches!(reached.event, Some(Watch::LoadRate { .. }));
         let regular = if is_limit { None } else { test_functions::sign_at_end(start, &reached, work) };

@@ -1,4 +1,4 @@
-//! Choosing the step: by the path's turn, by Newton's work and by the energy balance of the increment.
+//! Step-length control by the path's turn, Newton's iterations and the energy balance of the increment.
 
 use crate::algebra::scalar_root::find_root;
 use crate::branching::bifurcation::locate::Crossing;
@@ -30,69 +30,70 @@ use crate::step::event_functions::Watch;
 use crate::step::interpolation::unit;
 use crate::step::segment::{Reached, Refused, StepStart};
 
-/// The turn of the path (radians) that a step aims at.
+/// The turn of the path (radians) for which a step aims.
 const TURN_SOUGHT: f64 = 0.08;
-/// Newton iterations to a small error that a step aims at.
+/// The number of Newton iterations to a small error for which a step aims.
 const ITERATIONS_SOUGHT: f64 = 4.0;
 
-/// Energy imbalance of an increment, over the largest energy so far, that a step aims at.
+/// The energy imbalance of an increment, relative to the largest energy so far, for which a step aims.
 const IMBALANCE_SOUGHT: f64 = 5e-9;
-/// What rounding may do to the work of an increment, over the largest force and the arc length.
+/// Round-off in the work of an increment, relative to the largest force times the arc length.
 const ROUNDING_OF_WORK: f64 = 16.0 * f64::EPSILON;
-/// Arc length from which on the rounding of forces, which falls with it, is let be.
+/// Arc length up to which an imbalance within the round-off of the forces, which is proportional to it, is tolerated.
 const SHORT: f64 = 1e-3;
 
-/// Stretch of a bar at which the rounding of displacements of its length turns it by as much as forces may be off.
+/// Stretch of a bar at which round-off in displacements of the order of its length rotates it by as much as forces may
+/// be in error.
 const A_POINT: f64 = 1e-6;
-/// A step after which the next would have to be shorter than this fraction of it is taken again, shorter.
+/// A step is repeated with a shorter length if the next step would have to be shorter than this fraction of it.
 const REJECTED: f64 = 0.55;
 
-/// The next step over this one, at the most.
+/// Largest ratio of the next step to the present one.
 const MOST_GROWTH: f64 = 1.8;
-/// The curvature of the path over that of the step before, at the most, by which the next step's is foreseen.
+/// Largest growth of the path's curvature, relative to the step before, assumed in the prediction for the next step.
 const MOST_BEND: f64 = 4.0;
-/// How far past a bend that no step follows the path is taken up, over the square of the width of its arms there: the chord
-/// is off the direction by a fifth then, a third of what a step may turn by.
+/// Arc length past an unresolved bend at which the path resumes, relative to the square of the width of its arms there:
+/// the chord then deviates from the direction by a fifth, a third of the largest turn of a step.
 const PAST_BEND: f64 = 25.0;
-/// Arc length (dimensionless) below which a step creeps at which no contact changes. From the shortest at which a path can be
-/// told from rounding a step grows beyond this within a few.
+/// Arc length (dimensionless) below which a step without contact change counts as creeping. Steps grow from the
+/// shortest length distinguishable from round-off to more than this within a few steps.
 const CREEPS: f64 = 2e-8;
-/// The same over the longest step that is asked for, where short ones are.
+/// The same relative to the longest step requested, where only short steps are.
 const CREEPS_AT_MOST: f64 = 1e-3;
-/// Steps that creep one after another, at the most: the sharpest bend, there and back, takes fewer at the turn that a step
-/// aims at, and what takes more turns to and fro.
+/// Largest number of consecutive creeping steps: the sharpest bend, there and back, takes fewer at the turn for which a
+/// step aims, and a path that takes more oscillates.
 const MOST_CREEPING: u64 = 48;
-/// A step that ends before this fraction of what was tried does not let the next be longer.
+/// A step that ends before this fraction of its attempted length does not let the next be longer.
 const CUT_SHORT: f64 = 0.5;
 
-/// A point reached, with the energies of the way there.
+/// A point reached, with the energies of the increment.
 pub(crate) struct AcceptedStep {
     pub reached: Box<Reached>,
     pub added: Added,
-    /// By how much the direction turns (radians), but for contact changes within the step.
+    /// Turn of the direction (radians), without that of contact changes within the step.
     pub turned: f64,
-    /// Whether the increment's program named the mode; `None` where it was not asked.
+    /// Whether the increment's program confirmed the mode; `None` where it was not solved.
     pub mode_named: Option<bool>,
     /// The point is the one where the stage began.
     pub returned: bool,
     /// The smooth bifurcation at the point, if it is one.
     pub crossing: Option<Crossing>,
-    /// Signs just past the point, in the mode that led there.
+    /// Signature just past the point, in the mode that led there.
     pub signature: Option<Signature>,
-    /// Contact changes within the step that are taken together; 0 where its mode lasted.
+    /// Number of contact changes within the step that are treated together; 0 where its mode lasted.
     pub joined: u64,
 }
 
 impl AcceptedStep {
-    /// A step that so many contact changes are taken together in. Nothing slides against friction in it: the work is what
-    /// is stored.
+    /// Records a step in which contact changes are treated together. Nothing slides against friction in it: the work
+    /// equals the change of stored energy.
     fn join(&mut self, changes: u64, before: &Energy) {
         self.joined = changes;
         self.added.external_work = self.added.strain - before.strain;
     }
 }
 
-/// Steps until a point is accepted.
+/// Attempts steps until a point is accepted.
 pub(crate) fn step(trace: &mut PathTrace<'_>) -> Result<AcceptedStep, StopReason> {
     let mut sought = sought_step(trace);
     let Some(rate) = trace.at.here.rate.take() else { return Err(StopReason::NoDirection) };
@@ -101,7 +102,7 @@ pub(crate) fn step(trace: &mut PathTrace<'_>) -> Result<AcceptedStep, StopReason
     stepped
 }
 
-/// The same along the direction just now.
+/// Attempts steps along the present direction until a point is accepted.
 fn step_along(trace: &mut PathTrace<'_>, rate: &Rate, sought: &mut Sought) -> Result<AcceptedStep, StopReason> {
     let least = trace.scene.analysis.arc_length.min;
     let mut step = sought.step();
@@ -120,7 +121,7 @@ fn step_along(trace: &mut PathTrace<'_>, rate: &Rate, sought: &mut Sought) -> Re
         }
         match outcome {
             Ok(tried) => match weigh(trace, rate, tried, step, sought, was_shortened) {
-                // A search that was broken off says nothing of its increment.
+                // An interrupted search says nothing about its increment.
                 Ok(accepted) if accepted.mode_named == Some(false) && trace.cancel.is_cancelled() => {
                     return Err(StopReason::Cancelled);
                 }
@@ -136,7 +137,7 @@ fn step_along(trace: &mut PathTrace<'_>, rate: &Rate, sought: &mut Sought) -> Re
                 return Ok(accepted);
             }
             Err(Refused::Apart) => {
-                // Each of them ends a step then, the first of them this one.
+                // Each of the changes then ends a step, the first of them the present one.
                 sought.ordinary = sought.ordinary.min(step);
                 sought.foreseen = prediction::step_to_foreseen_change(trace, step, rate, false);
                 step = sought.foreseen.map_or(step, |change| change.step);
@@ -168,14 +169,14 @@ fn step_along(trace: &mut PathTrace<'_>, rate: &Rate, sought: &mut Sought) -> Re
     }
 }
 
-/// How long a step is to be, as far as is known before it is tried.
+/// The intended length of a step, as far as it is known before an attempt.
 fn sought_step(trace: &mut PathTrace<'_>) -> Sought {
     let ordinary = trace.at.step.min(trace.scene.analysis.arc_length.max);
-    // Closer to a bend the path is still on its way round it.
+    // At a shorter distance from a bend the path is still turning.
     let width = trace.at.here.beside.as_ref().map_or(0.0, Rate::size);
     let ordinary = ordinary.max(PAST_BEND * width * width);
     let may_join = trace.at.waiting.is_over() && may_join_changes(trace);
-    // Changes nearer than an ordinary step may be several that are taken together.
+    // Changes within an ordinary step may be several that are treated together.
     let ahead = piecewise_linear::next_event_ahead(trace);
     let joins = |event: &ForeseenChange| may_join && may_join_at(trace.loading(), &trace.at.here.modes, event.watch);
     let jump = ahead.filter(|event| event.step > ordinary || !joins(event));
@@ -185,8 +186,8 @@ fn sought_step(trace: &mut PathTrace<'_>) -> Sought {
     Sought { ordinary, jump, foreseen, may_join }
 }
 
-/// Accepts a point with what its increment did to the energies and chooses the next step, or says by what factor a
-/// step is to be shorter that went too far for them.
+/// Accepts a point with the energies of its increment and chooses the next step length; returns the factor by which a
+/// step too long for them is to be shortened otherwise.
 fn weigh(
     trace: &mut PathTrace<'_>,
     rate: &Rate,
@@ -201,7 +202,7 @@ fn weigh(
     (accepted.crossing, accepted.signature, accepted.returned) = (crossing, signature, returned);
     if let Some((changes, unchanged)) = joined {
         accepted.join(changes, &trace.at.totals.energy);
-        // The kinks of a step with contact changes say nothing of its length.
+        // The kinks of a step with contact changes are irrelevant to its length.
         accepted.turned = rate.angle(&unchanged);
     }
     let factor = next_step_factor(trace, &accepted, step, was_shortened);
@@ -209,7 +210,7 @@ fn weigh(
         return Err(factor);
     }
     let factor = factor.min(factor_foreseen(trace, rate, &accepted, step));
-    // Where the mode ends inside the step, the program names the next one, from there.
+    // Where the mode ends inside the step, the program verifies the next mode from there.
     if trace.scene.analysis.skips_certificate() && is_named_by_program(trace) {
         accepted = mpec_increments::found_by_program(trace, rate, accepted);
     } else {
@@ -226,12 +227,12 @@ fn weigh(
     Ok(accepted)
 }
 
-/// Why a path that has come to a point by a step of this length gets nowhere, if it does not. A step at the end of which
-/// the contacts' modes change, or the stage ends, is progress, however short. One to a limit or bifurcation point, or to
-/// where a contact keeps its mode, is none: a smooth path has few of them within so short a way; where signs are rounding
-/// they have no end.
+/// The reason to stop a path that no longer makes progress with steps of this length, if it does not. A step at the end
+/// of which the contact modes change, or the stage ends, is progress, however short. A step to a limit or bifurcation
+/// point, or to a point where a contact keeps its mode, is not: a smooth path has few of these within so short an arc
+/// length; where signs are round-off there is no end of them.
 pub(crate) fn reason_of_creep(trace: &mut PathTrace<'_>, step: f64, changes: bool) -> Option<StopReason> {
-    // Scales that are larger than the scene's own make every step as much shorter.
+    // Scales larger than the scene's own make every step shorter by the same factor.
     let enlarged = trace.scene.stages[trace.at.stage].enlarged;
     let bar = (CREEPS / enlarged).min(CREEPS_AT_MOST * trace.scene.analysis.arc_length.max);
     let creeps = !changes && step < bar;
@@ -239,26 +240,26 @@ pub(crate) fn reason_of_creep(trace: &mut PathTrace<'_>, step: f64, changes: boo
     (trace.at.creeping >= MOST_CREEPING).then(|| reason_of_underflow(trace))
 }
 
-/// Whether some bar has come to have no direction that the displacements could tell.
+/// Whether some bar has become so short that the displacements no longer determine its direction.
 pub(crate) fn shrinks_to_a_point(trace: &PathTrace<'_>, state: &State) -> bool {
     let structure = &trace.scene.structure;
     structure.smallest_stretch(&state.displacement) < A_POINT
         && structure.smallest_stretch(&trace.at.here.state.displacement) >= A_POINT
 }
 
-/// Whether contact changes may be taken together: not where each is asked for, or counted.
+/// Whether contact changes may be treated together: not where every change is requested, or counted.
 fn may_join_changes(trace: &PathTrace<'_>) -> bool {
     let analysis = &trace.scene.analysis;
     let counted = trace.scene.stages[trace.at.stage].ends.iter().any(|end| matches!(end, End::ContactChanges(_)));
     analysis.events == Events::Auto && !counted
 }
 
-/// Whether the program of each increment is asked to name its mode.
+/// Whether the program of each increment is solved to verify its mode.
 fn is_named_by_program(trace: &PathTrace<'_>) -> bool {
     trace.scene.analysis.method == Method::Mpec && !trace.scene.contacts.is_empty()
 }
 
-/// Whether the mode cannot go on from the present point.
+/// Whether the mode cannot continue from the present point.
 fn mode_ends_here(trace: &PathTrace<'_>, rate: &Rate) -> bool {
     let here = &trace.at.here;
     let standings = trace.standings(&here.state);
@@ -267,8 +268,8 @@ fn mode_ends_here(trace: &PathTrace<'_>, rate: &Rate) -> bool {
     decision.taken.is_none_or(|index| !all_continue(&decision.options[index].modes, &here.modes))
 }
 
-/// The present point once more, as the place where the mode ends: two changes at one state, the second of which the
-/// point itself did not show, are two points of the path.
+/// The present point again, as the place where the mode ends: two changes at one state, the second of which was not
+/// detected at the point itself, are two points of the path.
 fn without_step(trace: &PathTrace<'_>, watch: Watch, rate: &Rate) -> Box<Reached> {
     let here = &trace.at.here;
     let system = ModeSystem::new(trace.loading(), &here.modes, &here.state);
@@ -287,7 +288,7 @@ pub(crate) fn way_back(
     work: &mut Work,
 ) -> Option<Box<Reached>> {
     let (origin, sense) = trace.at.begun.as_ref()?;
-    // How far a state lies past the origin.
+    // Distance of a state past the origin.
     let past = |state: &State| {
         let chord = state.displacement.iter().zip(&origin.displacement).zip(&sense.displacement);
         chord.map(|((to, from), rate)| (to - from) * rate).sum::<f64>() + (state.load - origin.load) * sense.load
@@ -312,13 +313,13 @@ pub(crate) fn way_back(
     same.then_some(back)
 }
 
-/// Why steps became too short.
+/// The reason why steps became too short.
 fn reason_of_underflow(trace: &PathTrace<'_>) -> StopReason {
     let stretch = trace.scene.structure.smallest_stretch(&trace.at.here.state.displacement);
     if stretch < COLLAPSED { StopReason::CollapsedBar } else { StopReason::StepUnderflow }
 }
 
-/// Work, dissipation and strain energy of a point reached.
+/// Work, dissipation and strain energy of the increment to a point reached.
 fn balance(trace: &PathTrace<'_>, rate: &Rate, reached: Box<Reached>) -> AcceptedStep {
     let start = (&trace.at.here.state, rate);
     let end = (&reached.corrected.state, &reached.rate);
@@ -331,9 +332,9 @@ fn balance(trace: &PathTrace<'_>, rate: &Rate, reached: Box<Reached>) -> Accepte
     AcceptedStep { reached, added, turned, mode_named, returned: false, crossing, signature, joined: 0 }
 }
 
-/// How the next step should compare with this one where the path bends more and more: its curvature is foreseen to grow
-/// as it did from the step before to this one (predictive control: K. Gustafsson, ACM Trans. Math. Softw. 20 (1994)
-/// 496, doi:10.1145/198429.198437).
+/// Factor of the next step where the curvature of the path grows: it is predicted to grow as it did from the step
+/// before to the present one (predictive control: K. Gustafsson, ACM Trans. Math. Softw. 20 (1994) 496,
+/// doi:10.1145/198429.198437).
 fn factor_foreseen(trace: &PathTrace<'_>, rate: &Rate, accepted: &AcceptedStep, tried: f64) -> f64 {
     let here = &trace.at.here;
     let before = here.before.as_ref().filter(|_| accepted.reached.step > 0.0);
@@ -349,7 +350,7 @@ fn factor_foreseen(trace: &PathTrace<'_>, rate: &Rate, accepted: &AcceptedStep, 
     quantised((TURN_SOUGHT / (curvature * growth * tried)).max(0.2))
 }
 
-/// How the next step should compare with this one: by the path's turn, Newton's work and the energy balance.
+/// Factor of the next step by the path's turn, Newton's iterations and the energy balance.
 fn next_step_factor(trace: &PathTrace<'_>, accepted: &AcceptedStep, tried: f64, was_shortened: bool) -> f64 {
     let reached = &accepted.reached;
     let done = (reached.step / tried).clamp(0.1, 1.0);
@@ -358,13 +359,14 @@ fn next_step_factor(trace: &PathTrace<'_>, accepted: &AcceptedStep, tried: f64, 
     let by_work = ITERATIONS_SOUGHT / reached.corrected.iterations_to_small.max(1) as f64;
     let added = &accepted.added;
     let imbalance = (added.external_work - added.dissipated - (added.strain - trace.at.totals.energy.strain)).abs();
-    // Where next to nothing is stored, what rounding of the displacements does to the work says nothing about the step.
+    // Where hardly any energy is stored, the effect of round-off in the displacements on the work says nothing about
+    // the step.
     let rounding = ROUNDING_OF_WORK * trace.at.totals.force_scale.max(reached.corrected.force_scale) * reached.step;
     let imbalance = if imbalance <= rounding { 0.0 } else { imbalance };
     let floor = (NO_ENERGY * trace.at.totals.force_scale.max(reached.corrected.force_scale)).max(f64::MIN_POSITIVE);
     let size = trace.at.totals.largest_energy.max(added.external_work.abs()).max(added.strain.abs()).max(floor);
-    // Beside stiff elements the forces themselves are no better than what rounding leaves of them: what is stored against
-    // soft ones alone may be less than that, and no step short enough. So one that is short is not made any shorter.
+    // Next to stiff elements round-off limits the accuracy of the forces: the energy stored in soft elements alone may
+    // be smaller than its effect, whatever the step. A short step is therefore not shortened any further.
     let by_stiffness = || {
         let of_forces = trace.scene.structure.rounding(&reached.corrected.state.displacement);
         reached.step * of_forces.iter().fold(0.0_f64, |most, value| value.max(most))
@@ -374,9 +376,9 @@ fn next_step_factor(trace: &PathTrace<'_>, accepted: &AcceptedStep, tried: f64, 
     let imbalance = if is_none { IMBALANCE_SOUGHT * size } else { imbalance };
     // The balance of one increment has an error of fifth order in its arc length.
     let by_energy = (IMBALANCE_SOUGHT / (imbalance / size).max(1e-3 * IMBALANCE_SOUGHT)).powf(0.2);
-    // A step that an event cut short says little of a longer one in the mode that follows. After one that was too long
-    // the next is no longer either (E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I,
-    // Springer 1993, section II.4).
+    // A step cut short by an event says little about a longer one in the mode that follows. After a step that was too
+    // long the next is not lengthened either (E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential
+    // Equations I, Springer 1993, section II.4).
     let most = if done < CUT_SHORT || was_shortened { 1.0 } else { MOST_GROWTH };
     quantised(by_turn.min(by_work).min(by_energy).clamp(0.2, most))
 }
@@ -397,7 +399,7 @@ mod tests {
         Scene::new(&request).expect("a scene")
     }
 
-    /// After how many steps of a length the path is given up, of a hundred.
+    /// The number of steps of a length, up to a hundred, after which the path is given up.
     fn given_up_after(scene: &Scene, step: f64) -> Option<u64> {
         let mut trace = PathTrace::at(scene, Progress::new(scene), 0.0, CancelFlag::default());
         (1..=100).find(|_| reason_of_creep(&mut trace, step, false).is_some())
@@ -409,7 +411,7 @@ mod tests {
         assert_eq!(given_up_after(&plain, 2e-9), Some(MOST_CREEPING));
         const { assert!(MOST_CREEPING < 50) };
         assert_eq!(given_up_after(&plain, 1e-7), None);
-        // One that is no shorter than others were asked to be, or than larger scales make it, is no creep.
+        // Steps no shorter than requested, or shorter only because of larger scales, do not creep.
         let short = |arc_length: &mut ArcLength| {
             (arc_length.min, arc_length.initial, arc_length.max) = (1e-10, 1e-8, 1e-8);
         };

@@ -1,19 +1,19 @@
-//! When contact changes are to be taken together again, after a failure.
+//! Waiting time before contact changes are treated together again after a failure.
 
 use serde::{Deserialize, Serialize};
 
-/// When changes are to be taken together again, after a failure.
+/// Waiting time before changes are treated together again after a failure.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct JoinBackoff {
-    /// Steps that are left.
+    /// Remaining steps.
     steps: u32,
-    /// Steps after the last failure; 0 where none came before.
+    /// Waiting time, in steps, after the last failure; 0 where there was none.
     last: u32,
 }
 
 impl JoinBackoff {
-    /// Whether a step that begins may try.
+    /// Whether the waiting time is over at the beginning of a step; counts the step.
     pub fn is_over(&mut self) -> bool {
         let over = self.steps == 0;
         self.steps = self.steps.saturating_sub(1);
@@ -26,8 +26,8 @@ impl JoinBackoff {
     }
 }
 
-/// Steps after a first failure in which changes are not taken together.
+/// Steps after a first failure in which changes are not treated together.
 pub(crate) const FIRST_WAIT: u32 = 4;
 
-/// The longest wait.
+/// Longest waiting time, in steps.
 pub(crate) const MOST_WAIT: u32 = 64;

@@ -1,12 +1,13 @@
-//! Contacts out of reach, which take no part in the path's equations until it comes near them.
+//! Search for contacts out of reach, which do not enter the path's equations until the path comes near them.
 //!
-//! Over an arc length `a` a contact's gap changes by at most `a √(1 + |d|²)`, `d` the translation of its obstacle per load
-//! factor: its node moves against the obstacle by `Δu - d Δs`, `‖(Δu, Δs)‖ <= a`, and a gap changes by no more than the
-//! motion (it is a signed distance). So a gap `g` cannot close before the path has gone on by `g/√(1 + |d|²)`, and is not
-//! looked at before then. A contact that could be reached within a few steps joins the others and stays with them. Which
-//! ones do follows from their gaps alone, not from when these were looked at.
+//! Over an arc length `a` a contact's gap changes by at most `a √(1 + |d|²)`, with `d` the translation of its obstacle
+//! per load factor: its node moves relative to the obstacle by `Δu - d Δs`, `‖(Δu, Δs)‖ <= a`, and a gap changes by no
+//! more than the relative motion (it is a signed distance). So a gap `g` cannot close within an arc length of
+//! `g/√(1 + |d|²)`, and is not evaluated before. A contact that could be reached within a few steps joins the others
+//! and remains with them. Whether it does follows from its gap alone, not from the points at which the gap was
+//! evaluated.
 //!
-//! A contact that is out of reach is free, without reaction: the equations that the others have are those of the whole.
+//! A contact out of reach is free, without reaction: the equations of the other contacts are those of the whole scene.
 
 use crate::continuation::path_state::progress::Progress;
 use crate::continuation::scene::Scene;
@@ -17,34 +18,34 @@ use crate::mechanics::problem::node_forces::Corner;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// What rounding may do to a bound.
+/// Relative round-off allowed for in a bound.
 const ROUNDING: f64 = 1e-9;
 
-/// The contacts in reach, with the loading as it concerns them.
+/// The contacts in reach, with their part of the loading.
 #[derive(Debug, Clone)]
 pub(crate) struct Near {
     contacts: Vec<ContactPair>,
     corners: Vec<Corner>,
     pattern: LoadPattern,
     held: LoadPattern,
-    /// For each contact of the scene its place among those in reach.
+    /// For each contact of the scene its place among the contacts in reach.
     places: Vec<Option<usize>>,
-    /// The request's contacts that have a row in the increments: those in reach and those that are asked for.
+    /// The request's contacts that have a row in the increments: those in reach and those requested.
     rows: Vec<usize>,
 }
 
-/// The contacts out of reach, the one that may be reached first on top.
+/// The contacts out of reach, the earliest that may be reached on top.
 pub(crate) type FarContacts = BinaryHeap<ContactOutOfReach>;
 
 /// A contact out of reach.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ContactOutOfReach {
-    /// Arc length of the path before which its gap cannot close.
+    /// Arc length of the path before which the gap cannot close.
     until: f64,
     contact: usize,
 }
 
-/// The one that may be reached first is the greatest.
+/// The earliest contact that may be reached is the greatest.
 impl Ord for ContactOutOfReach {
     fn cmp(&self, other: &Self) -> Ordering {
         other.until.total_cmp(&self.until).then(other.contact.cmp(&self.contact))
@@ -65,7 +66,7 @@ impl PartialEq for ContactOutOfReach {
 
 impl Eq for ContactOutOfReach {}
 
-/// The loading of all contacts; a state's reactions are not to be read through it.
+/// The loading of all contacts; it is not valid for a state's reactions.
 pub(crate) fn whole<'a>(scene: &'a Scene, at: &'a Progress) -> Loading<'a> {
     Loading {
         structure: &scene.structure,
@@ -76,7 +77,7 @@ pub(crate) fn whole<'a>(scene: &'a Scene, at: &'a Progress) -> Loading<'a> {
     }
 }
 
-/// The contacts that `at` has out of reach.
+/// The contacts out of reach at the point `at`.
 pub(crate) fn far_contacts(scene: &Scene, at: &Progress) -> FarContacts {
     let loading = whole(scene, at);
     let far = |contact: &usize| at.near.binary_search(contact).is_err();
@@ -87,7 +88,7 @@ pub(crate) fn far_contacts(scene: &Scene, at: &Progress) -> FarContacts {
 }
 
 impl ContactOutOfReach {
-    /// With this gap after the path has gone so far.
+    /// A contact with this gap after the path has covered an arc length `travelled`.
     fn at(scene: &Scene, contact: usize, gap: f64, travelled: f64) -> Self {
         let way = gap / fastest(scene, contact);
         Self { until: travelled + way - ROUNDING * (travelled + way), contact }
@@ -95,7 +96,7 @@ impl ContactOutOfReach {
 }
 
 impl Near {
-    /// The contacts that `at` has in reach.
+    /// The contacts in reach at the point `at`.
     pub fn of(scene: &Scene, at: &Progress) -> Self {
         let mut places = vec![None; scene.contacts.len()];
         for (place, contact) in at.near.iter().enumerate() {
@@ -137,18 +138,19 @@ impl Near {
         }
     }
 
-    /// For each contact of the scene its place among those in reach.
+    /// For each contact of the scene its place among the contacts in reach.
     pub fn places(&self) -> &[Option<usize>] {
         &self.places
     }
 
-    /// The request's contacts that have a row in the increments, in its order.
+    /// The request's contacts that have a row in the increments, in the order of the request.
     pub fn rows(&self) -> &[usize] {
         &self.rows
     }
 }
 
-/// Takes the contacts out of those out of reach that could close within a few steps of this arc length.
+/// Removes from the contacts out of reach those that could close within a few steps of this arc length, and returns
+/// them.
 pub(crate) fn reached_within(scene: &Scene, at: &Progress, far: &mut FarContacts, step: f64) -> Vec<usize> {
     let (reach, travelled) = (REACH * step, at.totals.arc_length);
     let (mut reached, mut left) = (Vec::new(), Vec::new());
@@ -229,7 +231,7 @@ mod tests {
             let mut rows = Vec::new();
             while let Some(row) = path.next() {
                 rows.push(row);
-                // Put down and taken up at every point.
+                // A checkpoint is made and resumed at every point.
                 path = Path::resume(&scene, path.checkpoint(), CancelFlag::default()).expect("a path");
             }
             rows

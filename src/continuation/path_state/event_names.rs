@@ -1,4 +1,4 @@
-//! Events in words.
+//! Descriptions of events.
 
 use crate::continuation::path_state::record::status;
 use crate::continuation::scene::Scene;
@@ -7,13 +7,14 @@ use crate::mechanics::multi_contact::contact_status::Standing;
 use crate::result::increment::Status;
 use std::sync::Arc;
 
-/// The start of a stage; `met`: one of its bounds is met already.
+/// Description of the start of a stage; `met`: one of its bounds is already met.
 pub(crate) fn describe_start(scene: &Scene, stage: usize, met: bool) -> String {
     let ends = if met { " and ends at once: its bound is met already" } else { "" };
     format!("stage \"{}\" begins{ends}", scene.stages[stage].name)
 }
 
-/// Which contacts change, from what to what; where the path ends, which contacts stand at the limit of their mode.
+/// Description of the contacts that change, with their old and new modes; where the path ends, of the contacts at the
+/// limit of their mode.
 ///
 /// `names` are those of the contacts' nodes and obstacles.
 pub(crate) fn describe_change<'a>(

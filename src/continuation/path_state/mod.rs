@@ -1,15 +1,15 @@
-//! The state of a path, its owner, and the rows that a user sees of it.
+//! The state of a path, its owner, and its rows for the user.
 //!
-//! | file | what it holds |
+//! | file | contents |
 //! |---|---|
 //! | `trace` | the owner of everything that changes from increment to increment |
-//! | `progress` | what decides how the path goes on: the content of a checkpoint |
-//! | `contact_search` | which contacts are in reach |
-//! | `visited_states` | states that the path has left, for telling a cycle |
-//! | `backoff` | when contact changes are to be taken together again |
+//! | `progress` | everything that determines the continuation of the path: the content of a checkpoint |
+//! | `contact_search` | the contacts in reach |
+//! | `visited_states` | states that the path has left, to detect a cycle |
+//! | `backoff` | waiting time before contact changes are treated together again |
 //! | `totals` | sums and maxima along the path |
-//! | `record`, `event_names` | the row of a point in the user's units and names; events in words |
-//! | `step_quantum`, `tolerances` | steps in eighths of an octave; when states are one |
+//! | `record`, `event_names` | the row of a point in the user's units and names; descriptions of events |
+//! | `step_quantum`, `tolerances` | step lengths in eighths of an octave; tolerances for coincident states |
 
 pub(crate) mod backoff;
 pub(crate) mod contact_search;

@@ -1,4 +1,4 @@
-//! Everything that decides how a path goes on from its present point: what a checkpoint holds.
+//! Everything that determines the continuation of a path from its present point: the content of a checkpoint.
 
 use crate::branching::bifurcation::singularity::test_functions::Signature;
 use crate::branching::directions::choice::DirectionChoice;
@@ -23,33 +23,33 @@ pub(crate) struct Progress {
     pub stage: usize,
     /// The stage ended at the present point; the next one begins with the next increment.
     pub stage_over: bool,
-    /// Loads at which the stages before ended.
+    /// Loads at which the previous stages ended.
     pub reached: Vec<f64>,
-    /// What they hold, of every contact of the scene: see [`hold`](Self::hold).
+    /// Constant load of the previous stages, for every contact of the scene: see [`hold`](Self::hold).
     #[serde(skip)]
     pub held: Arc<LoadPattern>,
-    /// Which of the scene's contacts are in reach, in order: reactions and modes are theirs, one each.
+    /// Indices of the scene's contacts in reach, in ascending order: each has one reaction and one mode.
     pub near: Vec<usize>,
     pub here: PresentPoint,
-    /// Arc length that the next step tries.
+    /// Arc length of the next attempted step.
     pub step: f64,
-    /// When contact changes are to be taken together again.
+    /// Waiting time before contact changes are treated together again.
     pub waiting: JoinBackoff,
-    /// Steps at which no contact changes, one after another up to here, that are too short to get anywhere.
+    /// Number of consecutive steps up to here that are too short for progress and change no contact.
     pub creeping: u64,
     pub totals: Totals,
     pub counts: StageCounts,
-    /// States at which a direction was taken, for telling a cycle.
+    /// States at which a direction was taken, to detect a cycle.
     pub visited: VisitedStates,
-    /// Where the stage began and the direction it took.
+    /// The state in which the stage began and its first direction.
     pub begun: Option<(State, Rate)>,
     /// Directions listed with the present point.
     pub listed: Option<Listed>,
-    /// Where a path that follows another's direction begins.
+    /// The start of a path that follows another's direction.
     pub followed: Option<Followed>,
 }
 
-/// The present point and how the path goes on.
+/// The present point and the data for its continuation.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct PresentPoint {
     pub state: State,
@@ -57,26 +57,26 @@ pub(crate) struct PresentPoint {
     /// Direction in `modes`; `None` before the stage's first decision.
     pub rate: Option<Rate>,
     pub load_sign: f64,
-    /// Error of the path up to here, where it has one.
+    /// Error of the path up to the present point, where known.
     pub drift: Option<Rate>,
-    /// The point before, in the same modes and of the same stage.
+    /// The previous point, in the same modes and of the same stage.
     pub before: Option<PlacedPoint>,
-    /// Arc length from one contact change to the next, where both ended a step and the last is the present point.
+    /// Arc length between the last two contact changes, if both ended a step and the last is the present point.
     pub apart: Option<f64>,
-    /// Signs that tell smooth bifurcations; `None` until known in these modes.
+    /// Signature to detect smooth bifurcations; `None` until known in these modes.
     pub signature: Option<Signature>,
-    /// The direction was found with a factorisation that serves the step along it (`cached_factorisation`).
+    /// The direction was found with a factorisation that also serves for the step along it (`cached_factorisation`).
     #[serde(default)]
     pub is_factorised: bool,
-    /// The equations of `modes` had another null vector where the direction was taken.
+    /// The equations of `modes` had a second null vector where the direction was taken.
     #[serde(default)]
     pub is_singular: bool,
-    /// How far the path is off the direction: see `choice::DirectionChoice`.
+    /// Offset of the path from the direction: see `choice::DirectionChoice`.
     #[serde(default)]
     pub beside: Option<Rate>,
 }
 
-/// What has been counted in the running stage.
+/// Counts of the running stage.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(crate) struct StageCounts {
     pub increments: u64,
@@ -92,7 +92,7 @@ pub(crate) enum Phase {
 }
 
 impl Progress {
-    /// Before the first increment.
+    /// The state of a path before its first increment.
     pub fn new(scene: &Scene) -> Self {
         let near: Vec<usize> = if scene.analysis.keep_all { (0..scene.contacts.len()).collect() } else { Vec::new() };
         let contacts = near.len();
@@ -130,7 +130,7 @@ impl Progress {
 }
 
 impl Progress {
-    /// Numbers the contacts in reach anew, some more among them, which are free.
+    /// Adds contacts, which are free, to those in reach and renumbers these.
     pub fn admit(&mut self, contacts: &[usize]) {
         let before = self.near.clone();
         self.near.extend(contacts);
@@ -163,7 +163,7 @@ impl Progress {
         self.followed.iter_mut().for_each(|followed| listed(&mut followed.listed));
     }
 
-    /// Sums up what the stages before hold: the same bits whenever it is done.
+    /// Sums up the constant load of the previous stages: the same bits whenever it is computed.
     pub fn hold(&mut self, scene: &Scene) {
         let mut held = scene.stages[0].pattern.zeroed();
         for (stage, load) in scene.stages.iter().zip(&self.reached) {
@@ -193,7 +193,7 @@ impl StageCounts {
     }
 }
 
-/// The directions listed at a point, and what was true before one of them was taken.
+/// The directions listed at a point, and the data of the point before one of them was taken.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Listed {
@@ -206,17 +206,17 @@ pub(crate) struct Listed {
     pub error_estimate: f64,
 }
 
-/// How a path came to a point.
+/// The data with which a path arrives at a point.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Arriving {
     pub modes: Vec<Mode>,
     pub load_sign: f64,
-    /// The increment that led here counted, its events not.
+    /// Counts that include the increment that led here, but not its events.
     pub counts: StageCounts,
 }
 
-/// The beginning of a path that follows a direction of another.
+/// The start of a path that follows a direction of another.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Followed {

@@ -1,4 +1,4 @@
-//! From a dimensionless point to the row that a user sees: the user's units and names.
+//! Conversion of a dimensionless point to a row in the user's units and names.
 
 use crate::branching::directions::choice::{DirectionChoice, is_worth_listing};
 use crate::continuation::path_state::totals::Totals;
@@ -13,20 +13,20 @@ use crate::result::increment::{ContactState, Diagnostics, Direction, Energy, Inc
 use smallvec::smallvec;
 use std::sync::Arc;
 
-/// What a row is made from, beside the path's totals.
+/// The data of a row besides the path's totals.
 pub(crate) struct RowSource<'a> {
     pub stage: usize,
     pub loading: Loading<'a>,
     /// The loading of every contact of the scene.
     pub whole: Loading<'a>,
-    /// For each of them its place among those that state and modes are of; without one it is free.
+    /// For each contact of the scene its place among those of the state and modes; a contact without a place is free.
     pub places: &'a [Option<usize>],
     /// The request's contacts that have a row.
     pub rows: &'a [usize],
     pub state: &'a State,
-    /// The point before; the state itself at the start.
+    /// The previous point; the state itself at the start.
     pub before: &'a State,
-    /// Modes that held during the increment.
+    /// Modes during the increment.
     pub modes: &'a [Mode],
     pub step: f64,
     pub point: &'a Point,
@@ -47,7 +47,7 @@ pub(crate) fn status(mode: Mode) -> Status {
     }
 }
 
-/// The present increment; its directions where there is a choice.
+/// The present increment; with its directions where there is a choice.
 pub(crate) fn increment(scene: &Scene, totals: &Totals, row: &RowSource<'_>) -> Increment {
     let plan = scene.plan();
     let (length, force) = (plan.displacement_scale, plan.force_scale);
@@ -103,7 +103,7 @@ pub(crate) fn increment(scene: &Scene, totals: &Totals, row: &RowSource<'_>) -> 
     }
 }
 
-/// The request's contacts that have a row, in its order.
+/// The request's contacts that have a row, in the order of the request.
 fn reported<'a>(scene: &'a Scene, row: &RowSource<'a>) -> impl Iterator<Item = &'a Reported> {
     row.rows.iter().map(|index| &scene.reported[*index])
 }
@@ -134,7 +134,8 @@ fn contact_rows(scene: &Scene, row: &RowSource<'_>, force_scale: f64) -> (Vec<Co
             } else {
                 tangents_in_space(&frame.normal)
             };
-            // A node that goes along an obstacle without reaction slips, whether a slip or no contact is what is solved.
+            // A node that moves along an obstacle without reaction slips, whether the equations solved are those of
+            // slip or of no contact.
             let touches = |state: &State| loading.gap(index, state) <= ZERO;
             let moved = add(&loading.relative(index, row.state), -1.0, &loading.relative(index, row.before));
             let grazes = || {
@@ -162,7 +163,7 @@ fn contact_rows(scene: &Scene, row: &RowSource<'_>, force_scale: f64) -> (Vec<Co
     (rows, natural_residual::violation(loading, row.state, force_scale))
 }
 
-/// Whether a contact holds its node together with others whose reactions equilibrium does not tell apart.
+/// Whether a contact and others at its node have reactions that equilibrium does not determine.
 fn held_by_too_many(loading: Loading<'_>, modes: &[Mode], contact: usize) -> bool {
     loading.corners.iter().filter(|corner| corner.contacts.contains(&contact)).any(|corner| {
         let parts: usize = corner.holding(modes).map(|one| 1 + loading.contacts[one].tangents()).sum();

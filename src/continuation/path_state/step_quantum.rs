@@ -1,7 +1,7 @@
-//! Lengths of steps in eighths of an octave.
+//! Step lengths in eighths of an octave.
 
-/// The next smaller of eight values an octave: what the factor is computed from is a difference of nearly equal
-/// energies, and its round-off must not move the points of the path.
+/// The factor rounded down to one of eight values per octave: the factor is computed from a difference of nearly equal
+/// energies, whose round-off must not shift the points of the path.
 pub(crate) fn quantised(factor: f64) -> f64 {
     ((factor.log2() * 8.0).floor() / 8.0).exp2()
 }

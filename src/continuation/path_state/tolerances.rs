@@ -1,7 +1,7 @@
-//! When two states are one, and when a reaction is what the location of its zero left over.
+//! Tolerances for coincident states and for reactions that are zero within the accuracy of event location.
 
-/// States closer than this are one.
+/// States closer than this coincide.
 pub(crate) const SAME_STATE: f64 = 1e-9;
 
-/// A reaction this small against the largest force so far is what the location of its zero left over.
+/// Reactions up to this, relative to the largest force so far, are zero within the accuracy of event location.
 pub(crate) const ROUND_OFF: f64 = 1e-14;

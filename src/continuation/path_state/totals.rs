@@ -1,4 +1,4 @@
-//! What a path adds up from increment to increment, whichever method traces it.
+//! Totals that a path accumulates from increment to increment, with either method.
 
 use crate::resources::budget::Breach;
 use crate::result::increment::{Energy, Increment};
@@ -14,34 +14,34 @@ pub(crate) const NO_ENERGY: f64 = 1e-12;
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Totals {
-    /// Of the present increment.
+    /// Index of the present increment.
     pub index: u64,
     pub arc_length: f64,
     pub energy: Energy,
-    /// Of any of the energies at any increment.
+    /// Largest of the energies at any increment.
     pub largest_energy: f64,
     /// Largest force so far.
     pub force_scale: f64,
     pub work: Work,
-    /// Of the last program solved.
+    /// Relaxation at the end of the last program solved.
     #[serde(default)]
     pub last_relaxation: Option<f64>,
     pub report: Report,
 }
 
-/// What one increment adds.
+/// Contribution of one increment.
 pub(crate) struct Added {
     pub step: f64,
     pub external_work: f64,
     pub dissipated: f64,
-    /// Total at its end.
+    /// Total at the end of the increment.
     pub strain: f64,
-    /// Largest force at its end.
+    /// Largest force at the end of the increment.
     pub force_scale: f64,
 }
 
 impl Totals {
-    /// Of a path without increments so far.
+    /// Totals of a path without increments so far.
     pub fn begun() -> Self {
         Self {
             index: 0,
@@ -75,7 +75,7 @@ impl Totals {
         if size > 0.0 { imbalance / size } else { 0.0 }
     }
 
-    /// Takes a row that is given out into the report.
+    /// Enters an emitted row into the report.
     pub fn note(&mut self, row: &Increment) {
         let (report, diagnostics) = (&mut self.report, &row.diagnostics);
         report.increments = row.index;
@@ -84,7 +84,7 @@ impl Totals {
         report.largest_energy_error = report.largest_energy_error.max(diagnostics.energy_error);
     }
 
-    /// Completes the report of a path that was ended within an increment.
+    /// Completes the report of a path that was interrupted within an increment.
     pub fn break_off(&mut self, breach: Breach, elapsed_s: f64) {
         match breach {
             Breach::Cancelled => self.end(StopReason::Cancelled, elapsed_s),

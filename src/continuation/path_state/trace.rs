@@ -1,4 +1,4 @@
-//! A path as far as it is traced: the scene, the present point and what the next step starts from.
+//! A path being traced: the scene, the present point and the data from which the next step starts.
 
 use crate::branching::directions::choice::{DirectionChoice, Rules};
 use crate::branching::selection::decision::Decision;
@@ -31,21 +31,21 @@ pub(crate) struct PathTrace<'a> {
     pub scene: &'a Scene,
     pub cancel: CancelFlag,
     began: Instant,
-    /// Solver time before this process took the path up.
+    /// Solver time before this process resumed the path.
     pub elapsed_before: f64,
     /// Strain energy of the undeformed structure (prestress).
     pub initial_strain: f64,
     pub at: Progress,
     pub near: Near,
     pub far: FarContacts,
-    /// For the next step.
+    /// Factorisation for the next step.
     pub at_hand: AtHand,
-    /// Of the programs of the last increment, where they are kept.
+    /// Iterates of the programs of the last increment, where they are kept.
     pub iterates: Option<Vec<ProgramIterate>>,
 }
 
 impl<'a> PathTrace<'a> {
-    /// At a point that fits the scene; `elapsed_before`: solver time that led there.
+    /// A path at a point that fits the scene; `elapsed_before`: solver time spent up to this point.
     pub fn at(scene: &'a Scene, mut at: Progress, elapsed_before: f64, cancel: CancelFlag) -> Self {
         let undeformed = vec![0.0; scene.structure.freedoms()];
         let initial_strain = scene.structure.strain_energy(&undeformed);
@@ -91,13 +91,13 @@ impl<'a> PathTrace<'a> {
         self.at.totals.end(reason, self.elapsed_s());
     }
 
-    /// Ends the path within an increment, which is lost.
+    /// Ends the path within an increment, which is discarded.
     pub(crate) fn break_off(&mut self, breach: Breach, index: u64) {
         self.at.phase = Phase::Ended;
         self.at.totals.index = index;
         let elapsed_s = self.elapsed_s();
         self.at.totals.break_off(breach, elapsed_s);
-        // What was left over for the next step holds memory.
+        // The factorisation for the next step occupies memory.
         self.at_hand = AtHand::default();
     }
 
@@ -121,7 +121,8 @@ impl<'a> PathTrace<'a> {
         self.at.here.beside.clone_from(&choice.beside);
         self.at.here.load_sign = choice.load_sign;
         self.at.here.rate = Some(choice.rate.clone());
-        // A node that leaves a corner along one of its obstacles, or slides along an edge, takes the whole force there.
+        // A node that leaves a corner along one of its obstacles, or slides along an edge, transfers its whole force
+        // there.
         let (loading, state) = (self.loading(), &self.at.here.state);
         let mut moved: Vec<(usize, Reaction)> = Vec::new();
         for corner in loading.corners {
@@ -153,7 +154,7 @@ impl<'a> PathTrace<'a> {
     }
 
     pub(crate) fn emit(&mut self, mut emitted: Emitted<'_>) -> Increment {
-        // Nobody goes on from here along the others.
+        // The path does not continue from here along the other directions.
         emitted.options.iter_mut().for_each(|option| option.at_hand = AtHand::default());
         let mut state = Cow::Borrowed(&self.at.here.state);
         if let Some(reactions) = emitted.reactions {
@@ -190,12 +191,12 @@ impl<'a> PathTrace<'a> {
         row
     }
 
-    /// The loading of all contacts, for what is said of those out of reach.
+    /// The loading of all contacts, including those out of reach.
     pub(crate) fn whole_loading(&self) -> Loading<'_> {
         contact_search::whole(self.scene, &self.at)
     }
 
-    /// Takes in every contact that could close within a few steps of this arc length.
+    /// Adds every contact that could close within a few steps of this arc length to those in reach.
     pub(crate) fn look_ahead(&mut self, step: f64) {
         let reached = contact_search::reached_within(self.scene, &self.at, &mut self.far, step);
         if !reached.is_empty() {
@@ -205,7 +206,7 @@ impl<'a> PathTrace<'a> {
         }
     }
 
-    /// The loading of the running stage, after a change of stage.
+    /// Sets up the loading of the running stage, after a change of stage.
     pub(crate) fn load_anew(&mut self) {
         (self.at_hand, self.at.here.is_factorised) = (AtHand::default(), false);
         self.near = Near::of(self.scene, &self.at);
@@ -216,7 +217,7 @@ impl<'a> PathTrace<'a> {
         self.at.near.iter().map(|contact| &self.scene.contact_names[*contact])
     }
 
-    /// The present state, as it is remembered: a contact that is free has no reaction and is not named.
+    /// The present state as recorded to detect a cycle: free contacts have no reaction and are omitted.
     pub(crate) fn visit(&self) -> Visited {
         let State { displacement, load, reactions } = &self.at.here.state;
         let held = self.at.near.iter().zip(&self.at.here.modes).zip(reactions);
@@ -232,10 +233,10 @@ impl<'a> PathTrace<'a> {
     }
 }
 
-/// What [`PathTrace::emit`] cannot see in the trace itself.
+/// The data for [`PathTrace::emit`] that are not in the trace itself.
 pub(crate) struct Emitted<'a> {
     pub before: &'a State,
-    /// Reactions at the end of the increment, where they are others than those with which the path goes on.
+    /// Reactions at the end of the increment, where they differ from those with which the path continues.
     pub reactions: Option<Vec<Reaction>>,
     pub modes: &'a [Mode],
     pub step: f64,

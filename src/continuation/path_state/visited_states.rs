@@ -1,30 +1,30 @@
-//! The states that a path has left, for telling a cycle, in memory that does not grow with the path.
+//! The states that a path has left, to detect a cycle in bounded memory.
 //!
-//! Where a direction is taken the state is compared with those kept and kept itself, until there are as many as there is
-//! room for; then every second one is forgotten and from there on every second one is kept, and so on. Every state is
-//! compared, so that a path which goes round a closed curve is found out: where it comes back for the first time while none
-//! is forgotten; with one of `stride` kept, fewer than `stride` states after that, since one of them is known from the round
-//! before.
+//! Where a direction is taken the state is compared with those kept and is kept itself, until their number reaches its
+//! limit; then every second state is removed and from there on only every second one is kept, and so on. Every state is
+//! compared, so that a path along a closed curve is detected: at its first return while no state has been removed; with
+//! one state in `stride` kept, fewer than `stride` states later, since one of these states is known from the previous
+//! cycle.
 
 use crate::continuation::scene::Scene;
 use crate::mechanics::contact::{Mode, Reaction};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// States that are kept at most: each comparison looks at all of them.
+/// Largest number of states kept: each comparison examines all of them.
 const MOST_STATES: usize = 4096;
-/// Their bytes, where states are large ...
+/// Largest number of their bytes, where states are large ...
 const MOST_BYTES: usize = 64 << 20;
-/// ... but so many are kept in any case.
+/// ... but no fewer states than this are kept.
 const FEWEST_STATES: usize = 8;
 
 /// States at which a direction was taken in the running stage.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct VisitedStates {
-    /// How many there were.
+    /// Number of states so far.
     seen: u64,
-    /// One of so many is kept: those whose number is a multiple of it.
+    /// One state in `stride` is kept: those whose number is a multiple of it.
     stride: u64,
     kept: Vec<Numbered>,
 }
@@ -43,23 +43,23 @@ impl Default for VisitedStates {
     }
 }
 
-/// How many states of a scene are kept.
+/// The number of states of a scene that are kept.
 pub(crate) fn room(scene: &Scene) -> usize {
     (MOST_BYTES / Visited::most_bytes(scene).max(1)).clamp(FEWEST_STATES, MOST_STATES)
 }
 
 impl VisitedStates {
-    /// How many states there were.
+    /// The number of states so far.
     pub fn seen(&self) -> u64 {
         self.seen
     }
 
-    /// Those that are kept.
+    /// The states kept.
     pub fn states(&self) -> impl Iterator<Item = &Visited> {
         self.kept.iter().map(|one| &*one.visited)
     }
 
-    /// Takes a state in; `room`: how many are kept at most.
+    /// Records a state; `room`: largest number of states kept.
     pub fn remember(&mut self, visited: Visited, room: usize) {
         let number = self.seen;
         self.seen += 1;
@@ -73,14 +73,14 @@ impl VisitedStates {
         }
     }
 
-    /// Takes the states out, and of them those from this number on.
+    /// Takes all states out and returns those from this number on.
     pub fn take(&mut self, from: u64) -> Vec<Numbered> {
         let mut kept = std::mem::take(&mut self.kept);
         kept.retain(|one| one.number >= from);
         kept
     }
 
-    /// Puts states back that were taken out, those of a stage that are still to be known.
+    /// Puts states back that were taken out; only those of the given stage that are still to be kept.
     pub fn put(&mut self, states: impl Iterator<Item = Numbered>, stage: usize) {
         let known = |one: &Numbered| {
             one.visited.stage == stage && one.number < self.seen && one.number.is_multiple_of(self.stride)
@@ -96,7 +96,7 @@ pub(crate) struct Visited {
     pub stage: usize,
     pub displacement: Vec<f64>,
     pub load: f64,
-    /// The contacts that are not free, in order.
+    /// The contacts that are not free, in ascending order.
     pub held: Vec<ClosedContact>,
 }
 
@@ -110,15 +110,15 @@ pub(crate) struct ClosedContact {
 }
 
 impl Visited {
-    /// Bytes that a state of a scene takes, with all contacts held.
+    /// Bytes of a state of a scene with all contacts closed.
     pub fn most_bytes(scene: &Scene) -> usize {
         scene.structure.freedoms() * size_of::<f64>()
             + scene.contacts.len() * size_of::<ClosedContact>()
             + size_of::<Self>()
     }
 
-    /// Whether another state is this one, but for differences below `distance` (of displacements and load together) and
-    /// `force`.
+    /// Whether another state coincides with this one, up to differences below `distance` (of displacements and load
+    /// together) and `force`.
     pub fn is(&self, other: &Self, distance: f64, force: f64) -> bool {
         let alike = |(one, other): (&ClosedContact, &ClosedContact)| {
             one.contact == other.contact
@@ -126,7 +126,7 @@ impl Visited {
                 && one.reaction.difference(&other.reaction) < force
         };
         let apart = |(one, other): (&f64, &f64)| (one - other).powi(2);
-        // Most differ in the load alone.
+        // Most states differ in the load alone.
         self.stage == other.stage
             && (self.load - other.load).abs() < distance
             && self.held.len() == other.held.len()
@@ -156,7 +156,7 @@ mod tests {
             let mut history = VisitedStates::default();
             let (room, mut found) = (32, None);
             for event in 0..2 * before + 4 * round + 64 {
-                // Somewhere else each time, then round and round.
+                // A different state each time, then a cycle.
                 let place = if event < before { -1.0 - event as f64 } else { ((event - before) % round) as f64 };
                 if is_known(&history, place) {
                     found = Some(event);

@@ -8,10 +8,11 @@ use crate::resources::cancel::CancelFlag;
 use crate::step::corrector::cost_counters::Work;
 use nalgebra::DVector;
 
-/// Difference of the roots' products with the displacements before, over the square of the arc length, that is none.
+/// Largest difference of the roots' products with the previous displacements, relative to the square of the arc length,
+/// that counts as zero.
 const NO_TURN: f64 = 1e-12;
 
-/// What closes the equations.
+/// The equation that closes the system.
 #[derive(Debug, Clone, Copy)]
 pub enum IncrementConstraint {
     /// `|Δu|² + ψ² Δs² = size²`
@@ -22,7 +23,7 @@ pub enum IncrementConstraint {
     Displacement { freedom: usize, value: f64 },
 }
 
-/// `(Δu, Δs)`, displacements one an unknown.
+/// `(Δu, Δs)`, with one displacement for each unknown.
 #[derive(Debug, Clone)]
 pub struct PenaltyIncrement {
     pub displacement: DVector<f64>,
@@ -38,18 +39,18 @@ pub struct Limits<'a> {
     pub cancel: &'a CancelFlag,
 }
 
-/// A point found.
+/// A converged point.
 pub struct Converged {
     pub point: PenaltyPoint,
     pub change: PenaltyIncrement,
-    /// The consistent tangent there; `None` where it is singular.
+    /// The consistent tangent at the point; `None` where it is singular.
     pub tangent: Option<Factorisation>,
     pub iterations: u64,
     pub residual: f64,
     pub force_scale: f64,
 }
 
-/// Why none was found.
+/// The reason why no point was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PenaltyFailure {
     Singular,
@@ -148,7 +149,7 @@ pub fn correct(
     Err(PenaltyFailure::NotConverged)
 }
 
-/// Whether the controlled quantity has its value; the arc length has it by construction.
+/// Whether the controlled quantity has its prescribed value; for the arc length this holds by construction.
 fn meets(control: IncrementConstraint, state: &State) -> bool {
     let near = |found: f64, sought: f64| (found - sought).abs() <= 1e-12 * sought.abs().max(1.0);
     match control {
@@ -176,10 +177,10 @@ fn root(
     if !(discriminant >= 0.0 && a > 0.0) {
         return None;
     }
-    // Without cancellation: the root of larger size first, the other from the product of both.
+    // To avoid cancellation: the root of larger size first, the other from the product of both.
     let far = -0.5 * (b + discriminant.sqrt().copysign(b));
     let roots = if far == 0.0 { [0.0, 0.0] } else { [far / a, c / far] };
-    // Where the load changes and the displacements do not, the loads tell the roots apart.
+    // Where the load changes and the displacements do not, the loads distinguish the roots.
     let turning = change.displacement.dot(by_load) * (roots[0] - roots[1]);
     let still = turning.abs() <= NO_TURN * size * size;
     let ahead = if still { change.load * (roots[0] - roots[1]) } else { turning };

@@ -31,7 +31,7 @@ pub struct RegularisedPath<'a> {
     began: Instant,
     phase: Phase,
     pub(super) stage: usize,
-    /// The running stage has its first row.
+    /// The first row of the running stage has been emitted.
     begun: bool,
     /// The stage ended at the present point; the next one begins with the next increment.
     stage_over: bool,
@@ -41,9 +41,9 @@ pub struct RegularisedPath<'a> {
     pub(super) tangent: Option<Factorisation>,
     /// The increment that led here, within the stage.
     pub(super) previous: Option<PenaltyIncrement>,
-    /// Sign of the load rate here; a stage's load rises at first.
+    /// Sign of the load rate at the present point; a stage's load rises at first.
     load_sign: f64,
-    /// Arc length that the next step tries.
+    /// Arc length of the next attempted step.
     pub(super) step: f64,
     initial_strain: f64,
     pub(super) totals: Totals,
@@ -99,7 +99,7 @@ impl<'a> RegularisedPath<'a> {
         }
     }
 
-    /// The row with which a stage begins. Where a bound of the stage is met already, it ends there too.
+    /// The row with which a stage begins. Where a bound of the stage is already met, the stage ends there too.
     fn begin_stage(&mut self) -> Increment {
         let evaluation = self.system().evaluate(&self.here, &self.here.state);
         let residual = self.system().relative_residual(&evaluation, self.totals.force_scale);
@@ -119,7 +119,7 @@ impl<'a> RegularisedPath<'a> {
         self.emit(&before, PointKind::Start, Some(event), 0.0, residual)
     }
 
-    /// Makes a converged increment the present point and says what changed within it.
+    /// Makes a converged increment the present point and describes the changes within it.
     fn accept(&mut self, accepted: AcceptedPenaltyStep) -> Increment {
         let AcceptedPenaltyStep { converged, stage_ends } = accepted;
         let before = std::mem::replace(&mut self.here, converged.point);
@@ -163,13 +163,13 @@ impl<'a> RegularisedPath<'a> {
         self.emit(&before, kind, event, step, converged.residual)
     }
 
-    /// Takes the sign of the load rate at a new point and says whether it has changed.
+    /// Sets the sign of the load rate at a new point and returns whether it has changed.
     fn load_turns(&mut self, sign: f64) -> bool {
         let before = std::mem::replace(&mut self.load_sign, sign);
         before * sign < 0.0
     }
 
-    /// Holds what the stage reached and goes to the next; `false` where there is none.
+    /// Keeps the load that the stage reached and begins the next stage; `false` where there is none.
     fn next_stage(&mut self) -> bool {
         if self.stage + 1 == self.scene.stages.len() {
             self.end(StopReason::StagesCompleted);

@@ -14,13 +14,13 @@ pub struct Penalties {
     pub tangential: f64,
 }
 
-/// What the obstacle does to a node.
+/// The response of the obstacle to the motion of a node.
 #[derive(Debug, Clone, Copy)]
 pub struct PenaltyResponse {
     pub status: Status,
     /// `r_n` and `t`.
     pub reaction: Reaction,
-    /// Part of the tangential motion since the start of the increment that was slip, a vector in space.
+    /// Slip part of the tangential motion since the start of the increment, a vector in space.
     pub slip: Vector,
     /// The force on the node, `r_n n + t`.
     pub force: Vector,
@@ -71,7 +71,7 @@ pub fn respond(
     let trial = times(&project, &unprojected);
     let size = size(&trial);
     let along_normal = dot(n, &unprojected);
-    // ∂(trial)/∂x, the turn of the tangent plane included
+    // ∂(trial)/∂x, including the rotation of the tangent plane
     let trial_slope = matrix(|row, column| {
         -penalties.tangential * project[row][column]
             - frame.curvature * (along_normal * project[row][column] + n[row] * trial[column])
@@ -147,7 +147,7 @@ mod tests {
         respond(PENALTIES, FRICTION, &frame(place, ball), &before, &moved)
     }
 
-    /// Central differences of the force against the stiffness, sticking and slipping, flat and curved.
+    /// The stiffness agrees with central differences of the force: sticking and slipping, flat and curved.
     #[test]
     fn the_stiffness_is_the_derivative_of_the_force() {
         let flat = [0.0, 0.0, -0.01];

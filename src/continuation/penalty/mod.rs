@@ -1,4 +1,5 @@
-//! The rival, for comparison: penalty contact and elastic-plastic friction under a conventional arc-length method.
+//! The regularised method, for comparison: penalty contact and elastic-plastic friction with a conventional arc-length
+//! method.
 //!
 //! ```text
 //! contact      r_n = κ_n <-g>                                            penetration carries the reaction
@@ -11,16 +12,17 @@
 //! based on the penalty method*, Int. J. Numer. Meth. Eng. 35 (1992) 1289, doi:10.1002/nme.1620350609. Arc length after
 //! M. A. Crisfield, *A fast incremental/iterative solution procedure that handles "snap-through"*, Comput. Struct. 13
 //! (1981) 55, doi:10.1016/0045-7949(81)90108-5, and *Non-linear Finite Element Analysis of Solids and Structures*,
-//! Wiley 1991, chapter 9: two solves an iteration, a quadratic equation for the load, the root whose increment makes
-//! the smaller angle with that of the iterate before, `S ∝ √(desired/needed iterations)`, half the step after a
-//! failure. The predictor's sign: of the determinant (Crisfield), or by the previous increment, `sgn Δu·K⁻¹f`
-//! (Y. T. Feng, D. Perić, D. R. J. Owen, Comput. Struct. 58 (1996) 479, doi:10.1016/0045-7949(95)00168-G).
+//! Wiley 1991, chapter 9: two solves per iteration, a quadratic equation for the load, the root whose increment makes
+//! the smaller angle with that of the previous iterate, `S ∝ √(desired/needed iterations)`, half the step after a
+//! failure. The sign of the predictor is that of the determinant (Crisfield), or follows from the previous increment,
+//! `sgn Δu·K⁻¹f` (Y. T. Feng, D. Perić, D. R. J. Owen, Comput. Struct. 58 (1996) 479,
+//! doi:10.1016/0045-7949(95)00168-G).
 //!
-//! What the other methods do and this one does not: events are not located (a point says what has changed within its
-//! step), directions are not listed, and nothing tells one branch from another. A stage still ends exactly at its bound,
-//! by a last increment under control of that load or displacement.
+//! Unlike the other methods this one does not locate events (a point reports the changes within its step), list
+//! directions or distinguish branches. A stage still ends exactly at its bound, by a last increment under control of
+//! the load or displacement concerned.
 //!
-//! | file | what it does |
+//! | file | contents |
 //! |---|---|
 //! | `law` | one contact: reaction and its derivative |
 //! | `system` | residual and tangent of the whole structure |

@@ -5,8 +5,9 @@
 //! ΔD = -½ Σ (t₀ + t₁)·Δx_slip
 //! ```
 //!
-//! by the trapezoidal rule; `R` are the forces of supports, `F` those of obstacles on nodes. `strain` is the structure's
-//! alone: the elastic energy of the penalties is in none of the three, so that it shows in `energy_error`, as what it is.
+//! by the trapezoidal rule; `R` are the forces of supports, `F` those of obstacles on nodes. `strain` is the
+//! structure's strain energy alone: the elastic energy of the penalties is in none of the three, so that it appears in
+//! `energy_error`.
 
 use crate::continuation::penalty::law::PenaltyResponse;
 use crate::continuation::penalty::system::{PenaltyPoint, PenaltySystem};
@@ -51,13 +52,12 @@ pub fn work_and_dissipation(system: &PenaltySystem<'_>, from: &PenaltyPoint, to:
 fn dissipation(before: &PenaltyResponse, after: &PenaltyResponse) -> f64 {
     let (first, last) = (&before.reaction.tangential, &after.reaction.tangential);
     let at_end = -dot(last, &after.slip);
-    // Slip that has just begun or turned round ran at the end's reaction, near enough.
+    // Slip that has just begun or reversed took place approximately at the final reaction.
     let went_on = before.status == Status::Slip && dot(first, last) > 0.0;
     if went_on { 0.5 * (at_end - dot(first, &after.slip)) } else { at_end }
 }
 
-/// How far the regularised law lets the contacts go where the exact one holds them: the largest penetration or elastic
-/// slip.
+/// Violation of the exact law by the regularised one: the largest penetration or elastic slip.
 pub fn give(system: &PenaltySystem<'_>, point: &PenaltyPoint) -> f64 {
     let of_contact = |response: &PenaltyResponse| {
         let tangential = size(&response.reaction.tangential) / system.penalties.tangential;
@@ -66,7 +66,7 @@ pub fn give(system: &PenaltySystem<'_>, point: &PenaltyPoint) -> f64 {
     point.contacts.iter().map(of_contact).fold(0.0, f64::max)
 }
 
-/// What held in the increment that led to the point.
+/// Contact modes in the increment that led to the point.
 pub fn modes(point: &PenaltyPoint) -> Vec<Mode> {
     let mode = |response: &PenaltyResponse| match response.status {
         Status::Free => Mode::Free,

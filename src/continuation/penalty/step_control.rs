@@ -1,4 +1,4 @@
-//! How far a step goes: the predictor's direction, steps that are cut, and the increment that ends a stage.
+//! Step-length control: the predictor's direction, steps that are cut, and the increment that ends a stage.
 
 use crate::continuation::penalty::increment;
 use crate::continuation::penalty::increment::{
@@ -12,14 +12,14 @@ use crate::model::request::LoadSign;
 use crate::result::stop_reason::StopReason;
 use crate::step::segment::AT_END;
 
-/// A step may grow by this factor from one increment to the next.
+/// Largest factor by which a step may grow from one increment to the next.
 const MOST_GROWTH: f64 = 2.0;
-/// Iterations tried, over those desired.
+/// Largest number of iterations, relative to the desired number.
 const PATIENCE: u64 = 4;
 
 pub(super) struct AcceptedPenaltyStep {
     pub converged: Converged,
-    /// It lies exactly at a load or displacement at which the stage ends.
+    /// The point lies exactly at a load or displacement at which the stage ends.
     pub stage_ends: bool,
 }
 
@@ -38,7 +38,7 @@ pub(super) fn direction(path: &RegularisedPath<'_>) -> Option<(nalgebra::DVector
     Some((by_load, sign))
 }
 
-/// Increments are tried, shorter and shorter, until one converges.
+/// Attempts shorter and shorter increments until one converges.
 pub(super) fn step(path: &mut RegularisedPath<'_>) -> Result<AcceptedPenaltyStep, StopReason> {
     let bounds = &path.scene.analysis.arc_length;
     let (least, most) = (bounds.min, bounds.max);
@@ -85,7 +85,8 @@ fn correct(
     converged
 }
 
-/// Solves once more under control of the load or displacement at which the stage ends, if the increment passed it.
+/// If the increment passed a load or displacement at which the stage ends, solves once more under control of this
+/// quantity.
 fn end_stage_if_passed(
     path: &mut RegularisedPath<'_>,
     converged: Converged,
@@ -111,14 +112,14 @@ fn end_stage_if_passed(
         }
     };
     let last = correct(path, converged.change.scaled(fraction), control)?;
-    // Another branch may have that load, too, further away.
+    // A more distant branch may have the same load.
     if last.change.size(path.settings.load_weight) > size * (1.0 + AT_END) {
         return Err(PenaltyFailure::NotConverged);
     }
     Ok(AcceptedPenaltyStep { converged: last, stage_ends: true })
 }
 
-/// Why steps became too short.
+/// The reason why steps became too short.
 fn reason_of_failure(path: &RegularisedPath<'_>) -> StopReason {
     let stretch = path.scene.structure.smallest_stretch(&path.here.state.displacement);
     if path.system().is_mechanism(&path.here) {
@@ -130,7 +131,7 @@ fn reason_of_failure(path: &RegularisedPath<'_>) -> StopReason {
     }
 }
 
-/// How far a point is from a load or displacement bound; negative beyond it.
+/// Distance of a point from a load or displacement bound; negative beyond the bound.
 pub(super) fn left_to(end: &End, point: &PenaltyPoint) -> Option<f64> {
     match *end {
         End::Load { bound, sign } => Some(sign * (bound - point.state.load)),

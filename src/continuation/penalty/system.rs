@@ -1,4 +1,4 @@
-//! Residual and tangent of structure and regularised contacts.
+//! Residual and tangent of the structure with regularised contacts.
 
 use crate::algebra::null_space;
 use crate::continuation::penalty::law::{Penalties, PenaltyResponse, respond};
@@ -12,29 +12,29 @@ use itertools::Itertools;
 use nalgebra::{DMatrix, DVector};
 use smallvec::SmallVec;
 
-/// Stiffness against a motion, over that of the elements concerned, below which nothing resists it.
+/// Stiffness against a motion, relative to that of the elements concerned, below which the motion is not resisted.
 const UNRESISTED: f64 = 1e-10;
 
 /// A converged point.
 #[derive(Debug, Clone)]
 pub struct PenaltyPoint {
     pub state: State,
-    /// One a contact.
+    /// One response for each contact.
     pub contacts: Vec<PenaltyResponse>,
 }
 
-/// The structure in a stage.
+/// The structure and its regularised contacts in a stage.
 #[derive(Clone, Copy)]
 pub struct PenaltySystem<'a> {
     pub loading: Loading<'a>,
     pub penalties: Penalties,
 }
 
-/// Residual and tangent somewhere.
+/// Residual and tangent at a state.
 pub struct PenaltyEvaluation {
-    /// `G` over all degrees of freedom: what supports have to hold.
+    /// `G` over all degrees of freedom: the forces that supports have to carry.
     pub unbalanced: Vec<f64>,
-    /// `∂G/∂u` of the unknowns.
+    /// `∂G/∂u` for the unknowns.
     pub tangent: DMatrix<f64>,
     pub contacts: Vec<PenaltyResponse>,
     /// Largest force of any element, load or contact.
@@ -42,7 +42,8 @@ pub struct PenaltyEvaluation {
 }
 
 impl PenaltySystem<'_> {
-    /// At a state, in an increment that began at `from`; reactions of the state play no part.
+    /// Evaluates residual and tangent at a state, in an increment that began at `from`; the reactions of the state are
+    /// not used.
     pub fn evaluate(&self, from: &PenaltyPoint, state: &State) -> PenaltyEvaluation {
         let structure = self.loading.structure;
         let unknowns = structure.unknowns();
@@ -85,13 +86,13 @@ impl PenaltySystem<'_> {
         PenaltyEvaluation { unbalanced: force, tangent, contacts, force_scale }
     }
 
-    /// `-G` of the unknowns.
+    /// `-G` for the unknowns.
     pub fn right_hand_side(&self, evaluation: &PenaltyEvaluation) -> DVector<f64> {
         let freedoms = &self.loading.structure.freedom_of;
         DVector::from_iterator(freedoms.len(), freedoms.iter().map(|freedom| -evaluation.unbalanced[*freedom]))
     }
 
-    /// Residual over the force scale; not finite where the state is not.
+    /// Residual relative to the force scale; not finite where the state is not.
     pub fn relative_residual(&self, evaluation: &PenaltyEvaluation, force_scale: f64) -> f64 {
         let size = |freedom: &usize| {
             let value = evaluation.unbalanced[*freedom].abs();
@@ -102,7 +103,7 @@ impl PenaltySystem<'_> {
         if residual == 0.0 || scale == 0.0 { residual } else { residual / scale }
     }
 
-    /// `-∂G/∂s` of the unknowns: forces, and what moving supports and obstacles bring.
+    /// `-∂G/∂s` for the unknowns: forces, and the effect of moving supports and obstacles.
     pub fn load_vector(&self, point: &State, contacts: &[PenaltyResponse]) -> DVector<f64> {
         let structure = self.loading.structure;
         let mut vector: Vec<f64> = self.loading.pattern.forces.clone();
@@ -122,13 +123,13 @@ impl PenaltySystem<'_> {
         DVector::from_iterator(freedoms.len(), freedoms.iter().map(|freedom| vector[*freedom]))
     }
 
-    /// The point of a state and what its contacts do there.
+    /// The point of a state and the responses of its contacts.
     pub fn point(&self, mut state: State, contacts: Vec<PenaltyResponse>) -> PenaltyPoint {
         state.reactions = contacts.iter().map(|response| response.reaction).collect::<Vec<Reaction>>();
         PenaltyPoint { state, contacts }
     }
 
-    /// Whether the structure can move here with no element resisting and its contacts as they are.
+    /// Whether the structure, with its contacts in their present status, has a motion that no element resists.
     pub fn is_mechanism(&self, point: &PenaltyPoint) -> bool {
         let structure = self.loading.structure;
         let tangent = self.evaluate(point, &point.state).tangent;
@@ -172,8 +173,8 @@ mod tests {
         test(&system, &PenaltyPoint { state, contacts: vec![PenaltyResponse::default(); contacts] });
     }
 
-    /// Central differences of the residual by displacements and load, contacts sticking and sliding, obstacles flat and
-    /// round, at rest and moving.
+    /// The tangent agrees with central differences of the residual by displacements and load, contacts sticking and
+    /// sliding, obstacles flat and round, at rest and moving.
     #[test]
     fn the_tangent_is_the_derivative_of_the_residual() {
         for name in ["arch-type-truss", "capstan", "curving-slip", "rising-floor", "lowered-pin", "bowl"] {
@@ -184,7 +185,7 @@ mod tests {
                     state.displacement[*freedom] = 1e-3 * (*freedom as f64).sin();
                 }
                 for (index, contact) in system.loading.contacts.iter().enumerate() {
-                    // Pressed, and sliding enough to slip on every other contact.
+                    // Pressed, and displaced far enough to slip at every other contact.
                     let frame = system.loading.frame(index, &state);
                     let slide = if index % 2 == 0 { 0.03 } else { 1e-4 };
                     let Some(node) = contact.kinematics.node() else { continue };
@@ -218,7 +219,7 @@ mod tests {
         }
     }
 
-    /// Newton's method under a held load: once the contacts have settled, each residual is the square of the last.
+    /// Newton's method at constant load: once the contacts have settled, each residual is the square of the last.
     #[test]
     fn newton_converges_quadratically() {
         with_scene("arch-type-truss", |system, from| {

@@ -1,5 +1,5 @@
-//! Friction in space, ahead of the checks that let a request ask for it: the tip of a bar that is dragged along a floor
-//! runs on a tractrix. (A spring too soft to matter holds the tip sideways while the scene has no friction yet.)
+//! Friction in space: the tip of a bar that is dragged along a floor follows a tractrix. (A spring too soft to matter
+//! supports the tip sideways while no friction acts.)
 
 use crate::continuation::penalty::RegularisedPath;
 use crate::continuation::scene::Scene;
@@ -32,7 +32,7 @@ fn off_track(increment: &Increment) -> f64 {
     let primitive = |w: f64| (c * c - w * w).sqrt() - c * (c / w).acosh();
     let place = &increment.displacements["tip"];
     let exact = primitive(b - place[1]) - primitive(b);
-    // The track runs nearly along x: its slope turns a distance in x into one in y.
+    // The track runs nearly along x: its slope converts a distance in x into one in y.
     let w = b - place[1];
     (place[0] - exact).abs() * w / (c * c - w * w).sqrt()
 }

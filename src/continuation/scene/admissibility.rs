@@ -1,4 +1,4 @@
-//! Scenes that cannot be traced: refused with what would do.
+//! Admissibility of scenes: scenes that cannot be traced are refused, with the changes that would make them admissible.
 
 use crate::algebra::dense::assembly::Sink;
 use crate::algebra::sparse::Bordered;
@@ -11,7 +11,7 @@ use crate::model::{InputError, InputErrors};
 use itertools::Itertools;
 use nalgebra::{DMatrix, DVector};
 
-/// Contacts closer than this (dimensionless) count as closed when the supports are judged.
+/// Contacts with a gap smaller than this (dimensionless) count as closed in the check of the supports.
 const CLOSED: f64 = 1e-10;
 /// Forces at the start below this fraction of the largest are round-off.
 const BALANCED: f64 = 1e-11;
@@ -69,7 +69,7 @@ pub(super) fn refuse_imbalance(scene: &Scene) -> Result<(), InputErrors> {
     )]))
 }
 
-/// Motions at rest, all closed contacts holding, that hardly any force resists; `None` where there are none.
+/// Motions at rest, with all closed contacts constrained, that hardly any force resists; `None` where there are none.
 fn unresisted_motions(scene: &Scene, still: &[f64]) -> Option<Vec<DVector<f64>>> {
     let structure = &scene.structure;
     let unknowns = structure.unknowns();
@@ -95,7 +95,7 @@ fn unresisted_motions(scene: &Scene, still: &[f64]) -> Option<Vec<DVector<f64>>>
     null_space(&matrix, 1e-12).map(|basis| basis.column_iter().map(|column| column.into_owned()).collect())
 }
 
-/// Adds a stiffness in every direction in which a closed contact holds its node.
+/// Adds a stiffness in every direction in which a closed contact constrains its node.
 fn hold_closed_contacts(scene: &Scene, stiffness: f64, matrix: &mut impl Sink) {
     let structure = &scene.structure;
     let still = vec![0.0; structure.freedoms()];
@@ -117,7 +117,7 @@ fn hold_closed_contacts(scene: &Scene, stiffness: f64, matrix: &mut impl Sink) {
     }
 }
 
-/// Refuses a structure that can move with no element resisting although every closed contact holds.
+/// Refuses a structure that has a motion without resistance even with all closed contacts constrained.
 pub(super) fn refuse_mechanism(scene: &Scene) -> Result<(), InputErrors> {
     let structure = &scene.structure;
     let still = vec![0.0; structure.freedoms()];

@@ -1,4 +1,4 @@
-//! From the request's names and units to numbers without.
+//! Conversion of the request's names and units to dimensionless numbers.
 
 use crate::continuation::scene::{Reported, StageLoad};
 use crate::mechanics::contact::coulomb::CoulombFriction;
@@ -21,12 +21,12 @@ use indexmap::IndexMap;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
-/// Euclidean norm: the scales must not depend on the axes.
+/// The Euclidean norm, so that the scales do not depend on the axes.
 pub(super) fn norm(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum::<f64>().sqrt()
 }
 
-/// `like`: a structure that may be the same but for its numbers.
+/// Builds the structure; `like`: a structure that may be identical except for its numbers.
 pub(super) fn build_structure(
     model: &Model,
     numbers: &HashMap<&str, usize>,
@@ -47,7 +47,7 @@ pub(super) fn build_structure(
                 request::Element::Bar { nodes, axial_stiffness, rest_length, prestress, strain } => {
                     let nodes = [numbers[nodes[0].as_str()], numbers[nodes[1].as_str()]];
                     let mut vector = [0.0; 3];
-                    // A difference of places as given: a place far from the origin costs no digits.
+                    // A difference of the places as given: a place far from the origin causes no loss of digits.
                     (0..dimension)
                         .for_each(|k| vector[k] = (model.nodes[nodes[1]][k] - model.nodes[nodes[0]][k]) / length);
                     let apart = vector.iter().map(|value| value * value).sum::<f64>().sqrt();
@@ -80,7 +80,7 @@ pub(super) fn build_structure(
     Structure::like(like, dimension, model.nodes.len(), &supports, elements)
 }
 
-/// The contacts that are solved for, and those of the request.
+/// The contacts that are solved for, and the contacts of the request.
 pub(super) struct Contacts {
     pub contacts: Vec<ContactPair>,
     pub contact_names: Vec<(Arc<str>, Arc<str>)>,
@@ -88,7 +88,7 @@ pub(super) struct Contacts {
     pub corners: Vec<Corner>,
 }
 
-/// Planes whose normals and gaps (dimensionless) differ by less than this are one.
+/// Planes whose normals and gaps (dimensionless) differ by less than this coincide.
 const COINCIDENT: f64 = 1e-13;
 
 pub(super) fn build_contacts(
@@ -101,10 +101,10 @@ pub(super) fn build_contacts(
     let mut contacts: Vec<ContactPair> = Vec::new();
     let mut contact_names: Vec<(Arc<str>, Arc<str>)> = Vec::new();
     let mut reported: Vec<Reported> = Vec::new();
-    // Which contacts of the request each one stands for.
+    // The contacts of the request that each contact stands for.
     let mut members: Vec<Vec<usize>> = Vec::new();
     let mut of_node: HashMap<usize, Vec<usize>> = HashMap::new();
-    // By node and gap, so that only those of nearly the same gap are compared.
+    // By node and gap, so that only contacts of nearly the same gap are compared.
     let mut by_gap: HashMap<usize, BTreeMap<u64, Vec<usize>>> = HashMap::new();
     for (index, contact) in model.contacts.iter().enumerate() {
         budget::spend(1);
@@ -148,7 +148,8 @@ pub(super) fn build_contacts(
         });
     }
     for (contact, members) in contacts.iter_mut().zip(&members).filter(|(_, members)| members.len() > 1) {
-        // Pressed equally, which is least; each carries of the traction what its friction bears.
+        // Equal normal shares, which have the least norm; each contact takes the share of the traction that its
+        // friction can carry.
         let number = members.len() as f64;
         let total: f64 = members.iter().map(|member| model.contacts[*member].friction).sum();
         for member in members {
@@ -172,7 +173,7 @@ pub(super) fn build_contacts(
     Contacts { contacts, contact_names, reported, corners }
 }
 
-/// The request's contact for which each one that is solved for is numbered: the first.
+/// For each contact that is solved for, the first of its contacts in the request, which provides its data.
 pub(super) fn first_contacts(reported: &[Reported], count: usize) -> Vec<usize> {
     let mut first: Vec<usize> = Vec::with_capacity(count);
     for (index, one) in reported.iter().enumerate() {
@@ -183,13 +184,13 @@ pub(super) fn first_contacts(reported: &[Reported], count: usize) -> Vec<usize> 
     first
 }
 
-/// Numbers in the order of these.
+/// An integer with the same ordering as the number.
 fn ordered(value: f64) -> u64 {
     let bits = value.to_bits();
     if value.is_sign_negative() { !bits } else { bits | (1 << 63) }
 }
 
-/// Whether two contacts are one: the same node before the same surface.
+/// Whether two contacts coincide: the same node and the same surface.
 fn coincide(first: &ContactPair, second: &ContactPair) -> bool {
     let near = |a: &Vector, b: &Vector| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= COINCIDENT);
     let surfaces = match (&first.obstacle, &second.obstacle) {
@@ -212,7 +213,7 @@ fn build_contact(
 ) -> ContactPair {
     let dimension = model.dimension;
     let place = &model.nodes[&contact.node];
-    // What is within the round-off of the coordinates is contact.
+    // A gap within the round-off of the coordinates is closed.
     let snapped = |gap: f64, reach: f64| {
         let closed = gap.abs() <= PENETRATION_TOLERANCE * length + 4.0 * f64::EPSILON * reach;
         if closed { 0.0 } else { gap / length }
@@ -244,7 +245,7 @@ fn build_contact(
     ContactPair { kinematics: Kinematics::Node(node), obstacle, initial_gap, friction, sliding }
 }
 
-/// In which directions a node can slide, by its supports.
+/// The directions in which a node can slide, given its supports.
 fn sliding(structure: &Structure, node: usize) -> Sliding {
     let dimension = structure.dimension;
     let freedoms = structure.translations_of(node);
@@ -261,21 +262,21 @@ fn sliding(structure: &Structure, node: usize) -> Sliding {
     }
 }
 
-/// The model made dimensionless, as far as its stages need it.
+/// The dimensionless model, as far as its stages need it.
 pub(super) struct ScaledModel<'a> {
     pub model: &'a Model,
     pub analysis: &'a Analysis,
     pub numbers: &'a HashMap<&'a str, usize>,
     pub structure: &'a Structure,
-    /// The request's contact of each contact that is solved for.
+    /// For each contact that is solved for, its contact in the request.
     pub first_contacts: &'a [usize],
     pub length: f64,
     pub force: f64,
-    /// `ℓ` over what it would be if none were given.
+    /// `ℓ` relative to its default value.
     pub stretched: f64,
 }
 
-/// `characteristic_stiffness` is the force that the load scale goes by.
+/// Builds the load of a stage; `resistance` is the force on which its load scale is based.
 pub(super) fn build_stage(stage: &request::Stage, resistance: f64, scaled: &ScaledModel<'_>) -> StageLoad {
     let &ScaledModel { model, analysis, numbers, structure, first_contacts, length, force, stretched } = scaled;
     // Forces and motions of supports, and shifts of obstacles.

@@ -1,13 +1,14 @@
-//! A request made ready for tracing: checked, numbered and dimensionless.
+//! The scene: a request checked, numbered and made dimensionless for tracing.
 //!
 //! Lengths are divided by `displacement_scale` `ℓ`, forces by `force_scale` `φ`, each stage's load factor by its
 //! `load_scale` `σ`; a pattern `f` becomes `f σ/φ`. By default `ℓ` is the longest bar and `φ` the smallest axial
-//! stiffness of those that resist the load; without bars, `φ` is the largest force of any stage at the load factor at which
-//! the stage is to end (1 where it names none), or the stiffness of the springs that resist the load (the largest Frobenius
-//! norm) times the largest prescribed motion if that is more, and `ℓ` that force over that stiffness. What resists is
-//! found by `characteristic_stiffness`; where the bars' stiffnesses differ by no more than a factor of two it need not be.
-//! `σ` is the smaller of `φ / max |f|`, with the `φ` of what resists the stage's own load, and `ℓ / max |motion|`. All follow
-//! the units of the input, so that a change of units changes nothing but round-off.
+//! stiffness of the bars that resist the load. Without bars, `φ` is the largest force of any stage at the load factor
+//! at which the stage is to end (1 where it specifies none), or the stiffness of the springs that resist the load (the
+//! largest Frobenius norm) times the largest prescribed motion if this is larger, and `ℓ` is this force divided by this
+//! stiffness. The resisting stiffness is found by `characteristic_stiffness`, unless the bars' stiffnesses differ by no
+//! more than a factor of two. `σ` is the smaller of `φ / max |f|`, with the `φ` of the stiffness that resists the
+//! stage's own load, and `ℓ / max |motion|`. All scales follow the units of the input, so that a change of units
+//! changes nothing but round-off.
 
 pub(crate) mod admissibility;
 pub(crate) mod build;
@@ -32,48 +33,48 @@ use scales::{RequestScales, scales};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Everything a path needs to know; shared by all who trace it.
+/// The data of a path; shared by all paths of the scene.
 #[derive(Debug, Clone)]
 pub struct Scene {
     pub(crate) structure: Structure,
-    /// Contacts that are solved for; coincident ones of a node are one of them.
+    /// Contacts that are solved for; coincident contacts of a node are merged into one.
     pub(crate) contacts: Vec<ContactPair>,
-    /// Names of their nodes and obstacles.
+    /// Names of the nodes and obstacles of these contacts.
     pub(crate) contact_names: Vec<(Arc<str>, Arc<str>)>,
     /// The contacts of the request, in its order.
     pub(crate) reported: Vec<Reported>,
     /// Nodes with several contacts.
     pub(crate) corners: Vec<Corner>,
-    /// Whose names those of each increment share.
+    /// Displacements without values, whose names those of each increment share.
     pub(crate) no_displacements: Displacements,
     pub(crate) stages: Vec<StageLoad>,
     pub(crate) analysis: Analysis,
-    /// Which of the request's contacts have a row in every increment, in reach or not; `None`: all.
+    /// Indices of the request's contacts that have a row in every increment, in reach or not; `None`: all.
     pub(crate) asked_rows: Option<Vec<usize>>,
-    /// Straight stretches are one increment.
+    /// Whether straight stretches are traced as one increment each.
     pub(crate) jumps: bool,
     plan: Plan,
 }
 
-/// Elements and contacts that a request has no words for, dimensionless by the scales of the request's own.
+/// Elements and contacts that a request cannot express, dimensionless by the scales of the request itself.
 #[derive(Debug, Default)]
 pub(crate) struct AdditionalParts {
     pub elements: Vec<Arc<dyn FiniteElement>>,
-    /// Each with the names of its node and its obstacle.
+    /// Contacts, each with the names of its node and its obstacle.
     pub contacts: Vec<(&'static str, &'static str, ContactPair)>,
 }
 
-/// A contact of the request and its part of the one that is solved for.
+/// A contact of the request and its share of the contact that is solved for.
 #[derive(Debug, Clone)]
 pub(crate) struct Reported {
     pub node: Arc<str>,
     pub obstacle: Arc<str>,
-    /// Which of the scene's contacts.
+    /// Index of the scene's contact.
     pub contact: usize,
-    /// Shares of the reaction's parts; 1 but for coincident contacts.
+    /// Shares of the normal and tangential reaction; 1 unless contacts coincide.
     pub normal_share: f64,
     pub tangential_share: f64,
-    /// Others of the request share that contact.
+    /// Whether other contacts of the request share the scene's contact.
     pub shared: bool,
 }
 
@@ -83,7 +84,7 @@ pub(crate) struct StageLoad {
     pub name: Arc<str>,
     pub pattern: LoadPattern,
     pub load_scale: f64,
-    /// By how many times the scales that are given exceed those that would be if none were; no less than 1.
+    /// Factor by which given scales exceed the default ones; at least 1.
     pub enlarged: f64,
     pub ends: Vec<End>,
     /// The loads at which the stage may end, in the user's units, in the order of those `ends`.
@@ -92,8 +93,8 @@ pub(crate) struct StageLoad {
 }
 
 impl StageLoad {
-    /// A load in the user's units. At the bound of a stage it is the number that was given: dividing it by a scale and
-    /// multiplying again may not give it back.
+    /// A load in the user's units. At the bound of a stage it is the given number itself: division by a scale and
+    /// multiplication may not restore it.
     pub fn load_factor(&self, load: f64) -> f64 {
         let bounds =
             self.ends.iter().filter_map(|end| if let End::Load { bound, .. } = end { Some(*bound) } else { None });
@@ -103,16 +104,16 @@ impl StageLoad {
 }
 
 impl Scene {
-    /// Checks the request as a whole and makes it dimensionless, within the budget of the solve under way.
+    /// Checks the request as a whole and makes it dimensionless, within the budget of the present solve.
     ///
     /// # Errors
-    /// What is wrong with the request, and a structure whose matrices are too large for that budget.
+    /// Errors of the request, and a structure whose matrices are too large for this budget.
     pub fn new(request: &JobRequest) -> Result<Self, InputErrors> {
         Self::like(None, request)
     }
 
-    /// As [`new`](Self::new), beside the scene of a request that may differ in numbers alone: what does not hang on them is
-    /// not made twice.
+    /// As [`new`](Self::new), given the scene of a request that may differ in numbers alone: data that do not depend on
+    /// these numbers are taken from that scene.
     ///
     /// # Errors
     /// As for [`new`](Self::new).
@@ -120,7 +121,7 @@ impl Scene {
         Self::with_parts(other, request, AdditionalParts::default())
     }
 
-    /// As [`like`](Self::like), with elements and contacts beside those of the request.
+    /// As [`like`](Self::like), with elements and contacts in addition to those of the request.
     ///
     /// # Errors
     /// As for [`new`](Self::new).
@@ -227,7 +228,7 @@ impl Scene {
         self.no_displacements.get_index(node).map_or("", |(name, _)| name)
     }
 
-    /// What the scene needs and what is left out.
+    /// The plan: features that the scene needs and those omitted.
     pub fn plan(&self) -> &Plan {
         &self.plan
     }

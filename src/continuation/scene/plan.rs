@@ -1,4 +1,4 @@
-//! What a scene does not need, and why: the plan in words.
+//! Features that a scene does not need, and why: the text of the plan.
 
 use crate::continuation::scene::Scene;
 use crate::continuation::scene::recorded_rows::{REACH, fastest};
@@ -7,12 +7,12 @@ use crate::model::input::limits::MAX_ROWS_UNASKED;
 use crate::model::request::{Analysis, Method};
 use crate::result::plan::LeftOut;
 
-/// Whether straight stretches are jumped over.
+/// Whether straight stretches are traced as one increment each.
 pub(crate) fn jumps(analysis: &Analysis, structure: &Structure) -> bool {
     analysis.arc_length.jump && !analysis.keep_all && analysis.method != Method::Regularised && structure.is_linear()
 }
 
-/// What this scene does not need, but for what is found while its contacts are read.
+/// Features that this scene does not need, except those found while its contacts are read.
 pub(crate) fn left_out(scene: &Scene) -> Vec<LeftOut> {
     let (contacts, analysis) = (&scene.contacts, &scene.analysis);
     let mut left_out = Vec::new();
@@ -54,7 +54,7 @@ pub(crate) fn left_out(scene: &Scene) -> Vec<LeftOut> {
     left_out
 }
 
-/// What the plan says of the contacts that are out of reach where the path begins.
+/// Entries of the plan on the contacts that are out of reach where the path begins.
 fn contacts_out_of_reach(scene: &Scene) -> Vec<LeftOut> {
     let analysis = &scene.analysis;
     if analysis.keep_all || analysis.method == Method::Regularised {
@@ -87,7 +87,7 @@ fn contacts_out_of_reach(scene: &Scene) -> Vec<LeftOut> {
     left_out
 }
 
-/// What the plan says of it.
+/// Entry of the plan on straight stretches.
 fn straight_stretches(scene: &Scene) -> Option<LeftOut> {
     scene.jumps.then(|| LeftOut {
         what: "increments between events, but for stretches of bifurcations".to_owned(),
@@ -97,7 +97,7 @@ fn straight_stretches(scene: &Scene) -> Option<LeftOut> {
     })
 }
 
-/// What a job by this method does without, for its plan.
+/// Entry of the plan on the simplifications of the penalty method.
 fn penalty_method(analysis: &Analysis) -> Option<LeftOut> {
     let parameters = analysis.regularised.unwrap_or_default();
     (analysis.method == Method::Regularised).then(|| LeftOut {

@@ -1,4 +1,4 @@
-//! Which contacts have a row in every increment, and how fast their gaps can close.
+//! The contacts that have a row in every increment, and the speed at which their gaps can close.
 
 use crate::continuation::scene::Scene;
 use crate::mechanics::contact::vector::size;
@@ -7,17 +7,17 @@ use crate::model::input::limits::MAX_ROWS_UNASKED;
 use crate::model::request::{ContactRange, Method, RecordedContacts};
 use std::collections::HashSet;
 
-/// A contact is in reach that this many steps could close: more than the one that is taken, so that what is tried past
-/// its end (the program of an increment looks three steps ahead) finds every contact it needs.
+/// Number of steps within which a contact in reach could close: more than the one that is taken, so that computations
+/// past its end (the program of an increment looks three steps ahead) find every contact they need.
 pub(crate) const REACH: f64 = 4.0;
 
-/// How far a contact's gap may change by unit arc length, in any stage.
+/// The largest change of a contact's gap per unit arc length, in any stage.
 pub(crate) fn fastest(scene: &Scene, contact: usize) -> f64 {
     let shift = scene.stages.iter().fold(0.0_f64, |most, stage| most.max(size(&stage.pattern.shifts[contact])));
     shift.hypot(scene.contacts[contact].kinematics.fastest())
 }
 
-/// Which contacts of the request have a row in every increment, in reach or not; `None`: all.
+/// Indices of the request's contacts that have a row in every increment, in reach or not; `None`: all.
 pub(crate) fn asked_rows(request: &JobRequest) -> Option<Vec<usize>> {
     let (analysis, contacts) = (&request.analysis, &request.model.contacts);
     if analysis.keep_all || analysis.method == Method::Regularised {

@@ -1,4 +1,4 @@
-//! Length and forces that make a request dimensionless: see `scene`.
+//! Length and force scales that make a request dimensionless: see `scene`.
 
 use crate::continuation::scene::build::{
     Contacts, ScaledModel, build_contacts, build_stage, build_structure, first_contacts, norm,
@@ -8,29 +8,30 @@ use crate::mechanics::structure::Structure;
 use crate::model::request::{self, Analysis, Model};
 use std::collections::HashMap;
 
-/// Stiffnesses that differ by no more than this factor are alike: scales that differ so change the increments by no more.
+/// Stiffnesses that differ by no more than this factor are alike: scales based on them change the increments by no
+/// more.
 const ALIKE: f64 = 2.0;
-/// Bars that are up to so many times stiffer than what resists the load may set the scale of forces.
+/// Largest ratio between a bar's stiffness and the resisting stiffness at which the bar may determine the force scale.
 const FAR: f64 = 100.0;
 
-/// Stages whose loads are asked what resists them; those after them go by the largest answer.
+/// Largest number of stages whose resisting stiffness is computed; later ones use the largest result.
 const MOST_STAGES: usize = 8;
 
-/// What a request is divided by.
+/// The scales by which a request is divided.
 pub(super) struct RequestScales {
     /// `ℓ`
     pub length: f64,
     /// `φ`
     pub force: f64,
-    /// The force that each stage's load scale goes by.
+    /// For each stage the force on which its load scale is based.
     pub resistances: Vec<f64>,
-    /// `ℓ` over what it would be if none were given.
+    /// `ℓ` relative to its default value.
     pub stretched: f64,
-    /// The structure by other scales, where it took one to find these.
+    /// The structure with preliminary scales, where it was needed to find these.
     pub structure: Option<Structure>,
 }
 
-/// Elements and loads of a request, as far as scales need them.
+/// Sizes of the elements and loads of a request, as far as scales need them.
 struct Sizes {
     longest: f64,
     /// Axial stiffnesses of the bars.
@@ -41,7 +42,7 @@ struct Sizes {
     largest_motion: f64,
 }
 
-/// The load factor at which a stage is to end, if it says so; else 1.
+/// The load factor at which a stage is to end, if specified; otherwise 1.
 fn expected_load_factor(stage: &request::Stage) -> f64 {
     let bounds = stage.until.iter().flat_map(|until| [until.load_above, until.load_below]);
     bounds.flatten().map(f64::abs).reduce(f64::max).unwrap_or(1.0)
@@ -82,8 +83,8 @@ impl Sizes {
         Self { longest, bars, springs, largest_load, largest_motion }
     }
 
-    /// `ℓ` and `φ` by the force that resists where there are bars, or by the stiffness that does where there are only
-    /// springs; and the `ℓ` that would be if none were given.
+    /// `ℓ` and `φ` from the resisting force where there are bars, or from the resisting stiffness where there are only
+    /// springs; and the default `ℓ`.
     fn scaled_by(&self, analysis: &Analysis, resistance: f64) -> (f64, f64, f64) {
         let has_springs = self.bars.is_empty() && resistance > 0.0;
         let largest = self.largest_load.max(resistance * self.largest_motion);
@@ -104,13 +105,13 @@ impl Sizes {
         (length, force, own)
     }
 
-    /// Whether any of the elements may set the scale.
+    /// Whether any of the elements may determine the scale.
     fn are_alike(&self) -> bool {
         self.springs.is_empty() && most(&self.bars) <= ALIKE * least(&self.bars)
     }
 
-    /// The softest bar that is not much softer than what resists the load; what resists itself, where that bar is far
-    /// stiffer. Without bars, the stiffest spring that is not much stiffer, and so on.
+    /// The softest bar that is not much softer than the resisting stiffness; the resisting stiffness itself, where this
+    /// bar is far stiffer. Without bars, the stiffest spring that is not much stiffer, and so on.
     fn near(&self, resisting: f64) -> f64 {
         let near = if self.bars.is_empty() {
             self.springs.iter().copied().filter(|stiffness| *stiffness <= ALIKE * resisting).reduce(f64::max)
@@ -120,7 +121,7 @@ impl Sizes {
         near.filter(|near| *near <= FAR * resisting && resisting <= FAR * near).unwrap_or(resisting)
     }
 
-    /// Where no stage's load tells: that of which as many are stiffer as softer.
+    /// The median stiffness, used where no stage's load determines one.
     fn median(&self) -> f64 {
         let mut values = if self.bars.is_empty() { self.springs.clone() } else { self.bars.clone() };
         values.sort_by(f64::total_cmp);
@@ -128,7 +129,7 @@ impl Sizes {
     }
 }
 
-/// The scales of a request that has been checked; `like`: a structure that may be the same but for its numbers.
+/// The scales of a request that has been checked; `like`: a structure that may be identical except for its numbers.
 pub(super) fn scales(
     model: &Model,
     analysis: &Analysis,
@@ -148,7 +149,7 @@ pub(super) fn scales(
     let first_contacts = &first_contacts[..];
     let scaled =
         ScaledModel { model, analysis, numbers, structure: &structure, first_contacts, length, force, stretched: 1.0 };
-    // An axial stiffness, or a spring's.
+    // The unit of an axial stiffness, or of a spring's stiffness.
     let unit = if sizes.bars.is_empty() { force / length } else { force };
     let by_stage: Vec<Option<f64>> = model
         .stages
@@ -160,7 +161,7 @@ pub(super) fn scales(
         })
         .collect();
     let known = by_stage.iter().flatten().copied();
-    // Of springs the softest that resists, whose displacements are the largest.
+    // For springs the softest that resists, whose displacements are the largest.
     let whole = if sizes.bars.is_empty() { known.reduce(f64::min) } else { known.reduce(f64::max) };
     let whole = whole.unwrap_or_else(|| sizes.median());
     let (length, force, own) = sizes.scaled_by(analysis, whole);

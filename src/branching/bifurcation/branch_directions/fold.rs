@@ -1,32 +1,33 @@
-//! The plane of two null vectors of a mode's equations, and how paths leave a fold in it; the same of more null vectors.
+//! The plane of two null vectors of a mode's equations, and how paths leave a fold in this plane; likewise for more
+//! null vectors.
 //!
-//! With the left null vector `ψ` and coordinates `w`, `p` along an orthonormal basis the equations are, to second order and
-//! beside what the others make of it,
+//! With the left null vector `ψ` and coordinates `w`, `p` along an orthonormal basis the equations are, to second order
+//! and apart from contributions of the other unknowns,
 //!
 //! ```text
 //! σ·(w, p) + ½ ψ·F''(x, x) = 0,      σ = ψ·F_x of the basis.
 //! ```
 //!
-//! `σ` is zero at a point that is singular. Where the form has two roots, branches cross there. Where it has one, twice, all
-//! its curvature `c` is along one vector `g`, across the root `f`:
+//! `σ` is zero at a singular point. Where the quadratic form has two roots, branches cross there. Where it has a double
+//! root `f`, all its curvature `c` is along one vector `g` orthogonal to `f`:
 //!
 //! ```text
 //! σ w + ½ c p² = 0
 //! ```
 //!
-//! but for where `p` is as small as `σ`. With `σ = 0` that is the line along `f`, in both senses. With a `σ` that is not
-//! zero, but so small that the path bends within less than a step can tell, it is a parabola whose arms leave along `f` in one
-//! sense: `x = f h ± g (2 |σ/c| h)^½`.
+//! except where `p` is as small as `σ`. With `σ = 0` the solution is the line along `f`, in both senses. With a `σ`
+//! that is not zero, but so small that the path bends within less than a step can resolve, the solution is a parabola
+//! whose arms leave along `f` in one sense: `x = f h ± g (2 |σ/c| h)^½`.
 //!
-//! Of several parts that nothing joins, each at its fold, there are as many equations, each with a form that is the square of
+//! Where several uncoupled parts are each at a fold, there is one equation for each part, and its form is the square of
 //! one coordinate (the forms are of rank one, and their vectors independent):
 //!
 //! ```text
 //! σ_j w + ½ c_j p_j² = 0
 //! ```
 //!
-//! The line along `f` is that on which all `p_j` are zero, and of the parts whose `σ_j` is not zero each has two arms, all of
-//! which leave in one sense of `f` or none do.
+//! On the line along `f` all `p_j` are zero. Each part whose `σ_j` is not zero has two arms; branches exist only where
+//! the arms of all these parts leave in the same sense of `f`.
 
 use crate::algebra::{nearest_null_space, null_space_as_scaled};
 use crate::branching::bifurcation::branch_directions::null_derivatives::Derivative;
@@ -36,64 +37,64 @@ use crate::mechanics::equations::scaled_rows::{RANK, scaled_rows};
 use crate::mechanics::problem::state::Rate;
 use nalgebra::{DMatrix, DVector, DVectorView, Matrix2};
 
-/// Parts of null vectors of which no motion is left are none.
+/// A null vector that retains no more than this part of its motion depends on the others.
 const NO_MOTION: f64 = 1e-8;
-/// Parabolas that are no wider than this at a unit arc length are lines: rounding of the equations moves a point at the fold
-/// as far.
+/// Parabolas no wider than this at a unit arc length count as lines: round-off in the equations moves a point at the
+/// fold by as much.
 const NO_WIDTH: f64 = 1e-7;
-/// Singular values of coordinates (of unit size) up to this are zero: they are not independent.
+/// Singular values of the coordinate vectors (of unit size) up to this are zero: the vectors are linearly dependent.
 const DEPENDENT: f64 = 1e-6;
 
-/// A double root.
+/// A double root of the bifurcation equation.
 pub(super) struct Fold {
     /// `f`
     pub flat: Null,
     parts: Vec<FoldPart>,
 }
 
-/// What is at a fold.
+/// One part of the structure at its fold.
 struct FoldPart {
     /// `g`
     steep: Null,
     /// `(2 |σ/c|)^½`
     width: f64,
-    /// In which sense of `f` the arms leave.
+    /// Sense of `f` in which the arms leave.
     sense: f64,
 }
 
-/// The directions of a plane.
+/// The directions in a plane of null vectors.
 pub(super) enum Plane {
-    /// All of it, to second order.
+    /// The whole plane, to second order.
     Continuum,
-    /// None, or the roots that cross.
+    /// No root, or the roots that cross.
     Roots(Vec<Null>),
     Fold(Box<Fold>),
 }
 
 impl Fold {
-    /// Whether it is a line in both senses.
+    /// Whether the fold is a line in both senses.
     pub fn is_straight(&self) -> bool {
         self.wide().next().is_none()
     }
 
-    /// The parts with arms.
+    /// The parts that have arms.
     fn wide(&self) -> impl Iterator<Item = &FoldPart> {
         self.parts.iter().filter(|part| part.width > NO_WIDTH)
     }
 
-    /// The direction in which the arms leave; `None` where those of some part leave in the other sense.
+    /// The direction in which the arms leave; `None` where the arms of two parts leave in opposite senses.
     pub fn ahead(&self, point: &BranchingPoint<'_>) -> Option<Null> {
         let sense = self.wide().next()?.sense;
         let agree = self.wide().all(|part| part.sense == sense);
         agree.then(|| point.combined(std::slice::from_ref(&self.flat), &[sense]))
     }
 
-    /// Across that, how far the arm towards a rate lies off it at a unit arc length.
+    /// The offset, across that direction, of the arm towards a rate at a unit arc length.
     pub fn beside(&self, towards: &Rate) -> Option<Rate> {
         self.sum(self.wide().map(|part| part.width.copysign(part.steep.rate.product(towards))))
     }
 
-    /// Every arm of each part with those of the others.
+    /// The offsets of all combinations of the parts' arms.
     pub fn arms(&self) -> Vec<Rate> {
         let senses: Vec<Vec<f64>> = self.wide().map(|part| vec![part.width, -part.width]).collect();
         combinations(&senses, MOST_MODES).filter_map(|chosen| self.sum(chosen.into_iter())).collect()
@@ -124,7 +125,7 @@ fn orthonormal(point: &BranchingPoint<'_>, basis: &DMatrix<f64>) -> Option<Vec<N
         let values = column.into_owned();
         let mut null = Null { rate: point.system.rate_from(point.here.state, &values), values };
         let whole = null.rate.size();
-        // Once more for what rounding left.
+        // A second pass removes what round-off left.
         for _ in 0..2 {
             for known in &nulls {
                 let share = null.rate.product(&known.rate);
@@ -140,7 +141,7 @@ fn orthonormal(point: &BranchingPoint<'_>, basis: &DMatrix<f64>) -> Option<Vec<N
     Some(nulls)
 }
 
-/// The plane that comes nearest to two null vectors.
+/// The directions in the plane closest to two null vectors.
 pub(super) fn plane(point: &BranchingPoint<'_>) -> Option<Plane> {
     let (matrix, sizes) = scaled_rows(&point.system, point.here.loading, point.here.state);
     let left = nearest_null_space(matrix.transpose(), 1)?.column(0).component_div(&sizes);
@@ -174,7 +175,7 @@ pub(super) fn plane(point: &BranchingPoint<'_>) -> Option<Plane> {
     Some(Plane::Fold(Box::new(fold(point, &DMatrix::from_columns(&[left]), combined(flat), vec![combined(steep)]))))
 }
 
-/// The fold of so many null vectors; `None` where the equations are not those of parts that nothing joins.
+/// The fold of `count` null vectors; `None` where the equations are not those of uncoupled parts.
 pub(super) fn fold_of_parts(point: &BranchingPoint<'_>, count: usize) -> Option<Fold> {
     let (matrix, sizes) = scaled_rows(&point.system, point.here.loading, point.here.state);
     let mut left = nearest_null_space(matrix.transpose(), count.checked_sub(1)?)?;
@@ -182,7 +183,7 @@ pub(super) fn fold_of_parts(point: &BranchingPoint<'_>, count: usize) -> Option<
     let nulls = orthonormal(point, &nearest_null_space(matrix, count)?)?;
     let derivatives: Vec<Derivative> = nulls.iter().map(|null| point.second_derivative(&null.rate)).collect();
     let largest = derivatives.iter().map(Derivative::amax).fold(0.0, f64::max);
-    // Of each form the vector whose square it is.
+    // For each form the vector whose square it is.
     let mut squares = DMatrix::zeros(left.ncols(), count);
     for (mut row, left) in squares.row_iter_mut().zip(left.column_iter()) {
         let form = DMatrix::from_fn(count, count, |i, j| left.dot(&derivatives[i].times(&nulls[j].values)));
@@ -195,7 +196,7 @@ pub(super) fn fold_of_parts(point: &BranchingPoint<'_>, count: usize) -> Option<
         }
         row.copy_from(&eigen.eigenvectors.column(most).transpose());
     }
-    // Motions along which one of the coordinates changes, and none.
+    // Motions along each of which one coordinate changes, and the motion along which none does.
     let dual = squares.clone().pseudo_inverse(DEPENDENT).ok()?;
     if (&squares * &dual - DMatrix::identity(left.ncols(), left.ncols())).amax() > DEPENDENT {
         return None;
@@ -216,7 +217,7 @@ fn fold(point: &BranchingPoint<'_>, left: &DMatrix<f64>, mut flat: Null, steep: 
         .zip(&steep)
         .map(|(left, steep)| left.dot(&point.second_derivative(&steep.rate).times(&steep.values)))
         .collect();
-    // Differences along the root itself are exact where it is a straight line, and those along others are not.
+    // Differences along the root itself are exact where it is a straight line; differences along other vectors are not.
     for _ in 0..2 {
         let along = point.second_derivative(&flat.rate);
         let (mut nulls, mut weights) = (vec![flat], vec![1.0]);

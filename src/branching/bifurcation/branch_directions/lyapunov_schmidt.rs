@@ -1,17 +1,17 @@
-//! Where several eigenvalues vanish together: the directions of the branches by the equations that are left in the null
-//! vectors (Lyapunov and Schmidt; M. Golubitsky, D. G. Schaeffer, *Singularities and Groups in Bifurcation Theory* 1,
+//! The directions of the branches where several eigenvalues vanish together, by Lyapunov-Schmidt reduction of the
+//! equations to the null vectors (M. Golubitsky, D. G. Schaeffer, *Singularities and Groups in Bifurcation Theory* 1,
 //! Springer 1985, chapter VII).
 //!
-//! A branch is `x + α t + β φ + ½ w(β, β) + ...` with `F_x w = -F''(β φ, β φ)` across the null vectors. Where the equations
-//! have terms in the null vectors alone, `ψ_j F''(v, v) = 0` says how `v = α t + β φ` begins. Where they have none, `α` is of
-//! second order, and
+//! A branch is `x + α t + β φ + ½ w(β, β) + ...` with `F_x w = -F''(β φ, β φ)` across the null vectors. Where the
+//! reduced equations have quadratic terms in the null vectors alone, `ψ_j F''(v, v) = 0` gives the direction
+//! `v = α t + β φ`. Where they have none, `α` is of second order, and
 //!
 //! ```text
 //! α ψ_j F''(t, β φ) + c_j(β) = 0,      c_j(β) = ½ ψ_j F''(β φ, w(β, β)) + ⅙ ψ_j F'''(β φ, β φ, β φ)
 //! ```
 //!
-//! with cubics `c_j` that are fitted to their values. Both are solved by Newton's method from directions all around. One
-//! factorisation, and one of the transpose, serve for all of it.
+//! with cubics `c_j` fitted to their values. Newton's method solves both systems from starting directions all around.
+//! All of it takes one factorisation of the matrix and one of its transpose.
 
 use crate::branching::bifurcation::branch_directions::{AROUND, Null};
 use crate::branching::bifurcation::singularity::bordering::{Bordering, orthonormal};
@@ -23,23 +23,24 @@ use nalgebra::{DMatrix, DVector};
 
 /// Newton iterations.
 const MOST_ITERATIONS: usize = 30;
-/// What they leave over, relative.
+/// Relative residual at which the iteration has converged.
 const CONVERGED: f64 = 1e-12;
-/// Singular values up to this, relative, are zero: along a continuum of branches Newton's method goes the shortest way to it.
+/// Singular values up to this, relative, are zero: along a continuum of branches Newton's method takes the shortest
+/// correction.
 const SINGULAR: f64 = 1e-8;
 /// Difference step (dimensionless) for third derivatives.
 const DIFFERENCE: f64 = 1e-3;
 
-/// The equations for the shares of the path's own motion and of the null vectors beside it.
+/// The reduced equations for the shares of the path's own direction and of the other null vectors.
 pub(super) struct LyapunovSchmidtEquations {
-    /// `ψ_j F''(X_l, X_i)` of each `j`, the path's own motion first.
+    /// `ψ_j F''(X_l, X_i)` for each `j`, the path's own direction first.
     quadratic: Vec<DMatrix<f64>>,
-    /// Coefficients of each `c_j`, where they count.
+    /// Coefficients of each `c_j`, where the cubic terms count.
     cubic: Option<Vec<DVector<f64>>>,
 }
 
 impl LyapunovSchmidtEquations {
-    /// With cubics where the equations are not `curved`.
+    /// Assembles the equations, with cubic terms where they are not `curved`.
     pub fn new(
         system: &ModeSystem<'_>,
         state: &State,
@@ -64,10 +65,10 @@ impl LyapunovSchmidtEquations {
         Some(Self { quadratic, cubic })
     }
 
-    /// Shares of the motions along a branch near some shares, of unit size.
+    /// The root of the equations near some shares: shares of unit size along a branch.
     pub fn root(&self, mut shares: DVector<f64>) -> Option<DVector<f64>> {
         let unit = |shares: &mut DVector<f64>| {
-            // Where `α` is of second order it has no part in the size.
+            // Where `α` is of second order it does not count towards the size.
             let size = if self.cubic.is_some() { shares.rows(1, shares.len() - 1).norm() } else { shares.norm() };
             shares.unscale_mut(size);
             size > 0.0 && size.is_finite()
@@ -120,7 +121,8 @@ impl LyapunovSchmidtEquations {
         (values, slopes, size)
     }
 
-    /// Shares all around each plane of two null vectors, with some of the path's own motion where that counts.
+    /// Starting shares all around each plane of two null vectors, with a part of the path's own direction where it
+    /// counts.
     pub fn starts(&self) -> Vec<DVector<f64>> {
         let count = self.quadratic.len();
         let tilts: &[f64] = if self.cubic.is_none() { &[0.0, 0.5, -0.5] } else { &[0.0] };
@@ -141,7 +143,7 @@ impl LyapunovSchmidtEquations {
     }
 }
 
-/// The products of three of some numbers.
+/// The cubic monomials of some numbers.
 fn monomials(across: &DVector<f64>) -> impl Iterator<Item = ([usize; 3], f64)> + '_ {
     let count = across.len();
     (0..count).flat_map(move |i| {
@@ -163,7 +165,7 @@ fn bordering<'a>(
     Bordering::new(system, state.clone(), &rows, &columns?)
 }
 
-/// The coefficients of each `c_j`, fitted to more values than there are.
+/// The coefficients of each `c_j`, a least-squares fit to more values than coefficients.
 fn cubics(
     system: &ModeSystem<'_>,
     state: &State,
@@ -176,7 +178,7 @@ fn cubics(
     let (mut matrix, mut values) = (DMatrix::zeros(samples, number), DMatrix::zeros(samples, count));
     for sample in 0..samples {
         budget::spend(system.size());
-        // Evenly around where there are two, and well apart where there are more.
+        // Evenly around the circle for two null vectors, well apart for more.
         let across = DVector::from_fn(count, |i, _| {
             (std::f64::consts::PI * (sample as f64 + 0.5) * (1 + i / 2) as f64 / samples as f64
                 - if i % 2 == 1 { std::f64::consts::FRAC_PI_2 } else { 0.0 })

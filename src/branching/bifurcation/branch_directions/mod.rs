@@ -10,18 +10,20 @@
 //! ```
 //!
 //! `F''` comes from central differences of the tangent. Where `Q_φφ = 0` (a pitchfork) the direction is the null vector
-//! itself. Several null vectors: points of the branches on a small sphere are sought by Newton's method from
-//! directions spread over their plane. Those found are branches; that they are all is not claimed. For three and more
-//! the list is marked `degenerate`, and so is a plane with more directions than the equations have isolated roots: a
-//! continuum of branches, of which the list holds samples. For many unknowns, where the null vectors come with the point,
-//! these points are not sought: the equations that are left in the null vectors are solved (`lyapunov_schmidt`).
+//! itself. For several null vectors Newton's method seeks points of the branches on a small sphere, from directions
+//! spread over the plane of the null vectors. Every point found lies on a branch; the list is not claimed to be
+//! complete. For three and more null vectors it is marked `degenerate`, and so is a plane with more directions than the
+//! equations have isolated roots: a continuum of branches, of which the list contains samples. For many unknowns, where
+//! the null vectors are known from the location of the point, the equations reduced to the null vectors are solved
+//! instead (`lyapunov_schmidt`).
 //!
-//! Where a direction leaves a contact's inequalities at equality (on the cone: the load rate along a branch is zero at first
-//! order, and its sign at second order decides whether the contact slips on or sticks) a small step tells its mode.
-//! Every direction that is listed was tried with a small step.
+//! Where a direction leaves a contact's inequalities at equality (on the cone: the load rate along a branch is zero at
+//! first order, and its sign at second order decides whether the contact continues to slip or sticks) a small step
+//! determines the contact mode. Every direction in the list has been confirmed by a small step.
 //!
-//! Other modes of contacts that can change have branches of their own here where their equations are singular, too:
-//! `in_other_modes`; `second_order_by_mode` tells them at second order where first order leaves no way on.
+//! Other modes of the contacts that can change have their own branches where their equations are singular at this
+//! point, too: see `in_other_modes`. Where no direction of first order continues the path, `second_order_by_mode`
+//! examines the directions at second order.
 
 pub(crate) mod fold;
 pub(crate) mod lyapunov_schmidt;
@@ -58,13 +60,13 @@ pub use other_modes::{are_singular_in_all_modes, in_other_modes};
 pub struct Branches {
     /// The path's own direction first.
     pub options: Vec<DirectionChoice>,
-    /// Some branch may be missing, or they are a continuum.
+    /// Some branch may be missing, or the branches form a continuum.
     pub degenerate: bool,
     /// Modes that were not examined.
     pub unexplored: u64,
 }
 
-/// A point and what is true there.
+/// A singular point, with the loading, contact standings and force scale there.
 #[derive(Clone, Copy)]
 pub struct SingularPoint<'a> {
     pub loading: Loading<'a>,
@@ -77,15 +79,15 @@ pub struct SingularPoint<'a> {
 const NO_CURVATURE: f64 = 1e-6;
 /// Radii of the spheres on which branches are tried.
 const RADII: [f64; 3] = [1e-3, 1e-2, 1e-4];
-/// Radius of the sphere on which branches are sought.
+/// Radius of the sphere on which branch points are sought.
 const SOUGHT_AT: f64 = 1e-2;
 /// Directions around the plane of two null vectors.
 const AROUND: usize = 36;
-/// Directions closer than this (cosine) are one.
+/// Directions closer than this (cosine) count as one.
 pub const SAME: f64 = 1.0 - 1e-5;
-/// Inequalities (of unit arc length) that hold within this are in doubt.
+/// Inequalities (of unit arc length) satisfied with a margin smaller than this are in doubt.
 const DOUBT: f64 = 1e-7;
-/// Two cubics in two ratios have no more isolated roots, each taken in both senses, besides the path.
+/// The most isolated roots besides the path that two cubics in two ratios have, each root taken in both senses.
 const MOST_ISOLATED: usize = 8;
 /// Modes that are examined besides the path's own.
 const MOST_MODES: u64 = 64;
@@ -96,12 +98,12 @@ struct BranchingPoint<'a> {
     system: ModeSystem<'a>,
     /// Eigenvalues that are zero, where known.
     eigenvalues: Option<usize>,
-    /// The null vectors, where they are at hand.
+    /// The null vectors, where they are already known.
     nulls: Option<&'a NullVectors>,
 }
 
-/// Lists the directions in the current mode, in which so many eigenvalues are zero; `tangent` is the path's own, and `nulls`
-/// are the null vectors, where they are at hand.
+/// Lists the directions in the current mode, in which `eigenvalues` eigenvalues are zero; `tangent` is the path's own
+/// direction, and `nulls` are the null vectors, where they are already known.
 pub fn branches(
     here: SingularPoint<'_>,
     modes: &[Mode],
@@ -160,8 +162,8 @@ impl BranchingPoint<'_> {
         }
     }
 
-    /// Adds a direction that is not known yet, if its inequalities hold and a small step stays on a branch that leaves
-    /// this way.
+    /// Adds a direction that is not in the list yet, if its inequalities hold and a small step stays on a branch that
+    /// leaves in this direction.
     fn add_if_tried(&self, direction: Rate, found: &mut Branches) {
         let SingularPoint { loading, state, force_scale, .. } = self.here;
         let Some(alternatives) = self.alternatives(&direction) else { return };
@@ -176,7 +178,7 @@ impl BranchingPoint<'_> {
             return;
         }
         let modes = self.modes.to_vec();
-        // Only rays of the rate problem are told apart by their forces.
+        // Forces distinguish only the rays of the rate problem.
         let forces = Vec::new();
         let candidate = CandidateDirection {
             rate: direction,
@@ -194,7 +196,7 @@ impl BranchingPoint<'_> {
         }
     }
 
-    /// What each contact that can change may do along a direction; `None` where some can do nothing.
+    /// The modes that each contact that can change admits along a direction; `None` where some contact admits none.
     fn alternatives(&self, rate: &Rate) -> Option<Vec<Vec<Alternative>>> {
         let SingularPoint { loading, state, standings, force_scale } = self.here;
         let forces = DOUBT * rate.largest_reaction().max(force_scale);
@@ -203,7 +205,7 @@ impl BranchingPoint<'_> {
             let (motion, change) = (loading.relative_rate(contact, state, rate), &rate.reactions[contact]);
             let normal = loading.frame(contact, state).normal;
             let friction = loading.contacts[contact].friction;
-            // Each mode with what is zero in it, a velocity and a force, and what is not negative.
+            // Each mode with the velocity and the force that are zero in it, and those that are nonnegative.
             let options = match standing {
                 Standing::Settled(_) | Standing::Cornered { .. } => continue,
                 Standing::OnCone { direction } => {
@@ -237,7 +239,7 @@ impl BranchingPoint<'_> {
         Some(all)
     }
 
-    /// Left and right null vectors, the left ones for the equations as they are.
+    /// Left and right null vectors; the left ones belong to the unscaled equations.
     fn null_vectors(&self) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
         if let Some(NullVectors { left, right }) = self.nulls {
             return Some((DMatrix::from_columns(left), DMatrix::from_columns(right)));
@@ -253,7 +255,7 @@ impl BranchingPoint<'_> {
         Some((left, right))
     }
 
-    /// The branches' directions other than the path's own two. `None` where the null vectors cannot be had.
+    /// The directions of the branches, without the path's own two. `None` where the null vectors cannot be determined.
     fn directions(&self, tangent: &Rate, degenerate: &mut bool) -> Option<Vec<Rate>> {
         let (left, basis) = self.null_vectors()?;
         let (own, others) = self.split(&basis, tangent)?;
@@ -273,7 +275,8 @@ impl BranchingPoint<'_> {
         Some(found)
     }
 
-    /// All directions of a mode none of which is known: of a line, or the roots of the bifurcation equation of a plane.
+    /// All directions of a mode in which no direction is known: the two senses of a line, or the roots of the
+    /// bifurcation equation in a plane.
     fn all_directions(&self, degenerate: &mut bool) -> Option<Vec<Rate>> {
         let (left, basis) = self.null_vectors()?;
         let both = |null: &Null| {
@@ -335,7 +338,7 @@ impl BranchingPoint<'_> {
         let own = self.combined(&nulls, weights.as_slice());
         let mut others: Vec<Null> = Vec::new();
         let mut rest: Vec<Null> = nulls;
-        // Without load where the path has a load rate, across the path where it has none.
+        // Without load where the path has a load rate, orthogonal to the path where it has none.
         let by_load = own.rate.load.abs() > 1e-6;
         for null in &mut rest {
             let share = if by_load { null.rate.load / own.rate.load } else { null.rate.product(&own.rate) };
@@ -392,7 +395,8 @@ impl BranchingPoint<'_> {
         Some(vec![ahead, back])
     }
 
-    /// Whether the bifurcation equations have terms in the null vectors alone: then branches leave with a load rate.
+    /// Whether the bifurcation equations have quadratic terms in the null vectors alone: then branches leave with a
+    /// load rate.
     fn is_curved(&self, left: &DMatrix<f64>, own: &Null, others: &[Null]) -> bool {
         let (mut mixed, mut pure) = (0.0_f64, 0.0_f64);
         for other in others {
@@ -405,7 +409,7 @@ impl BranchingPoint<'_> {
         pure > NO_CURVATURE * mixed
     }
 
-    /// Branches by the equations that are left in the null vectors.
+    /// The directions of the branches by the equations reduced to the null vectors.
     fn solved_for(&self, nulls: &NullVectors, own: &Null, others: &[Null], curved: bool) -> Option<Vec<Rate>> {
         let reduced = LyapunovSchmidtEquations::new(&self.system, self.here.state, nulls, own, others, curved)?;
         let mut all = vec![own.clone()];
@@ -425,7 +429,8 @@ impl BranchingPoint<'_> {
         Some(found)
     }
 
-    /// Branches on a small sphere, from directions around the plane of the null vectors.
+    /// The directions of the branches from points on a small sphere, sought from directions around the plane of the
+    /// null vectors.
     fn sought(&self, tangent: &Rate, own: &Null, others: &[Null], curved: bool) -> Vec<Rate> {
         let mut found: Vec<Rate> = Vec::new();
         let tilts: &[f64] = if curved { &[0.0, 0.5, -0.5] } else { &[0.0] };
@@ -440,7 +445,7 @@ impl BranchingPoint<'_> {
                     rate.add(&own.rate, tilt);
                     let Some(mut direction) = self.branch_near(&rate) else { continue };
                     if !curved {
-                        // No load rate: the part across the null vectors is of the order of the radius.
+                        // No load rate: the part orthogonal to the null vectors is of the order of the radius.
                         let shares: Vec<f64> = others.iter().map(|null| direction.product(&null.rate)).collect();
                         direction = self.combined(others, &shares).rate;
                     }
@@ -460,7 +465,7 @@ impl BranchingPoint<'_> {
         found
     }
 
-    /// The direction at the point itself of a branch found on the sphere: chords to two radii, extrapolated to none.
+    /// The direction of a branch at the point itself: chords to two radii, extrapolated to radius zero.
     fn branch_near(&self, direction: &Rate) -> Option<Rate> {
         let far = self.on_sphere(direction, SOUGHT_AT)?;
         let near = self.on_sphere(&far, 0.5 * SOUGHT_AT)?;
@@ -470,7 +475,7 @@ impl BranchingPoint<'_> {
         Some(rate)
     }
 
-    /// The unit chord to the point of a branch at a radius.
+    /// The unit chord to a branch point at a radius.
     fn on_sphere(&self, direction: &Rate, radius: f64) -> Option<Rate> {
         let mut ahead = direction.clone();
         let size = ahead.size();

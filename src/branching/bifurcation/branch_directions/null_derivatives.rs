@@ -9,21 +9,21 @@ use nalgebra::{DMatrix, DVector};
 /// Difference step (dimensionless) for the second derivative.
 const DIFFERENCE: f64 = 1e-4;
 
-/// A null vector in both forms.
+/// A null vector as values of the unknowns and as a rate.
 #[derive(Clone)]
 pub(super) struct Null {
     pub values: DVector<f64>,
     pub rate: Rate,
 }
 
-/// `F''(v, ·)`, the rows of the mode but the last.
+/// `F''(v, ·)`: all rows of the mode's equations except the last.
 pub(super) enum Derivative {
     Dense(DMatrix<f64>),
     Sparse(Bordered, usize),
 }
 
 impl Derivative {
-    /// By central differences.
+    /// Computes the derivative by central differences.
     pub fn new(system: &ModeSystem<'_>, state: &State, along: &Rate) -> Self {
         let rows = system.size() - 1;
         let sparse = |step: f64| {
@@ -33,7 +33,7 @@ impl Derivative {
         if let Some(coarse) = sparse(FINE)
             && let Some(fine) = sparse(0.5 * FINE)
         {
-            // Of fourth order.
+            // Richardson extrapolation, of fourth order.
             return Self::Sparse(fine.minus(&coarse.scaled(0.25), 4.0 / 3.0), rows);
         }
         let ahead = system.matrix(&state.advanced(along, DIFFERENCE));

@@ -9,10 +9,11 @@ use crate::mechanics::equations::ModeSystem;
 use crate::mechanics::multi_contact::contact_status::Standing;
 use nalgebra::{DMatrix, DVector};
 
-/// Adds the directions in other modes of the contacts that can change, with those of `found` as the known ones.
+/// Adds the directions in other modes of the contacts that can change to those in `found`.
 ///
-/// For points at which the structure with these contacts held is singular, so that the rate problem cannot be condensed
-/// on them: every combination is taken by itself. `nulls` are the null vectors in the modes `modes`, where they are at hand.
+/// For points at which the structure with these contacts fixed is singular, so that the rate problem cannot be
+/// condensed on them: every combination of modes is examined separately. `nulls` are the null vectors in the modes
+/// `modes`, where they are already known.
 pub fn in_other_modes(here: SingularPoint<'_>, modes: &[Mode], nulls: Option<&NullVectors>, found: &mut Branches) {
     let options: Vec<Vec<Mode>> = here
         .standings
@@ -27,7 +28,7 @@ pub fn in_other_modes(here: SingularPoint<'_>, modes: &[Mode], nulls: Option<&Nu
         })
         .collect();
     found.unexplored = found.unexplored.saturating_add(count(&options).saturating_sub(MOST_MODES));
-    // Of touches with friction only sticking is examined, and of corners nothing.
+    // A touching contact with friction is examined in sticking and free modes only, a corner not at all.
     let partly = here.standings.iter().zip(here.loading.contacts).filter(|(standing, contact)| match standing {
         Standing::Touching => contact.tangents() > 0,
         Standing::Cornered { .. } => true,
@@ -48,7 +49,7 @@ pub fn in_other_modes(here: SingularPoint<'_>, modes: &[Mode], nulls: Option<&Nu
     }
 }
 
-/// The null vectors of a mode by those of another.
+/// The null vectors of a mode, computed from the null vectors of another.
 fn in_mode(
     system: &ModeSystem<'_>,
     here: SingularPoint<'_>,
@@ -63,8 +64,8 @@ fn in_mode(
     Bordering::new(system, here.state.clone(), &rows, &columns?)?.null_vectors(SINGULAR)
 }
 
-/// Whether motions without load among the null vectors leave alone all contacts that can change: then these equations are
-/// singular in every mode of these contacts.
+/// Whether some motion without load among the null vectors leaves all contacts that can change at rest: then the
+/// equations are singular in every mode of these contacts.
 pub fn are_singular_in_all_modes(here: SingularPoint<'_>, modes: &[Mode], nulls: &NullVectors) -> bool {
     let system = ModeSystem::new(here.loading, modes, here.state);
     let can_change = |contact: &usize| !matches!(here.standings[*contact], Standing::Settled(_));

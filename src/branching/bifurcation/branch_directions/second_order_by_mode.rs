@@ -1,20 +1,20 @@
-//! Directions told at second order, of each contact mode on its own.
+//! Directions determined at second order, separately for each combination of contact modes.
 //!
-//! Where first order leaves no way on, that may be because it says too little. With a direction `q` of the equations
-//! `F(x) = 0` of a mode and the path `x = x₀ + q t + ½ q₂ t²`,
+//! First order may not suffice to determine the directions that continue the path. With a direction `q` of the
+//! equations `F(x) = 0` of a mode and the path `x = x₀ + q t + ½ q₂ t²`,
 //!
 //! ```text
 //! F_x q = 0,      F_x q₂ = -F''(q, q),      q·q₂ = 0.
 //! ```
 //!
-//! An inequality that `q` leaves at equality holds if `q₂` takes it to the right side, and not if it takes it to the wrong
-//! one. A step along the direction would say the same as long as it is short beside the bend: near a fold of what hangs on a
-//! slider the path bends sharply, and no step is.
+//! An inequality that `q` leaves at equality holds if `q₂` makes it positive, and fails if `q₂` makes it negative. A
+//! step along the direction would give the same answer if it were short compared with the radius of curvature of the
+//! path. Near a fold of a part attached to a sliding node the path bends so sharply that no step is short enough.
 //!
-//! At the fold itself the equations of the mode in which the slider sticks have two null vectors, close to it as good as two;
-//! where several parts that nothing joins are at their folds they have more: see `fold`.
+//! At the fold itself the equations of the mode in which the node sticks have two null vectors, and close to the fold
+//! they nearly do; where several uncoupled parts are at their folds the equations have more: see `fold`.
 //!
-//! Asked for where the path would end: it takes a few factorisations for every combination of modes.
+//! Used where the path would otherwise end: it takes a few factorisations for every combination of modes.
 
 use crate::branching::bifurcation::branch_directions::fold;
 use crate::branching::bifurcation::branch_directions::fold::{Fold, Plane};
@@ -33,23 +33,25 @@ use crate::mechanics::problem::natural_residual::ZERO;
 use crate::mechanics::problem::state::{Rate, State};
 use crate::step::event_functions::{self, Watch};
 
-/// What is left of the directions at a point when each is told at second order.
+/// The directions at a point that satisfy the inequalities at second order.
 pub struct SecondOrderFindings {
     pub options: Vec<DirectionChoice>,
-    /// Some mode has a continuum of directions at second order, too, or of some neither second order nor a step tells.
+    /// Some mode has a continuum of directions even at second order, or neither second order nor a trial step decides
+    /// on some direction.
     pub unclear: bool,
 }
 
-/// Rates of first order up to this (of unit arc length; forces relative to the largest) are left to second order, as they
-/// are where steps tell.
+/// Rates of first order up to this (of unit arc length; forces relative to the largest) are decided at second order, as
+/// they are decided by trial steps elsewhere.
 const IN_DOUBT: f64 = 1e-8;
-/// How far along the path (dimensionless) its events are certain: where it bends sharply, what is zero at an event is so at
-/// first order but for what it changes by over this way.
+/// Accuracy of the events' location along the path (dimensionless): where the path bends sharply, a quantity that is
+/// zero at an event is zero at first order except for its change over this arc length.
 const LOCATED: f64 = 1e-11;
-/// Changes of rates up to this part of the largest are zero: what differences of the tangent leave.
+/// Changes of rates up to this part of the largest are zero: they are within the error of the differences of the
+/// tangent.
 const NO_CHANGE: f64 = 1e-6;
 
-/// Radius (dimensionless) of a bend below which no step follows it: the path is taken up where it leaves the bend.
+/// Radius of curvature (dimensionless) below which no step follows a bend: the path resumes past the bend.
 const SHARP: f64 = 1e-5;
 
 /// A direction of a mode.
@@ -57,21 +59,21 @@ struct ModeDirection {
     null: Null,
     /// `q₂`, where the direction is the only one of its mode.
     bend: Option<Rate>,
-    /// The equations of the mode have more than one null vector, or as good as that.
+    /// The equations of the mode have more than one null vector, exactly or nearly.
     is_singular: bool,
     /// See [`DirectionChoice`].
     beside: Option<Rate>,
 }
 
-/// What is to be said of a direction.
+/// The outcome of testing the inequalities along a direction.
 enum DirectionVerdict {
     Holds,
     Fails,
     Unclear,
 }
 
-/// Every direction of every mode of the contacts that can change; `None` where these are too many or not of a kind for
-/// which second order is known (slip in a plane, corners, and motions that no element resists).
+/// Every direction of every mode of the contacts that can change; `None` where the modes are too many or of a kind for
+/// which second order is not available (slip in a plane, corners, and motions that no element resists).
 pub fn in_each_mode(here: SingularPoint<'_>) -> Option<SecondOrderFindings> {
     let options = modes_of_each(here)?;
     if count(&options) > MOST_MODES || !here.loading.structure.allows_dense() {
@@ -94,7 +96,7 @@ pub fn in_each_mode(here: SingularPoint<'_>) -> Option<SecondOrderFindings> {
     Some(told)
 }
 
-/// What each contact may do.
+/// The modes that each contact admits.
 fn modes_of_each(here: SingularPoint<'_>) -> Option<Vec<Vec<Mode>>> {
     let of_contact = |(contact, standing): (usize, &Standing)| {
         let tangents = here.loading.contacts[contact].tangents();
@@ -113,8 +115,8 @@ fn modes_of_each(here: SingularPoint<'_>) -> Option<Vec<Vec<Mode>>> {
     here.standings.iter().enumerate().map(of_contact).collect()
 }
 
-/// The directions of the mode, each in both senses; `None` where nothing moves along one, and where they are three and
-/// more that are not those of parts that nothing joins.
+/// The directions of the mode, each in both senses; `None` where a direction has no motion, and where three or more
+/// null vectors do not belong to uncoupled parts.
 fn ways(point: &BranchingPoint<'_>, unclear: &mut bool) -> Option<Vec<ModeDirection>> {
     let nulls = fold::orthonormal_nulls(point)?;
     match &nulls[..] {
@@ -163,7 +165,7 @@ fn along_arm(ahead: &Null, beside: Rate) -> ModeDirection {
     ModeDirection { null: ahead.clone(), bend: None, is_singular: true, beside: Some(beside) }
 }
 
-/// Of directions that bend at once, those that hold there, as they go on after it.
+/// The feasible directions of a path that bends sharply, each continued past the bend.
 fn past_bend(point: &BranchingPoint<'_>, fold: &Fold, ways: [ModeDirection; 2]) -> Vec<ModeDirection> {
     if fold.is_straight() {
         return leaving(point, fold);
@@ -178,7 +180,7 @@ fn bend(point: &BranchingPoint<'_>, null: &Null) -> Option<Rate> {
     bend_by(point, &point.system, null)
 }
 
-/// The same of the line along a fold, where what is at its fold stays there and the rest of the structure bends the path.
+/// `q₂` of the line along a fold: the part at its fold stays there and the rest of the structure bends the path.
 fn bend_at_fold(point: &BranchingPoint<'_>, flat: &Null) -> Option<Rate> {
     let SingularPoint { loading, state, .. } = point.here;
     let mut system = ModeSystem::new(loading, point.modes, state);
@@ -193,7 +195,7 @@ fn bend_by(point: &BranchingPoint<'_>, system: &ModeSystem<'_>, null: &Null) -> 
     factorisation.solve(&mut values).then(|| system.rate_from(point.here.state, &values))
 }
 
-/// Adds a direction, if it holds and is not known.
+/// Adds a direction that holds and is not in the list yet.
 fn tell(point: &BranchingPoint<'_>, way: ModeDirection, told: &mut SecondOrderFindings) {
     let SingularPoint { loading, state, force_scale, .. } = point.here;
     let rate = &way.null.rate;
@@ -258,19 +260,19 @@ fn verdict(point: &BranchingPoint<'_>, way: &ModeDirection) -> DirectionVerdict 
     verdict
 }
 
-/// The path a little way along a direction, to second order.
+/// The path at a short arc length along a direction, to second order.
 struct Bent {
     way: f64,
     state: State,
     rate: Rate,
     before: Rate,
-    /// The largest change of a rate, of motion and of forces.
+    /// The largest change of a rate; `motion` for displacements, `force` for reactions.
     motion: f64,
     force: f64,
 }
 
 impl Bent {
-    /// How far along the path what is of second order is looked at, over the radius of its bend.
+    /// Arc length at which terms of second order are evaluated, relative to the path's radius of curvature.
     const WAY: f64 = 1e-4;
 
     fn new(point: &BranchingPoint<'_>, rate: &Rate, bend: &Rate) -> Self {
@@ -289,7 +291,8 @@ impl Bent {
         }
     }
 
-    /// The change of a quantity that is a rate, or of the rate of another, by arc length; 0 where it is rounding.
+    /// The derivative with respect to arc length of a watched quantity's slope, or of its value where it has no slope;
+    /// 0 where it is round-off.
     fn change(&self, point: &BranchingPoint<'_>, watch: Watch) -> f64 {
         let SingularPoint { loading, state, .. } = point.here;
         let at = |state, rate| {

@@ -1,4 +1,4 @@
-//! Branches that are taken, and where they lead.
+//! Branches that are followed, and where they lead.
 
 use crate::continuation::path::iterator::Path;
 use crate::continuation::scene::Scene;

@@ -1,16 +1,18 @@
-//! The same for many unknowns, by sparse factorisations.
+//! The first crossing of a step for many unknowns, by sparse factorisations.
 //!
-//! Between two points of the path the equations change from `J` at some place by nearly `δ D`, `D` their change over the
-//! way between. So crossings are expected where `(J + δ D) φ = 0`, those nearest to the place first: block inverse iteration
-//! with `J⁻¹ D` (B. N. Parlett, *The Symmetric Eigenvalue Problem*, SIAM 1998, chapter 14). From there Newton's method on
+//! Between two points of the path the equations change from `J` at some place by approximately `δ D`, with `D` their
+//! rate of change between the points. Crossings are therefore expected where `(J + δ D) φ = 0`; block inverse iteration
+//! with `J⁻¹ D` finds those nearest to the place first (B. N. Parlett, *The Symmetric Eigenvalue Problem*, SIAM 1998,
+//! chapter 14). From there Newton's method on
 //!
 //! ```text
 //! F(x) + Ψ μ = 0,      G(x) = 0
 //! ```
 //!
-//! (`bordering`) finds the point where `k` motions are free together. Of the second equations there are `k (k + 1)` for
-//! `k + 1` unknowns: where `k > 1` eigenvalues are zero together all of them hold, and where some merely come close they do
-//! not. The path's own direction there is the root of `ψ_j F''(v, v) = 0` that continues it.
+//! (`bordering`) finds the point where `k` motions become free together. `G = 0` comprises `k (k + 1)` equations for
+//! `k + 1` unknowns: where `k > 1` eigenvalues vanish together all of them hold; where the eigenvalues are merely close
+//! to each other they do not. The path's own direction at the point is the root of `ψ_j F''(v, v) = 0` that continues
+//! it.
 
 use crate::algebra::SystemFactorisation;
 use crate::branching::bifurcation::locate::{AT_START, Crossing, Located};
@@ -29,41 +31,45 @@ use std::sync::Arc;
 
 /// Rounds of block inverse iteration.
 const ROUNDS: usize = 10;
-/// Vectors of the block beyond those expected to cross: what else is near slows the others down.
+/// Vectors of the block beyond the expected crossings: other eigenvalues nearby slow the convergence.
 const BESIDE: usize = 3;
-/// Vectors of the block at the most: past that eigenvalues are counted in shorter and shorter parts of the step.
+/// Largest number of vectors of the block: for more crossings eigenvalues are counted in shorter and shorter parts of
+/// the step.
 const MOST_IN_BLOCK: usize = 8;
-/// What of a vector is across the others, over its size, up to which it is rounding.
+/// Part of a vector orthogonal to the others, relative to its size, up to which it is round-off.
 const AMONG_OTHERS: f64 = 1e-10;
 /// An eigenvalue whose imaginary part is no larger than this part of it is real.
 const REAL: f64 = 1e-6;
-/// Crossings that are expected this close to each other, over the bracket, are taken for one at first.
+/// Expected crossings this close to each other, relative to the bracket, are first treated as one.
 const CLOSE: f64 = 2e-2;
-/// How far out of the bracket a crossing may be expected, over the bracket: the estimate is of second order.
+/// Largest distance outside the bracket, relative to the bracket, at which a crossing may be expected: the estimate is
+/// of second order.
 const OUTSIDE: f64 = 0.25;
-/// Parts of the bracket at which its crossings are looked for from, one after another.
+/// Places in the bracket, relative to its length, from which its crossings are sought, one after another.
 const FROM: [f64; 3] = [0.5, 0.2, 0.8];
 /// Newton iterations.
 const MOST_ITERATIONS: usize = 12;
-/// Correction (dimensionless) after which nothing is left: the next would be of the order of its square.
+/// Correction (dimensionless) at which the iteration has converged: the next would be of the order of its square.
 const CONVERGED: f64 = 1e-9;
-/// The same where corrections no longer fall, which the residual has to bear out.
+/// The same where corrections no longer decrease; the residual decides then.
 const STALLED: f64 = 1e-6;
-/// Tests up to this are zero: the eigenvalues vanish together. As `TOGETHER` for dense matrices.
+/// Test functions up to this are zero: the eigenvalues vanish together. Corresponds to `TOGETHER` for dense matrices.
 const ZERO: f64 = 1e-10;
-/// How far the point may be from the interpolant of the path, over the step: that is off by the fourth power of the step.
+/// Largest distance of the point from the interpolant of the path, relative to the step: the interpolation error is of
+/// fourth order in the step.
 const BESIDE_PATH: f64 = 2e-2;
-/// Cosine of the angle within which the direction at the point continues that of the interpolant.
+/// Cosine of the largest angle between the direction at the point and that of the interpolant, which it has to
+/// continue.
 const CONTINUES: f64 = 0.99;
-/// How far beside the point eigenvalues are counted, over the step.
+/// Distance from the point at which eigenvalues are counted, relative to the step.
 const BESIDE_POINT: f64 = 1e-4;
-/// Brackets within which the first of several crossings is looked for.
+/// Most brackets in which the first of several crossings is sought.
 const MOST_BRACKETS: usize = 6;
 
-/// A crossing that is expected.
+/// An expected crossing.
 struct Expected {
     place: f64,
-    /// Motions that become free.
+    /// Motions that become free there.
     motions: Vec<Rate>,
 }
 
@@ -71,13 +77,14 @@ struct Expected {
 struct Singular<'a> {
     bordering: Bordering<'a>,
     state: State,
-    /// `ψ_j F''(X_l, X_i)` by `l`, of all `j` and `i`.
+    /// `ψ_j F''(X_l, X_i)` for each `l`, with rows `j` and columns `i`.
     curvatures: Vec<DMatrix<f64>>,
-    /// What is left of the tests, of `k > 1` motions that are not free together.
+    /// Remaining values of the test functions, for `k > 1` motions that do not become free together.
     rest: DMatrix<f64>,
 }
 
-/// The first crossing of a step, as [`crate::branching::bifurcation::locate::locate`] has it; `None` where it is not made out so.
+/// The first crossing of a step, as [`crate::branching::bifurcation::locate::locate`] returns it; `None` where this
+/// method does not find it.
 pub(super) fn locate(
     start: &StepStart<'_>,
     before: Signature,
@@ -110,7 +117,7 @@ struct BorderedNewton<'s, 'a> {
 }
 
 impl BorderedNewton<'_, '_> {
-    /// A crossing between the ends.
+    /// A crossing between the ends of the bracket.
     fn within(&mut self, before: Signature, change: SignatureChange) -> Option<Located> {
         let count = match change {
             SignatureChange::Count { net, .. } => net.unsigned_abs(),
@@ -121,7 +128,7 @@ impl BorderedNewton<'_, '_> {
             let expected = self.expected(self.left.place + part * width, count)?;
             let mut from = 0;
             while let Some(first) = expected.get(from) {
-                // Those that are close to it may cross with it.
+                // Crossings close to the first may coincide with it.
                 let near = |other: &&Expected| other.place - first.place <= CLOSE * width;
                 let close = expected[from..].iter().take_while(near).count();
                 let located = self.crossing(&expected[from..from + close], before, change);
@@ -134,7 +141,7 @@ impl BorderedNewton<'_, '_> {
         })
     }
 
-    /// The crossings that are expected by the equations at a place and their change over the bracket, in order.
+    /// The crossings expected from the equations at a place and their change over the bracket, in order along the path.
     fn expected(&self, place: f64, count: usize) -> Option<Vec<Expected>> {
         let (state, rate) = between(&self.left, &self.right, place);
         let (system, width) = (self.system, self.right.place - self.left.place);
@@ -145,7 +152,7 @@ impl BorderedNewton<'_, '_> {
         let size = system.size();
         let moving = system.loading.structure.unknowns() + 1;
         let block = (count + BESIDE).min(MOST_IN_BLOCK).min(moving - 1);
-        // Parts in every direction, the same each time.
+        // Components in every direction, the same in every run.
         let mut vectors = DMatrix::from_fn(size, block, |row, column| {
             let part = 0.5 + ((row * (5 + 2 * column) + 3 * column) % 13) as f64 / 26.0;
             if row >= moving {
@@ -188,7 +195,7 @@ impl BorderedNewton<'_, '_> {
         };
         let mut expected = Vec::new();
         for close in places.chunk_by(|a, b| b.0 - a.0 <= CLOSE * width) {
-            // The subspace that belongs to them.
+            // The invariant subspace of these eigenvalues.
             let product = close.iter().fold(DMatrix::identity(block, block), |product, (_, value)| {
                 let scaled = &ritz / *value - DMatrix::identity(block, block);
                 product * scaled
@@ -202,26 +209,26 @@ impl BorderedNewton<'_, '_> {
         Some(expected)
     }
 
-    /// The crossing at which motions become free, alone or together.
+    /// The crossing at which the expected motions become free, alone or together.
     fn crossing(&mut self, expected: &[Expected], before: Signature, change: SignatureChange) -> Option<Located> {
         let first = expected.first()?;
         let motions: Vec<Rate> = expected.iter().flat_map(|expected| expected.motions.iter().cloned()).collect();
         let (state, rate) = between(&self.left, &self.right, first.place);
         let mut singular = self.singular(state, &unit(&rate), motions)?;
         if singular.bordering.left.len() > 1 && singular.rest.amax() > ZERO {
-            // Close to each other, but apart.
+            // The crossings are close to each other, but distinct.
             let (state, rate, motion) = singular.first_apart(self.start.state)?;
             singular = self.singular(state, &rate, vec![motion])?;
         } else if singular.bordering.left.len() > 1
             && let Some((state, ..)) = singular.first_apart(self.start.state)
         {
-            // As good as together: the point is where the first is.
+            // The crossings coincide within round-off: the point is that of the first.
             singular.state = state;
         }
         self.located(&singular, before, change)
     }
 
-    /// Newton's method.
+    /// Newton's method for the singular point.
     fn singular(&self, mut state: State, along: &Rate, motions: Vec<Rate>) -> Option<Singular<'_>> {
         let structure = self.start.loading.structure;
         let reach = self.right.place - self.left.place;
@@ -250,7 +257,8 @@ impl BorderedNewton<'_, '_> {
                 bordering.right.iter().map(|right| bordering.curvatures(&bordering.rate(right))).collect();
             let curvatures = curvatures?;
             let mut tests = bordering.tests.clone();
-            // What the step across the null vectors does to the tests; too short a one does nothing.
+            // The change of the test functions by the correction across the null vectors; none for too short a
+            // correction.
             if let Some(moved) = bordering.curvatures(&bordering.rate(&across)) {
                 tests += moved;
             }
@@ -269,7 +277,8 @@ impl BorderedNewton<'_, '_> {
                 return None;
             }
             let stalled = size > 0.5 * least;
-            // One test is zero after each correction, as far as that goes; whether it was tells.
+            // A single test function is zero after each linearised correction; its value before the correction shows
+            // convergence.
             let is_zero = || columns.len() > 1 || bordering.tests.amax() <= ZERO;
             if size <= CONVERGED || (stalled && size <= STALLED && is_zero()) {
                 return Some(Singular { bordering, state, curvatures, rest: tests });
@@ -283,7 +292,7 @@ impl BorderedNewton<'_, '_> {
         None
     }
 
-    /// What was found as the end of a step, where it continues the path.
+    /// The singular point as the end of a step, where it continues the path.
     fn located(&self, singular: &Singular<'_>, before: Signature, change: SignatureChange) -> Option<Located> {
         let BorderedNewton { start, system, .. } = self;
         let place = singular.state.distance(start.state);
@@ -308,7 +317,7 @@ impl BorderedNewton<'_, '_> {
         let nulls = (eigenvalues == corank).then(|| Arc::new(NullVectors { right, left }));
         let mut after = before.past(change, eigenvalues)?;
         if change == SignatureChange::Odd && before.negative.is_some() {
-            // Whether these motions are counted is not known: those that move slipping contacts are not.
+            // Whether the count includes these motions is unknown: it excludes motions that move slipping contacts.
             after.negative = self.counted(&corrected.state, &rate, 1.0, after);
         }
         let crossing = Crossing { eigenvalues, grazing: false, after, nulls };
@@ -318,7 +327,7 @@ impl BorderedNewton<'_, '_> {
         Some(Located { point, crossing, between: None })
     }
 
-    /// Whether an even number of others comes before.
+    /// Whether an even number of other crossings lies before this one.
     fn is_first_by_sign(&self, located: &Located, before: Signature) -> bool {
         let Reached { corrected, rate, .. } = &*located.point;
         let state = corrected.state.advanced(rate, -BESIDE_POINT * self.right.place);
@@ -326,13 +335,13 @@ impl BorderedNewton<'_, '_> {
         factors.is_some_and(|factors| factors.determinant_sign() == before.determinant)
     }
 
-    /// Whether no other crossing comes before.
+    /// Whether no other crossing lies before this one.
     fn is_first_counted(&self, located: &Located, before: Signature) -> bool {
         let Reached { corrected, rate, .. } = &*located.point;
         self.counted(&corrected.state, rate, -1.0, before) == before.negative
     }
 
-    /// Negative eigenvalues just past a point, or, the other way, just before it.
+    /// The number of negative eigenvalues just past a point (`way` 1) or just before it (`way` -1).
     fn counted(&self, point: &State, rate: &Rate, way: f64, signature: Signature) -> Option<usize> {
         let state = point.advanced(rate, way * BESIDE_POINT * self.right.place);
         let StepStart { loading, modes, state: start, .. } = *self.start;
@@ -342,7 +351,7 @@ impl BorderedNewton<'_, '_> {
 }
 
 impl Singular<'_> {
-    /// `ψ_j F''(v, v)` and half its gradient, `v` being so much of each null vector.
+    /// `ψ_j F''(v, v)` and half its gradient, with `v` the combination of the null vectors with these weights.
     fn forms(&self, weights: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
         let corank = self.bordering.left.len();
         let mut gradient = DMatrix::zeros(corank, corank + 1);
@@ -352,7 +361,7 @@ impl Singular<'_> {
         (&gradient * weights, gradient)
     }
 
-    /// The direction among the null vectors that continues one which is about the path's.
+    /// The direction among the null vectors that continues a direction close to the path's.
     fn continued(&self, along: &Rate) -> Option<Rate> {
         let rates: Vec<Rate> = self.bordering.right.iter().map(|right| self.bordering.rate(right)).collect();
         let count = rates.len();
@@ -377,11 +386,11 @@ impl Singular<'_> {
         (rate.product(along) >= CONTINUES).then_some(rate)
     }
 
-    /// Of crossings that are close to each other, but apart: the first along the path, with its motion.
+    /// The first along the path of crossings that are close to each other, but distinct, with its motion.
     fn first_apart(&self, start: &State) -> Option<(State, Rate, Rate)> {
         let corank = self.bordering.left.len();
         let along = self.bordering.rate(&self.bordering.right[0]);
-        // The first null vector is along the path; G of the others changes by -ψ F''(t, X).
+        // The first null vector is along the path; G of the other null vectors changes by -ψ F''(t, X).
         let tests = self.rest.columns(1, corank).into_owned();
         let slopes = -self.curvatures[0].columns(1, corank).into_owned();
         let by_place = -(slopes.lu().solve(&tests)?);
@@ -405,12 +414,13 @@ impl Singular<'_> {
     }
 }
 
-/// The change of the tests of the null vectors beside the path's over a way along it.
+/// The change of the test functions of the other null vectors over a distance along the path.
 fn slopes_times(curvatures: &DMatrix<f64>, corank: usize, place: f64) -> DMatrix<f64> {
     curvatures.columns(1, corank) * -place
 }
 
-/// So much of each null vector as brings the tests to zero, or as near as they come together: `G_ji = ψ_j F''(X_l, X_i) w_l`.
+/// Weights of the null vectors that bring the test functions to zero, in the least-squares sense:
+/// `G_ji = ψ_j F''(X_l, X_i) w_l`.
 fn weights(tests: &DMatrix<f64>, curvatures: &[DMatrix<f64>]) -> Option<DVector<f64>> {
     let count = tests.len();
     let matrix = DMatrix::from_fn(count, curvatures.len(), |row, l| curvatures[l][row]);
@@ -422,7 +432,7 @@ fn weights(tests: &DMatrix<f64>, curvatures: &[DMatrix<f64>]) -> Option<DVector<
     (matrix / scale).svd(true, true).solve(&(right / scale), ZERO).ok()
 }
 
-/// Columns made orthonormal over their first rows; one that lies among the others becomes zero.
+/// Orthonormalises columns over their first rows; a column in the span of the others becomes zero.
 fn orthonormal_columns(mut vectors: DMatrix<f64>, rows: usize) -> DMatrix<f64> {
     for index in 0..vectors.ncols() {
         let before = vectors.column(index).rows(0, rows).norm();

@@ -1,17 +1,17 @@
-//! Points of spatial slip at which the direction of the path is not determined.
+//! Points of spatial slip at which the direction of the path is indeterminate.
 //!
 //! Slip in a plane obeys differential equations. Let `φ = μ r_n - |r_t|`, `q = dφ/ds` with the node stuck and `M = dφ`
 //! along the slip, so that the slip rate `α` and the load rate obey `M α + q ṡ = 0`. Where `q` and `M` vanish together
-//! any `α >= 0` and `ṡ` will do. In the terms of fast and slow systems it is a folded singularity (M. Desroches et al.,
-//! SIAM Rev. 54 (2012) 211, doi:10.1137/100791233): a folded node draws in all paths near by, and beyond it a whole
-//! family of paths leaves.
+//! any `α >= 0` and any `ṡ` satisfy it. In the terminology of fast-slow systems the point is a folded singularity (M.
+//! Desroches et al., SIAM Rev. 54 (2012) 211, doi:10.1137/100791233): a folded node attracts all paths nearby, and
+//! beyond it a whole family of paths leaves.
 //!
-//! In general it is a point at which the equations of rates `A ẋ = 0` have a second solution, while the equations of
-//! states (without those of the tracks) are regular; where they are not it is a bifurcation point. The sign of the
-//! bordered determinant changes through it. It is found by Newton's method on the states: with borders `ψ`, `B` from
-//! the null vectors of `A` near by, `A X + ψ g = 0`, `Bᵀ X = I` give the test functions `g`, which vanish just where the
-//! second solution exists (W. Govaerts, *Numerical Methods for Bifurcations of Dynamical Equilibria*, SIAM 2000,
-//! chapter 3). With several tracks such points form a set; the nearest is taken.
+//! In general it is a point at which the rate equations `A ẋ = 0` have a second solution, while the state equations
+//! (without those of the slip tracks) are regular; where the state equations are singular it is a bifurcation point.
+//! The sign of the bordered determinant changes at the point. Newton's method on the states finds it: with borders `ψ`,
+//! `B` from the null vectors of `A` nearby, `A X + ψ g = 0`, `Bᵀ X = I` give the test functions `g`, which vanish
+//! exactly where the second solution exists (W. Govaerts, *Numerical Methods for Bifurcations of Dynamical Equilibria*,
+//! SIAM 2000, chapter 3). With several tracks such points form a set; the nearest point is taken.
 
 use crate::algebra::{Factorisation, nearest_null_space, null_space_as_scaled};
 use crate::mechanics::equations::{Iterate, Kind, ModeSystem, Role};
@@ -24,16 +24,16 @@ use nalgebra::{DMatrix, DVector};
 const DIFFERENCE: f64 = 1e-5;
 /// Newton iterations.
 const MOST_ITERATIONS: usize = 20;
-/// Correction (dimensionless) below which they have converged.
+/// Correction (dimensionless) below which the iterations have converged.
 const CONVERGED: f64 = 1e-10;
-/// How far from the start of the step the point may lie, over the step.
+/// Largest distance of the point from the start of the step, relative to the step.
 const NEAR: f64 = 2.0;
-/// Pivots of the states' equations up to this, relative, are zero.
+/// Pivots of the state equations up to this, relative, are zero.
 const SINGULAR: f64 = 1e-8;
-/// How far an inequality may be violated.
+/// Largest violation of an inequality that is accepted.
 const VIOLATED: f64 = 1e-10;
 
-/// The point near a step at which the direction is not determined, if there is one.
+/// The point near a step at which the direction is indeterminate, if there is one.
 pub fn locate(start: &StepStart<'_>, reached: &Reached) -> Option<Box<Reached>> {
     let system = ModeSystem::new(start.loading, start.modes, start.state);
     let tracks: Vec<usize> = system
@@ -52,7 +52,7 @@ pub fn locate(start: &StepStart<'_>, reached: &Reached) -> Option<Box<Reached>> 
     }
     let mut rate = start.state.chord(&corrected.state);
     rate.scale(1.0 / step);
-    // The node has come there by slipping on, and nothing else has happened on the way.
+    // The node has reached the point in continued slip, without another event.
     let holds = |watch: &Watch| {
         let value = watch.value(start.loading, start.modes, &corrected.state, &rate);
         value >= -VIOLATED * watch.scale(start.loading, &corrected.state, start.force_scale)
@@ -108,7 +108,7 @@ impl FoldedSingularitySearch<'_> {
         None
     }
 
-    /// The equations of states without the tracks', rows of unit size, and what is left over in them.
+    /// The state equations without those of the tracks, rows of unit size, and their residual.
     fn equations(&self, iterate: &Iterate) -> Option<(DMatrix<f64>, DVector<f64>)> {
         let last = self.system.size() - 1;
         let mut values = DVector::zeros(self.system.size());
@@ -128,7 +128,7 @@ impl FoldedSingularitySearch<'_> {
         Some((matrix, values))
     }
 
-    /// The state nearest to one at which the equations hold.
+    /// The state closest to the given one that satisfies the equations.
     fn projected(&self, mut iterate: Iterate) -> Option<Iterate> {
         self.system.make_consistent(&mut iterate);
         let mut least = f64::INFINITY;
@@ -148,7 +148,7 @@ impl FoldedSingularitySearch<'_> {
         None
     }
 
-    /// The equations of rates, rows of unit size.
+    /// The rate equations, rows of unit size.
     fn rates(&self, iterate: &Iterate) -> Option<DMatrix<f64>> {
         let mut matrix = self.system.assemble(iterate, Kind::Rates).rows(0, self.system.size() - 1).into_owned();
         for mut row in matrix.row_iter_mut() {

@@ -1,12 +1,13 @@
-//! Locating the point at which an eigenvalue crosses zero.
+//! Location of the point at which an eigenvalue crosses zero.
 //!
-//! Newton's method on the path's equations is singular at that very point, and near it may land on another branch. So the
-//! point is found on cubic Hermite interpolants of the path between regular points on both sides: first between the
-//! ends of the step, then between points a fiftieth of the step away, and closer. The interpolation's error falls
-//! with the fourth power of their distance; the residual of the point found is judged like any other's.
+//! Newton's method on the path's equations is singular at this point, and near it may converge to another branch. The
+//! point is therefore found on cubic Hermite interpolants of the path between regular points on both sides: first
+//! between the ends of the step, then between points a fiftieth of the step away, and closer. The interpolation error
+//! decreases with the fourth power of their distance; the point is accepted by its residual as every other point is.
 //!
-//! So it is done with dense matrices. For many unknowns the equations are bordered, so that they are regular at the point
-//! (`bordered_newton`); where that leads to none, as where a crossing is not transversal, the dense way is taken.
+//! This is the method for dense matrices. For many unknowns the equations are bordered, so that they are regular at the
+//! point (`bordered_newton`); where this finds no point, as where a crossing is not transversal, the dense method is
+//! used.
 
 pub(crate) mod bordered_newton;
 pub(crate) mod folded_singularity;
@@ -29,34 +30,35 @@ use std::sync::Arc;
 /// A smooth bifurcation point at the end of a step.
 #[derive(Debug, Clone)]
 pub struct Crossing {
-    /// Eigenvalues that are zero there; 0 where it is no bifurcation, but the direction is not determined (`folded_singularity`).
+    /// Number of eigenvalues that are zero at the point; 0 where it is no bifurcation point, but one of indeterminate
+    /// direction (`folded_singularity`).
     pub eigenvalues: usize,
-    /// It is one only when the contacts that touch here without reaction are free.
+    /// The point is a bifurcation only with the contacts that touch without reaction free.
     pub grazing: bool,
-    /// Signature just past it.
+    /// Signature just past the point.
     pub after: Signature,
-    /// Its null vectors, where they came with it.
+    /// Null vectors at the point, where the location determined them.
     pub nulls: Option<Arc<NullVectors>>,
 }
 
-/// Distances of the regular points, over the step.
+/// Distances of the regular points from the crossing, relative to the step.
 pub(crate) const WIDTHS: [f64; 4] = [2e-2, 4e-3, 1e-3, 2e-4];
-/// Parts of a bracket at which it may begin.
+/// Places in a bracket, relative to its length, from which the search may begin.
 const AHEAD: [f64; 4] = [0.0, 1e-4, 1e-3, 1e-2];
-/// Residual at which closer points gain nothing.
+/// Residual below which closer regular points bring no improvement.
 const GOOD: f64 = 2e-15;
 
-/// Eigenvalues that are this small, relative to the largest, where the first crosses are taken to cross with it: closer
-/// than that the branches of one cannot be told from those of the other.
+/// Eigenvalues this small, relative to the largest, at the first crossing count as crossing together with the first:
+/// the branches of closer crossings cannot be distinguished.
 const TOGETHER: f64 = 1e-10;
 
-/// A crossing no farther from the start of the step (dimensionless) is that start itself.
+/// A crossing no farther than this from the start of the step (dimensionless) is the start itself.
 const AT_START: f64 = 2e-9;
 
-/// What a step ends at: a point, whether it is a smooth bifurcation, and the signs just past it where they are known.
+/// The end of a step: a point, its crossing if it is a smooth bifurcation, and the signature just past it where known.
 pub(crate) type LocatedEnd = (Box<Reached>, Option<Crossing>, Option<Signature>);
 
-/// A crossing with the regular points between which it was found, where it was found so.
+/// A crossing with the regular points between which it was found, where the dense method found it.
 pub(crate) struct Located {
     pub point: Box<Reached>,
     pub crossing: Crossing,
@@ -64,7 +66,7 @@ pub(crate) struct Located {
 }
 
 impl Located {
-    /// Regular points on both sides of it, the step being so long.
+    /// Regular points on both sides of the crossing, for a step of a given length.
     pub fn between(&self, start: &StepStart<'_>, length: f64, work: &mut Work) -> Option<[PlacedPoint; 2]> {
         if let Some(between) = &self.between {
             return Some(between.clone());
@@ -82,7 +84,7 @@ impl Located {
     }
 }
 
-/// Finds the first crossing of a step, whose start has the signature `before`. `None` where none can be made out.
+/// Finds the first crossing of a step whose start has the signature `before`; `None` where the search fails.
 pub fn locate(
     start: &StepStart<'_>,
     before: Signature,
@@ -139,7 +141,7 @@ fn find(
         let corrected = newton::judged(&system, state, start.force_scale);
         let residual = corrected.residual;
         if let Some(previous) = &previous {
-            // Each round's points are at least four times closer.
+            // The points of each round are at least four times closer.
             error = corrected.state.distance(previous) / 256.0;
         }
         previous = Some(corrected.state.clone());
@@ -165,12 +167,12 @@ fn find(
         }
     }
     let (residual, located) = best?;
-    // With sparse matrices a start that is singular itself may look regular.
+    // With sparse matrices a singular start may appear regular.
     let is_start = start.loading.structure.layout().is_some() && located.point.step <= AT_START;
     (residual <= ACCEPTED_RESIDUAL && !is_start).then_some(located)
 }
 
-/// A quantity that falls through zero at the crossing; `reference` is the determinant at the end of the step.
+/// A quantity that decreases through zero at the crossing; `reference` is the determinant at the end of the step.
 fn crossing_value(
     start: &StepStart<'_>,
     system: &ModeSystem<'_>,
@@ -186,14 +188,14 @@ fn crossing_value(
             if net > 0 { values.get(before).copied() } else { values.get(before.checked_sub(1)?).map(|v| -v) }
         }
         SignatureChange::Odd => {
-            // Negative on the far side, of the size of the determinant there.
+            // Negative past the crossing, of the size of the determinant there.
             let here = bordered_determinant(system, start.loading, state, rate)?;
             Some(-here.sign * reference.sign * (here.logarithm - reference.logarithm).min(300.0).exp())
         }
     }
 }
 
-/// Eigenvalues of the reduced tangent, the smallest first.
+/// Eigenvalues of the reduced tangent in ascending order.
 fn eigenvalues(start: &StepStart<'_>, state: &State) -> Option<Vec<f64>> {
     let tangent = counted_tangent(start.loading, start.modes, start.state, state)?;
     let mut values: Vec<f64> = tangent.symmetric_eigenvalues().iter().copied().collect();
@@ -201,7 +203,7 @@ fn eigenvalues(start: &StepStart<'_>, state: &State) -> Option<Vec<f64>> {
     Some(values)
 }
 
-/// How many of the eigenvalues that cross, in the order in which they do, are zero with the first.
+/// How many of the eigenvalues that cross are zero together with the first to cross.
 fn together(values: &[f64], change: SignatureChange) -> Option<usize> {
     let SignatureChange::Count { before, net } = change else { return None };
     let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
@@ -217,7 +219,7 @@ fn root_between(left: &PlacedPoint, right: &PlacedPoint, value: &impl Fn(&State,
         value(&state, &unit(&rate))
     };
     let last = evaluate(right.place)?;
-    // A start that is a bifurcation point itself has no sign: begin a little further on.
+    // A start that is itself a bifurcation point has no sign: begin a little past it.
     let first = AHEAD.iter().find_map(|part| {
         let place = left.place + part * (right.place - left.place);
         evaluate(place).filter(|value| *value > 0.0).map(|value| (place, value))

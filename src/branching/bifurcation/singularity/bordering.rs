@@ -1,16 +1,16 @@
-//! The equations of a mode where they are singular, bordered so that they are regular.
+//! The equations of a mode at a singular point, bordered so that they are regular.
 //!
-//! Let `F_x` have `k` left null vectors and `k + 1` right ones, the path's direction among them. Borders `Ψ` and `B` that
-//! are not orthogonal to them make
+//! Let `F_x` have `k` left null vectors and `k + 1` right ones, the path's direction among them. Borders `Ψ` and `B`
+//! not orthogonal to these make
 //!
 //! ```text
 //! [[F_x, Ψ], [Bᵀ, 0]] [[X], [G]] = [[0], [I]],      [[F_x, Ψ], [Bᵀ, 0]]ᵀ [[ψ], [·]] = [[0], [I]]
 //! ```
 //!
-//! regular, and `G` (`k` by `k + 1`) vanishes just where the null vectors exist; `X` and `ψ` are these vectors then. Along a
-//! motion `v` the derivative of `G` is `-ψᵀ F''(v, X)` (A. Griewank, G. W. Reddien, IMA J. Numer. Anal. 4 (1984) 493,
-//! doi:10.1093/imanum/4.4.493; W. Govaerts, *Numerical Methods for Bifurcations of Dynamical Equilibria*, SIAM 2000,
-//! chapter 3). Two sparse factorisations give all of it: one of the matrix, one of its transpose.
+//! regular, and `G` (`k` by `k + 1`) vanishes exactly where the null vectors exist; `X` and `ψ` then are the null
+//! vectors. Along a motion `v` the derivative of `G` is `-ψᵀ F''(v, X)` (A. Griewank, G. W. Reddien, IMA J. Numer.
+//! Anal. 4 (1984) 493, doi:10.1093/imanum/4.4.493; W. Govaerts, *Numerical Methods for Bifurcations of Dynamical
+//! Equilibria*, SIAM 2000, chapter 3). Two sparse factorisations suffice: one of the matrix, one of its transpose.
 
 use crate::algebra::dense::assembly::Sink;
 use crate::algebra::sparse::{Bordered, SparseFactorisation};
@@ -22,27 +22,27 @@ use nalgebra::{DMatrix, DVector};
 /// Difference step (dimensionless) for second derivatives of states. The error of the formula is of fourth order.
 pub(crate) const DIFFERENCE: f64 = 1e-3;
 
-/// What left vectors leave over by symmetry, over the largest stiffness, up to which it is rounding.
+/// Residual of left vectors found by symmetry, relative to the largest stiffness, up to which it is round-off.
 const SYMMETRIC: f64 = 1e-12;
-/// The same where the point is not singular yet, over the tests.
+/// The same near a singular point, relative to the test functions.
 const BEYOND_TESTS: f64 = 10.0;
 
-/// See the module.
+/// The bordered equations at a state; see the module.
 pub(crate) struct Bordering<'a> {
     system: &'a ModeSystem<'a>,
     pub state: State,
     factors: SparseFactorisation,
     /// `X`, one vector for each border row, over the unknowns of the mode.
     pub right: Vec<DVector<f64>>,
-    /// `ψ`, one vector for each border column, over the equations of the mode but the last.
+    /// `ψ`, one vector for each border column, over the equations of the mode without the last.
     pub left: Vec<DVector<f64>>,
-    /// `G`, over the largest stiffness.
+    /// `G`, relative to the largest stiffness.
     pub tests: DMatrix<f64>,
 }
 
 impl<'a> Bordering<'a> {
-    /// With a border row along each of `rows`, one more than there are columns; `columns` are forces over the unknown
-    /// displacements. `None` where dense matrices are used, and where the system is singular all the same.
+    /// Borders the equations by a row along each of `rows`, one more than there are columns; `columns` are forces over
+    /// the unknown displacements. `None` with dense matrices, and where the bordered system is singular.
     pub fn new(system: &'a ModeSystem<'a>, state: State, rows: &[Rate], columns: &[DVector<f64>]) -> Option<Self> {
         let (size, corank) = (system.size(), columns.len());
         let mut matrix = system.assemble_sparse(&system.iterate(state.clone()), Kind::Rates)?.widened(corank);
@@ -86,7 +86,7 @@ impl<'a> Bordering<'a> {
         Some(Self { system, state, factors, right, left, tests })
     }
 
-    /// Borders `ψ_j` and `X_i` in place of those that were chosen, of unit size and orthogonal to each other.
+    /// Borders `ψ_j` and `X_i` to replace the chosen ones, normalised and mutually orthogonal.
     pub fn borders(&self) -> Option<(Vec<Rate>, Vec<DVector<f64>>)> {
         let unknowns = self.left.first()?.len().min(self.system.loading.structure.unknowns());
         let mut columns: Vec<DVector<f64>> = Vec::with_capacity(self.left.len());
@@ -100,13 +100,14 @@ impl<'a> Bordering<'a> {
         Some((orthonormal(self.right.iter().map(|values| self.rate(values)))?, columns))
     }
 
-    /// The null vectors of the equations: of tests that are all zero those of the borders, of others what they leave.
+    /// The null vectors of the equations: `X` and `ψ` themselves where all test functions are zero, and otherwise their
+    /// combinations for which the test functions vanish.
     pub fn null_vectors(&self, tolerance: f64) -> Option<NullVectors> {
         let corank = self.left.len();
         if self.tests.amax() <= tolerance {
             return Some(NullVectors { right: self.right.clone(), left: self.left.clone() });
         }
-        // Square, so that all of the right vectors are told.
+        // Squared up by a zero row, so that the decomposition gives all right vectors.
         let square = self.tests.clone().insert_row(corank, 0.0);
         let parts = square.svd(true, true);
         let (u, v_t) = (parts.u?, parts.v_t?);
@@ -118,7 +119,7 @@ impl<'a> Bordering<'a> {
         let zero: Vec<usize> = (0..=corank).filter(|index| parts.singular_values[*index] <= tolerance).collect();
         let right: Option<Vec<_>> =
             zero.iter().map(|index| combined(&self.right, &mut v_t.row(*index).iter().copied())).collect();
-        // One of the left ones is of the row that was added.
+        // One of the left vectors belongs to the added row.
         let columns = DMatrix::from_columns(&zero.iter().map(|index| u.column(*index)).collect::<Vec<_>>());
         let own = columns.rows(0, corank).into_owned();
         let parts = own.svd(true, false);
@@ -133,7 +134,8 @@ impl<'a> Bordering<'a> {
         self.system.rate_from(&self.state, values)
     }
 
-    /// Solves for a right-hand side over the equations of the mode; the unknowns of the solution, which is across `B`.
+    /// Solves for a right-hand side over the equations of the mode; returns the unknowns of the solution, which is
+    /// orthogonal to `B`.
     pub fn solve(&self, right_hand_side: &DVector<f64>) -> Option<DVector<f64>> {
         let size = self.system.size();
         let mut values = DVector::zeros(size + self.left.len());
@@ -141,7 +143,7 @@ impl<'a> Bordering<'a> {
         self.factors.solve(&mut values).then(|| values.rows(0, size).into_owned())
     }
 
-    /// `F''(v, ·)`, the last row apart; `None` where the motion is none.
+    /// `F''(v, ·)`, valid but for the last row; `None` where the motion is zero.
     pub fn second_derivative(&self, along: &Rate) -> Option<Bordered> {
         let size = along.size();
         if size <= 0.0 {
@@ -173,9 +175,8 @@ impl<'a> Bordering<'a> {
     }
 }
 
-/// The left vectors without a factorisation, where no contact slips against friction: then motions without load and the
-/// reactions that go with them, turned round, are what the equations' rows add up to nothing by. `None` where that is not
-/// so, but for what the tests leave over.
+/// The left vectors without a factorisation, where no contact slips against friction: then a motion without load, with
+/// its reactions reversed in sign, is a left null vector. `None` where its residual exceeds `left_over` and round-off.
 fn by_symmetry(
     system: &ModeSystem<'_>,
     right: &[DVector<f64>],
@@ -187,7 +188,7 @@ fn by_symmetry(
     let (own, others) = right.split_first()?;
     let turned = |other: &DVector<f64>| {
         let motion = other - own * (other[unknowns] / own[unknowns]);
-        // Those of equilibrium, and for each reaction the row of its contact, one before its column.
+        // Rows of equilibrium, and for each reaction the row of its contact, one before its column.
         DVector::from_fn(size - 1, |row, _| if row < unknowns { motion[row] } else { -motion[row + 1] })
     };
     let turned: Vec<DVector<f64>> = others.iter().map(turned).collect();
@@ -208,11 +209,11 @@ fn by_symmetry(
     Some(left)
 }
 
-/// Rates made orthogonal one after the other, of unit size.
+/// Orthonormalises rates by the Gram-Schmidt process.
 pub(crate) fn orthonormal(rates: impl Iterator<Item = Rate>) -> Option<Vec<Rate>> {
     let mut done: Vec<Rate> = Vec::new();
     for mut rate in rates {
-        // Twice is enough (W. Kahan, B. N. Parlett).
+        // Two passes suffice (W. Kahan, B. N. Parlett).
         for _ in 0..2 {
             for other in &done {
                 rate.add(other, -rate.product(other));

@@ -1,6 +1,6 @@
-//! What tells a singular point of the equations of a mode, and how these are made regular there.
+//! Test functions for singular points of the equations of a mode, and bordered equations that are regular there.
 //!
-//! | file | what it does |
+//! | file | contents |
 //! |---|---|
 //! | `test_functions` | the sign of the bordered determinant and the number of negative eigenvalues |
 //! | `null_vectors` | right and left null vectors |

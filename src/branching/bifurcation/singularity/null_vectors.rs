@@ -5,9 +5,9 @@ use nalgebra::DVector;
 /// Null vectors of the equations of a mode.
 #[derive(Debug)]
 pub struct NullVectors {
-    /// Over the unknowns, one more than there are left ones.
+    /// Right null vectors over the unknowns, one more than there are left ones.
     pub right: Vec<DVector<f64>>,
-    /// Over the equations but the last.
+    /// Left null vectors over the equations without the last.
     pub left: Vec<DVector<f64>>,
 }
 

@@ -1,24 +1,24 @@
 //! Whether the path passes a smooth bifurcation point within a step.
 //!
-//! Two signs are carried along the path:
+//! Two quantities are monitored along the path:
 //!
-//! * the determinant of the equations of the mode, bordered by the path's own direction. It is regular at limit points
-//!   and changes sign exactly where an odd number of branches' null vectors joins (H. B. Keller, in: Applications of
-//!   Bifurcation Theory, Academic Press 1977, 359). It comes with the factorisation that gives the direction, and holds
-//!   for unsymmetric matrices (frictional slip) as well.
-//! * the number of negative eigenvalues of the tangent reduced to the motions
-//!   that the mode allows, `Zᵀ K Z` with `Z` a basis of the null space of the closed contacts' equations (Sylvester's
-//!   law: any basis will do). It sees two eigenvalues cross together, where the determinant keeps its sign. At a limit
-//!   point it changes by one; the determinant tells that change from a bifurcation's.
+//! * the determinant of the equations of the mode, bordered by the path's own direction. The bordered matrix is regular
+//!   at limit points, and the determinant changes sign exactly at bifurcation points with an odd number of additional
+//!   null vectors (H. B. Keller, in: Applications of Bifurcation Theory, Academic Press 1977, 359). It is a by-product
+//!   of the factorisation that gives the direction, and is valid for unsymmetric matrices (frictional slip) as well.
+//! * the number of negative eigenvalues of the tangent reduced to the motions that the mode allows, `Zᵀ K Z` with `Z` a
+//!   basis of the null space of the closed contacts' equations (Sylvester's law: any basis will do). It detects two
+//!   eigenvalues that cross together, where the determinant keeps its sign. At a limit point it changes by one; the
+//!   determinant distinguishes this change from that at a bifurcation.
 //!
-//! Contacts that touch without reaction all along a step do nothing to the path in whatever mode, but hold back what may
-//! leave it: the mode in which they are free is watched as well.
+//! Contacts that touch without reaction throughout a step do not affect the path in any mode, but may block a branch:
+//! the mode in which they are free is monitored as well.
 //!
-//! In a mode with frictional slip the eigenvalues are those of the structure with the slipping contacts held: two that
-//! cross at once are seen where their motions do not move these contacts. Others are not. Nor are, in any mode,
-//! eigenvalues that cross one step to and fro, nor those within the first ten-thousandth of a step from a singular start
-//! (with sparse matrices the first hundredth). Under slip
-//! in a plane the determinant changes its sign also where the direction is not determined (`folded_singularity`).
+//! In a mode with frictional slip the eigenvalues are those of the structure with the slipping contacts stuck: two that
+//! cross together are detected only where their motions do not move these contacts. In no mode are eigenvalues detected
+//! that cross zero twice within one step, or that cross within the first ten-thousandth of a step from a singular start
+//! (with sparse matrices the first hundredth). With slip in a plane the determinant also changes sign where the
+//! direction is indeterminate (`folded_singularity`).
 
 use crate::algebra::sparse::{Bordered, held_inertia};
 use crate::algebra::{Determinant, Inertia, SystemFactorisation, determinant, inertia, null_space};
@@ -36,7 +36,7 @@ use crate::step::segment::{Reached, StepStart};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
-/// What is carried along the path.
+/// The quantities monitored along the path for bifurcations.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Signature {
     /// Sign of the bordered determinant.
@@ -49,7 +49,7 @@ pub struct Signature {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SignatureChange {
     None,
-    /// So many more eigenvalues are negative (fewer, if below 0).
+    /// The number of negative eigenvalues rose by `net` (fell, if below 0).
     Count {
         before: usize,
         net: isize,
@@ -61,10 +61,11 @@ pub enum SignatureChange {
 /// Pivots below this fraction of the largest entry count as zero.
 const ZERO_PIVOT: f64 = 1e-13;
 
-/// Parts of a step after which the signs of a singular start are looked for.
+/// Parts of a step after which the signature of a singular start is evaluated.
 const FURTHER_ON: [f64; 3] = [1e-4, 1e-3, 1e-2];
-/// The same with sparse matrices, whose pivots do not tell how nearly singular they are: along a branch that leaves without
-/// a load rate the eigenvalue grows with the square of the way, and where it is rounding so is the branch.
+/// The same with sparse matrices, whose pivots do not show how nearly singular they are: along a branch that leaves
+/// without a load rate the eigenvalue grows with the square of the arc length, and where it is round-off so is the
+/// branch.
 const FURTHER_ON_SPARSE: [f64; 1] = [1e-2];
 
 /// Whether some contact slips with friction.
@@ -73,9 +74,9 @@ fn slips(loading: Loading<'_>, modes: &[Mode]) -> bool {
     modes.iter().zip(loading.contacts).any(slips)
 }
 
-/// The tangent whose negative eigenvalues are counted: reduced to the motions that the mode allows, those of contacts
-/// that slip with friction left out. `None` where fewer than two motions remain (the determinant says all), and where the
-/// tangent cannot change.
+/// The tangent whose negative eigenvalues are counted, reduced to the motions that the mode allows, without those of
+/// contacts that slip with friction. `None` where fewer than two motions remain (the determinant suffices), and where
+/// the tangent is constant.
 pub fn counted_tangent(loading: Loading<'_>, modes: &[Mode], start: &State, state: &State) -> Option<DMatrix<f64>> {
     let (modes, anchor) = counted_modes(loading, modes, start, state)?;
     let system = ModeSystem::new(loading, &modes, anchor);
@@ -86,7 +87,7 @@ pub fn counted_tangent(loading: Loading<'_>, modes: &[Mode], start: &State, stat
     reduced_tangent(&system, loading, state).filter(|tangent| tangent.nrows() > 1)
 }
 
-/// The modes in which the tangent is counted, and where they begin.
+/// The modes in which the tangent is counted, and the state at which they begin.
 fn counted_modes<'s>(
     loading: Loading<'_>,
     modes: &[Mode],
@@ -99,7 +100,7 @@ fn counted_modes<'s>(
     {
         return None;
     }
-    // Each closed contact takes one motion at the least, but for those that hold a node together.
+    // Each closed contact removes at least one motion, except where several contacts of a corner share a node.
     let closed = modes.iter().filter(|mode| mode.is_active()).count();
     if loading.corners.is_empty() && closed + 2 > unknowns {
         return None;
@@ -113,8 +114,8 @@ fn counted_modes<'s>(
     Some((modes.iter().zip(loading.contacts).map(held).collect(), state))
 }
 
-/// Negative eigenvalues of that tangent, by a sparse factorisation: `Some(None)` where they are not counted, `None` where
-/// the count fails.
+/// Negative eigenvalues of the counted tangent, by a sparse factorisation: `Some(None)` where they are not counted,
+/// `None` where the count fails.
 fn count_sparse(
     loading: Loading<'_>,
     modes: &[Mode],
@@ -132,7 +133,7 @@ fn count_sparse(
     inertia_of_sparse(&system, &matrix, work).map(|inertia| Some(inertia.negative))
 }
 
-/// Negative eigenvalues of the tangent reduced to the motions that a mode without slip against friction allows, however few;
+/// Negative eigenvalues of the tangent reduced to the motions that a mode without frictional slip allows, however few;
 /// `None` where it is singular or the count fails.
 pub fn negative_eigenvalues(
     loading: Loading<'_>,
@@ -172,7 +173,7 @@ fn reduced_tangent(system: &ModeSystem<'_>, loading: Loading<'_>, state: &State)
 }
 
 /// The modes of a step with every contact free that touches without reaction at both of its ends; `None` where there is
-/// none. Free or closed, such a contact lets the path go the same way, but a branch may leave it.
+/// no such contact. Free or closed, the contact does not change the path, but a branch may leave the obstacle.
 pub fn loosened(start: &StepStart<'_>, reached: &Reached) -> Option<Vec<Mode>> {
     let touches = |state: &State, contact: usize| {
         let force_scale = start.force_scale.max(reached.corrected.force_scale);
@@ -189,7 +190,8 @@ pub fn loosened(start: &StepStart<'_>, reached: &Reached) -> Option<Vec<Mode>> {
 }
 
 impl Signature {
-    /// At a point whose bordered determinant's sign is known; `None` where the reduced tangent is singular.
+    /// The signature at a point where the sign of the bordered determinant is known; `None` where the reduced tangent
+    /// is singular.
     pub fn with_determinant(
         loading: Loading<'_>,
         modes: &[Mode],
@@ -212,7 +214,7 @@ impl Signature {
         Some(Self { determinant: sign, negative })
     }
 
-    /// Just past a point where so many eigenvalues cross, from the signature before it.
+    /// The signature just past a point where `eigenvalues` eigenvalues cross, from the signature before it.
     pub fn past(self, change: SignatureChange, eigenvalues: usize) -> Option<Self> {
         let turns = if eigenvalues % 2 == 1 { -1.0 } else { 1.0 };
         let negative = match (change, self.negative) {
@@ -225,8 +227,8 @@ impl Signature {
         Some(Self { determinant: turns * self.determinant, negative })
     }
 
-    /// At the start of a step; where the equations are singular there, a little further on. `serving` becomes the
-    /// factorisation at the start.
+    /// The signature at the start of a step or, where the equations are singular there, a little past it. `serving`
+    /// receives the factorisation at the start.
     pub fn past_start(
         start: &StepStart<'_>,
         step: f64,
@@ -234,7 +236,7 @@ impl Signature {
         work: &mut Work,
     ) -> Option<Self> {
         if !start.loading.structure.allows_dense() || start.is_singular {
-            // Bifurcation points are not looked for, or the path leaves one.
+            // Bifurcation points are not sought, or the path leaves one.
             return None;
         }
         Self::at(start.loading, start.modes, start.state, start.rate, serving, work).or_else(|| {
@@ -248,7 +250,7 @@ impl Signature {
         })
     }
 
-    /// At a point from which a step is to start; `None` where the equations are singular.
+    /// The signature at a point from which a step is to start; `None` where the equations are singular.
     pub fn at(
         loading: Loading<'_>,
         modes: &[Mode],
@@ -280,7 +282,7 @@ impl Signature {
     }
 }
 
-/// The determinant of the scaled equations bordered by a direction.
+/// The determinant of the scaled equations, bordered by a direction.
 pub fn bordered_determinant(
     system: &ModeSystem<'_>,
     loading: Loading<'_>,
@@ -293,9 +295,10 @@ pub fn bordered_determinant(
     determinant(matrix)
 }
 
-/// Sign of the bordered determinant at the end of a step, where it is certain. Next to stiff elements the pivots of a
-/// factorisation that adds them up leave it open; rows over their own sizes tell it as at a start. Else each step would begin
-/// with signs and end without, as if it passed a singular point, and be taken shorter than the one before.
+/// The sign of the bordered determinant at the end of a step, where it is certain. Next to stiff elements the pivots of
+/// a factorisation of the assembled equations leave it undecided; rows scaled by their sizes decide it, as at the
+/// start. Otherwise each step would begin with a signature and end without one, as if it passed a singular point, and
+/// would be shortened.
 pub fn sign_at_end(start: &StepStart<'_>, reached: &Reached, work: &mut Work) -> Option<f64> {
     reached.determinant.or_else(|| {
         let (loading, state) = (start.loading, &reached.corrected.state);
@@ -328,8 +331,8 @@ pub fn compare(
     };
     let mut net = last as isize - first as isize;
     if slips(start.loading, start.modes) {
-        // The count is of the structure with these contacts held. It tells of two at once; where an odd number crosses,
-        // the determinant knows where.
+        // The count is that of the structure with these contacts stuck. It detects two eigenvalues at once; where an
+        // odd number crosses, the determinant locates the crossing.
         let change = match (odd, net) {
             (true, _) => SignatureChange::Odd,
             (false, 0) => SignatureChange::None,
@@ -339,7 +342,8 @@ pub fn compare(
         return (Some(after), change);
     }
     if let Some(Watch::LoadRate { sign }) = reached.event {
-        // K u̇ = ṡ f: the eigenvalue that vanishes at the limit point goes the way of the load, times the sign of f·u̇.
+        // K u̇ = ṡ f: the eigenvalue that vanishes at the limit point changes sign with the load, times the sign of
+        // f·u̇.
         let system = ModeSystem::new(start.loading, start.modes, start.state);
         let structure = start.loading.structure;
         let motion = |unknown: usize| reached.rate.displacement[structure.freedom_of[unknown]];
@@ -352,7 +356,7 @@ pub fn compare(
             }
         };
         let own = if sign * work > 0.0 { 1 } else { -1 };
-        // Which side of zero it has at the point itself is chance.
+        // The sign of the eigenvalue at the limit point itself is arbitrary.
         if (net % 2 != 0) != odd {
             net -= own;
         }
@@ -361,7 +365,7 @@ pub fn compare(
     let change = match (net, (net % 2 != 0) == odd) {
         (0, true) => SignatureChange::None,
         (_, true) => SignatureChange::Count { before: first, net },
-        // A count at the edge of a limit point; the determinant is regular there.
+        // A count at the margin of a limit point; the bordered determinant is regular there.
         (_, false) if odd => SignatureChange::Odd,
         (_, false) => SignatureChange::None,
     };

@@ -6,18 +6,19 @@ use crate::branching::uniqueness::all_slipping::{DEFINITE, MARGIN, RESTING, Redu
 use crate::mechanics::problem::state::Rate;
 use nalgebra::DVector;
 
-/// The equations of the unknowns in the places that they have in the structure.
+/// The equations of the unknowns, each at its place in the structure's sparsity pattern.
 struct EquationsOfMany {
     place_of: Vec<usize>,
     is_slip: Vec<bool>,
     /// The symmetric part, with room for a border.
     symmetric: Bordered,
-    /// Those of the other unknowns alone.
+    /// The equations of the non-slipping unknowns alone.
     held: Bordered,
     load: DVector<f64>,
 }
 
-/// The same with sparse matrices: where the whole is definite, or is so across the load (see `sparse_uniqueness`).
+/// The same with sparse matrices: where the whole matrix is definite, or is so across the load (see
+/// `sparse_uniqueness`).
 pub(super) fn stuck_among_many(reduced: &ReducedUnknowns<'_>, incoming: &Rate) -> Option<Rate> {
     let EquationsOfMany { place_of, is_slip, symmetric, held, load } = equations_of_many(reduced)?;
     let size = load.len();
@@ -31,7 +32,7 @@ pub(super) fn stuck_among_many(reduced: &ReducedUnknowns<'_>, incoming: &Rate) -
     if !by_power {
         return reduced.stuck_rate(&others, &response).filter(|stuck| stuck.load * incoming.load < 0.0);
     }
-    // One direction for each sign of the power; the load alone changes where no other motion has any.
+    // One direction for each sign of the power; the load alone changes where no other motion has power.
     let power = |motion: &dyn Fn(usize) -> f64, slips: bool| -> f64 {
         let unknowns = (0..reduced.unknowns.len()).filter(|unknown| slips || !reduced.unknowns[*unknown].is_slip);
         unknowns.map(|unknown| load[place_of[unknown]] * motion(unknown)).sum()
@@ -55,7 +56,7 @@ pub(super) fn stuck_among_many(reduced: &ReducedUnknowns<'_>, incoming: &Rate) -
     reduced.stuck_rate(&others, &response).filter(|stuck| stuck.load * own * of_stuck < 0.0)
 }
 
-/// The equations, where the structure's pattern has room for them.
+/// The equations, where the structure's sparsity pattern has room for them.
 fn equations_of_many(reduced: &ReducedUnknowns<'_>) -> Option<EquationsOfMany> {
     let structure = reduced.loading.structure;
     let layout = structure.layout()?;
@@ -101,7 +102,8 @@ fn equations_of_many(reduced: &ReducedUnknowns<'_>) -> Option<EquationsOfMany> {
     Some(EquationsOfMany { place_of, is_slip, symmetric, held, load })
 }
 
-/// Whether the direction is one for each sign of the power, and not of the load; `None` where it need be neither.
+/// Whether uniqueness holds for each sign of the power, rather than of the load rate; `None` where it is proven for
+/// neither.
 fn is_by_power(mut symmetric: Bordered, load: &DVector<f64>, incoming: &Rate) -> Option<bool> {
     let size = load.len();
     let inertia = symmetric.inertia(DEFINITE)?;
@@ -112,7 +114,7 @@ fn is_by_power(mut symmetric: Bordered, load: &DVector<f64>, incoming: &Rate) ->
                 symmetric.add(unknown, size, *load);
                 symmetric.add(size, unknown, *load);
             }
-            // One negative eigenvalue of the whole, not two.
+            // The symmetric part has one negative eigenvalue, not two.
             let bordered = SparseFactorisation::new(symmetric, &Holdings::default())?;
             if bordered.determinant_sign() > 0.0 || bordered.pivot_ratio() <= DEFINITE {
                 return None;

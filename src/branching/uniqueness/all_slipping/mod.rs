@@ -1,22 +1,25 @@
-//! The directions at a point within a mode whose contacts on the cone all slip, where a cheap test says that there are two.
+//! The directions at a point within a mode whose contacts on the cone all slip, where a cheap test proves that there
+//! are exactly two.
 //!
-//! With every contact on the cone kept closed let `b` be their slip velocities and `x` the other free motions. Equilibrium
-//! along `x`, and along the slips with `μ` times the normal added, so that what friction bears drops out, is
+//! With every contact on the cone kept closed let `b` be the slip velocities and `x` the other free motions.
+//! Equilibrium along `x`, and along the slips with `μ` times the normal added, so that the friction forces drop out, is
 //!
 //! ```text
-//! a = A (x, b) + q ṡ,      a_x = 0,      0 <= a_b ⊥ b >= 0,      A = Wᵀ K T (and how reactions turn with the place)
+//! a = A (x, b) + q ṡ,      a_x = 0,      0 <= a_b ⊥ b >= 0,      A = Wᵀ K T (and the rotation of reactions)
 //! ```
 //!
-//! with the motions `T` and the tests `W = T + μ n`; `a_b` is how fast the tractions leave the cone. Where the symmetric part
-//! of `A` is positive definite, so is that of the matrix of the slips alone (`b` with the `x` that it makes), which is then
-//! a P-matrix: each sign of the load rate has one ray (see `rates::p_matrix`). One is the way on. The other, as a rule,
-//! is all contacts stuck, which its own equations confirm. Where it is not definite it may be so across the load, and each
-//! sign of the load's power has one ray (see `one_direction::proof`); or the slips are few, and their matrix is formed (see
-//! `rates::parametric`), which a single one does not need.
+//! with the motions `T` and the tests `W = T + μ n`; `a_b` is the rate at which the tractions leave the cone. Where the
+//! symmetric part of `A` is positive definite, so is that of the matrix condensed on the slips (`b` with the resulting
+//! `x`), which is then a P-matrix: each sign of the load rate has one ray (see `rates::p_matrix`). One ray continues
+//! the path. The other usually has all contacts stuck, which its own equations confirm. Where the symmetric part is not
+//! definite it may be definite across the load, and each sign of the load's power has one ray (see
+//! `sparse_uniqueness::proof`); or the slips are few, and their condensed matrix is formed (see
+//! `rates::parametric_lcp`), which is not needed for a single slip.
 //!
-//! [`many`] are the sparse matrices, [`static_condensation`] condenses the dense ones.
+//! [`many`] treats sparse matrices, [`static_condensation`] condenses dense ones.
 //!
-//! `None` is returned where anything is not so, or by less than a wide margin: then `directions` looks everywhere.
+//! `None` is returned where any condition fails or holds by less than a wide margin: `directions` then searches all
+//! modes.
 
 pub(crate) mod many;
 pub(crate) mod static_condensation;
@@ -37,16 +40,17 @@ use nalgebra::{DMatrix, DVector};
 use smallvec::{SmallVec, smallvec};
 use static_condensation::CondensedResponse;
 
-/// What is not zero by this much (rates of unit arc length; forces against the largest of them) leaves no doubt.
+/// Rates above this (of unit arc length; forces relative to the largest) are nonzero beyond doubt.
 const MARGIN: f64 = 1e-7;
 /// Eigenvalues up to this, relative, count as zero.
 const DEFINITE: f64 = 1e-9;
-/// Unknowns up to which matrices are dense: their entries are few, and only the profile is factorised.
+/// Largest number of unknowns for which matrices are dense: they have few entries, and only the profile is factorised.
 const MOST_DENSE: usize = 40;
 /// Load rates below this may be zero.
 const RESTING: f64 = 1e-8;
 
-/// A motion of a degree of freedom with one of the unknowns, and the weight of its equation in that of the unknown.
+/// A contribution of an unknown to the motion of a degree of freedom, and the weight of the degree of freedom's
+/// equation in the unknown's equation.
 #[derive(Clone, Copy)]
 struct MotionTerm {
     unknown: usize,
@@ -54,9 +58,9 @@ struct MotionTerm {
     test: f64,
 }
 
-/// How a degree of freedom moves.
+/// The motion of a degree of freedom.
 struct FreedomMotion {
-    /// Its first part and their number.
+    /// Index of its first term and their number.
     first: usize,
     count: usize,
     /// Velocity per load rate.
@@ -65,7 +69,7 @@ struct FreedomMotion {
 
 struct Unknown {
     is_slip: bool,
-    /// A degree of freedom at the unknown's own node, each another.
+    /// A degree of freedom at the unknown's own node, different for each unknown.
     freedom: usize,
 }
 
@@ -75,22 +79,22 @@ struct Slip {
     direction: Vector,
 }
 
-/// The unknowns `(x, b)`, in the order of the nodes; of few nodes they need no memory of their own.
+/// The unknowns `(x, b)`, in the order of the nodes; stored without allocation for few nodes.
 struct ReducedUnknowns<'a> {
     loading: Loading<'a>,
     state: &'a State,
-    /// Of each degree of freedom.
+    /// One for each degree of freedom.
     places: SmallVec<[FreedomMotion; 6]>,
     parts: SmallVec<[MotionTerm; 4]>,
     slips: SmallVec<[Slip; 1]>,
     unknowns: SmallVec<[Unknown; 4]>,
-    /// Entries on the diagonal blocks by which reactions turn with the place.
+    /// Entries of the diagonal blocks due to the rotation of reactions with the motion.
     turning: SmallVec<[(usize, usize, f64); 1]>,
     /// The closed contact of each node.
     holder: SmallVec<[Option<usize>; 2]>,
 }
 
-/// How the degrees of freedom move.
+/// The motions of the degrees of freedom.
 #[derive(Clone, Copy)]
 struct Motions<'a> {
     places: &'a [FreedomMotion],
@@ -98,14 +102,14 @@ struct Motions<'a> {
 }
 
 impl<'a> Motions<'a> {
-    /// The parts of a degree of freedom, and its velocity per load rate.
+    /// The terms of a degree of freedom, and its velocity per load rate.
     fn of(self, freedom: usize) -> (&'a [MotionTerm], f64) {
         let FreedomMotion { first, count, driven } = self.places[freedom];
         (&self.parts[first..first + count], driven)
     }
 }
 
-/// The way on and the other direction, if there are no more.
+/// The direction that continues the path and the other direction, if there are no more.
 pub fn directions_going_on(
     loading: Loading<'_>,
     state: &State,
@@ -160,8 +164,8 @@ pub fn directions_going_on(
 }
 
 impl<'a> ReducedUnknowns<'a> {
-    /// `None` where some contact can do more than slip or stick, where several close on one node, and where supports guide
-    /// a closed node.
+    /// Sets up the unknowns; `None` where some contact can do more than slip or stick, where several are closed at one
+    /// node, and where supports guide a closed node.
     fn new(loading: Loading<'a>, state: &'a State, standings: &[Standing], modes: &[Mode]) -> Option<Self> {
         let structure = loading.structure;
         let freedoms = structure.freedoms();
@@ -281,7 +285,8 @@ impl<'a> ReducedUnknowns<'a> {
         self.turning.iter().for_each(|(row, column, value)| add(*row, Some(*column), *value));
     }
 
-    /// The direction along which all contacts on the cone stick, if that and the way on are all there are.
+    /// The direction along which all contacts on the cone stick, if it and the continuation of the path are the only
+    /// directions.
     fn stuck(&self, incoming: &Rate) -> Option<Rate> {
         if self.unknowns.len() > MOST_DENSE {
             return many::stuck_among_many(self, incoming);
@@ -292,8 +297,8 @@ impl<'a> ReducedUnknowns<'a> {
             if is_sole && others.is_empty() { (DMatrix::zeros(0, 0), DVector::zeros(0)) } else { self.equations() };
         let response = CondensedResponse::new(&matrix, &load, &others)?;
         if is_sole {
-            // With the others condensed there are two solutions of `0 <= m b + q ṡ ⊥ b >= 0` where `q` is not zero, which
-            // the stuck rate shows, whatever `m`: the slip that goes on, its load rate `-m b / q`, and `b = 0` with `q ṡ > 0`.
+            // With the other unknowns condensed `0 <= m b + q ṡ ⊥ b >= 0` has two solutions whatever `m` if `q` is not
+            // zero, as the stuck rate shows: continued slip with the load rate `-m b / q`, and `b = 0` with `q ṡ > 0`.
             return self.stuck_rate(&others, &response.load);
         }
         if incoming.load.abs() > RESTING && is_definite(matrix.clone()) {
@@ -320,8 +325,8 @@ impl<'a> ReducedUnknowns<'a> {
         (0..self.unknowns.len()).filter(|unknown| self.unknowns[*unknown].is_slip == is_slip).collect()
     }
 
-    /// The rate at which nothing slips, of unit arc length, in the sense in which all contacts stay within their cones;
-    /// `None` where they do not by a wide margin. `static_condensation` is what the other unknowns do for unit load rate.
+    /// The rate of unit arc length at which nothing slips, in the sense in which all contacts stay within their cones;
+    /// `None` where they do not by a wide margin. `response` is the motion of the other unknowns for unit load rate.
     fn stuck_rate(&self, others: &[usize], response: &DVector<f64>) -> Option<Rate> {
         let (loading, structure) = (self.loading, self.loading.structure);
         let mut velocities: SmallVec<[f64; 4]> = smallvec![0.0; self.unknowns.len()];
@@ -347,7 +352,7 @@ impl<'a> ReducedUnknowns<'a> {
         if !size.is_finite() || size <= MARGIN * largest {
             return None;
         }
-        // How fast a contact's force goes into its cone.
+        // The rate at which a contact's force moves into its cone.
         let inward = |slip: &Slip| {
             let reaction = &rate.reactions[slip.contact];
             loading.contacts[slip.contact].friction.slack(reaction, &slip.direction)

@@ -1,9 +1,9 @@
-//! The motions that do not slip, condensed.
+//! Static condensation of the motions without slip.
 
 use crate::algebra::Factorisation;
 use nalgebra::{DMatrix, DVector};
 
-/// How the other unknowns follow the load rate with all slips held.
+/// Response of the other unknowns to the load rate with all slips zero.
 pub(super) struct CondensedResponse {
     factorisation: Option<Factorisation>,
     pub(super) load: DVector<f64>,
@@ -20,7 +20,7 @@ impl CondensedResponse {
         factorisation.solve(&mut response).then_some(Self { factorisation: Some(factorisation), load: response })
     }
 
-    /// `M` and `q` of the slips alone.
+    /// The matrix `M` and load vector `q` condensed on the slips.
     pub(super) fn condensed(
         &self,
         matrix: &DMatrix<f64>,

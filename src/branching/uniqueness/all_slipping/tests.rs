@@ -7,14 +7,14 @@ use crate::continuation::path::iterator::Path;
 use crate::continuation::scene::Scene;
 use crate::resources::cancel::CancelFlag;
 
-/// At every point of the built-in scenes: what is found at once is what the search everywhere lists.
+/// At every point of the built-in scenes the directions found by the test are those that the full search lists.
 #[test]
 fn what_is_found_at_once_is_what_is_found_everywhere() {
     let mut found = 0;
     for built_in in scenes::ALL {
         let request = crate::model::decode::decode(built_in.request.as_bytes()).expect("a request");
         let mut scene = Scene::new(&request).expect("a scene");
-        // Both dense matrices and sparse ones.
+        // Both dense and sparse matrices.
         for sparse in [false, true] {
             scene.structure.set_sparse(sparse);
             let mut path = Path::new(&scene, CancelFlag::default());

@@ -1,4 +1,4 @@
-//! The rate equations of contacts that can change, by their entries.
+//! The rate equations of the contacts that can change, by their entries.
 
 use crate::algebra::sparse::factors::cholesky::Triangle;
 use crate::mechanics::contact::vector::{Vector, scaled};
@@ -11,15 +11,15 @@ use smallvec::SmallVec;
 /// A contact that can change.
 pub(super) struct ChangingContact {
     pub contact: usize,
-    /// The slip that it would begin with; `None` where it touches without reaction.
+    /// Direction of incipient slip; `None` where the contact touches without reaction.
     pub direction: Option<Vector>,
     pub frame: Frame,
-    /// Its column in `A`: of its slip on the cone; where it touches, of its velocity along the tangent, and after it the
-    /// one along the normal.
+    /// Its column in `A`: that of its slip if it is on the cone; if it touches, that of its tangential velocity,
+    /// followed by that of its normal velocity.
     pub column: usize,
 }
 
-/// What a degree of freedom has in a column of `A`, and in the row.
+/// Entries of a degree of freedom in a column of `A` and in the corresponding row.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ColumnEntry {
     pub column: usize,
@@ -27,26 +27,26 @@ pub(super) struct ColumnEntry {
     pub test: f64,
 }
 
-/// Entries of a column of `A`, as they mostly are in the plane.
+/// Expected number of entries in a column of `A` in the plane.
 const ENTRIES: usize = 6;
 
-/// See the module.
+/// The rate equations at a state; see the module.
 pub(super) struct Equations<'a> {
     pub loading: Loading<'a>,
     pub state: &'a State,
-    /// Modes of those that cannot change; of the others that they stick.
+    /// Modes with all contacts that can change stuck.
     pub held: Vec<Mode>,
     pub changing: Vec<ChangingContact>,
-    /// Of each degree of freedom.
+    /// Column entries of each degree of freedom.
     pub parts: Vec<SmallVec<[ColumnEntry; 2]>>,
-    /// Columns of `A`.
+    /// Number of columns of `A`.
     pub size: usize,
-    /// How reactions turn with the place: diagonal entries of `A`.
+    /// Diagonal entries of `A` due to the rotation of reactions with the motion.
     turning: Vec<(usize, f64)>,
 }
 
 impl<'a> Equations<'a> {
-    /// `None` where the equations are not of the kind described.
+    /// Sets up the equations; `None` where they are not of the kind described.
     pub fn new(loading: Loading<'a>, state: &'a State, standings: &[Standing]) -> Option<Self> {
         let structure = loading.structure;
         let shares = loading.corners.iter().any(|corner| {
@@ -125,7 +125,7 @@ impl<'a> Equations<'a> {
         Some(())
     }
 
-    /// Calls with every entry of `A`; several at one place add up.
+    /// Calls `each` for every entry of `A`; several at one place add up.
     pub fn each_entry(&self, each: &mut impl FnMut(usize, usize, f64)) {
         self.loading.structure.each_stiffness(&self.state.displacement, &mut |row, column, value| {
             for test in &self.parts[row] {
@@ -151,14 +151,14 @@ impl<'a> Equations<'a> {
         lower
     }
 
-    /// Velocities of all degrees of freedom from those of the columns.
+    /// Velocities of all degrees of freedom from the velocities of the columns.
     pub fn velocities(&self, columns: &[f64]) -> Vec<f64> {
         let velocity =
             |parts: &SmallVec<[ColumnEntry; 2]>| parts.iter().map(|part| part.motion * columns[part.column]).sum();
         self.parts.iter().map(velocity).collect()
     }
 
-    /// Velocities of the columns from those of all degrees of freedom.
+    /// Velocities of the columns from the velocities of all degrees of freedom.
     pub fn columns_of(&self, rate: &Rate) -> Vec<f64> {
         let mut columns = vec![0.0; self.size];
         for (parts, velocity) in self.parts.iter().zip(&rate.displacement) {
@@ -186,7 +186,7 @@ impl<'a> Equations<'a> {
         self.load().iter().zip(columns).map(|(load, velocity)| load * velocity).sum()
     }
 
-    /// The mode in which a contact that touches, or is on its cone, goes at some velocity without any force.
+    /// The mode of a touching contact, or of one on its cone, in a motion without any force.
     pub fn mode_of_motion(&self, one: &ChangingContact, columns: &[f64], still: f64) -> Mode {
         let along = columns[one.column];
         match one.direction {

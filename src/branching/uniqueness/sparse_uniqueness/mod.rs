@@ -1,19 +1,19 @@
-//! Directions where many contacts can change, without a matrix of them.
+//! Directions where many contacts can change, without a condensed matrix of their velocities.
 //!
 //! Let `w >= 0` be the speeds of the nodes on their cones, along the directions `d` in which they may slip, and
-//! `y = μ ṙ_n + d·ṙ_t >= 0` what their forces leave of the cones, `w y = 0`; let `v` be the velocities of the nodes that
-//! touch without reaction, and `x` those of what is free. The rates obey
+//! `y = μ ṙ_n + d·ṙ_t >= 0` the rates at which their forces move into the cones, `w y = 0`; let `v` be the velocities
+//! of the nodes that touch without reaction, and `x` those of the free nodes. The rates obey
 //!
 //! ```text
 //! A (x, w, v) - q ṡ = (0, y, ṙ),      A = Rᵀ K C,      columns C of a node on its cone: d,      rows R: d + μ n
 //! ```
 //!
-//! in the plane. [`proof`] tells where a sparse Cholesky factorisation shows that each load rate has one solution at the
-//! most; [`pivoting`] finds it: solve in a mode, change every contact that violates it, and again. Time and memory go with
-//! the structure.
+//! in the plane. [`proof`] shows by sparse Cholesky factorisations where each load rate has at most one solution;
+//! [`pivoting`] finds it: solve in a mode, change every contact that violates it, and repeat. Time and memory are
+//! proportional to the size of the structure's matrices.
 //!
-//! Where contacts are too many for the condensed matrix and there is no such proof, what pivoting finds is listed, and the
-//! modes not examined are counted.
+//! Where the contacts are too many for the condensed matrix and there is no such proof, the directions found by
+//! pivoting are listed, and the modes not examined are counted.
 
 pub(crate) mod equations;
 pub(crate) mod pivoting;
@@ -30,21 +30,21 @@ use crate::mechanics::problem::state::State;
 use equations::Equations;
 use proof::DistinguishingQuantity;
 
-/// Contacts that can change up to which the search of every combination is as quick: where all are on their cones, and
-/// where some touch, each of which has four ways to go on.
+/// Numbers of contacts that can change up to which a search of all combinations is as fast: of all of them, and of
+/// those that touch, each of which has four modes.
 const FEW: usize = 16;
 const FEW_TOUCHING: usize = 3;
-/// The same of structures with sparse matrices, at the least: each contact that can change is one more solve, and costs as
-/// much of the factorisations that a proof takes as the factor's columns are short.
+/// Lower bound of this number with sparse matrices: each contact that can change takes one more solve, which is cheaper
+/// relative to the factorisations of a proof the longer the factor's columns are.
 const FEW_OF_MANY: usize = 4;
-/// And at the most: the search, which may have to try every combination, is cut where it takes too long.
+/// Upper bound: the search, which may have to try every combination, is cut short where it takes too long.
 const MOST_OF_MANY: usize = 24;
-/// Entries of a column of the factor for which one more contact is as quick.
+/// Entries of a column of the factor for which one more contact can be searched as fast.
 const ENTRIES_A_CONTACT: usize = 3;
-/// Numbers of the condensed equations (contacts that can change times what each moves) that are too many.
+/// Largest number of entries of the condensed equations (contacts that can change times the size of their columns).
 const MOST_CONDENSED: usize = 25_000_000;
 
-/// Lists the directions; `false` where there is no proof that they are all and the contacts are few enough for a search.
+/// Lists the directions; `false` where they are not proven to be complete and the contacts are few enough for a search.
 pub(crate) fn directions(
     loading: Loading<'_>,
     state: &State,
@@ -59,7 +59,7 @@ pub(crate) fn directions(
     let Some(equations) = Equations::new(loading, state, standings) else { return false };
     let columns = equations.changing.len() * loading.structure.dimension;
     let is_huge = columns * (loading.structure.freedoms() + 4 * loading.contacts.len()) > MOST_CONDENSED;
-    // The members of a family that no element resists are searched for where contacts are few.
+    // Where contacts are few, families of motions that no element resists are left to the search.
     let is_few = equations.changing.len() <= FEW;
     let proof = proof::proof(&equations, incoming.map(|incoming| incoming.rate))
         .filter(|proof| !is_few || proof.free_motions() <= 1);
@@ -98,7 +98,7 @@ pub(crate) fn directions(
     true
 }
 
-/// Whether the search is quicker than a proof.
+/// Whether the search is faster than a proof.
 pub(crate) fn are_few(loading: Loading<'_>, standings: &[Standing]) -> bool {
     let touching = standings.iter().filter(|standing| matches!(standing, Standing::Touching)).count();
     let changing = standings.iter().filter(|standing| !matches!(standing, Standing::Settled(_))).count();

@@ -1,4 +1,5 @@
-//! The direction with one sign of the load rate, or of the load's power, by block pivoting (M. M. Kostreva, Optimization 9 (1978) 13).
+//! The direction for one sign of the load rate, or of the load's power, by block pivoting (M. M. Kostreva, Optimization
+//! 9 (1978) 13).
 
 use crate::algebra::SystemFactorisation;
 use crate::algebra::dense::assembly::Sink;
@@ -14,21 +15,21 @@ use crate::mechanics::problem::node_forces::whole_rates;
 use crate::mechanics::problem::state::Rate;
 use crate::step::corrector::cached_factorisation::AtHand;
 
-/// Rounds of block pivoting in which every contact changes that is violated, and rounds after them in which only the last
-/// one does (K. G. Murty's method, finite where there is one solution for each right-hand side).
+/// Rounds of block pivoting in which every violating contact changes, and subsequent rounds in which only the last one
+/// does (K. G. Murty's method, finite where there is one solution for each right-hand side).
 const ROUNDS: usize = 16;
 const ROUNDS_ONE_BY_ONE: usize = 48;
 
-/// A contact whose mode only a finite step can tell.
+/// A contact whose mode only a finite step can decide.
 pub(super) struct Doubt {
     contact: usize,
-    /// Along which it may slip, where it is on its cone.
+    /// Direction in which the contact may slip, if it is on its cone.
     direction: Option<Vector>,
-    /// What must not be negative is zero at first order, not only nearly so.
+    /// The nonnegative quantity of its mode is exactly zero at first order, not only nearly.
     weak: bool,
 }
 
-/// A direction with this sign of what controls it, by block pivoting.
+/// The direction with a given sign of the control, by block pivoting.
 pub(super) fn solve(
     equations: &Equations<'_>,
     control: DistinguishingQuantity,
@@ -63,7 +64,7 @@ pub(super) fn solve(
             None => {
                 let at_hand = by.map(|by| AtHand::of(equations.loading, by)).unwrap_or_default();
                 let candidate = candidate(equations, rate, modes, doubts);
-                // What is in doubt has other modes than those that were solved in.
+                // The modes of contacts in doubt are not those of the factorisation.
                 return Some(if candidate.weak { candidate } else { CandidateDirection { at_hand, ..candidate } });
             }
             Some(next) if round < ROUNDS => modes = next,
@@ -76,7 +77,7 @@ pub(super) fn solve(
     None
 }
 
-/// The load on each column, and whether that is of a contact on its cone.
+/// The load on each column, and whether the column belongs to a contact on its cone.
 fn loads(equations: &Equations<'_>) -> impl Iterator<Item = (f64, bool)> {
     let mut is_cone = vec![false; equations.size];
     equations.changing.iter().filter(|one| one.direction.is_some()).for_each(|one| is_cone[one.column] = true);
@@ -104,10 +105,11 @@ pub(super) fn at_rest(equations: &Equations<'_>) -> Vec<CandidateDirection> {
     [1.0, -1.0].into_iter().filter_map(rests).collect()
 }
 
-/// Nothing moves, and what each closed contact bears of the load grows with it; solved for where supports bear some.
+/// The rate without motion, at which the load on each closed contact grows with the load factor; solved for where
+/// supports carry part of it.
 fn rest(equations: &Equations<'_>, sign: f64) -> Option<Rate> {
     let (loading, structure) = (equations.loading, equations.loading.structure);
-    // The contacts of these equations have each a node of its own.
+    // Each contact of these equations has its own node.
     let freedoms = |contact: usize| {
         loading.contacts[contact].kinematics.node().map_or(0..0, |node| structure.translations_of(node))
     };
@@ -131,7 +133,7 @@ fn rest(equations: &Equations<'_>, sign: f64) -> Option<Rate> {
     Some(Rate { displacement: vec![0.0; loading.structure.freedoms()], load: sign, reactions })
 }
 
-/// The order in which a search lists candidates: held where they can be, the first contact counting fastest.
+/// Sort key in the order in which a search lists candidates: stuck where possible, the first contact varying fastest.
 pub(super) fn order(equations: &Equations<'_>, candidate: &CandidateDirection) -> Vec<u8> {
     let rank = |one: &ChangingContact| match (candidate.modes[one.contact], one.direction) {
         (Mode::Stick, _) => 0,
@@ -149,8 +151,8 @@ fn value_of(equations: &Equations<'_>, control: DistinguishingQuantity, rate: &R
     }
 }
 
-/// The direction, of either sign, that a mode leaves, the equations bordered by another or by the load rate; with their
-/// factorisation.
+/// The direction, of either sign, that a mode allows, and the factorisation with which it was found; the equations are
+/// bordered by another direction or by the load rate.
 fn line(
     equations: &Equations<'_>,
     modes: &[Mode],
@@ -167,7 +169,7 @@ fn line(
     Some((rate, Some(factorisation)))
 }
 
-/// The modes to try next, if something is negative that must not be; the contacts at which it is zero, or nearly so.
+/// The modes to try next, if a nonnegative quantity is negative; the contacts at which it is zero, exactly or nearly.
 fn violations(equations: &Equations<'_>, modes: &[Mode], rate: &Rate) -> (Option<Vec<Mode>>, Vec<Doubt>) {
     let force = WEAK * rate.largest_reaction().max(f64::MIN_POSITIVE);
     let (mut next, mut doubts) = (None, Vec::new());
@@ -186,7 +188,7 @@ fn speed(equations: &Equations<'_>, one: &ChangingContact, direction: &Vector, r
     dot(direction, &equations.loading.relative_rate(one.contact, equations.state, rate))
 }
 
-/// Of each contact that can change, whether what must not be negative in its mode is positive beyond round-off.
+/// For each contact that can change, whether the nonnegative quantity of its mode is positive beyond round-off.
 pub(super) fn strict(equations: &Equations<'_>, candidate: &CandidateDirection) -> Vec<bool> {
     let rate = &candidate.rate;
     let force = WEAK * rate.largest_reaction().max(f64::MIN_POSITIVE);
@@ -197,8 +199,8 @@ pub(super) fn strict(equations: &Equations<'_>, candidate: &CandidateDirection) 
     equations.changing.iter().map(is_strict).collect()
 }
 
-/// The least of what must not be negative in a mode, what of it is round-off (`force` of a force), and the mode to try
-/// where it is negative.
+/// The smallest of the nonnegative quantities of a mode, its round-off (`force` for forces), and the mode to try where
+/// it is negative.
 fn margin(equations: &Equations<'_>, one: &ChangingContact, mode: Mode, rate: &Rate, force: f64) -> (f64, f64, Mode) {
     let (reaction, data) = (&rate.reactions[one.contact], &equations.loading.contacts[one.contact]);
     let tolerance = if matches!(mode, Mode::Stick) || data.tangents() == 0 { force } else { WEAK };
@@ -228,8 +230,8 @@ fn margin(equations: &Equations<'_>, one: &ChangingContact, mode: Mode, rate: &R
     (margin, tolerance, other)
 }
 
-/// With the contacts that might as well be in the other mode, at first order or nearly so; where they can stick they
-/// do.
+/// The candidate with alternatives for the contacts that may be in another mode, exactly or nearly at first order;
+/// these stick where they can.
 pub(super) fn candidate(
     equations: &Equations<'_>,
     rate: Rate,

@@ -1,30 +1,32 @@
-//! That each load rate has one solution at the most, from factorisations of sparse matrices.
+//! Proof, by factorisations of sparse matrices, that each load rate has at most one solution.
 //!
-//! Let `Δ` be the difference of two solutions with one `ṡ`. Where nothing holds, `Δ_x (A Δ)_x = 0`; on the cones
-//! `Δ_w Δ_y <= 0`. Of a contact that touches let `r = ΔR_n`, the row of `A` along its normal: unilateral contact gives
-//! `Δ_n r <= 0`, and Coulomb's law `Δ_t ΔR_t <= μ |r| |Δ_t|` (who slips drags by `μ R_n` whether pressed or not). The sum,
-//! normals weighted by `1 ± η`, `|η| < 1`, with the sign of `r Δ_t`, says
+//! Let `Δ` be the difference of two solutions with the same `ṡ`. For unconstrained motions `Δ_x (A Δ)_x = 0`; on the
+//! cones `Δ_w Δ_y <= 0`. For a touching contact let `r = ΔR_n`, the row of `A` along its normal: unilateral contact
+//! gives `Δ_n r <= 0`, and Coulomb's law `Δ_t ΔR_t <= μ |r| |Δ_t|` (a slipping contact has the traction `μ R_n` whether
+//! pressed or not). The sum, with the normal parts weighted by `1 ± η`, `|η| < 1`, with the sign of `r Δ_t`, gives
 //!
 //! ```text
 //! Δᵀ A Δ <= Σ ∓ r b,      b = η Δ_n - μ Δ_t
 //! ```
 //!
-//! so that `Δ = 0` if the symmetric part of `A` is larger than `½ Σ (α r rᵀ + b bᵀ/α)` for some `η` and `α > 0`. Where all are
-//! on their cones, this is `A` definite: then the matrix of the slips is a P-matrix, and there is exactly one solution (R. W.
-//! Cottle, J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem*, theorem 3.3.7). `η` is taken so that the motion
-//! which the structure resists least along `b` is as small as can be, `α` so that both terms weigh the same.
+//! so that `Δ = 0` if the symmetric part of `A` is larger than `½ Σ (α r rᵀ + b bᵀ/α)` for some `η` and `α > 0`. Where
+//! all contacts are on their cones, the condition is that `A` is definite: then the matrix of the slips is a P-matrix,
+//! and there is exactly one solution (R. W. Cottle, J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem*,
+//! theorem 3.3.7). `η` is chosen such that the motion along `b` that the structure resists least is as small as
+//! possible, `α` such that both terms have equal weight.
 //!
-//! One motion `z` may be resisted by nothing, `A z = Aᵀ z = 0`, and beside it unknowns that no element acts on, if `r` and `b`
-//! vanish along them. Then `Δ` consists of these, and a solution is the only one if inequalities that are strict there hold
-//! it from each. With `z_n >= μ |z_t|` at all that touch and `z_w >= 0`, the reactions' power on `z` is not negative, so
-//! `z·q ṡ <= 0`: the other sign has none. With `ṡ = 0` there are those motions alone.
+//! The structure may have one motion `z` without resistance, `A z = Aᵀ z = 0`, and in addition unknowns on which no
+//! element acts, if `r` and `b` vanish along all of them. Then `Δ` consists of these motions, and a solution is unique
+//! if inequalities that hold strictly for it exclude each of them. With `z_n >= μ |z_t|` at all touching contacts and
+//! `z_w >= 0`, the power of the reactions on `z` is nonnegative, so `z·q ṡ <= 0`: the other sign has no solution. With
+//! `ṡ = 0` these motions are the only solutions.
 //!
-//! Past a limit point `A` is not definite. Of two solutions with one power `q·Δ` of the load instead of one `ṡ`, the
-//! difference obeys the same with `q·Δ = 0`: where the symmetric part is definite across `q`, there is one solution at the
-//! most for each power, and where all are on their cones it exists if any motion with that power is open (a strongly
-//! monotone variational inequality; the load rate is the multiplier of the power). Without power nothing moves: the load
-//! alone changes. Definiteness across `q` follows from that of the rest beside one column `f` of fast motion: the Schur
-//! complement on `f` and the border `q` then has a negative determinant.
+//! Past a limit point `A` is not definite. For two solutions with the same power `q·Δ` of the load instead of the same
+//! `ṡ`, the difference obeys the same inequality with `q·Δ = 0`: where the symmetric part is definite across `q`, each
+//! power has at most one solution, and where all contacts are on their cones it exists if any motion with this power is
+//! admissible (a strongly monotone variational inequality; the load rate is the multiplier of the power). Without power
+//! nothing moves: the load alone changes. Definiteness across `q` follows from that of the matrix without one column
+//! `f` of fast motion if the Schur complement on `f` and the border `q` has a negative determinant.
 
 use crate::algebra::sparse::factors::cholesky::{Definite, Triangle};
 use crate::branching::directions::candidate::{CandidateDirection, FoundDirections, WEAK, is_mechanism};
@@ -33,14 +35,14 @@ use crate::branching::uniqueness::sparse_uniqueness::pivoting;
 use crate::mechanics::contact::{Mode, Reaction};
 use crate::mechanics::problem::state::Rate;
 
-/// What of its diagonal a matrix can lose and still count as definite.
+/// Part of its diagonal by which a matrix may be reduced and still count as definite.
 const MARGIN: f64 = 1e-12;
-/// What of its terms a determinant has to be for its sign to count.
+/// Smallest value of a determinant, relative to its terms, at which its sign counts.
 const CLEAR: f64 = 1e-9;
 /// The largest `|η|`.
 const MOST_WEIGHT: f64 = 0.999;
 
-/// What tells one solution from another.
+/// The quantity whose sign distinguishes the solutions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum DistinguishingQuantity {
     /// The sign of the load rate.
@@ -49,13 +51,13 @@ pub(super) enum DistinguishingQuantity {
     Power,
 }
 
-/// Each sign of the control has one solution at the most, but for motions, one entry a column of `A`, that nothing
-/// resists.
+/// Each sign of the control has at most one solution, up to motions without resistance, given as one entry for each
+/// column of `A`.
 pub(super) struct Proof {
     pub control: DistinguishingQuantity,
-    /// Of largest entry about 1.
+    /// The motion without resistance, with a largest entry of about 1.
     null: Option<Vec<f64>>,
-    /// Columns that nothing acts on.
+    /// Columns on which no element acts.
     loose: Vec<usize>,
 }
 
@@ -64,20 +66,20 @@ fn fastest(motion: &[f64]) -> Option<usize> {
     (0..motion.len()).max_by(|a, b| motion[*a].abs().total_cmp(&motion[*b].abs()))
 }
 
-/// Takes a column and its row out; they keep their place, apart from the others.
+/// Removes a column and its row; a unit diagonal entry keeps their place, decoupled from the others.
 fn hold(lower: &mut Triangle, held: usize) {
     lower.retain(|(row, column, _)| *row != held && *column != held);
     lower.push((held, held, 1.0));
 }
 
 impl Proof {
-    /// Dimension of the motions that nothing resists.
+    /// Dimension of the space of motions without resistance.
     pub fn free_motions(&self) -> usize {
         self.loose.len() + usize::from(self.null.is_some())
     }
 }
 
-/// `incoming` names the motion that the structure may resist least.
+/// Proves uniqueness where possible; `incoming` suggests the motion that the structure may resist least.
 pub(super) fn proof(equations: &Equations<'_>, incoming: Option<&Rate>) -> Option<Proof> {
     let mut lower = equations.symmetric_part();
     let mut is_loose = vec![true; equations.size];
@@ -107,13 +109,13 @@ pub(super) fn proof(equations: &Equations<'_>, incoming: Option<&Rate>) -> Optio
         return Some(Proof { control: DistinguishingQuantity::Load, null, loose });
     }
     if let Some(null) = &null {
-        // Definite across the motion: held where it is fastest.
+        // Definite across the motion: the column where it is fastest is removed.
         hold(&mut lower, fastest(null)?);
     }
     Definite::new(equations.size, &lower, -MARGIN).map(|_| Proof { control: DistinguishingQuantity::Load, null, loose })
 }
 
-/// That the symmetric part is definite across the load.
+/// The proof that the symmetric part is definite across the load.
 fn proof_by_power(equations: &Equations<'_>, lower: Triangle, incoming: &Rate) -> Option<Proof> {
     let is_smooth =
         |one: &ChangingContact| one.direction.is_some() || !equations.loading.contacts[one.contact].friction.is_rough();
@@ -148,7 +150,7 @@ fn proof_by_power(equations: &Equations<'_>, lower: Triangle, incoming: &Rate) -
     (value > CLEAR * size).then_some(Proof { control: DistinguishingQuantity::Power, null: None, loose: Vec::new() })
 }
 
-/// The motion that nothing resists.
+/// The motion without resistance.
 fn null(equations: &Equations<'_>, shifted: &Definite) -> Option<Vec<f64>> {
     let mut motion = shifted.softest();
     let largest = motion.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
@@ -176,7 +178,7 @@ fn free_rate(equations: &Equations<'_>, motion: &[f64]) -> Rate {
     rate
 }
 
-/// Takes off what friction at contacts that touch may have on its side.
+/// Subtracts the terms that friction at touching contacts may contribute.
 fn take_touching(
     equations: &Equations<'_>,
     inverse: &Definite,
@@ -240,7 +242,7 @@ fn take_touching(
     Some(())
 }
 
-/// Whether a solution is the only one with its sign of the load rate, and says all that first order can tell.
+/// Whether a solution is the only one with its sign of the load rate, and is conclusive at first order.
 pub(super) fn is_only(equations: &Equations<'_>, candidate: &CandidateDirection, proof: &Proof) -> bool {
     let strict = pivoting::strict(equations, candidate);
     let is_told = |(one, strict): (&ChangingContact, &bool)| *strict || one.direction.is_some();
@@ -310,7 +312,7 @@ pub(super) fn has_none(equations: &Equations<'_>, sign: f64, proof: &Proof) -> b
     is_pulled
 }
 
-/// Adds the motions that nothing resists and no contact hinders. Of a family all that are loose is one.
+/// Adds the motions without resistance that no contact obstructs. All loose columns together count as one motion.
 pub(super) fn add_free_motions(equations: &Equations<'_>, proof: &Proof, found: &mut FoundDirections) {
     if proof.free_motions() > 1 {
         (found.degenerate, found.mechanism) = (true, true);

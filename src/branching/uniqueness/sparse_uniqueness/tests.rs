@@ -1,4 +1,4 @@
-//! What the sparse certificate lists against the condensed equations.
+//! The directions listed by the sparse proof, compared with those of the condensed equations.
 
 use crate::branching::directions::arrival_tangent::Incoming;
 use crate::branching::directions::candidate::{CandidateDirection, FoundDirections};
@@ -43,7 +43,7 @@ fn chain(blocks: usize, coupling: f64) -> Scene {
     Scene::new(&serde_json::from_value(request).expect("a request")).expect("a scene")
 }
 
-/// What the proof lists at a point and what the condensed equations do; `None` where there is no proof.
+/// The directions that the proof and the condensed equations list at a point; `None` where there is no proof.
 fn both(path: &Path<'_>, incoming: Option<&Rate>) -> Option<(FoundDirections, FoundDirections)> {
     let (loading, state) = (path.trace.loading(), &path.trace.at.here.state);
     let (standings, effort) = (path.trace.standings(state), path.trace.rules().effort);
@@ -96,7 +96,7 @@ fn the_directions_are_those_of_the_condensed_equations() {
     }
 }
 
-/// Past their limit point the bars of a row give way: the load's power tells the directions apart.
+/// Past their limit point the bars of a row snap through: the load's power distinguishes the directions.
 #[test]
 fn past_a_limit_point_they_are_the_same_too() {
     let request = serde_json::from_value(crate::check::scenes::of_any_size::row_of_bars(20)).expect("a request");
@@ -119,7 +119,7 @@ fn past_a_limit_point_they_are_the_same_too() {
     assert!(rising > 10 && falling > 3, "{rising} {falling}");
 }
 
-/// Nodes on a floor that nothing presses yet, springs of all directions between them and to the ground.
+/// Nodes on a floor without reactions yet, springs of all directions between them and to the ground.
 #[test]
 fn from_rest_they_are_those_of_every_combination() {
     let mut random = Random::new(7);
@@ -142,7 +142,7 @@ fn from_rest_they_are_those_of_every_combination() {
             forces.insert(name.clone(), json!([random.value(), 0.5 * random.value() - 0.3]));
             let friction = if number % 5 == 0 && node == 1 { 0.0 } else { 0.1 + 0.1 * (node % 3) as f64 };
             contacts.push(json!({"node": &name, "obstacle": "floor", "friction": friction}));
-            // Some are held by one spring only, so that their structure alone can move.
+            // Some nodes are held by one spring only, so that the structure without contacts can move.
             let rank = 1 + usize::from(number % 2 == 0);
             elements.push(json!({"kind": "spring", "nodes": [&name], "stiffness": stiffness(&mut random, rank)}));
             if node > 0 {

@@ -1,4 +1,4 @@
-//! The equations of the motion that a load makes, and their factorisation.
+//! The equations of the motion caused by a load, and their factorisation.
 
 use crate::algebra::dense::assembly::Sink;
 use crate::algebra::sparse::{Bordered, Holdings, SparseFactorisation};
@@ -8,12 +8,13 @@ use crate::mechanics::structure::elements::Stretching;
 use nalgebra::DMatrix;
 use std::sync::Arc;
 
-/// Rows of a dense matrix in which stiff and soft elements are kept apart, at the most.
+/// Largest number of rows of a dense matrix in which stiff and soft elements are kept separate.
 const MOST_APART: usize = 400;
-/// Entries of a factor (of 8 bytes) up to which a structure is asked what resists: a scale is not worth more memory.
+/// Largest number of entries of a factor (of 8 bytes) for which the resisting stiffness is computed: a scale is not
+/// worth more memory.
 const MOST_ENTRIES: usize = 30_000_000;
 
-/// `p`: the forces on the unknowns for unit load with none of them moving.
+/// `p`: the forces on the unknowns for unit load with all unknowns fixed.
 pub(super) fn pushed(estimate: &StiffnessEstimate<'_>, displacement: &[f64], ties: &[Tie]) -> Vec<f64> {
     let structure = estimate.structure;
     let mut pushed: Vec<f64> = structure.freedom_of.iter().map(|freedom| estimate.pattern.forces[*freedom]).collect();
@@ -33,7 +34,7 @@ pub(super) fn pushed(estimate: &StiffnessEstimate<'_>, displacement: &[f64], tie
     pushed
 }
 
-/// What a stretching's motion is for unit load with no unknown moving.
+/// The motion of a stretching for unit load with all unknowns fixed.
 fn by_load(estimate: &StiffnessEstimate<'_>, stretching: &Stretching, own: f64) -> f64 {
     let supported = stretching.along.iter().filter(|(freedom, _)| estimate.structure.unknown_of[*freedom].is_none());
     supported.map(|(freedom, value)| value * estimate.support_rate(*freedom)).sum::<f64>() + own
@@ -53,7 +54,7 @@ pub(super) fn factorise(
 ) -> Option<SystemFactorisation> {
     let structure = estimate.structure;
     let unknowns = structure.unknowns();
-    // A spring may be as many summands as there are dimensions.
+    // A spring may have as many summands as there are dimensions.
     let summands = structure.dimension * structure.elements().count() + ties.len();
     if unknowns + summands <= MOST_APART {
         return factorise_apart(estimate, displacement, ties, row).map(SystemFactorisation::Dense);
@@ -119,7 +120,7 @@ fn add_ties_and_borders(
     }
 }
 
-/// The same with every stiffness kept apart from the others, so that soft ones keep their digits beside stiff ones.
+/// The same with every stiffness kept separate, so that soft ones keep their digits next to stiff ones.
 fn factorise_apart(
     estimate: &StiffnessEstimate<'_>,
     displacement: &[f64],

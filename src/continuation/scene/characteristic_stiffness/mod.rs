@@ -1,21 +1,23 @@
-//! Which stiffness resists a stage's load: what the scales of force and load go by.
+//! The characteristic stiffness that resists a stage's load: the basis of the scales of force and load.
 //!
-//! An element that carries nothing must not set a scale, be it soft beside others (a tether) or stiff in line with them (a
-//! link). What an element carries shows in the strain energy that it stores when the load is put on: of a soft one beside
-//! others that goes with its stiffness `k`, of a stiff one in line with others with `1/k`, and the mean of the stiffnesses
+//! An element that carries no load must not determine a scale, whether it is soft and parallel to others (a tether) or
+//! stiff and in series with them (a link). The share of the load that an element carries shows in its strain energy
+//! under the load: for a soft element parallel to others it is proportional to its stiffness `k`, for a stiff element
+//! in series with others to `1/k`, and the mean stiffness
 //!
 //! ```text
 //! k = exp(Σ w_e ln k_e / Σ w_e),      w_e the energy of the element e,
 //! ```
 //!
-//! hardly changes whatever they are. It does not depend on the order or the number of the elements that share the load.
+//! is insensitive to such elements. It does not depend on the order or the number of the elements that share the load.
 //!
-//! The motion is that of the undeformed structure, `K u = s p`, `p·u = 1` (regular as well where `K` is not and the load
-//! pushes what nothing holds), with the contacts that are closed held along their normals. Friction gives way
-//! where the load is large enough, and holds the rest: it is taken as springs of the usual stiffness. A structure that only
-//! a soft element holds at first order may be held by others at second (a bar loaded across): a motion of finite size,
-//! relaxed by Newton's method, tells, and closes contacts that it would pass through. The stiffest answer counts: a load
-//! scale that is too large costs next to nothing, the arc length being then that of the displacements.
+//! The motion is that of the undeformed structure, `K u = s p`, `p·u = 1` (regular even where `K` is singular and the
+//! load acts on an unconstrained motion), with the closed contacts fixed along their normals. Friction yields where the
+//! load is large enough, and resists otherwise: it is represented by springs of the usual stiffness. A structure that
+//! only a soft element resists at first order may be resisted by others at second order (a bar loaded transversely): a
+//! motion of finite size, relaxed by Newton's method, detects this, and closes contacts that it would penetrate. The
+//! stiffest result is used: a load scale that is too large costs next to nothing, as the arc length is then that of the
+//! displacements.
 
 pub(crate) mod equations;
 
@@ -30,23 +32,23 @@ use nalgebra::DVector;
 
 /// Gap (dimensionless) up to which a contact is closed.
 const CLOSED: f64 = 1e-10;
-/// Stiffness that holds a closed contact, over that of its node.
+/// Stiffness that fixes a closed contact, relative to that of its node.
 const HELD_BY: f64 = 1e6;
-/// Energy of the elements over that of all, below which the load goes into what is held.
+/// Energy of the elements, relative to that of the fixed contacts, below which the load is carried by these contacts.
 const NOT_HELD: f64 = 1e-3;
-/// Size of the finite motion, over the longest bar; where Newton's method does not converge, the next.
+/// Size of the finite motion, relative to the longest bar; the next is tried where Newton's method does not converge.
 const FINITE: [f64; 2] = [0.05, 0.0125];
-/// Its iterations.
+/// Largest number of Newton iterations.
 const MOST_ITERATIONS: usize = 12;
-/// The last correction over the motion.
+/// Size of the last correction relative to the motion.
 const CONVERGED: f64 = 1e-9;
-/// Energy over that of the elements' stiffnesses and whole displacements, below which it is rounding.
+/// Energy, relative to the products of the elements' stiffnesses with whole displacements, below which it is round-off.
 const ROUNDING: f64 = 1e-26;
-/// How often contacts that a motion passes through are closed.
+/// Largest number of times that contacts penetrated by a motion are closed.
 const MOST_CLOSINGS: usize = 2;
 
-/// The stiffness of the elements that resist a stage's pattern, as an axial stiffness, dimensionless; `None` where
-/// nothing that can move resists it.
+/// The stiffness of the elements that resist a stage's load pattern, as an axial stiffness, dimensionless; `None` where
+/// no movable element resists it.
 pub(super) fn resisting(structure: &Structure, contacts: &[ContactPair], pattern: &LoadPattern) -> Option<f64> {
     let held = contacts.iter().map(|contact| contact.gap(&[0.0; 3]) <= CLOSED).collect();
     let still = vec![0.0; structure.freedoms()];
@@ -73,7 +75,7 @@ pub(super) fn resisting(structure: &Structure, contacts: &[ContactPair], pattern
     stiffest
 }
 
-/// The mean diagonal entry of the tangent at each node, which does not hang on the axes.
+/// The mean diagonal entry of the tangent at each node, which does not depend on the axes.
 fn stiffness_at(structure: &Structure, still: &[f64]) -> Vec<f64> {
     let mut diagonal = vec![0.0_f64; structure.freedoms()];
     structure.each_stiffness(still, &mut |row, column, value| {
@@ -86,8 +88,8 @@ fn stiffness_at(structure: &Structure, still: &[f64]) -> Vec<f64> {
     (0..numbering.nodes()).map(|node| mean(&diagonal[numbering.translations_of(node)])).collect()
 }
 
-/// The stiffness of which as many bars are stiffer as softer, or one more; of linear elements where there are only these. An element's
-/// is the sum of its diagonal entries at a node, a bar's own whatever the axes.
+/// The (lower) median stiffness of the bars, or of the linear elements where there are no bars. An element's stiffness
+/// is the sum of its diagonal entries at a node, which for a bar does not depend on the axes.
 fn usual_stiffness(structure: &Structure, still: &[f64]) -> f64 {
     let mut buffer = ElementBuffer::default();
     let of_element = |at: ElementAt<'_>| {
@@ -106,7 +108,7 @@ fn usual_stiffness(structure: &Structure, still: &[f64]) -> f64 {
     all.get(all.len().saturating_sub(1) / 2).copied().unwrap_or(0.0)
 }
 
-/// All degrees of freedom and the load.
+/// Displacements of all degrees of freedom and the load.
 struct Motion {
     displacement: Vec<f64>,
     load: f64,
@@ -116,15 +118,15 @@ struct StiffnessEstimate<'a> {
     structure: &'a Structure,
     contacts: &'a [ContactPair],
     pattern: &'a LoadPattern,
-    /// Of each node.
+    /// Stiffness at each node.
     stiffness_at: Vec<f64>,
-    /// With which friction holds.
+    /// Stiffness of the springs that represent friction.
     usual: f64,
-    /// The contacts that are held.
+    /// Whether each contact is fixed.
     held: Vec<bool>,
 }
 
-/// A stiffness against `c·u + b s`.
+/// A stiffness against the stretch `c·u + b s`.
 struct Tie {
     stretching: Stretching,
     /// `b`
@@ -143,7 +145,7 @@ impl Tie {
 }
 
 impl StiffnessEstimate<'_> {
-    /// Holds the contacts that a motion passes through; whether there are any.
+    /// Fixes the contacts that a motion penetrates; returns whether there are any.
     fn close(&mut self, motion: &Motion) -> bool {
         let mut closes = false;
         for (index, contact) in self.contacts.iter().enumerate() {
@@ -154,7 +156,7 @@ impl StiffnessEstimate<'_> {
         closes
     }
 
-    /// Displacement of a contact's node less its obstacle's.
+    /// Displacement of a contact's node relative to its obstacle.
     fn relative(&self, contact: usize, motion: &Motion) -> Vector {
         let moved = contact_motion::moved(self.structure, &self.contacts[contact], &motion.displacement);
         add(&moved, -motion.load, &self.pattern.shifts[contact])
@@ -164,7 +166,7 @@ impl StiffnessEstimate<'_> {
         self.pattern.supports.get(freedom).copied().unwrap_or(0.0)
     }
 
-    /// What holds the nodes of the contacts that are held: first along the normals, then across them.
+    /// The ties of the nodes of fixed contacts: first along the normals, then along the tangents.
     fn ties(&self, still: &[f64]) -> [Vec<Tie>; 2] {
         let mut ties = [Vec::new(), Vec::new()];
         for (index, contact) in self.contacts.iter().enumerate().filter(|(index, _)| self.held[*index]) {
@@ -190,7 +192,7 @@ impl StiffnessEstimate<'_> {
         self.ties(still).into_iter().flatten().collect()
     }
 
-    /// The motion `K u = s p`, `p·u = 1`; `None` where the load moves nothing, or where it is not determined.
+    /// The motion `K u = s p`, `p·u = 1`; `None` where the load moves nothing, or where the motion is not determined.
     fn at_first_order(&self, still: &[f64]) -> Option<Motion> {
         let ties = self.all_ties(still);
         let pushed = equations::pushed(self, still, &ties);
@@ -217,7 +219,7 @@ impl StiffnessEstimate<'_> {
         Some(motion)
     }
 
-    /// All degrees of freedom of values of the unknowns and the load.
+    /// The motion of all degrees of freedom for values of the unknowns and the load.
     fn motion(&self, values: &[f64]) -> Motion {
         let structure = self.structure;
         let load = values[structure.unknowns()];
@@ -230,8 +232,8 @@ impl StiffnessEstimate<'_> {
         Motion { displacement, load }
     }
 
-    /// The motion of a finite size along that of first order, relaxed; `None` where every element is linear, or Newton's
-    /// method does not find it.
+    /// The motion of finite size along that of first order, relaxed; `None` where every element is linear, or Newton's
+    /// method does not converge.
     fn relaxed(&self, still: &[f64], first: &Motion) -> Option<Motion> {
         let structure = self.structure;
         if structure.unknowns() > MOST_ANALYSED || structure.is_linear() {
@@ -246,7 +248,7 @@ impl StiffnessEstimate<'_> {
         FINITE.iter().find_map(|size| self.relaxed_at(still, &along, first.load, &row, *size))
     }
 
-    /// Of one size: `f(u) = s p`, `row·u = size`.
+    /// The relaxed motion of one size: `f(u) = s p`, `row·u = size`.
     fn relaxed_at(&self, still: &[f64], along: &[f64], load: f64, row: &[f64], size: f64) -> Option<Motion> {
         let structure = self.structure;
         let (ties, unknowns) = (self.all_ties(still), structure.unknowns());
@@ -282,8 +284,8 @@ impl StiffnessEstimate<'_> {
         None
     }
 
-    /// The mean stiffness over the elements' energies in a motion, of finite size or at first order; `None` where the
-    /// elements store next to nothing of it.
+    /// The mean stiffness weighted by the elements' energies in a motion, of finite size or at first order; `None`
+    /// where the elements store next to no energy.
     fn mean(&self, motion: &Motion, is_finite: bool) -> Option<f64> {
         let still = vec![0.0; motion.displacement.len()];
         let (mut stored, mut logarithms, mut most) = (0.0, 0.0, 0.0);
@@ -309,7 +311,7 @@ impl StiffnessEstimate<'_> {
     }
 }
 
-/// What an element would store if no displacement took any of another away.
+/// The energy of an element if the contributions of the displacements did not cancel.
 fn most_energy(element: ElementAt<'_>, still: &[f64], motion: &Motion, buffer: &mut ElementBuffer) -> f64 {
     let mut most = 0.0;
     element.each_stiffness(still, buffer, &mut |row, column, value| {
