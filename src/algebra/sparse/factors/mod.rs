@@ -5,7 +5,7 @@
 //! | `pattern` | the sparsity pattern of a matrix, found once |
 //! | `symbolic` | the elimination order that keeps the factors sparse (AMD), and the size and work of a factor |
 //! | `bordered_matrix` | the assembled matrix |
-//! | `ldl`, `supernodal_ldl` | `K = L D Lᵀ`; small pivots are raised, the increments removed by borders; large ones in pieces |
+//! | `ldl`, `supernodal_ldl` | `K = L D Lᵀ`: small pivots raised, increments removed by borders; in pieces if large |
 //! | `cholesky` | whether a symmetric matrix is positive definite |
 //! | `static_pivot_lu`, `lu_pattern` | `K = L U` in the order of the symmetric factors, and the factors' patterns |
 //! | `pivoted_lu` | LU of any sparse matrix |
