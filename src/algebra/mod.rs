@@ -56,7 +56,7 @@ impl SystemFactorisation {
 /// A determinant as its sign and the natural logarithm of its magnitude.
 #[derive(Debug, Clone, Copy)]
 pub struct Determinant {
-    /// 0 where a pivot is 0.
+    /// Sign of the determinant: 1 or -1, or 0 where a pivot is 0.
     pub sign: f64,
     pub logarithm: f64,
     /// Ratio of the smallest to the largest pivot magnitude.

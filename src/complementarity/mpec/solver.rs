@@ -31,7 +31,7 @@ use crate::resources::cancel::CancelFlag;
 
 /// Factor on `ε` from one restart to the next.
 const RESTART_FACTOR: f64 = 100.0;
-/// Largest `ε`: a larger one relaxes no further.
+/// Largest `ε`: a larger value relaxes no further.
 const LARGEST_RELAXATION: f64 = 1e8;
 /// Largest number of values of `ε` in one descent, whatever the settings.
 const LEVEL_LIMIT: usize = 200;

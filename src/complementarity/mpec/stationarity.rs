@@ -11,7 +11,7 @@
 //! * `a, b >= 0` on `B`: strong stationarity (all multipliers of `B` nonnegative);
 //! * one member zero, the other nonnegative, in each of the `2^|B|` ways: stationarity of every branch (B-stationarity
 //!   of the linearised program, hence of the program where the usual tangent condition holds);
-//! * `a = b = 0` on `B`: weak stationarity; its multipliers' signs tell Mordukhovich and Clarke.
+//! * `a = b = 0` on `B`: weak stationarity; its multipliers' signs distinguish Mordukhovich and Clarke.
 //!
 //! Cone pairs: near a pair that is not biactive, the constraint is a smooth manifold, the current branch, and the above
 //! remains unchanged. Where one member vanishes and the other lies on the boundary, two branches meet, and the

@@ -10,11 +10,12 @@
 //! is no longer a P-matrix. If `M` without row and column `j` is a P-matrix, all rays can still be found:
 //!
 //! * `b_j = 0`: for each sign of `ṡ` the other pairs have one solution, which is a ray if `a_j >= 0`;
-//! * `b_j = 1`: for every `ṡ` the other pairs have one solution, a continuous, piecewise linear function of `ṡ`; the rays
-//!   are the zeros of `a_j(ṡ)`, a function of one variable. Its pieces are followed from `ṡ = 0` in both directions by
-//!   principal pivots (R. W. Cottle, J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem*, section 4.5,
-//!   doi:10.1137/1.9780898719000). Where several pairs change at one `ṡ`, the next piece solves the complementarity
-//!   problem of their rates, whose matrix is a P-matrix like every principal pivot transform of a P-matrix.
+//! * `b_j = 1`: for every `ṡ` the other pairs have one solution, a continuous, piecewise linear function of `ṡ`; the
+//!   rays are the zeros of `a_j(ṡ)`, a function of one variable. Its pieces are followed from `ṡ = 0` in both
+//!   directions by principal pivots (R. W. Cottle, J.-S. Pang, R. E. Stone, *The Linear Complementarity Problem*,
+//!   section 4.5, doi:10.1137/1.9780898719000). Where several pairs change at one `ṡ`, the next piece solves
+//!   the complementarity problem of their rates, whose matrix is a P-matrix like every principal pivot transform of a
+//!   P-matrix.
 //!
 //! The method gives no result where no such `j` is found, or where `a_j` vanishes along a whole piece.
 

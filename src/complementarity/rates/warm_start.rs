@@ -9,7 +9,7 @@ const DOUBT: f64 = 1e-6;
 /// Largest number of combinations returned.
 const MOST: u64 = 64;
 
-/// The combinations whose options fit the weights best; a limited number.
+/// The combinations whose options fit the weights, best first; a limited number.
 pub fn near(problem: &RateProblem, weights: &DVector<f64>) -> Vec<Vec<usize>> {
     let values = &problem.forms * weights;
     let largest = |force: bool| {

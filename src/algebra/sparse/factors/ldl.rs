@@ -16,7 +16,7 @@ use faer::{Conj, MatMut, Par, Side};
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
 
-/// Why a matrix was not factorised.
+/// The reason why a matrix was not factorised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LdlFailure {
     /// An entry of the matrix or of the factors is not finite.
@@ -177,8 +177,8 @@ impl SymmetricFactor {
     ///
     /// The inertia of `[[K + EΘEᵀ, E], [Eᵀ, 1/Θ]]` is that of `K` plus one positive eigenvalue per increment, and also
     /// that of the raised matrix plus that of `1/Θ - Eᵀ (K + EΘEᵀ)⁻¹ E` (E. V. Haynsworth, Linear Algebra Appl. 1
-    /// (1968) 73, doi:10.1016/0024-3795(68)90050-5). Eigenvalues of the latter matrix up to `tolerance` relative count
-    /// as zero.
+    /// (1968) 73, doi:10.1016/0024-3795(68)90050-5). Eigenvalues of the latter matrix of relative magnitude up to
+    /// `tolerance` count as zero.
     pub fn inertia(&self, tolerance: f64) -> Option<Inertia> {
         let (size, count) = (self.pattern.size(), self.raised.len());
         let negative = self.negative_pivots();

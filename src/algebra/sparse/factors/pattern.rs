@@ -7,8 +7,8 @@ use crate::resources::budget::{self, Taken};
 use faer::sparse::SymbolicSparseColMatRef;
 use std::sync::OnceLock;
 
-/// Multiplications per entry of the factor from which the factorisation works by dense blocks: for a plane lattice of
-/// 10,000 unknowns this takes two thirds of the time.
+/// Multiplications per entry of the factor from which the factorisation works by dense blocks, in two thirds of the
+/// time for a plane lattice of 10,000 unknowns.
 const BY_BLOCKS: f64 = 10.0;
 
 /// The sparsity pattern of a symmetric matrix, both triangles by columns, with its symbolic factorisation.

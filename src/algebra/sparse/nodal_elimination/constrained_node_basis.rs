@@ -189,7 +189,7 @@ fn local_blocks(
     Some(LocalBlocks { rows, columns, couplings })
 }
 
-/// The node's unknowns, the constrained ones first where the border rows involve as many unknowns as there are rows.
+/// The node's unknowns, constrained unknowns first where the border rows involve as many unknowns as there are rows.
 fn held_first(matrix: &Bordered, holding: &Holding) -> IndexList {
     if holding.rows.len() == holding.unknowns.len() {
         return holding.unknowns.clone();

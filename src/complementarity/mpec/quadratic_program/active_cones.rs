@@ -37,7 +37,7 @@ impl ConeState {
         }
     }
 
-    /// The state by the position of the difference of a vector and its multiplier, both of limited accuracy.
+    /// The state from the position of the difference between a vector and its multiplier, both of limited accuracy.
     pub fn of_solution(values: &DVector<f64>, multiplier: &DVector<f64>) -> Self {
         let difference = values - multiplier;
         let size = cone::tangential_size(difference.as_slice());

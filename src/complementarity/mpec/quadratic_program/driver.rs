@@ -254,8 +254,8 @@ mod tests {
     use crate::complementarity::mpec::quadratic_program::interior_point;
     use nalgebra::DMatrix;
 
-    /// `min ½ x²` s.t. `x >= 1` and `x <= -1`: every x in [-1, 1] has a total violation of 2, and x = 0 is the best of
-    /// them.
+    /// `min ½ x²` s.t. `x >= 1` and `x <= -1`: every x in [-1, 1] has a total violation of 2, and x = 0 minimises the
+    /// objective.
     #[test]
     fn contradictory_rows_end_elastic_with_the_least_violation() {
         let program = QuadraticProgram {
